@@ -1769,17 +1769,17 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
             rus_omega_2_in_axes3_x*rus_qd_3_t -
             rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
             rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
-        /* (rus-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        /* (rus-qdd_1_o) remainder of: acceleration of joint 1 */
         const real rus_qdd_1_o = v.inv_rus_v_1_t_2*rus_bias_in_axes3_x;
-        /* (rus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
+        /* (rus-qdd_3_o) remainder of: acceleration of joint 3 */
         const real rus_qdd_3_o = -rus_w_3_in_axes3_y*(rus_bias_in_axes3_y +
             rus_qdd_1_o*v.rus_v_1_in_axes3_y);
-        /* (rus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rus-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real rus_alpha_2_o_in_axes2_z = rus_qdd_1_o -
             v.rus_w_2_in_axes3_z*(rus_bias_in_axes3_z + rus_qdd_1_o*v.rus_v_1_in_axes3_z);
         const real rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*v.rus_e_1_in_axes3_x;
         const real rus_alpha_2_o_in_axes3_y = -v.rus_J_3_t_17*rus_alpha_2_o_in_axes2_z;
-        /* (rus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (rus-alpha_3_o) remainder of: angular acceleration of link 3 */
         const real rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x;
         const real rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - rus_W_3_in_axes3_xz;
         /* (rus-B_3_o) remainder of the acceleration tensor of link 3 */
@@ -1787,8 +1787,8 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
         const real rus_B_3_o_in_axes3_yx = rus_W_3_in_axes3_xy + rus_qdd_3_o;
         const real rus_B_3_o_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_o_in_axes3_y;
         const real rus_B_3_o_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_o_in_axes3_x;
-        /* (rus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 3, about their reference points */
+        /* (rus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+           reference points */
         const real rus_mu_3_o_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
         const real rus_mu_3_o_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
         const real rus_mu_3_o_t_3 = rus_qd_3*rus_qd_3;
@@ -1828,8 +1828,8 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
             rus_g_in_axes3_x*rus_h_3_in_spec3_z - rus_g_in_axes3_y*rus_h_3_in_spec3_x;
         const real rus_mu_3_o_in_axes1_z = v.rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x -
             v.rus_J_3_t_17*rus_mu_3_o_in_axes3_y;
-        /* (rus-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
+        /* (rus-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+           reference points */
         const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
         const real rus_h_1_in_spec1_x = m->rus_h_1_in_spec1_x[i];
         const real rus_h_1_in_spec1_y = m->rus_h_1_in_spec1_y[i];
@@ -1838,15 +1838,15 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
         const real rus_mu_1_o_in_axes1_z = rus_J_1_in_spec1_zz*rus_qdd_1_o +
             rus_h_1_in_spec1_y*(v.rus_c_1*rus_mu_1_t + rus_mu_1_t_2*v.rus_s_1) -
             rus_h_1_in_spec1_x*(v.rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*v.rus_s_1);
-        /* (rus-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
+        /* (rus-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+           connection point left out */
         const real rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z;
-        /* (rus-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (rus-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*v.rus_w_2_in_axes3_z;
         const real rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*rus_w_3_in_axes3_y;
-        /* (rus-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (rus-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+           connection point */
         const real rus_c_o_in_axes3_x = v.inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z -
             rus_G_o_in_axes3_y*v.rus_v_1_in_axes3_y - rus_G_o_in_axes3_z*v.rus_v_1_in_axes3_z) +
             rus_B_3_o_in_axes3_xy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_x*(rus_mu_3_o_t_2 +
@@ -2246,17 +2246,17 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, siz
             rus_omega_2_in_axes3_x*rus_qd_3_t -
             v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
             v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
-        /* (rus-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        /* (rus-qdd_1_o) remainder of: acceleration of joint 1 */
         const real rus_qdd_1_o = v.inv_rus_v_1_t_2*rus_bias_in_axes3_x;
-        /* (rus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
+        /* (rus-qdd_3_o) remainder of: acceleration of joint 3 */
         const real rus_qdd_3_o = -rus_w_3_in_axes3_y*(rus_bias_in_axes3_y +
             rus_qdd_1_o*v.rus_v_1_in_axes3_y);
-        /* (rus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rus-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real rus_alpha_2_o_in_axes2_z = rus_qdd_1_o -
             v.rus_w_2_in_axes3_z*(rus_bias_in_axes3_z + rus_qdd_1_o*v.rus_v_1_in_axes3_z);
         const real rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*v.rus_e_1_in_axes3_x;
         const real rus_alpha_2_o_in_axes3_y = -rus_alpha_2_o_in_axes2_z*v.rus_c_3;
-        /* (rus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (rus-alpha_3_o) remainder of: angular acceleration of link 3 */
         const real rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x;
         const real rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - rus_W_3_in_axes3_xz;
         /* (rus-B_3_o) remainder of the acceleration tensor of link 3 */
@@ -2264,8 +2264,8 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, siz
         const real rus_B_3_o_in_axes3_yx = rus_W_3_in_axes3_xy + rus_qdd_3_o;
         const real rus_B_3_o_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_o_in_axes3_y;
         const real rus_B_3_o_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_o_in_axes3_x;
-        /* (rus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 3, about their reference points */
+        /* (rus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+           reference points */
         const real rus_mu_3_o_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
         const real rus_mu_3_o_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
         const real rus_mu_3_o_t_3 = rus_qd_3*rus_qd_3;
@@ -2305,8 +2305,8 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, siz
             rus_g_in_axes3_x*rus_h_3_in_spec3_z - rus_g_in_axes3_y*rus_h_3_in_spec3_x;
         const real rus_mu_3_o_in_axes1_z = v.rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x -
             v.rus_c_3*rus_mu_3_o_in_axes3_y;
-        /* (rus-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
+        /* (rus-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+           reference points */
         const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
         const real rus_h_1_in_spec1_x = m->rus_h_1_in_spec1_x[i];
         const real rus_h_1_in_spec1_y = m->rus_h_1_in_spec1_y[i];
@@ -2315,15 +2315,15 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, siz
         const real rus_mu_1_o_in_axes1_z = rus_J_1_in_spec1_zz*rus_qdd_1_o +
             rus_h_1_in_spec1_y*(v.rus_c_1*rus_mu_1_t + rus_mu_1_t_2*v.rus_s_1) -
             rus_h_1_in_spec1_x*(v.rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*v.rus_s_1);
-        /* (rus-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
+        /* (rus-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+           connection point left out */
         const real rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z;
-        /* (rus-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (rus-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*v.rus_w_2_in_axes3_z;
         const real rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*rus_w_3_in_axes3_y;
-        /* (rus-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (rus-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+           connection point */
         const real rus_c_o_in_axes3_x = v.inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z -
             rus_G_o_in_axes3_y*v.rus_v_1_in_axes3_y - rus_G_o_in_axes3_z*v.rus_v_1_in_axes3_z) +
             rus_B_3_o_in_axes3_xy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_x*(rus_mu_3_o_t_2 +

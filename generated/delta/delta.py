@@ -850,10 +850,10 @@ class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
     sqrt = staticmethod(math.sqrt)
-    sin = staticmethod(lambda x: float(np.sin(x)))
-    cos = staticmethod(lambda x: float(np.cos(x)))
+    sin = staticmethod(lambda x: float(np.sin(x)) if math.isfinite(x) else math.nan)
+    cos = staticmethod(lambda x: float(np.cos(x)) if math.isfinite(x) else math.nan)
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
-    least = staticmethod(lambda x, y: float(np.minimum(x, y)))
+    least = staticmethod(lambda x, y: y if y < x or y != y else x)
 
     def __init__(self, p, states, kept=None):
         self.p, self.states = p, states
@@ -1006,7 +1006,7 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
     Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
     where a single state needs no arrays.
     """
-    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    p, read = _given(p), [a[4:] != ("unused",) for a in arguments]
     lists = plain and _lists(arguments)
     if lists:
         found = _state(_Single(p, 1), steps, lists, read)
@@ -1031,7 +1031,7 @@ def _lists(arguments):
     for row in arguments:
         value, shape = row[1:3]
         if type(value) is np.ndarray:
-            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+            if value.shape != shape or value.dtype is not _REAL or row[4:] == ("positive",):
                 return None
             found.append(_Vector(value.tolist()))
         elif value is None and len(row) > 3 and row[3] is not None:
@@ -1765,11 +1765,11 @@ def _run_dynamics(m, X, V):
             rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
             rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y
         )
-        # (rus-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (rus-qdd_1_o) remainder of: acceleration of joint 1
         rus_qdd_1_o = inv_rus_v_1_t_2*rus_bias_in_axes3_x
-        # (rus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
+        # (rus-qdd_3_o) remainder of: acceleration of joint 3
         rus_qdd_3_o = -rus_w_3_in_axes3_y*(rus_bias_in_axes3_y + rus_qdd_1_o*rus_v_1_in_axes3_y)
-        # (rus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (rus-alpha_2_o) remainder of: angular acceleration of link 2
         rus_alpha_2_o_in_axes2_z = (
         rus_qdd_1_o - rus_w_2_in_axes3_z*(rus_bias_in_axes3_z + rus_qdd_1_o*rus_v_1_in_axes3_z)
         )
@@ -1778,7 +1778,7 @@ def _run_dynamics(m, X, V):
         # (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
         rus_d_alpha_3_in_axes3_xz = rus_e_1_in_axes3_x*rus_w_2_in_axes3_z
         rus_d_alpha_3_t = rus_J_3_t_17*rus_w_2_in_axes3_z
-        # (rus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        # (rus-alpha_3_o) remainder of: angular acceleration of link 3
         rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x
         rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - rus_W_3_in_axes3_xz
         # (rus-B_3_o) remainder of the acceleration tensor of link 3
@@ -1786,7 +1786,7 @@ def _run_dynamics(m, X, V):
         rus_B_3_o_in_axes3_yx = rus_W_3_in_axes3_xy + rus_qdd_3_o
         rus_B_3_o_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_o_in_axes3_y
         rus_B_3_o_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_o_in_axes3_x
-        # (rus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        # (rus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
         rus_mu_3_o_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x
         rus_mu_3_o_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y
         rus_mu_3_o_t_3 = rus_qd_3*rus_qd_3
@@ -1844,19 +1844,19 @@ def _run_dynamics(m, X, V):
         rus_d_Gamma_2_t_2 + rus_J_3_t_17*rus_h_3_in_spec3_x -
             rus_e_1_in_axes3_x*rus_h_3_in_spec3_z
         )
-        # (rus-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        # (rus-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rus_mu_1_o_in_axes1_z = (
         rus_J_1_in_spec1_zz*rus_qdd_1_o + rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t +
             rus_mu_1_t_2*rus_s_1) - rus_h_1_in_spec1_x*(rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1)
         )
-        # (rus-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        # (rus-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z
         # (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         rus_d_Gamma_1_in_axes3_x = (
         inv_rus_v_1_t_2*(rus_d_Gamma_2_t_4 + rus_d_Gamma_2_t_5 - rus_J_1_in_spec1_zz -
             rus_J_3_in_axes1_zz) - rus_d_Gamma_2_t
         )
-        # (rus-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (rus-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*rus_w_2_in_axes3_z
         rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*rus_w_3_in_axes3_y
         # (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
@@ -1879,7 +1879,7 @@ def _run_dynamics(m, X, V):
         rus_d_c_in_axes3_yz = (
         rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_y - rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_y
         )
-        # (rus-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (rus-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rus_c_o_in_axes3_x = (
         inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z - rus_G_o_in_axes3_y*rus_v_1_in_axes3_y -
             rus_G_o_in_axes3_z*rus_v_1_in_axes3_z) + rus_B_3_o_in_axes3_xy*rus_h_3_in_spec3_z +
@@ -2408,17 +2408,17 @@ def _run_Z(m, X, V):
             rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
             rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y
         )
-        # (rus-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (rus-qdd_1_o) remainder of: acceleration of joint 1
         rus_qdd_1_o = inv_rus_v_1_t_2*rus_bias_in_axes3_x
-        # (rus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
+        # (rus-qdd_3_o) remainder of: acceleration of joint 3
         rus_qdd_3_o = -rus_w_3_in_axes3_y*(rus_bias_in_axes3_y + rus_qdd_1_o*rus_v_1_in_axes3_y)
-        # (rus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (rus-alpha_2_o) remainder of: angular acceleration of link 2
         rus_alpha_2_o_in_axes2_z = (
         rus_qdd_1_o - rus_w_2_in_axes3_z*(rus_bias_in_axes3_z + rus_qdd_1_o*rus_v_1_in_axes3_z)
         )
         rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*rus_e_1_in_axes3_x
         rus_alpha_2_o_in_axes3_y = -rus_alpha_2_o_in_axes2_z*rus_c_3
-        # (rus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        # (rus-alpha_3_o) remainder of: angular acceleration of link 3
         rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x
         rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - rus_W_3_in_axes3_xz
         # (rus-B_3_o) remainder of the acceleration tensor of link 3
@@ -2426,7 +2426,7 @@ def _run_Z(m, X, V):
         rus_B_3_o_in_axes3_yx = rus_W_3_in_axes3_xy + rus_qdd_3_o
         rus_B_3_o_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_o_in_axes3_y
         rus_B_3_o_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_o_in_axes3_x
-        # (rus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        # (rus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
         rus_mu_3_o_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x
         rus_mu_3_o_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y
         rus_mu_3_o_t_3 = rus_qd_3*rus_qd_3
@@ -2463,17 +2463,17 @@ def _run_Z(m, X, V):
         rus_mu_3_o_in_axes1_z = (
         rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x - rus_c_3*rus_mu_3_o_in_axes3_y
         )
-        # (rus-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        # (rus-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rus_mu_1_o_in_axes1_z = (
         rus_J_1_in_spec1_zz*rus_qdd_1_o + rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t +
             rus_mu_1_t_2*rus_s_1) - rus_h_1_in_spec1_x*(rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1)
         )
-        # (rus-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        # (rus-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z
-        # (rus-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (rus-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*rus_w_2_in_axes3_z
         rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*rus_w_3_in_axes3_y
-        # (rus-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (rus-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rus_c_o_in_axes3_x = (
         inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z - rus_G_o_in_axes3_y*rus_v_1_in_axes3_y -
             rus_G_o_in_axes3_z*rus_v_1_in_axes3_z) + rus_B_3_o_in_axes3_xy*rus_h_3_in_spec3_z +

@@ -1869,14 +1869,14 @@ INLINE void dynamics_legs_crank(const prepared *m, size_t w, size_t leg, size_t 
         const real omega_z = V[2*w + j];
         const real crank_u_1_x = -v.crank_S_dot_t_2*omega_z;
         const real crank_u_1_t = v.crank_S_dot_t*omega_z;
-        /* (crank-rel_o) remainder without the acceleration in: acceleration of the connection point left
-           to the joint accelerations */
+        /* (crank-rel_o) remainder of: acceleration of the connection point left to the joint
+           accelerations */
         const real crank_w_1_in_axes1_y = m->crank_w_1_in_axes1_y[i];
         const real crank_rel_o_in_axes1_x = v.axis_x_crank_axes1_x*crank_u_1_x +
             v.axis_y_crank_axes1_x*crank_u_1_t +
             v.crank_S_dot_in_axes1_y*v.crank_S_dot_in_axes1_y*crank_w_1_in_axes1_y;
-        /* (crank-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn
-           with link 1, about their reference points */
+        /* (crank-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+           reference points */
         const real crank_J_1_in_spec1_zz = m->crank_J_1_in_spec1_zz[i];
         const real crank_h_1_in_spec1_x = m->crank_h_1_in_spec1_x[i];
         const real crank_h_1_in_spec1_y = m->crank_h_1_in_spec1_y[i];
@@ -1887,8 +1887,8 @@ INLINE void dynamics_legs_crank(const prepared *m, size_t w, size_t leg, size_t 
             crank_J_1_in_spec1_zz*crank_w_1_in_axes1_y*(v.axis_y_crank_axes1_x*crank_u_1_x -
             v.axis_x_crank_axes1_x*crank_u_1_t) - crank_h_1_in_spec1_x*(v.crank_c_1*crank_mu_1_t_2
             - crank_mu_1_t*v.crank_s_1);
-        /* (crank-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (crank-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real crank_G_o_in_axes1_y = crank_mu_1_o_in_axes1_z*crank_w_1_in_axes1_y;
         /* (crank-U) velocity and gravity terms of the leg force */
         const real crank_U_x = v.axis_y_crank_axes1_x*crank_G_o_in_axes1_y;
@@ -1967,35 +1967,34 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
             v.axis_y_rrr_axes2_x*rrr_u_1_t;
         const real rrr_u_1_in_axes2_y = v.axis_y_rrr_axes2_x*rrr_u_1_x -
             v.axis_x_rrr_axes2_x*rrr_u_1_t;
-        /* (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
+        /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - v.rrr_bias_in_axes2_x;
         const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
         const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
             v.rrr_W_1_t*rrr_joint2_offset_x*v.rrr_s_2;
         /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
         const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*v.rrr_w_1_in_axes2_x;
-        /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
         const real rrr_alpha_2_o_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y +
             rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
-        /* (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
+        /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + v.axis_y_rrr_axes2_x*gravity_y -
             v.axis_x_rrr_axes2_x*gravity_x;
         const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - v.axis_x_rrr_axes2_x*gravity_y -
             v.axis_y_rrr_axes2_x*gravity_x;
-        /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
+        /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
         const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
         const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
         const real rrr_mu_2_o_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
             rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y;
-        /* (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
+        /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+           reference points */
         const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
         const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
         const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
@@ -2004,14 +2003,14 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(v.rrr_c_1*rrr_mu_1_t +
             rrr_mu_1_t_2*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
             rrr_h_1_in_spec1_x*(v.rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v.rrr_s_1);
-        /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
+        /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+           connection point left out */
         const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
-        /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y;
-        /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+           connection point */
         const real rrr_c_o_in_axes2_x = v.rrr_W_2_t*rrr_h_2_in_spec2_x +
             rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
             v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
@@ -2398,8 +2397,8 @@ INLINE void Z_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, c
         const size_t j = states*k;
         values_crank v;
         stage_crank_X(m, w, i, j, s, X, &v);
-        /* (crank-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn
-           with link 1, about their reference points */
+        /* (crank-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+           reference points */
         const real crank_J_1_in_spec1_zz = m->crank_J_1_in_spec1_zz[i];
         const real crank_h_1_in_spec1_x = m->crank_h_1_in_spec1_x[i];
         const real crank_h_1_in_spec1_y = m->crank_h_1_in_spec1_y[i];
@@ -2412,8 +2411,8 @@ INLINE void Z_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, c
             crank_J_1_in_spec1_zz*crank_w_1_in_axes1_y*(-v.axis_x_crank_axes1_x*v.crank_q_y*omega_z*omega_z
             - v.axis_y_crank_axes1_x*v.crank_q_x*omega_z*omega_z) -
             crank_h_1_in_spec1_x*(v.crank_c_1*crank_mu_1_t_2 - crank_mu_1_t*v.crank_s_1);
-        /* (crank-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (crank-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real crank_G_o_in_axes1_y = crank_mu_1_o_in_axes1_z*crank_w_1_in_axes1_y;
         /* (crank-U) velocity and gravity terms of the leg force */
         const real crank_U_x = v.axis_y_crank_axes1_x*crank_G_o_in_axes1_y;
@@ -2479,33 +2478,32 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
             rrr_W_1_t*v.rrr_c_2*rrr_joint2_offset_x;
-        /* (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
+        /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x;
         const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
             rrr_W_1_t*rrr_joint2_offset_x*v.rrr_s_2;
         /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
         const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*v.rrr_w_1_in_axes2_x;
-        /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real rrr_alpha_2_o_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y +
             rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
-        /* (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
+        /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
             axis_x_rrr_axes2_x*gravity_x;
         const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
             axis_y_rrr_axes2_x*gravity_x;
-        /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
+        /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
         const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
         const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
         const real rrr_mu_2_o_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
             rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y;
-        /* (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
+        /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+           reference points */
         const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
         const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
         const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
@@ -2514,14 +2512,14 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(v.rrr_c_1*rrr_mu_1_t +
             rrr_mu_1_t_2*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
             rrr_h_1_in_spec1_x*(v.rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v.rrr_s_1);
-        /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
+        /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+           connection point left out */
         const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
-        /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y;
-        /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+           connection point */
         const real rrr_c_o_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
             rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
             v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
@@ -2836,8 +2834,8 @@ INLINE void constraint_bias_legs_crank(const prepared *m, size_t w, size_t leg, 
         values_crank v;
         stage_crank_X(m, w, i, j, s, X, &v);
         stage_crank_constraint_bias_dynamics(w, j, V, &v);
-        /* (crank-rel_o) remainder without the acceleration in: acceleration of the connection point left
-           to the joint accelerations */
+        /* (crank-rel_o) remainder of: acceleration of the connection point left to the joint
+           accelerations */
         const real crank_w_1_in_axes1_y = m->crank_w_1_in_axes1_y[i];
         const real omega_z = V[2*w + j];
         const real crank_rel_o_in_axes1_x =

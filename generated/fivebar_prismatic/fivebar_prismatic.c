@@ -1077,14 +1077,14 @@ INLINE void stage_rpr_Z_dynamics(const prepared *m, size_t i, values_rpr *v)
 {
     /* (rpr-B_1_o) remainder of the acceleration tensor of link 1 */
     const real rpr_B_1_o_in_axes1_xy = 2*v->inv_rpr_q_2*v->rpr_S_dot_in_axes1_x*v->rpr_qd_1;
-    /* (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning
-       about its reference point */
+    /* (rpr-phi_2_o) remainder of: inertia force of link 2 from its turning about its reference point
+       */
     const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
     const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
     const real rpr_phi_2_o_in_axes1_x = rpr_B_1_o_in_axes1_xy*rpr_h_2_in_spec1_y -
         v->rpr_W_1_t*rpr_h_2_in_spec1_x;
-    /* (rpr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
-       link 1, about their reference points */
+    /* (rpr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
     const real gravity_x = m->gravity_x;
     const real gravity_y = m->gravity_y;
     const real rpr_Sigma_1_in_axes1_xx = m->rpr_Sigma_1_in_axes1_xx[i];
@@ -1097,8 +1097,8 @@ INLINE void stage_rpr_Z_dynamics(const prepared *m, size_t i, values_rpr *v)
         rpr_B_1_o_in_axes1_xy*rpr_Sigma_1_in_axes1_yy -
         rpr_h_group_1_in_axes1_x*(v->axis_x_rpr_axes1_x*gravity_y -
         v->axis_x_rpr_axes1_y*gravity_x);
-    /* (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation
-       and without the mass at the connection point */
+    /* (rpr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
     const real rpr_c_o_in_axes1_y = rpr_B_1_o_in_axes1_xy*rpr_h_2_in_spec1_x +
         v->rpr_W_1_t*rpr_h_2_in_spec1_y - v->inv_rpr_q_2*rpr_mu_1_o_in_axes1_z;
     /* (rpr-U) velocity and gravity terms of the leg force */

@@ -739,10 +739,10 @@ class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
     sqrt = staticmethod(math.sqrt)
-    sin = staticmethod(lambda x: float(np.sin(x)))
-    cos = staticmethod(lambda x: float(np.cos(x)))
+    sin = staticmethod(lambda x: float(np.sin(x)) if math.isfinite(x) else math.nan)
+    cos = staticmethod(lambda x: float(np.cos(x)) if math.isfinite(x) else math.nan)
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
-    least = staticmethod(lambda x, y: float(np.minimum(x, y)))
+    least = staticmethod(lambda x, y: y if y < x or y != y else x)
 
     def __init__(self, p, states, kept=None):
         self.p, self.states = p, states
@@ -895,7 +895,7 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
     Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
     where a single state needs no arrays.
     """
-    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    p, read = _given(p), [a[4:] != ("unused",) for a in arguments]
     lists = plain and _lists(arguments)
     if lists:
         found = _state(_Single(p, 1), steps, lists, read)
@@ -920,7 +920,7 @@ def _lists(arguments):
     for row in arguments:
         value, shape = row[1:3]
         if type(value) is np.ndarray:
-            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+            if value.shape != shape or value.dtype is not _REAL or row[4:] == ("positive",):
                 return None
             found.append(_Vector(value.tolist()))
         elif value is None and len(row) > 3 and row[3] is not None:
@@ -1561,14 +1561,14 @@ def _run_dynamics(m, X, V):
         rrr_bias_in_axes2_x = (
         rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x - rrr_W_2_t*rrr_platform_joint_offset_x
         )
-        # (rrr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (rrr-qdd_1_o) remainder of: acceleration of joint 1
         rrr_qdd_1_o = inv_rrr_r_1_in_axes2_y*rrr_bias_in_axes2_x
-        # (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (rrr-alpha_2_o) remainder of: angular acceleration of link 2
         rrr_alpha_2_o_in_axes2_z = (
         rrr_qdd_1_o + rrr_w_2_in_axes2_y*(rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2 -
             rrr_qdd_1_o*rrr_r_1_in_axes2_x)
         )
-        # (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_o_in_axes2_z = (
         rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
             rrr_h_2_in_spec2_y*(axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y) -
@@ -1579,25 +1579,25 @@ def _run_dynamics(m, X, V):
         rrr_d_Gamma_2_in_axes2_x = (
         -rrr_h_2_in_spec2_y - inv_rrr_r_1_in_axes2_y*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2)
         )
-        # (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        # (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rrr_mu_1_o_in_axes1_z = (
         rrr_J_1_in_spec1_zz*rrr_qdd_1_o + rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
             rrr_mu_1_t_2*rrr_s_1) - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1)
         )
-        # (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        # (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
         # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         rrr_d_Gamma_1_in_axes2_x = (
         -rrr_h_2_in_spec2_y - inv_rrr_r_1_in_axes2_y*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2)
         )
-        # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrr_d_c_in_axes2_xy = (
         inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_2_in_axes2_y - rrr_d_phi_2_in_axes2_xy -
             rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x
         )
-        # (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_c_o_in_axes2_x = (
         rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
             inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
@@ -1847,29 +1847,29 @@ def _run_Z(m, X, V):
         rrr_bias_in_axes2_x = (
         rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x - rrr_W_2_t*rrr_platform_joint_offset_x
         )
-        # (rrr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (rrr-qdd_1_o) remainder of: acceleration of joint 1
         rrr_qdd_1_o = inv_rrr_r_1_in_axes2_y*rrr_bias_in_axes2_x
-        # (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (rrr-alpha_2_o) remainder of: angular acceleration of link 2
         rrr_alpha_2_o_in_axes2_z = (
         rrr_qdd_1_o + rrr_w_2_in_axes2_y*(rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2 -
             rrr_qdd_1_o*rrr_r_1_in_axes2_x)
         )
-        # (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_o_in_axes2_z = (
         rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
             rrr_h_2_in_spec2_y*(axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y) -
             rrr_h_2_in_spec2_x*(axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x)
         )
-        # (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        # (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rrr_mu_1_o_in_axes1_z = (
         rrr_J_1_in_spec1_zz*rrr_qdd_1_o + rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
             rrr_mu_1_t_2*rrr_s_1) - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1)
         )
-        # (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        # (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
-        # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
-        # (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_c_o_in_axes2_x = (
         rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
             inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)

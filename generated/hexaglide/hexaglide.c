@@ -2175,25 +2175,25 @@ INLINE void dynamics_legs_pus(const prepared *m, size_t w, size_t leg, size_t le
         const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
         const real pus_bias_in_axes3_z = pus_W_3_in_axes3_xz*pus_platform_joint_offset_x +
             pus_omega_2_in_axes3_x*pus_qd_3_t;
-        /* (pus-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
+        /* (pus-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real pus_rel_o_t = pus_omega_2_in_axes3_y*pus_platform_joint_offset_x;
         const real pus_rel_o_in_axes3_x = pus_u_1_in_axes3_x + pus_omega_2_in_axes3_y*pus_rel_o_t
             + pus_qd_3*pus_qd_3_t;
         const real pus_rel_o_in_axes3_y = pus_u_1_in_axes3_y - pus_omega_2_in_axes3_x*pus_rel_o_t;
         const real pus_rel_o_in_axes3_z = pus_u_1_in_axes3_z - pus_bias_in_axes3_z;
-        /* (pus-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        /* (pus-qdd_1_o) remainder of: acceleration of joint 1 */
         const real pus_qdd_1_o = pus_rel_o_in_axes3_x*v.pus_w_1_in_axes3_x;
-        /* (pus-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        /* (pus-qdd_2_o) remainder of: acceleration of joint 2 */
         const real pus_qdd_2_o_t = v.pus_w_2_in_axes3_z*(-pus_rel_o_in_axes3_z -
             pus_qdd_1_o*v.pus_s_2);
-        /* (pus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
+        /* (pus-qdd_3_o) remainder of: acceleration of joint 3 */
         const real pus_qdd_3_o = -pus_w_3_in_axes3_y*(v.pus_e_1_in_axes3_y*pus_qdd_1_o -
             pus_rel_o_in_axes3_y);
-        /* (pus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (pus-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real pus_alpha_2_o_t = v.pus_e_2_in_axes3_x*pus_qdd_2_o_t;
         const real pus_alpha_2_o_in_axes3_y = v.pus_J_3_t_10*pus_qdd_2_o_t;
-        /* (pus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (pus-alpha_3_o) remainder of: angular acceleration of link 3 */
         const real pus_alpha_3_o_in_axes3_x = pus_W_3_in_axes3_yz - pus_alpha_2_o_t;
         const real pus_alpha_3_o_in_axes3_y = pus_alpha_2_o_in_axes3_y - pus_W_3_in_axes3_xz;
         /* (pus-B_3_o) remainder of the acceleration tensor of link 3 */
@@ -2201,12 +2201,10 @@ INLINE void dynamics_legs_pus(const prepared *m, size_t w, size_t leg, size_t le
         const real pus_B_3_o_in_axes3_yx = pus_W_3_in_axes3_xy + pus_qdd_3_o;
         const real pus_B_3_o_in_axes3_zx = pus_W_3_in_axes3_xz - pus_alpha_3_o_in_axes3_y;
         const real pus_B_3_o_in_axes3_zy = pus_W_3_in_axes3_yz + pus_alpha_3_o_in_axes3_x;
-        /* (pus-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
-           link 1, less gravity */
+        /* (pus-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
         const real pus_g_in_axes0_x = m->pus_g_in_axes0_x[i];
         const real pus_acc_1_o_in_axes0_x = pus_qdd_1_o - pus_g_in_axes0_x;
-        /* (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
+        /* (pus-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
         const real pus_g_in_axes0_y = m->pus_g_in_axes0_y[i];
         const real pus_acc_3_o_t = v.pus_c_2*pus_g_in_axes0_x + pus_g_in_axes0_y*v.pus_s_2;
         const real pus_g_in_axes0_z = m->pus_g_in_axes0_z[i];
@@ -2216,8 +2214,8 @@ INLINE void dynamics_legs_pus(const prepared *m, size_t w, size_t leg, size_t le
             pus_acc_3_o_t*v.pus_e_2_in_axes3_x;
         const real pus_acc_3_o_in_axes3_z = pus_u_1_in_axes3_z + pus_g_in_axes0_x*v.pus_s_2 -
             v.pus_c_2*pus_g_in_axes0_y;
-        /* (pus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 3, about their reference points */
+        /* (pus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+           reference points */
         const real pus_mu_3_o_t = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_x;
         const real pus_mu_3_o_t_2 = pus_omega_2_in_axes3_y*pus_omega_2_in_axes3_y;
         const real pus_mu_3_o_t_3 = pus_qd_3*pus_qd_3;
@@ -2246,13 +2244,13 @@ INLINE void dynamics_legs_pus(const prepared *m, size_t w, size_t leg, size_t le
             - pus_B_3_o_in_axes3_xy*pus_Sigma_3_in_axes3_yy - pus_J_3_in_spec3_xy*pus_alpha_2_o_t
             - pus_J_3_in_spec3_xz*(pus_mu_3_o_t - pus_mu_3_o_t_2) -
             pus_J_3_in_spec3_yz*pus_alpha_2_o_in_axes3_y;
-        /* (pus-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (pus-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real pus_G_o_t = v.pus_w_2_in_axes3_z*(v.pus_J_3_t_10*pus_mu_3_o_in_axes3_y -
             v.pus_e_2_in_axes3_x*pus_mu_3_o_in_axes3_x);
         const real pus_G_o_in_axes3_y = pus_mu_3_o_in_axes3_z*pus_w_3_in_axes3_y;
-        /* (pus-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (pus-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+           connection point */
         const real pus_link1_mass = m->pus_link1_mass[i];
         const real pus_c_o_in_axes3_x = pus_B_3_o_in_axes3_xy*pus_h_3_in_spec3_z +
             pus_h_3_in_spec3_x*(pus_mu_3_o_t_2 + pus_mu_3_o_t_3) -
@@ -2933,25 +2931,25 @@ INLINE void Z_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
         const real pus_bias_in_axes3_z = pus_W_3_in_axes3_xz*pus_platform_joint_offset_x +
             pus_omega_2_in_axes3_x*pus_qd_3_t;
-        /* (pus-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
+        /* (pus-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real pus_rel_o_t = pus_omega_2_in_axes3_y*pus_platform_joint_offset_x;
         const real pus_rel_o_in_axes3_x = pus_u_1_in_axes3_x + pus_omega_2_in_axes3_y*pus_rel_o_t
             + pus_qd_3*pus_qd_3_t;
         const real pus_rel_o_in_axes3_y = pus_u_1_in_axes3_y - pus_omega_2_in_axes3_x*pus_rel_o_t;
         const real pus_rel_o_in_axes3_z = pus_u_1_in_axes3_z - pus_bias_in_axes3_z;
-        /* (pus-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        /* (pus-qdd_1_o) remainder of: acceleration of joint 1 */
         const real pus_qdd_1_o = pus_rel_o_in_axes3_x*v.pus_w_1_in_axes3_x;
-        /* (pus-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        /* (pus-qdd_2_o) remainder of: acceleration of joint 2 */
         const real pus_qdd_2_o_t = v.pus_w_2_in_axes3_z*(-pus_rel_o_in_axes3_z -
             pus_qdd_1_o*v.pus_s_2);
-        /* (pus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
+        /* (pus-qdd_3_o) remainder of: acceleration of joint 3 */
         const real pus_qdd_3_o = -pus_w_3_in_axes3_y*(v.pus_e_1_in_axes3_y*pus_qdd_1_o -
             pus_rel_o_in_axes3_y);
-        /* (pus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (pus-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real pus_alpha_2_o_t = v.pus_e_2_in_axes3_x*pus_qdd_2_o_t;
         const real pus_alpha_2_o_in_axes3_y = v.pus_c_3*pus_qdd_2_o_t;
-        /* (pus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (pus-alpha_3_o) remainder of: angular acceleration of link 3 */
         const real pus_alpha_3_o_in_axes3_x = pus_W_3_in_axes3_yz - pus_alpha_2_o_t;
         const real pus_alpha_3_o_in_axes3_y = pus_alpha_2_o_in_axes3_y - pus_W_3_in_axes3_xz;
         /* (pus-B_3_o) remainder of the acceleration tensor of link 3 */
@@ -2959,12 +2957,10 @@ INLINE void Z_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real pus_B_3_o_in_axes3_yx = pus_W_3_in_axes3_xy + pus_qdd_3_o;
         const real pus_B_3_o_in_axes3_zx = pus_W_3_in_axes3_xz - pus_alpha_3_o_in_axes3_y;
         const real pus_B_3_o_in_axes3_zy = pus_W_3_in_axes3_yz + pus_alpha_3_o_in_axes3_x;
-        /* (pus-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
-           link 1, less gravity */
+        /* (pus-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
         const real pus_g_in_axes0_x = m->pus_g_in_axes0_x[i];
         const real pus_acc_1_o_in_axes0_x = pus_qdd_1_o - pus_g_in_axes0_x;
-        /* (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
+        /* (pus-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
         const real pus_g_in_axes0_y = m->pus_g_in_axes0_y[i];
         const real pus_acc_3_o_t = v.pus_c_2*pus_g_in_axes0_x + pus_g_in_axes0_y*v.pus_s_2;
         const real pus_g_in_axes0_z = m->pus_g_in_axes0_z[i];
@@ -2974,8 +2970,8 @@ INLINE void Z_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, con
             pus_acc_3_o_t*v.pus_e_2_in_axes3_x;
         const real pus_acc_3_o_in_axes3_z = pus_u_1_in_axes3_z + pus_g_in_axes0_x*v.pus_s_2 -
             v.pus_c_2*pus_g_in_axes0_y;
-        /* (pus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 3, about their reference points */
+        /* (pus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+           reference points */
         const real pus_mu_3_o_t = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_x;
         const real pus_mu_3_o_t_2 = pus_omega_2_in_axes3_y*pus_omega_2_in_axes3_y;
         const real pus_mu_3_o_t_3 = pus_qd_3*pus_qd_3;
@@ -3004,13 +3000,13 @@ INLINE void Z_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, con
             - pus_B_3_o_in_axes3_xy*pus_Sigma_3_in_axes3_yy - pus_J_3_in_spec3_xy*pus_alpha_2_o_t
             - pus_J_3_in_spec3_xz*(pus_mu_3_o_t - pus_mu_3_o_t_2) -
             pus_J_3_in_spec3_yz*pus_alpha_2_o_in_axes3_y;
-        /* (pus-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (pus-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real pus_G_o_t = v.pus_w_2_in_axes3_z*(v.pus_c_3*pus_mu_3_o_in_axes3_y -
             v.pus_e_2_in_axes3_x*pus_mu_3_o_in_axes3_x);
         const real pus_G_o_in_axes3_y = pus_mu_3_o_in_axes3_z*pus_w_3_in_axes3_y;
-        /* (pus-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (pus-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+           connection point */
         const real pus_link1_mass = m->pus_link1_mass[i];
         const real pus_c_o_in_axes3_x = pus_B_3_o_in_axes3_xy*pus_h_3_in_spec3_z +
             pus_h_3_in_spec3_x*(pus_mu_3_o_t_2 + pus_mu_3_o_t_3) -

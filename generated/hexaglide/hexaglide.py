@@ -911,10 +911,10 @@ class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
     sqrt = staticmethod(math.sqrt)
-    sin = staticmethod(lambda x: float(np.sin(x)))
-    cos = staticmethod(lambda x: float(np.cos(x)))
+    sin = staticmethod(lambda x: float(np.sin(x)) if math.isfinite(x) else math.nan)
+    cos = staticmethod(lambda x: float(np.cos(x)) if math.isfinite(x) else math.nan)
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
-    least = staticmethod(lambda x, y: float(np.minimum(x, y)))
+    least = staticmethod(lambda x, y: y if y < x or y != y else x)
 
     def __init__(self, p, states, kept=None):
         self.p, self.states = p, states
@@ -1067,7 +1067,7 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
     Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
     where a single state needs no arrays.
     """
-    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    p, read = _given(p), [a[4:] != ("unused",) for a in arguments]
     lists = plain and _lists(arguments)
     if lists:
         found = _state(_Single(p, 1), steps, lists, read)
@@ -1092,7 +1092,7 @@ def _lists(arguments):
     for row in arguments:
         value, shape = row[1:3]
         if type(value) is np.ndarray:
-            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+            if value.shape != shape or value.dtype is not _REAL or row[4:] == ("positive",):
                 return None
             found.append(_Vector(value.tolist()))
         elif value is None and len(row) > 3 and row[3] is not None:
@@ -1991,26 +1991,26 @@ def _run_dynamics(m, X, V):
         pus_bias_in_axes3_z = (
         pus_W_3_in_axes3_xz*pus_platform_joint_offset_x + pus_omega_2_in_axes3_x*pus_qd_3_t
         )
-        # (pus-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (pus-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         pus_rel_o_t = pus_omega_2_in_axes3_y*pus_platform_joint_offset_x
         pus_rel_o_in_axes3_x = (
         pus_u_1_in_axes3_x + pus_omega_2_in_axes3_y*pus_rel_o_t + pus_qd_3*pus_qd_3_t
         )
         pus_rel_o_in_axes3_y = pus_u_1_in_axes3_y - pus_omega_2_in_axes3_x*pus_rel_o_t
         pus_rel_o_in_axes3_z = pus_u_1_in_axes3_z - pus_bias_in_axes3_z
-        # (pus-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (pus-qdd_1_o) remainder of: acceleration of joint 1
         pus_qdd_1_o = pus_rel_o_in_axes3_x*pus_w_1_in_axes3_x
-        # (pus-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        # (pus-qdd_2_o) remainder of: acceleration of joint 2
         pus_qdd_2_o_t = pus_w_2_in_axes3_z*(-pus_rel_o_in_axes3_z - pus_qdd_1_o*pus_s_2)
-        # (pus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
+        # (pus-qdd_3_o) remainder of: acceleration of joint 3
         pus_qdd_3_o = -pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1_o - pus_rel_o_in_axes3_y)
-        # (pus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (pus-alpha_2_o) remainder of: angular acceleration of link 2
         pus_alpha_2_o_t = pus_e_2_in_axes3_x*pus_qdd_2_o_t
         pus_alpha_2_o_in_axes3_y = pus_J_3_t_10*pus_qdd_2_o_t
         # (pus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
         pus_d_alpha_3_in_axes3_xz = pus_e_2_in_axes3_x*pus_w_2_in_axes3_z
         pus_d_alpha_3_t = pus_J_3_t_10*pus_w_2_in_axes3_z
-        # (pus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        # (pus-alpha_3_o) remainder of: angular acceleration of link 3
         pus_alpha_3_o_in_axes3_x = pus_W_3_in_axes3_yz - pus_alpha_2_o_t
         pus_alpha_3_o_in_axes3_y = pus_alpha_2_o_in_axes3_y - pus_W_3_in_axes3_xz
         # (pus-B_3_o) remainder of the acceleration tensor of link 3
@@ -2018,9 +2018,9 @@ def _run_dynamics(m, X, V):
         pus_B_3_o_in_axes3_yx = pus_W_3_in_axes3_xy + pus_qdd_3_o
         pus_B_3_o_in_axes3_zx = pus_W_3_in_axes3_xz - pus_alpha_3_o_in_axes3_y
         pus_B_3_o_in_axes3_zy = pus_W_3_in_axes3_yz + pus_alpha_3_o_in_axes3_x
-        # (pus-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+        # (pus-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity
         pus_acc_1_o_in_axes0_x = pus_qdd_1_o - pus_g_in_axes0_x
-        # (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        # (pus-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         pus_acc_3_o_t = pus_c_2*pus_g_in_axes0_x + pus_g_in_axes0_y*pus_s_2
         pus_acc_3_o_in_axes3_x = (
         pus_u_1_in_axes3_x - pus_J_3_t_10*pus_acc_3_o_t - pus_e_2_in_axes3_x*pus_g_in_axes0_z
@@ -2031,7 +2031,7 @@ def _run_dynamics(m, X, V):
         pus_acc_3_o_in_axes3_z = (
         pus_u_1_in_axes3_z + pus_g_in_axes0_x*pus_s_2 - pus_c_2*pus_g_in_axes0_y
         )
-        # (pus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        # (pus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
         pus_mu_3_o_t = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_x
         pus_mu_3_o_t_2 = pus_omega_2_in_axes3_y*pus_omega_2_in_axes3_y
         pus_mu_3_o_t_3 = pus_qd_3*pus_qd_3
@@ -2078,7 +2078,7 @@ def _run_dynamics(m, X, V):
         pus_d_Gamma_2_in_axes3_z = (
         pus_d_Gamma_2_t + pus_J_3_t_10*pus_h_3_in_spec3_x - pus_e_2_in_axes3_x*pus_h_3_in_spec3_z
         )
-        # (pus-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (pus-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         pus_G_o_t = (
         pus_w_2_in_axes3_z*(pus_J_3_t_10*pus_mu_3_o_in_axes3_y -
             pus_e_2_in_axes3_x*pus_mu_3_o_in_axes3_x)
@@ -2102,7 +2102,7 @@ def _run_dynamics(m, X, V):
         pus_d_c_in_axes3_yz = (
         pus_d_alpha_3_in_axes3_xz*pus_h_3_in_spec3_y - pus_d_Gamma_3_in_axes3_z*pus_w_3_in_axes3_y
         )
-        # (pus-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (pus-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         pus_c_o_in_axes3_x = (
         pus_B_3_o_in_axes3_xy*pus_h_3_in_spec3_z + pus_h_3_in_spec3_x*(pus_mu_3_o_t_2 +
             pus_mu_3_o_t_3) - pus_alpha_2_o_in_axes3_y*pus_h_3_in_spec3_y -
@@ -2906,23 +2906,23 @@ def _run_Z(m, X, V):
         pus_bias_in_axes3_z = (
         pus_W_3_in_axes3_xz*pus_platform_joint_offset_x + pus_omega_2_in_axes3_x*pus_qd_3_t
         )
-        # (pus-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (pus-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         pus_rel_o_t = pus_omega_2_in_axes3_y*pus_platform_joint_offset_x
         pus_rel_o_in_axes3_x = (
         pus_u_1_in_axes3_x + pus_omega_2_in_axes3_y*pus_rel_o_t + pus_qd_3*pus_qd_3_t
         )
         pus_rel_o_in_axes3_y = pus_u_1_in_axes3_y - pus_omega_2_in_axes3_x*pus_rel_o_t
         pus_rel_o_in_axes3_z = pus_u_1_in_axes3_z - pus_bias_in_axes3_z
-        # (pus-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (pus-qdd_1_o) remainder of: acceleration of joint 1
         pus_qdd_1_o = pus_rel_o_in_axes3_x*pus_w_1_in_axes3_x
-        # (pus-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        # (pus-qdd_2_o) remainder of: acceleration of joint 2
         pus_qdd_2_o_t = pus_w_2_in_axes3_z*(-pus_rel_o_in_axes3_z - pus_qdd_1_o*pus_s_2)
-        # (pus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
+        # (pus-qdd_3_o) remainder of: acceleration of joint 3
         pus_qdd_3_o = -pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1_o - pus_rel_o_in_axes3_y)
-        # (pus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (pus-alpha_2_o) remainder of: angular acceleration of link 2
         pus_alpha_2_o_t = pus_e_2_in_axes3_x*pus_qdd_2_o_t
         pus_alpha_2_o_in_axes3_y = pus_c_3*pus_qdd_2_o_t
-        # (pus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        # (pus-alpha_3_o) remainder of: angular acceleration of link 3
         pus_alpha_3_o_in_axes3_x = pus_W_3_in_axes3_yz - pus_alpha_2_o_t
         pus_alpha_3_o_in_axes3_y = pus_alpha_2_o_in_axes3_y - pus_W_3_in_axes3_xz
         # (pus-B_3_o) remainder of the acceleration tensor of link 3
@@ -2930,9 +2930,9 @@ def _run_Z(m, X, V):
         pus_B_3_o_in_axes3_yx = pus_W_3_in_axes3_xy + pus_qdd_3_o
         pus_B_3_o_in_axes3_zx = pus_W_3_in_axes3_xz - pus_alpha_3_o_in_axes3_y
         pus_B_3_o_in_axes3_zy = pus_W_3_in_axes3_yz + pus_alpha_3_o_in_axes3_x
-        # (pus-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+        # (pus-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity
         pus_acc_1_o_in_axes0_x = pus_qdd_1_o - pus_g_in_axes0_x
-        # (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        # (pus-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         pus_acc_3_o_t = pus_c_2*pus_g_in_axes0_x + pus_g_in_axes0_y*pus_s_2
         pus_acc_3_o_in_axes3_x = (
         pus_u_1_in_axes3_x - pus_acc_3_o_t*pus_c_3 - pus_e_2_in_axes3_x*pus_g_in_axes0_z
@@ -2943,7 +2943,7 @@ def _run_Z(m, X, V):
         pus_acc_3_o_in_axes3_z = (
         pus_u_1_in_axes3_z + pus_g_in_axes0_x*pus_s_2 - pus_c_2*pus_g_in_axes0_y
         )
-        # (pus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        # (pus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
         pus_mu_3_o_t = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_x
         pus_mu_3_o_t_2 = pus_omega_2_in_axes3_y*pus_omega_2_in_axes3_y
         pus_mu_3_o_t_3 = pus_qd_3*pus_qd_3
@@ -2968,13 +2968,13 @@ def _run_Z(m, X, V):
             pus_J_3_in_spec3_xz*(pus_mu_3_o_t - pus_mu_3_o_t_2) -
             pus_J_3_in_spec3_yz*pus_alpha_2_o_in_axes3_y
         )
-        # (pus-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (pus-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         pus_G_o_t = (
         pus_w_2_in_axes3_z*(pus_c_3*pus_mu_3_o_in_axes3_y -
             pus_e_2_in_axes3_x*pus_mu_3_o_in_axes3_x)
         )
         pus_G_o_in_axes3_y = pus_mu_3_o_in_axes3_z*pus_w_3_in_axes3_y
-        # (pus-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (pus-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         pus_c_o_in_axes3_x = (
         pus_B_3_o_in_axes3_xy*pus_h_3_in_spec3_z + pus_h_3_in_spec3_x*(pus_mu_3_o_t_2 +
             pus_mu_3_o_t_3) - pus_alpha_2_o_in_axes3_y*pus_h_3_in_spec3_y -

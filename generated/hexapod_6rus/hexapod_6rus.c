@@ -2379,22 +2379,22 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
             rus_omega_2_in_axes3_x*rus_qd_3_t -
             rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
             rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
-        /* (rus-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
+        /* (rus-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real rus_rel_o_in_axes3_x = rus_u_1_in_axes3_x - rus_bias_in_axes3_x;
         const real rus_rel_o_in_axes3_y = rus_u_1_in_axes3_y - rus_bias_in_axes3_y;
         const real rus_rel_o_in_axes3_z = rus_u_1_in_axes3_z - rus_bias_in_axes3_z;
-        /* (rus-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        /* (rus-qdd_1_o) remainder of: acceleration of joint 1 */
         const real rus_qdd_1_o_t = v.inv_rus_v_1_t_2*rus_rel_o_in_axes3_x;
-        /* (rus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
+        /* (rus-qdd_3_o) remainder of: acceleration of joint 3 */
         const real rus_qdd_3_o = -rus_w_3_in_axes3_y*(rus_qdd_1_o_t*v.rus_v_1_t_3 -
             rus_rel_o_in_axes3_y);
-        /* (rus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rus-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real rus_alpha_2_o_in_axes2_z = v.rus_w_2_in_axes3_z*(rus_rel_o_in_axes3_z +
             rus_qdd_1_o_t*v.rus_v_1_in_axes3_z) - rus_qdd_1_o_t;
         const real rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*v.rus_e_1_in_axes3_x;
         const real rus_alpha_2_o_in_axes3_y = -v.rus_J_3_t_17*rus_alpha_2_o_in_axes2_z;
-        /* (rus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (rus-alpha_3_o) remainder of: angular acceleration of link 3 */
         const real rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x;
         const real rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - rus_W_3_in_axes3_xz;
         /* (rus-B_3_o) remainder of the acceleration tensor of link 3 */
@@ -2402,8 +2402,7 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
         const real rus_B_3_o_in_axes3_yx = rus_W_3_in_axes3_xy + rus_qdd_3_o;
         const real rus_B_3_o_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_o_in_axes3_y;
         const real rus_B_3_o_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_o_in_axes3_x;
-        /* (rus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
+        /* (rus-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
@@ -2413,8 +2412,8 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
             axis_y_rus_axes3_y*gravity_y - axis_y_rus_axes3_z*gravity_z;
         const real rus_acc_3_o_in_axes3_z = rus_u_1_in_axes3_z - axis_z_rus_axes3_x*gravity_x -
             axis_z_rus_axes3_y*gravity_y - axis_z_rus_axes3_z*gravity_z;
-        /* (rus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 3, about their reference points */
+        /* (rus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+           reference points */
         const real rus_mu_3_o_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
         const real rus_mu_3_o_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
         const real rus_mu_3_o_t_3 = rus_qd_3*rus_qd_3;
@@ -2446,8 +2445,8 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
             rus_mu_3_o_t_2) - rus_J_3_in_spec3_yz*rus_alpha_2_o_in_axes3_y;
         const real rus_mu_3_o_in_axes1_z = v.rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x -
             v.rus_J_3_t_17*rus_mu_3_o_in_axes3_y;
-        /* (rus-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
+        /* (rus-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+           reference points */
         const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
         const real rus_h_1_in_spec1_x = m->rus_h_1_in_spec1_x[i];
         const real rus_h_1_in_spec1_y = m->rus_h_1_in_spec1_y[i];
@@ -2456,15 +2455,15 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
         const real rus_mu_1_o_in_axes1_z = rus_h_1_in_spec1_y*(v.rus_c_1*rus_mu_1_t +
             rus_mu_1_t_2*v.rus_s_1) - rus_J_1_in_spec1_zz*rus_qdd_1_o_t -
             rus_h_1_in_spec1_x*(v.rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*v.rus_s_1);
-        /* (rus-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
+        /* (rus-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+           connection point left out */
         const real rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z;
-        /* (rus-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (rus-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*v.rus_w_2_in_axes3_z;
         const real rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*rus_w_3_in_axes3_y;
-        /* (rus-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (rus-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+           connection point */
         const real rus_c_o_in_axes3_x = v.inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z +
             rus_G_o_in_axes3_y*v.rus_v_1_t_3 - rus_G_o_in_axes3_z*v.rus_v_1_in_axes3_z) +
             rus_B_3_o_in_axes3_xy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_x*(rus_mu_3_o_t_2 +
@@ -3172,22 +3171,22 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, con
             rus_omega_2_in_axes3_x*rus_qd_3_t -
             v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
             v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
-        /* (rus-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
+        /* (rus-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real rus_rel_o_in_axes3_x = rus_u_1_in_axes3_x - rus_bias_in_axes3_x;
         const real rus_rel_o_in_axes3_y = rus_u_1_in_axes3_y - rus_bias_in_axes3_y;
         const real rus_rel_o_in_axes3_z = rus_u_1_in_axes3_z - rus_bias_in_axes3_z;
-        /* (rus-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        /* (rus-qdd_1_o) remainder of: acceleration of joint 1 */
         const real rus_qdd_1_o_t = v.inv_rus_v_1_t_2*rus_rel_o_in_axes3_x;
-        /* (rus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
+        /* (rus-qdd_3_o) remainder of: acceleration of joint 3 */
         const real rus_qdd_3_o = -rus_w_3_in_axes3_y*(rus_qdd_1_o_t*v.rus_v_1_t_3 -
             rus_rel_o_in_axes3_y);
-        /* (rus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rus-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real rus_alpha_2_o_in_axes2_z = v.rus_w_2_in_axes3_z*(rus_rel_o_in_axes3_z +
             rus_qdd_1_o_t*v.rus_v_1_in_axes3_z) - rus_qdd_1_o_t;
         const real rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*v.rus_e_1_in_axes3_x;
         const real rus_alpha_2_o_in_axes3_y = -rus_alpha_2_o_in_axes2_z*v.rus_c_3;
-        /* (rus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (rus-alpha_3_o) remainder of: angular acceleration of link 3 */
         const real rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x;
         const real rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - rus_W_3_in_axes3_xz;
         /* (rus-B_3_o) remainder of the acceleration tensor of link 3 */
@@ -3195,8 +3194,7 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rus_B_3_o_in_axes3_yx = rus_W_3_in_axes3_xy + rus_qdd_3_o;
         const real rus_B_3_o_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_o_in_axes3_y;
         const real rus_B_3_o_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_o_in_axes3_x;
-        /* (rus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
+        /* (rus-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
@@ -3206,8 +3204,8 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, con
             axis_y_rus_axes3_y*gravity_y - axis_y_rus_axes3_z*gravity_z;
         const real rus_acc_3_o_in_axes3_z = rus_u_1_in_axes3_z - axis_z_rus_axes3_x*gravity_x -
             axis_z_rus_axes3_y*gravity_y - axis_z_rus_axes3_z*gravity_z;
-        /* (rus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 3, about their reference points */
+        /* (rus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+           reference points */
         const real rus_mu_3_o_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
         const real rus_mu_3_o_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
         const real rus_mu_3_o_t_3 = rus_qd_3*rus_qd_3;
@@ -3239,8 +3237,8 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, con
             rus_mu_3_o_t_2) - rus_J_3_in_spec3_yz*rus_alpha_2_o_in_axes3_y;
         const real rus_mu_3_o_in_axes1_z = v.rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x -
             v.rus_c_3*rus_mu_3_o_in_axes3_y;
-        /* (rus-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
+        /* (rus-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+           reference points */
         const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
         const real rus_h_1_in_spec1_x = m->rus_h_1_in_spec1_x[i];
         const real rus_h_1_in_spec1_y = m->rus_h_1_in_spec1_y[i];
@@ -3249,15 +3247,15 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rus_mu_1_o_in_axes1_z = rus_h_1_in_spec1_y*(v.rus_c_1*rus_mu_1_t +
             rus_mu_1_t_2*v.rus_s_1) - rus_J_1_in_spec1_zz*rus_qdd_1_o_t -
             rus_h_1_in_spec1_x*(v.rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*v.rus_s_1);
-        /* (rus-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
+        /* (rus-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+           connection point left out */
         const real rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z;
-        /* (rus-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (rus-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*v.rus_w_2_in_axes3_z;
         const real rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*rus_w_3_in_axes3_y;
-        /* (rus-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (rus-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+           connection point */
         const real rus_c_o_in_axes3_x = v.inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z +
             rus_G_o_in_axes3_y*v.rus_v_1_t_3 - rus_G_o_in_axes3_z*v.rus_v_1_in_axes3_z) +
             rus_B_3_o_in_axes3_xy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_x*(rus_mu_3_o_t_2 +

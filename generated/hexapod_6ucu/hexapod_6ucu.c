@@ -1680,8 +1680,8 @@ INLINE void stage_ucu_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (ucu-nd_m1) rate of moment direction 1 */
     const real ucu_end_p1_in_axes4_y = ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_x -
         ucu_c_4*ucu_root_4_t_5;
-    /* (ucu-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-       link 2, about their reference points */
+    /* (ucu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
     const real ucu_mu_2_t = m->ucu_mu_2_t[i];
     const real ucu_mu_2_t_2 = m->ucu_mu_2_t_2[i];
     const real ucu_g_in_axes2_z = ucu_c_1*ucu_mu_2_t_2 - ucu_mu_2_t*ucu_s_1;
@@ -2641,8 +2641,8 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t leg, size_t le
             ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_x);
         const real ucu_bias_in_axes4_y = v.ucu_h_4_t_12*(ucu_zeta_2_t +
             ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) - ucu_bias_t*ucu_omega_2_in_axes4_x;
-        /* (ucu-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
+        /* (ucu-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real ucu_rel_o_in_axes4_x = ucu_u_1_in_axes4_x - ucu_bias_in_axes4_x;
         const real ucu_rel_o_in_axes4_y = ucu_u_1_in_axes4_y - ucu_bias_in_axes4_y;
         /* (ucu-nd_m1) rate of moment direction 1 */
@@ -2669,17 +2669,17 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t leg, size_t le
             ucu_omega_in_axes4_y)*(v.ucu_end_p1_in_axes4_x*ucu_omega_2_in_axes4_x +
             v.ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z);
         const real ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2;
-        /* (ucu-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        /* (ucu-qdd_1_o) remainder of: acceleration of joint 1 */
         const real ucu_qdd_1_o =
             v.inv_ucu_v_1_in_axes2_z*(v.ucu_e_2_in_axes4_x*ucu_rel_o_in_axes4_x +
             v.ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_y);
-        /* (ucu-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        /* (ucu-qdd_2_o) remainder of: acceleration of joint 2 */
         const real ucu_qdd_2_o = v.inv_ucu_h_4_t_12*(v.ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_x +
             ucu_qdd_1_o*v.ucu_v_1_t_2 - v.ucu_e_2_in_axes4_x*ucu_rel_o_in_axes4_y);
-        /* (ucu-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+        /* (ucu-alpha_1_o) remainder of: angular acceleration of link 1 */
         const real ucu_alpha_1_o_in_axes2_x = v.ucu_e_1_in_axes4_z*ucu_qdd_1_o;
         const real ucu_alpha_1_o_in_axes2_y = -v.ucu_h_4_t_13*ucu_qdd_1_o;
-        /* (ucu-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (ucu-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real ucu_alpha_2_o_in_axes2_x = ucu_W_2_in_axes2_yz + ucu_alpha_1_o_in_axes2_x;
         const real ucu_alpha_2_o_in_axes2_y = ucu_alpha_1_o_in_axes2_y - ucu_W_2_in_axes2_xz;
         /* (ucu-B_2_o) remainder of the acceleration tensor of link 2 */
@@ -2687,7 +2687,7 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t leg, size_t le
         const real ucu_B_2_o_in_axes2_yx = ucu_W_2_in_axes2_xy + ucu_qdd_2_o;
         const real ucu_B_2_o_in_axes2_zx = ucu_W_2_in_axes2_xz - ucu_alpha_2_o_in_axes2_y;
         const real ucu_B_2_o_in_axes2_zy = ucu_W_2_in_axes2_yz + ucu_alpha_2_o_in_axes2_x;
-        /* (ucu-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4 */
+        /* (ucu-alpha_4_o) remainder of: angular acceleration of link 4 */
         const real ucu_alpha_4_o_in_axes4_x = ucu_zeta_4_in_axes4_x +
             ucu_alpha_2_o_in_axes2_y*v.ucu_e_2_in_axes4_y + v.ucu_e_2_in_axes4_x*ucu_qdd_2_o;
         const real ucu_alpha_4_o_in_axes4_y = v.ucu_e_2_in_axes4_y*ucu_qdd_2_o -
@@ -2702,8 +2702,7 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t leg, size_t le
         const real ucu_B_4_o_in_axes4_yz = ucu_W_4_in_axes4_yz - ucu_alpha_4_o_in_axes4_x;
         const real ucu_B_4_o_in_axes4_zx = ucu_W_4_in_axes4_xz - ucu_alpha_4_o_in_axes4_y;
         const real ucu_B_4_o_in_axes4_zy = ucu_W_4_in_axes4_yz + ucu_alpha_4_o_in_axes4_x;
-        /* (ucu-acc_4_o) remainder without the acceleration in: acceleration of the reference point of
-           link 4, less gravity */
+        /* (ucu-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
@@ -2715,8 +2714,8 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t leg, size_t le
             v.axis_z_ucu_axes4_y*ucu_u_1_y + v.axis_z_ucu_axes4_z*ucu_u_1_z -
             v.axis_z_ucu_axes4_x*gravity_x - v.axis_z_ucu_axes4_y*gravity_y -
             v.axis_z_ucu_axes4_z*gravity_z;
-        /* (ucu-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning
-           about its reference point */
+        /* (ucu-phi_4_o) remainder of: inertia force of link 4 from its turning about its reference point
+           */
         const real ucu_phi_4_o_t = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_x;
         const real ucu_phi_4_o_t_2 = ucu_omega_2_in_axes4_y*ucu_omega_2_in_axes4_y;
         const real ucu_h_4_in_spec4_x = m->ucu_h_4_in_spec4_x[i];
@@ -2725,8 +2724,8 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t leg, size_t le
         const real ucu_phi_4_o_in_axes4_z = ucu_B_4_o_in_axes4_zx*ucu_h_4_in_spec4_y +
             ucu_B_4_o_in_axes4_zy*ucu_h_4_in_spec4_z - ucu_h_4_in_spec4_x*(ucu_phi_4_o_t +
             ucu_phi_4_o_t_2);
-        /* (ucu-mu_4_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 4, about their reference points */
+        /* (ucu-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their
+           reference points */
         const real ucu_mu_4_o_t = ucu_omega_4_in_axes4_z*ucu_omega_4_in_axes4_z;
         const real ucu_J_4_in_spec4_xy = m->ucu_J_4_in_spec4_xy[i];
         const real ucu_J_4_in_spec4_xz = m->ucu_J_4_in_spec4_xz[i];
@@ -2749,8 +2748,8 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t leg, size_t le
             ucu_phi_4_o_t_2) + ucu_acc_4_o_in_axes4_y*ucu_h_4_in_spec4_y -
             ucu_B_4_o_in_axes4_xy*ucu_Sigma_4_in_axes4_yy -
             ucu_B_4_o_in_axes4_yz*ucu_J_4_in_spec4_xy - ucu_acc_4_o_in_axes4_x*ucu_h_4_in_spec4_z;
-        /* (ucu-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
+        /* (ucu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real ucu_mu_2_o_t = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_x;
         const real ucu_mu_2_o_t_2 = ucu_omega_1_in_axes2_y*ucu_omega_1_in_axes2_y;
         const real ucu_mu_2_o_t_3 = ucu_qd_2*ucu_qd_2;
@@ -2788,8 +2787,8 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t leg, size_t le
             ucu_B_2_o_in_axes2_xy*ucu_Sigma_2_in_axes2_yy - ucu_J_2_in_spec2_xz*(ucu_mu_2_o_t -
             ucu_mu_2_o_t_2) - ucu_J_2_in_spec2_yz*ucu_alpha_1_o_in_axes2_y -
             ucu_g_in_axes2_x*ucu_h_2_in_spec2_z - ucu_g_in_axes2_y*ucu_h_2_in_spec2_x;
-        /* (ucu-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
+        /* (ucu-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+           connection point left out */
         const real ucu_N_2_o_in_axes2_x = ucu_mu_2_o_in_axes2_x + ucu_mu_4_o_in_axes4_z;
         const real ucu_N_2_o_in_axes2_y = ucu_mu_2_o_in_axes2_y +
             v.ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_x -
@@ -2797,11 +2796,11 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t leg, size_t le
         const real ucu_N_2_o_in_axes2_z = ucu_mu_2_o_in_axes2_z +
             v.ucu_e_2_in_axes4_x*ucu_mu_4_o_in_axes4_x +
             v.ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_y;
-        /* (ucu-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that
-           balances the leg's inertia and weight along all degrees of freedom */
+        /* (ucu-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real ucu_G_m1_o_t = v.inv_ucu_end_p1_in_axes4_x*ucu_mu_4_o_in_axes4_z;
-        /* (ucu-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (ucu-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+           connection point */
         const real ucu_c_o_t = v.inv_ucu_h_4_t_12*(ucu_N_2_o_in_axes2_z +
             ucu_G_m1_o_t*v.ucu_n_m1_in_axes2_z);
         const real ucu_c_o_t_2 = v.inv_ucu_v_1_in_axes2_z*(ucu_G_m1_o_t*v.ucu_w_4_t +
@@ -2814,8 +2813,7 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t leg, size_t le
         const real ucu_c_o_in_axes4_y = ucu_c_o_t*v.ucu_e_2_in_axes4_x +
             ucu_c_o_t_2*v.ucu_e_2_in_axes4_y + ucu_h_4_in_spec4_z*(ucu_mu_4_o_t + ucu_phi_4_o_t) -
             ucu_B_4_o_in_axes4_yx*ucu_h_4_in_spec4_y - ucu_B_4_o_in_axes4_yz*ucu_h_4_in_spec4_x;
-        /* (ucu-c_m_o) remainder without the acceleration in: moment of the leg on the platform without
-           actuation */
+        /* (ucu-c_m_o) remainder of: moment of the leg on the platform without actuation */
         const real ucu_c_m_o_in_axes4_x = ucu_G_m1_o_t*v.ucu_n_m1_in_axes4_x;
         /* (ucu-U) velocity and gravity terms of the leg force */
         const real ucu_U_x = v.axis_z_ucu_axes4_x*ucu_phi_4_o_in_axes4_z -
@@ -3354,8 +3352,8 @@ INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real ucu_zeta_4_in_axes4_x = v.ucu_omega_2_in_axes4_y*ucu_qd_4;
         /* (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations */
         const real ucu_beta_4_in_axes4_x = ucu_zeta_4_in_axes4_x - v.ucu_zeta_2_t;
-        /* (ucu-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
+        /* (ucu-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real ucu_rel_o_in_axes4_x = ucu_u_1_in_axes4_x - v.ucu_bias_in_axes4_x;
         const real ucu_rel_o_in_axes4_y = ucu_u_1_in_axes4_y - v.ucu_bias_in_axes4_y;
         /* (ucu-nd_m1) rate of moment direction 1 */
@@ -3378,16 +3376,16 @@ INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, con
             ucu_omega_in_axes4_y)*(v.ucu_end_p1_in_axes4_x*v.ucu_omega_2_in_axes4_x +
             v.ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z);
         const real ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2;
-        /* (ucu-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        /* (ucu-qdd_1_o) remainder of: acceleration of joint 1 */
         const real ucu_qdd_1_o = v.inv_ucu_v_1_in_axes2_z*(v.ucu_c_4*ucu_rel_o_in_axes4_x +
             v.ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_y);
-        /* (ucu-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        /* (ucu-qdd_2_o) remainder of: acceleration of joint 2 */
         const real ucu_qdd_2_o = v.inv_ucu_root_2*(v.ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_x +
             ucu_qdd_1_o*v.ucu_v_1_t_2 - v.ucu_c_4*ucu_rel_o_in_axes4_y);
-        /* (ucu-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+        /* (ucu-alpha_1_o) remainder of: angular acceleration of link 1 */
         const real ucu_alpha_1_o_in_axes2_x = v.ucu_e_1_in_axes4_z*ucu_qdd_1_o;
         const real ucu_alpha_1_o_in_axes2_y = -v.ucu_c_2*ucu_qdd_1_o;
-        /* (ucu-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (ucu-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real ucu_alpha_2_o_in_axes2_x = v.ucu_W_2_in_axes2_yz + ucu_alpha_1_o_in_axes2_x;
         const real ucu_alpha_2_o_in_axes2_y = ucu_alpha_1_o_in_axes2_y - v.ucu_W_2_in_axes2_xz;
         /* (ucu-B_2_o) remainder of the acceleration tensor of link 2 */
@@ -3395,7 +3393,7 @@ INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real ucu_B_2_o_in_axes2_yx = v.ucu_W_2_in_axes2_xy + ucu_qdd_2_o;
         const real ucu_B_2_o_in_axes2_zx = v.ucu_W_2_in_axes2_xz - ucu_alpha_2_o_in_axes2_y;
         const real ucu_B_2_o_in_axes2_zy = v.ucu_W_2_in_axes2_yz + ucu_alpha_2_o_in_axes2_x;
-        /* (ucu-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4 */
+        /* (ucu-alpha_4_o) remainder of: angular acceleration of link 4 */
         const real ucu_alpha_4_o_in_axes4_x = ucu_zeta_4_in_axes4_x +
             ucu_alpha_2_o_in_axes2_y*v.ucu_e_2_in_axes4_y + v.ucu_c_4*ucu_qdd_2_o;
         const real ucu_alpha_4_o_in_axes4_y = v.ucu_e_2_in_axes4_y*ucu_qdd_2_o -
@@ -3410,8 +3408,7 @@ INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real ucu_B_4_o_in_axes4_yz = ucu_W_4_in_axes4_yz - ucu_alpha_4_o_in_axes4_x;
         const real ucu_B_4_o_in_axes4_zx = ucu_W_4_in_axes4_xz - ucu_alpha_4_o_in_axes4_y;
         const real ucu_B_4_o_in_axes4_zy = ucu_W_4_in_axes4_yz + ucu_alpha_4_o_in_axes4_x;
-        /* (ucu-acc_4_o) remainder without the acceleration in: acceleration of the reference point of
-           link 4, less gravity */
+        /* (ucu-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
@@ -3422,8 +3419,8 @@ INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real ucu_acc_4_o_in_axes4_z = ucu_u_1_x*v.ucu_w_3_x + ucu_u_1_y*v.ucu_w_3_y +
             ucu_u_1_z*v.ucu_w_3_z - gravity_x*v.ucu_w_3_x - gravity_y*v.ucu_w_3_y -
             gravity_z*v.ucu_w_3_z;
-        /* (ucu-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning
-           about its reference point */
+        /* (ucu-phi_4_o) remainder of: inertia force of link 4 from its turning about its reference point
+           */
         const real ucu_phi_4_o_t = v.ucu_omega_2_in_axes4_x*v.ucu_omega_2_in_axes4_x;
         const real ucu_phi_4_o_t_2 = v.ucu_omega_2_in_axes4_y*v.ucu_omega_2_in_axes4_y;
         const real ucu_h_4_in_spec4_x = m->ucu_h_4_in_spec4_x[i];
@@ -3432,8 +3429,8 @@ INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real ucu_phi_4_o_in_axes4_z = ucu_B_4_o_in_axes4_zx*ucu_h_4_in_spec4_y +
             ucu_B_4_o_in_axes4_zy*ucu_h_4_in_spec4_z - ucu_h_4_in_spec4_x*(ucu_phi_4_o_t +
             ucu_phi_4_o_t_2);
-        /* (ucu-mu_4_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 4, about their reference points */
+        /* (ucu-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their
+           reference points */
         const real ucu_mu_4_o_t = ucu_omega_4_in_axes4_z*ucu_omega_4_in_axes4_z;
         const real ucu_J_4_in_spec4_xy = m->ucu_J_4_in_spec4_xy[i];
         const real ucu_J_4_in_spec4_xz = m->ucu_J_4_in_spec4_xz[i];
@@ -3456,8 +3453,8 @@ INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, con
             ucu_phi_4_o_t_2) + ucu_acc_4_o_in_axes4_y*ucu_h_4_in_spec4_y -
             ucu_B_4_o_in_axes4_xy*ucu_Sigma_4_in_axes4_yy -
             ucu_B_4_o_in_axes4_yz*ucu_J_4_in_spec4_xy - ucu_acc_4_o_in_axes4_x*ucu_h_4_in_spec4_z;
-        /* (ucu-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
+        /* (ucu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real ucu_mu_2_o_t = v.ucu_omega_1_in_axes2_x*v.ucu_omega_1_in_axes2_x;
         const real ucu_mu_2_o_t_2 = v.ucu_omega_1_in_axes2_y*v.ucu_omega_1_in_axes2_y;
         const real ucu_mu_2_o_t_3 = v.ucu_qd_2*v.ucu_qd_2;
@@ -3494,18 +3491,18 @@ INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, con
             ucu_B_2_o_in_axes2_xy*ucu_Sigma_2_in_axes2_yy - ucu_J_2_in_spec2_xz*(ucu_mu_2_o_t -
             ucu_mu_2_o_t_2) - ucu_J_2_in_spec2_yz*ucu_alpha_1_o_in_axes2_y -
             ucu_g_in_axes2_x*ucu_h_2_in_spec2_z - ucu_g_in_axes2_y*ucu_h_2_in_spec2_x;
-        /* (ucu-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
+        /* (ucu-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+           connection point left out */
         const real ucu_N_2_o_in_axes2_x = ucu_mu_2_o_in_axes2_x + ucu_mu_4_o_in_axes4_z;
         const real ucu_N_2_o_in_axes2_y = ucu_mu_2_o_in_axes2_y +
             v.ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_x - v.ucu_c_4*ucu_mu_4_o_in_axes4_y;
         const real ucu_N_2_o_in_axes2_z = ucu_mu_2_o_in_axes2_z + v.ucu_c_4*ucu_mu_4_o_in_axes4_x
             + v.ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_y;
-        /* (ucu-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that
-           balances the leg's inertia and weight along all degrees of freedom */
+        /* (ucu-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real ucu_G_m1_o_t = v.inv_ucu_end_p1_in_axes4_x*ucu_mu_4_o_in_axes4_z;
-        /* (ucu-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (ucu-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+           connection point */
         const real ucu_c_o_t = v.inv_ucu_root_2*(ucu_N_2_o_in_axes2_z +
             ucu_G_m1_o_t*v.ucu_n_m1_in_axes2_z);
         const real ucu_c_o_t_2 = v.inv_ucu_v_1_in_axes2_z*(ucu_G_m1_o_t*ucu_qd_4_t +
@@ -3517,8 +3514,7 @@ INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real ucu_c_o_in_axes4_y = v.ucu_c_4*ucu_c_o_t + ucu_c_o_t_2*v.ucu_e_2_in_axes4_y +
             ucu_h_4_in_spec4_z*(ucu_mu_4_o_t + ucu_phi_4_o_t) -
             ucu_B_4_o_in_axes4_yx*ucu_h_4_in_spec4_y - ucu_B_4_o_in_axes4_yz*ucu_h_4_in_spec4_x;
-        /* (ucu-c_m_o) remainder without the acceleration in: moment of the leg on the platform without
-           actuation */
+        /* (ucu-c_m_o) remainder of: moment of the leg on the platform without actuation */
         const real ucu_c_m_o_in_axes4_x = ucu_G_m1_o_t*v.ucu_n_m1_in_axes4_x;
         /* (ucu-U) velocity and gravity terms of the leg force */
         const real ucu_U_x = ucu_phi_4_o_in_axes4_z*v.ucu_w_3_x -

@@ -938,10 +938,10 @@ class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
     sqrt = staticmethod(math.sqrt)
-    sin = staticmethod(lambda x: float(np.sin(x)))
-    cos = staticmethod(lambda x: float(np.cos(x)))
+    sin = staticmethod(lambda x: float(np.sin(x)) if math.isfinite(x) else math.nan)
+    cos = staticmethod(lambda x: float(np.cos(x)) if math.isfinite(x) else math.nan)
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
-    least = staticmethod(lambda x, y: float(np.minimum(x, y)))
+    least = staticmethod(lambda x, y: y if y < x or y != y else x)
 
     def __init__(self, p, states, kept=None):
         self.p, self.states = p, states
@@ -1094,7 +1094,7 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
     Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
     where a single state needs no arrays.
     """
-    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    p, read = _given(p), [a[4:] != ("unused",) for a in arguments]
     lists = plain and _lists(arguments)
     if lists:
         found = _state(_Single(p, 1), steps, lists, read)
@@ -1119,7 +1119,7 @@ def _lists(arguments):
     for row in arguments:
         value, shape = row[1:3]
         if type(value) is np.ndarray:
-            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+            if value.shape != shape or value.dtype is not _REAL or row[4:] == ("positive",):
                 return None
             found.append(_Vector(value.tolist()))
         elif value is None and len(row) > 3 and row[3] is not None:
@@ -2119,7 +2119,7 @@ def _run_dynamics(m, X, V):
         ucu_h_4_t_12*(ucu_zeta_2_t + ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) -
             ucu_bias_t*ucu_omega_2_in_axes4_x
         )
-        # (ucu-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (ucu-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         ucu_rel_o_in_axes4_x = ucu_u_1_in_axes4_x - ucu_bias_in_axes4_x
         ucu_rel_o_in_axes4_y = ucu_u_1_in_axes4_y - ucu_bias_in_axes4_y
         # (ucu-nd_m1) rate of moment direction 1
@@ -2155,20 +2155,20 @@ def _run_dynamics(m, X, V):
             ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z)
         )
         ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2
-        # (ucu-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (ucu-qdd_1_o) remainder of: acceleration of joint 1
         ucu_qdd_1_o = (
         inv_ucu_v_1_in_axes2_z*(ucu_e_2_in_axes4_x*ucu_rel_o_in_axes4_x +
             ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_y)
         )
-        # (ucu-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        # (ucu-qdd_2_o) remainder of: acceleration of joint 2
         ucu_qdd_2_o = (
         inv_ucu_h_4_t_12*(ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_x + ucu_qdd_1_o*ucu_v_1_t_2 -
             ucu_e_2_in_axes4_x*ucu_rel_o_in_axes4_y)
         )
-        # (ucu-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        # (ucu-alpha_1_o) remainder of: angular acceleration of link 1
         ucu_alpha_1_o_in_axes2_x = ucu_e_1_in_axes4_z*ucu_qdd_1_o
         ucu_alpha_1_o_in_axes2_y = -ucu_h_4_t_13*ucu_qdd_1_o
-        # (ucu-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (ucu-alpha_2_o) remainder of: angular acceleration of link 2
         ucu_alpha_2_o_in_axes2_x = ucu_W_2_in_axes2_yz + ucu_alpha_1_o_in_axes2_x
         ucu_alpha_2_o_in_axes2_y = ucu_alpha_1_o_in_axes2_y - ucu_W_2_in_axes2_xz
         # (ucu-B_2_o) remainder of the acceleration tensor of link 2
@@ -2178,7 +2178,7 @@ def _run_dynamics(m, X, V):
         ucu_B_2_o_in_axes2_zy = ucu_W_2_in_axes2_yz + ucu_alpha_2_o_in_axes2_x
         # (ucu-d_alpha_4) coefficient of the acceleration in: angular acceleration of link 4
         ucu_d_alpha_4_in_axes4_zy = ucu_w_4_in_axes4_y + ucu_e_1_in_axes4_z*ucu_w_1_in_axes4_y
-        # (ucu-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4
+        # (ucu-alpha_4_o) remainder of: angular acceleration of link 4
         ucu_alpha_4_o_in_axes4_x = (
         ucu_zeta_4_in_axes4_x + ucu_alpha_2_o_in_axes2_y*ucu_e_2_in_axes4_y +
             ucu_e_2_in_axes4_x*ucu_qdd_2_o
@@ -2198,7 +2198,7 @@ def _run_dynamics(m, X, V):
         ucu_B_4_o_in_axes4_yz = ucu_W_4_in_axes4_yz - ucu_alpha_4_o_in_axes4_x
         ucu_B_4_o_in_axes4_zx = ucu_W_4_in_axes4_xz - ucu_alpha_4_o_in_axes4_y
         ucu_B_4_o_in_axes4_zy = ucu_W_4_in_axes4_yz + ucu_alpha_4_o_in_axes4_x
-        # (ucu-acc_4_o) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+        # (ucu-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity
         ucu_acc_4_o_in_axes4_x = (
         ucu_u_1_in_axes4_x - axis_x_ucu_axes4_x*gravity_x - axis_x_ucu_axes4_y*gravity_y -
             axis_x_ucu_axes4_z*gravity_z
@@ -2212,7 +2212,7 @@ def _run_dynamics(m, X, V):
             - axis_z_ucu_axes4_x*gravity_x - axis_z_ucu_axes4_y*gravity_y -
             axis_z_ucu_axes4_z*gravity_z
         )
-        # (ucu-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning about its reference point
+        # (ucu-phi_4_o) remainder of: inertia force of link 4 from its turning about its reference point
         ucu_phi_4_o_t = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_x
         ucu_phi_4_o_t_2 = ucu_omega_2_in_axes4_y*ucu_omega_2_in_axes4_y
         ucu_phi_4_o_in_axes4_z = (
@@ -2238,7 +2238,7 @@ def _run_dynamics(m, X, V):
             ucu_h_4_t_13*(ucu_Jc_2_t_3*ucu_e_2_in_axes4_x - ucu_J_2_in_spec2_yz -
             ucu_Jc_2_t_4*ucu_e_2_in_axes4_y)
         )
-        # (ucu-mu_4_o) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
+        # (ucu-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their reference points
         ucu_mu_4_o_t = ucu_omega_4_in_axes4_z*ucu_omega_4_in_axes4_z
         ucu_mu_4_o_in_axes4_x = (
         ucu_B_4_o_in_axes4_yx*ucu_J_4_in_spec4_xy + ucu_B_4_o_in_axes4_zy*ucu_Sigma_4_in_axes4_yy
@@ -2280,7 +2280,7 @@ def _run_dynamics(m, X, V):
         ucu_h_4_in_spec4_y + ucu_d_Gamma_4_t_3*ucu_e_2_in_axes4_y -
             ucu_d_Gamma_4_t_2*ucu_e_2_in_axes4_x
         )
-        # (ucu-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (ucu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         ucu_mu_2_o_t = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_x
         ucu_mu_2_o_t_2 = ucu_omega_1_in_axes2_y*ucu_omega_1_in_axes2_y
         ucu_mu_2_o_t_3 = ucu_qd_2*ucu_qd_2
@@ -2309,7 +2309,7 @@ def _run_dynamics(m, X, V):
             ucu_mu_2_o_t_2) - ucu_J_2_in_spec2_yz*ucu_alpha_1_o_in_axes2_y -
             ucu_g_in_axes2_x*ucu_h_2_in_spec2_z - ucu_g_in_axes2_y*ucu_h_2_in_spec2_x
         )
-        # (ucu-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        # (ucu-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         ucu_N_2_o_in_axes2_x = ucu_mu_2_o_in_axes2_x + ucu_mu_4_o_in_axes4_z
         ucu_N_2_o_in_axes2_y = (
         ucu_mu_2_o_in_axes2_y + ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_x -
@@ -2395,7 +2395,7 @@ def _run_dynamics(m, X, V):
         ucu_d_G_m1_z = (
         axis_x_ucu_axes4_z*ucu_d_G_m1_in_axes4_x + axis_y_ucu_axes4_z*ucu_d_G_m1_in_axes4_y
         )
-        # (ucu-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
+        # (ucu-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         ucu_G_m1_o_t = inv_ucu_end_p1_in_axes4_x*ucu_mu_4_o_in_axes4_z
         # (ucu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         ucu_d_G_m_xx = ucu_d_G_m1_x*ucu_n_m1_x
@@ -2444,7 +2444,7 @@ def _run_dynamics(m, X, V):
             ucu_d_Gamma_4_in_axes4_y*ucu_w_4_in_axes4_y -
             ucu_d_alpha_4_in_axes4_zy*ucu_h_4_in_spec4_y
         )
-        # (ucu-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (ucu-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         ucu_c_o_t = inv_ucu_h_4_t_12*(ucu_N_2_o_in_axes2_z + ucu_G_m1_o_t*ucu_n_m1_in_axes2_z)
         ucu_c_o_t_2 = (
         inv_ucu_v_1_in_axes2_z*(ucu_G_m1_o_t*ucu_w_4_t + ucu_N_2_o_in_axes2_y*ucu_h_4_t_13 -
@@ -2496,7 +2496,7 @@ def _run_dynamics(m, X, V):
         )
         ucu_Q_t_11 = axis_x_ucu_axes4_z*ucu_Q_t_5 + axis_y_ucu_axes4_z*ucu_Q_t_8
         ucu_Q_zz = -2.0*ucu_Q_t_11
-        # (ucu-c_m_o) remainder without the acceleration in: moment of the leg on the platform without actuation
+        # (ucu-c_m_o) remainder of: moment of the leg on the platform without actuation
         ucu_c_m_o_in_axes4_x = ucu_G_m1_o_t*ucu_n_m1_in_axes4_x
         # (ucu-U) velocity and gravity terms of the leg force
         ucu_U_x = (
@@ -3645,7 +3645,7 @@ def _run_Z(m, X, V):
         ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) -
             ucu_bias_t*ucu_omega_2_in_axes4_x
         )
-        # (ucu-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (ucu-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         ucu_rel_o_in_axes4_x = ucu_u_1_in_axes4_x - ucu_bias_in_axes4_x
         ucu_rel_o_in_axes4_y = ucu_u_1_in_axes4_y - ucu_bias_in_axes4_y
         # (ucu-nd_m1) rate of moment direction 1
@@ -3677,20 +3677,20 @@ def _run_Z(m, X, V):
             ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z)
         )
         ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2
-        # (ucu-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (ucu-qdd_1_o) remainder of: acceleration of joint 1
         ucu_qdd_1_o = (
         inv_ucu_v_1_in_axes2_z*(ucu_c_4*ucu_rel_o_in_axes4_x +
             ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_y)
         )
-        # (ucu-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        # (ucu-qdd_2_o) remainder of: acceleration of joint 2
         ucu_qdd_2_o = (
         inv_ucu_root_2*(ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_x + ucu_qdd_1_o*ucu_v_1_t_2 -
             ucu_c_4*ucu_rel_o_in_axes4_y)
         )
-        # (ucu-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        # (ucu-alpha_1_o) remainder of: angular acceleration of link 1
         ucu_alpha_1_o_in_axes2_x = ucu_e_1_in_axes4_z*ucu_qdd_1_o
         ucu_alpha_1_o_in_axes2_y = -ucu_c_2*ucu_qdd_1_o
-        # (ucu-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (ucu-alpha_2_o) remainder of: angular acceleration of link 2
         ucu_alpha_2_o_in_axes2_x = ucu_W_2_in_axes2_yz + ucu_alpha_1_o_in_axes2_x
         ucu_alpha_2_o_in_axes2_y = ucu_alpha_1_o_in_axes2_y - ucu_W_2_in_axes2_xz
         # (ucu-B_2_o) remainder of the acceleration tensor of link 2
@@ -3698,7 +3698,7 @@ def _run_Z(m, X, V):
         ucu_B_2_o_in_axes2_yx = ucu_W_2_in_axes2_xy + ucu_qdd_2_o
         ucu_B_2_o_in_axes2_zx = ucu_W_2_in_axes2_xz - ucu_alpha_2_o_in_axes2_y
         ucu_B_2_o_in_axes2_zy = ucu_W_2_in_axes2_yz + ucu_alpha_2_o_in_axes2_x
-        # (ucu-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4
+        # (ucu-alpha_4_o) remainder of: angular acceleration of link 4
         ucu_alpha_4_o_in_axes4_x = (
         ucu_zeta_4_in_axes4_x + ucu_alpha_2_o_in_axes2_y*ucu_e_2_in_axes4_y + ucu_c_4*ucu_qdd_2_o
         )
@@ -3717,7 +3717,7 @@ def _run_Z(m, X, V):
         ucu_B_4_o_in_axes4_yz = ucu_W_4_in_axes4_yz - ucu_alpha_4_o_in_axes4_x
         ucu_B_4_o_in_axes4_zx = ucu_W_4_in_axes4_xz - ucu_alpha_4_o_in_axes4_y
         ucu_B_4_o_in_axes4_zy = ucu_W_4_in_axes4_yz + ucu_alpha_4_o_in_axes4_x
-        # (ucu-acc_4_o) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+        # (ucu-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity
         ucu_acc_4_o_in_axes4_x = (
         ucu_u_1_in_axes4_x - axis_x_ucu_axes4_x*gravity_x - axis_x_ucu_axes4_y*gravity_y -
             axis_x_ucu_axes4_z*gravity_z
@@ -3730,14 +3730,14 @@ def _run_Z(m, X, V):
         ucu_u_1_x*ucu_w_3_x + ucu_u_1_y*ucu_w_3_y + ucu_u_1_z*ucu_w_3_z - gravity_x*ucu_w_3_x -
             gravity_y*ucu_w_3_y - gravity_z*ucu_w_3_z
         )
-        # (ucu-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning about its reference point
+        # (ucu-phi_4_o) remainder of: inertia force of link 4 from its turning about its reference point
         ucu_phi_4_o_t = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_x
         ucu_phi_4_o_t_2 = ucu_omega_2_in_axes4_y*ucu_omega_2_in_axes4_y
         ucu_phi_4_o_in_axes4_z = (
         ucu_B_4_o_in_axes4_zx*ucu_h_4_in_spec4_y + ucu_B_4_o_in_axes4_zy*ucu_h_4_in_spec4_z -
             ucu_h_4_in_spec4_x*(ucu_phi_4_o_t + ucu_phi_4_o_t_2)
         )
-        # (ucu-mu_4_o) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
+        # (ucu-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their reference points
         ucu_mu_4_o_t = ucu_omega_4_in_axes4_z*ucu_omega_4_in_axes4_z
         ucu_mu_4_o_in_axes4_x = (
         ucu_B_4_o_in_axes4_yx*ucu_J_4_in_spec4_xy + ucu_B_4_o_in_axes4_zy*ucu_Sigma_4_in_axes4_yy
@@ -3760,7 +3760,7 @@ def _run_Z(m, X, V):
             ucu_B_4_o_in_axes4_xy*ucu_Sigma_4_in_axes4_yy -
             ucu_B_4_o_in_axes4_yz*ucu_J_4_in_spec4_xy - ucu_acc_4_o_in_axes4_x*ucu_h_4_in_spec4_z
         )
-        # (ucu-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (ucu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         ucu_mu_2_o_t = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_x
         ucu_mu_2_o_t_2 = ucu_omega_1_in_axes2_y*ucu_omega_1_in_axes2_y
         ucu_mu_2_o_t_3 = ucu_qd_2*ucu_qd_2
@@ -3789,7 +3789,7 @@ def _run_Z(m, X, V):
             ucu_mu_2_o_t_2) - ucu_J_2_in_spec2_yz*ucu_alpha_1_o_in_axes2_y -
             ucu_g_in_axes2_x*ucu_h_2_in_spec2_z - ucu_g_in_axes2_y*ucu_h_2_in_spec2_x
         )
-        # (ucu-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        # (ucu-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         ucu_N_2_o_in_axes2_x = ucu_mu_2_o_in_axes2_x + ucu_mu_4_o_in_axes4_z
         ucu_N_2_o_in_axes2_y = (
         ucu_mu_2_o_in_axes2_y + ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_x -
@@ -3799,9 +3799,9 @@ def _run_Z(m, X, V):
         ucu_mu_2_o_in_axes2_z + ucu_c_4*ucu_mu_4_o_in_axes4_x +
             ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_y
         )
-        # (ucu-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
+        # (ucu-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         ucu_G_m1_o_t = inv_ucu_end_p1_in_axes4_x*ucu_mu_4_o_in_axes4_z
-        # (ucu-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (ucu-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         ucu_c_o_t = inv_ucu_root_2*(ucu_N_2_o_in_axes2_z + ucu_G_m1_o_t*ucu_n_m1_in_axes2_z)
         ucu_c_o_t_2 = (
         inv_ucu_v_1_in_axes2_z*(ucu_G_m1_o_t*ucu_qd_4_t + ucu_N_2_o_in_axes2_y*ucu_c_2 -
@@ -3817,7 +3817,7 @@ def _run_Z(m, X, V):
             ucu_phi_4_o_t) - ucu_B_4_o_in_axes4_yx*ucu_h_4_in_spec4_y -
             ucu_B_4_o_in_axes4_yz*ucu_h_4_in_spec4_x
         )
-        # (ucu-c_m_o) remainder without the acceleration in: moment of the leg on the platform without actuation
+        # (ucu-c_m_o) remainder of: moment of the leg on the platform without actuation
         ucu_c_m_o_in_axes4_x = ucu_G_m1_o_t*ucu_n_m1_in_axes4_x
         # (ucu-U) velocity and gravity terms of the leg force
         ucu_U_x = (

@@ -1693,8 +1693,8 @@ INLINE void stage_uhs_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real axis_z_uhs_axes3_x = inv_uhs_root_2*uhs_S_x;
     const real axis_z_uhs_axes3_y = inv_uhs_root_2*uhs_S_y;
     const real axis_z_uhs_axes3_z = inv_uhs_root_2*uhs_S_z;
-    /* (uhs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-       link 2, about their reference points */
+    /* (uhs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
     const real uhs_mu_2_t = m->uhs_mu_2_t[i];
     const real uhs_mu_2_t_2 = m->uhs_mu_2_t_2[i];
     const real uhs_g_in_axes2_z = uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1;
@@ -2504,22 +2504,22 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t w, size_t leg, size_t le
             uhs_zeta_2_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x;
         const real uhs_bias_in_axes3_z = -uhs_W_2_t_3*v.uhs_h_3_t_10 -
             uhs_W_2_t_3*uhs_joint3_offset_x;
-        /* (uhs-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
+        /* (uhs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real uhs_rel_o_in_axes3_x = uhs_u_1_in_axes3_x - uhs_bias_in_axes3_x;
         const real uhs_rel_o_in_axes3_y = uhs_u_1_in_axes3_y - uhs_bias_in_axes3_y;
         const real uhs_rel_o_in_axes3_z = uhs_u_1_in_axes3_z - uhs_bias_in_axes3_z;
-        /* (uhs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        /* (uhs-qdd_1_o) remainder of: acceleration of joint 1 */
         const real uhs_qdd_1_o =
             v.inv_uhs_v_1_in_axes2_z*(v.uhs_e_2_in_axes3_x*uhs_rel_o_in_axes3_x -
             v.uhs_h_3_t_12*uhs_rel_o_in_axes3_y);
-        /* (uhs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        /* (uhs-qdd_2_o) remainder of: acceleration of joint 2 */
         const real uhs_qdd_2_o = v.inv_uhs_h_3_t_9*(uhs_qdd_1_o*v.uhs_v_1_t_2 -
             v.uhs_e_2_in_axes3_x*uhs_rel_o_in_axes3_y - v.uhs_h_3_t_12*uhs_rel_o_in_axes3_x);
-        /* (uhs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+        /* (uhs-alpha_1_o) remainder of: angular acceleration of link 1 */
         const real uhs_alpha_1_o_in_axes2_x = v.uhs_e_1_in_axes3_z*uhs_qdd_1_o;
         const real uhs_alpha_1_o_in_axes2_y = -v.uhs_c_2*uhs_qdd_1_o;
-        /* (uhs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (uhs-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real uhs_alpha_2_o_in_axes2_x = uhs_W_2_in_axes2_yz + uhs_alpha_1_o_in_axes2_x;
         const real uhs_alpha_2_o_in_axes2_y = uhs_alpha_1_o_in_axes2_y - uhs_W_2_in_axes2_xz;
         /* (uhs-B_2_o) remainder of the acceleration tensor of link 2 */
@@ -2527,7 +2527,7 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t w, size_t leg, size_t le
         const real uhs_B_2_o_in_axes2_yx = uhs_W_2_in_axes2_xy + uhs_qdd_2_o;
         const real uhs_B_2_o_in_axes2_zx = uhs_W_2_in_axes2_xz - uhs_alpha_2_o_in_axes2_y;
         const real uhs_B_2_o_in_axes2_zy = uhs_W_2_in_axes2_yz + uhs_alpha_2_o_in_axes2_x;
-        /* (uhs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (uhs-alpha_3_o) remainder of: angular acceleration of link 3 */
         const real uhs_alpha_3_o_in_axes3_x = uhs_zeta_3_in_axes3_x +
             v.uhs_e_2_in_axes3_x*uhs_qdd_2_o - uhs_alpha_2_o_in_axes2_y*v.uhs_h_3_t_12;
         const real uhs_alpha_3_o_in_axes3_y = uhs_zeta_3_in_axes3_y -
@@ -2541,8 +2541,7 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t w, size_t leg, size_t le
         const real uhs_B_3_o_in_axes3_yz = uhs_W_3_in_axes3_yz - uhs_alpha_3_o_in_axes3_x;
         const real uhs_B_3_o_in_axes3_zx = uhs_W_3_in_axes3_xz - uhs_alpha_3_o_in_axes3_y;
         const real uhs_B_3_o_in_axes3_zy = uhs_W_3_in_axes3_yz + uhs_alpha_3_o_in_axes3_x;
-        /* (uhs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
+        /* (uhs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
@@ -2552,8 +2551,8 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t w, size_t leg, size_t le
             axis_y_uhs_axes3_y*gravity_y - axis_y_uhs_axes3_z*gravity_z;
         const real uhs_acc_3_o_in_axes3_z = uhs_u_1_in_axes3_z - v.axis_z_uhs_axes3_x*gravity_x -
             v.axis_z_uhs_axes3_y*gravity_y - v.axis_z_uhs_axes3_z*gravity_z;
-        /* (uhs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 3, about their reference points */
+        /* (uhs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+           reference points */
         const real uhs_mu_3_o_t = uhs_omega_3_in_axes3_z*uhs_omega_3_in_axes3_z;
         const real uhs_J_3_in_spec3_xy = m->uhs_J_3_in_spec3_xy[i];
         const real uhs_J_3_in_spec3_xz = m->uhs_J_3_in_spec3_xz[i];
@@ -2579,8 +2578,8 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t w, size_t leg, size_t le
             uhs_W_2_t_2) + uhs_acc_3_o_in_axes3_y*uhs_h_3_in_spec3_y -
             uhs_B_3_o_in_axes3_xy*uhs_Sigma_3_in_axes3_yy -
             uhs_B_3_o_in_axes3_yz*uhs_J_3_in_spec3_xy - uhs_acc_3_o_in_axes3_x*uhs_h_3_in_spec3_z;
-        /* (uhs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
+        /* (uhs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real uhs_mu_2_o_t = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x;
         const real uhs_mu_2_o_t_2 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y;
         const real uhs_mu_2_o_t_3 = uhs_qd_2*uhs_qd_2;
@@ -2618,15 +2617,15 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t w, size_t leg, size_t le
             uhs_B_2_o_in_axes2_xy*uhs_Sigma_2_in_axes2_yy - uhs_J_2_in_spec2_xz*(uhs_mu_2_o_t -
             uhs_mu_2_o_t_2) - uhs_J_2_in_spec2_yz*uhs_alpha_1_o_in_axes2_y -
             uhs_g_in_axes2_x*uhs_h_2_in_spec2_z - uhs_g_in_axes2_y*uhs_h_2_in_spec2_x;
-        /* (uhs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
+        /* (uhs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+           connection point left out */
         const real uhs_N_2_o_in_axes2_x = uhs_mu_2_o_in_axes2_x + uhs_mu_3_o_in_axes3_z;
         const real uhs_N_2_o_in_axes2_y = uhs_mu_2_o_in_axes2_y -
             v.uhs_e_2_in_axes3_x*uhs_mu_3_o_in_axes3_y - v.uhs_h_3_t_12*uhs_mu_3_o_in_axes3_x;
         const real uhs_N_2_o_in_axes2_z = uhs_mu_2_o_in_axes2_z +
             v.uhs_e_2_in_axes3_x*uhs_mu_3_o_in_axes3_x - v.uhs_h_3_t_12*uhs_mu_3_o_in_axes3_y;
-        /* (uhs-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (uhs-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+           connection point */
         const real uhs_c_o_t = v.inv_uhs_h_3_t_9*uhs_N_2_o_in_axes2_z;
         const real uhs_c_o_t_2 =
             v.inv_uhs_v_1_in_axes2_z*(uhs_N_2_o_in_axes2_x*v.uhs_e_1_in_axes3_z +
@@ -3293,21 +3292,21 @@ INLINE void Z_legs_uhs(const prepared *m, size_t w, size_t leg, size_t legs, con
             axis_y_uhs_axes3_y*uhs_u_1_y + axis_y_uhs_axes3_z*uhs_u_1_z;
         const real uhs_u_1_in_axes3_z = v.axis_z_uhs_axes3_x*uhs_u_1_x +
             v.axis_z_uhs_axes3_y*uhs_u_1_y + v.axis_z_uhs_axes3_z*uhs_u_1_z;
-        /* (uhs-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
+        /* (uhs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real uhs_rel_o_in_axes3_x = uhs_u_1_in_axes3_x - v.uhs_bias_in_axes3_x;
         const real uhs_rel_o_in_axes3_y = uhs_u_1_in_axes3_y - v.uhs_bias_in_axes3_y;
         const real uhs_rel_o_in_axes3_z = uhs_u_1_in_axes3_z - v.uhs_bias_in_axes3_z;
-        /* (uhs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        /* (uhs-qdd_1_o) remainder of: acceleration of joint 1 */
         const real uhs_qdd_1_o = v.inv_uhs_v_1_in_axes2_z*(v.uhs_c_3*uhs_rel_o_in_axes3_x -
             uhs_rel_o_in_axes3_y*v.uhs_s_3);
-        /* (uhs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        /* (uhs-qdd_2_o) remainder of: acceleration of joint 2 */
         const real uhs_qdd_2_o = v.inv_uhs_root_2*(uhs_qdd_1_o*v.uhs_v_1_t_2 -
             v.uhs_c_3*uhs_rel_o_in_axes3_y - uhs_rel_o_in_axes3_x*v.uhs_s_3);
-        /* (uhs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+        /* (uhs-alpha_1_o) remainder of: angular acceleration of link 1 */
         const real uhs_alpha_1_o_in_axes2_x = v.uhs_e_1_in_axes3_z*uhs_qdd_1_o;
         const real uhs_alpha_1_o_in_axes2_y = -v.uhs_c_2*uhs_qdd_1_o;
-        /* (uhs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (uhs-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real uhs_alpha_2_o_in_axes2_x = v.uhs_W_2_in_axes2_yz + uhs_alpha_1_o_in_axes2_x;
         const real uhs_alpha_2_o_in_axes2_y = uhs_alpha_1_o_in_axes2_y - v.uhs_W_2_in_axes2_xz;
         /* (uhs-B_2_o) remainder of the acceleration tensor of link 2 */
@@ -3315,7 +3314,7 @@ INLINE void Z_legs_uhs(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real uhs_B_2_o_in_axes2_yx = v.uhs_W_2_in_axes2_xy + uhs_qdd_2_o;
         const real uhs_B_2_o_in_axes2_zx = v.uhs_W_2_in_axes2_xz - uhs_alpha_2_o_in_axes2_y;
         const real uhs_B_2_o_in_axes2_zy = v.uhs_W_2_in_axes2_yz + uhs_alpha_2_o_in_axes2_x;
-        /* (uhs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (uhs-alpha_3_o) remainder of: angular acceleration of link 3 */
         const real uhs_alpha_3_o_in_axes3_x = v.uhs_zeta_3_in_axes3_x + v.uhs_c_3*uhs_qdd_2_o -
             uhs_alpha_2_o_in_axes2_y*v.uhs_s_3;
         const real uhs_alpha_3_o_in_axes3_y = v.uhs_zeta_3_in_axes3_y -
@@ -3330,8 +3329,7 @@ INLINE void Z_legs_uhs(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real uhs_B_3_o_in_axes3_yz = v.uhs_W_3_in_axes3_yz - uhs_alpha_3_o_in_axes3_x;
         const real uhs_B_3_o_in_axes3_zx = v.uhs_W_3_in_axes3_xz - uhs_alpha_3_o_in_axes3_y;
         const real uhs_B_3_o_in_axes3_zy = v.uhs_W_3_in_axes3_yz + uhs_alpha_3_o_in_axes3_x;
-        /* (uhs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
+        /* (uhs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
@@ -3341,8 +3339,8 @@ INLINE void Z_legs_uhs(const prepared *m, size_t w, size_t leg, size_t legs, con
             axis_y_uhs_axes3_y*gravity_y - axis_y_uhs_axes3_z*gravity_z;
         const real uhs_acc_3_o_in_axes3_z = uhs_u_1_in_axes3_z - v.axis_z_uhs_axes3_x*gravity_x -
             v.axis_z_uhs_axes3_y*gravity_y - v.axis_z_uhs_axes3_z*gravity_z;
-        /* (uhs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 3, about their reference points */
+        /* (uhs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+           reference points */
         const real uhs_mu_3_o_t = v.uhs_omega_3_in_axes3_z*v.uhs_omega_3_in_axes3_z;
         const real uhs_J_3_in_spec3_xy = m->uhs_J_3_in_spec3_xy[i];
         const real uhs_J_3_in_spec3_xz = m->uhs_J_3_in_spec3_xz[i];
@@ -3368,8 +3366,8 @@ INLINE void Z_legs_uhs(const prepared *m, size_t w, size_t leg, size_t legs, con
             v.uhs_W_2_t_2) + uhs_acc_3_o_in_axes3_y*uhs_h_3_in_spec3_y -
             uhs_B_3_o_in_axes3_xy*uhs_Sigma_3_in_axes3_yy -
             uhs_B_3_o_in_axes3_yz*uhs_J_3_in_spec3_xy - uhs_acc_3_o_in_axes3_x*uhs_h_3_in_spec3_z;
-        /* (uhs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
+        /* (uhs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real uhs_mu_2_o_t = v.uhs_omega_1_in_axes2_x*v.uhs_omega_1_in_axes2_x;
         const real uhs_mu_2_o_t_2 = v.uhs_omega_1_in_axes2_y*v.uhs_omega_1_in_axes2_y;
         const real uhs_mu_2_o_t_3 = v.uhs_qd_2*v.uhs_qd_2;
@@ -3406,15 +3404,15 @@ INLINE void Z_legs_uhs(const prepared *m, size_t w, size_t leg, size_t legs, con
             uhs_B_2_o_in_axes2_xy*uhs_Sigma_2_in_axes2_yy - uhs_J_2_in_spec2_xz*(uhs_mu_2_o_t -
             uhs_mu_2_o_t_2) - uhs_J_2_in_spec2_yz*uhs_alpha_1_o_in_axes2_y -
             uhs_g_in_axes2_x*uhs_h_2_in_spec2_z - uhs_g_in_axes2_y*uhs_h_2_in_spec2_x;
-        /* (uhs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
+        /* (uhs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+           connection point left out */
         const real uhs_N_2_o_in_axes2_x = uhs_mu_2_o_in_axes2_x + uhs_mu_3_o_in_axes3_z;
         const real uhs_N_2_o_in_axes2_y = uhs_mu_2_o_in_axes2_y - v.uhs_c_3*uhs_mu_3_o_in_axes3_y
             - uhs_mu_3_o_in_axes3_x*v.uhs_s_3;
         const real uhs_N_2_o_in_axes2_z = uhs_mu_2_o_in_axes2_z + v.uhs_c_3*uhs_mu_3_o_in_axes3_x
             - uhs_mu_3_o_in_axes3_y*v.uhs_s_3;
-        /* (uhs-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (uhs-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+           connection point */
         const real uhs_c_o_t = v.inv_uhs_root_2*uhs_N_2_o_in_axes2_z;
         const real uhs_c_o_t_2 =
             v.inv_uhs_v_1_in_axes2_z*(uhs_N_2_o_in_axes2_x*v.uhs_e_1_in_axes3_z +

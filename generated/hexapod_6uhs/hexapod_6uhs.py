@@ -967,10 +967,10 @@ class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
     sqrt = staticmethod(math.sqrt)
-    sin = staticmethod(lambda x: float(np.sin(x)))
-    cos = staticmethod(lambda x: float(np.cos(x)))
+    sin = staticmethod(lambda x: float(np.sin(x)) if math.isfinite(x) else math.nan)
+    cos = staticmethod(lambda x: float(np.cos(x)) if math.isfinite(x) else math.nan)
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
-    least = staticmethod(lambda x, y: float(np.minimum(x, y)))
+    least = staticmethod(lambda x, y: y if y < x or y != y else x)
 
     def __init__(self, p, states, kept=None):
         self.p, self.states = p, states
@@ -1123,7 +1123,7 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
     Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
     where a single state needs no arrays.
     """
-    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    p, read = _given(p), [a[4:] != ("unused",) for a in arguments]
     lists = plain and _lists(arguments)
     if lists:
         found = _state(_Single(p, 1), steps, lists, read)
@@ -1148,7 +1148,7 @@ def _lists(arguments):
     for row in arguments:
         value, shape = row[1:3]
         if type(value) is np.ndarray:
-            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+            if value.shape != shape or value.dtype is not _REAL or row[4:] == ("positive",):
                 return None
             found.append(_Vector(value.tolist()))
         elif value is None and len(row) > 3 and row[3] is not None:
@@ -2110,24 +2110,24 @@ def _run_dynamics(m, X, V):
             uhs_zeta_2_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x
         )
         uhs_bias_in_axes3_z = -uhs_W_2_t_3*uhs_h_3_t_10 - uhs_W_2_t_3*uhs_joint3_offset_x
-        # (uhs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (uhs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         uhs_rel_o_in_axes3_x = uhs_u_1_in_axes3_x - uhs_bias_in_axes3_x
         uhs_rel_o_in_axes3_y = uhs_u_1_in_axes3_y - uhs_bias_in_axes3_y
         uhs_rel_o_in_axes3_z = uhs_u_1_in_axes3_z - uhs_bias_in_axes3_z
-        # (uhs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (uhs-qdd_1_o) remainder of: acceleration of joint 1
         uhs_qdd_1_o = (
         inv_uhs_v_1_in_axes2_z*(uhs_e_2_in_axes3_x*uhs_rel_o_in_axes3_x -
             uhs_h_3_t_12*uhs_rel_o_in_axes3_y)
         )
-        # (uhs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        # (uhs-qdd_2_o) remainder of: acceleration of joint 2
         uhs_qdd_2_o = (
         inv_uhs_h_3_t_9*(uhs_qdd_1_o*uhs_v_1_t_2 - uhs_e_2_in_axes3_x*uhs_rel_o_in_axes3_y -
             uhs_h_3_t_12*uhs_rel_o_in_axes3_x)
         )
-        # (uhs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        # (uhs-alpha_1_o) remainder of: angular acceleration of link 1
         uhs_alpha_1_o_in_axes2_x = uhs_e_1_in_axes3_z*uhs_qdd_1_o
         uhs_alpha_1_o_in_axes2_y = -uhs_c_2*uhs_qdd_1_o
-        # (uhs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (uhs-alpha_2_o) remainder of: angular acceleration of link 2
         uhs_alpha_2_o_in_axes2_x = uhs_W_2_in_axes2_yz + uhs_alpha_1_o_in_axes2_x
         uhs_alpha_2_o_in_axes2_y = uhs_alpha_1_o_in_axes2_y - uhs_W_2_in_axes2_xz
         # (uhs-B_2_o) remainder of the acceleration tensor of link 2
@@ -2137,7 +2137,7 @@ def _run_dynamics(m, X, V):
         uhs_B_2_o_in_axes2_zy = uhs_W_2_in_axes2_yz + uhs_alpha_2_o_in_axes2_x
         # (uhs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
         uhs_d_alpha_3_in_axes3_zy = uhs_e_1_in_axes3_z*uhs_w_1_in_axes3_y
-        # (uhs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        # (uhs-alpha_3_o) remainder of: angular acceleration of link 3
         uhs_alpha_3_o_in_axes3_x = (
         uhs_zeta_3_in_axes3_x + uhs_e_2_in_axes3_x*uhs_qdd_2_o -
             uhs_alpha_2_o_in_axes2_y*uhs_h_3_t_12
@@ -2156,7 +2156,7 @@ def _run_dynamics(m, X, V):
         uhs_B_3_o_in_axes3_yz = uhs_W_3_in_axes3_yz - uhs_alpha_3_o_in_axes3_x
         uhs_B_3_o_in_axes3_zx = uhs_W_3_in_axes3_xz - uhs_alpha_3_o_in_axes3_y
         uhs_B_3_o_in_axes3_zy = uhs_W_3_in_axes3_yz + uhs_alpha_3_o_in_axes3_x
-        # (uhs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        # (uhs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         uhs_acc_3_o_in_axes3_x = (
         uhs_u_1_in_axes3_x - axis_x_uhs_axes3_x*gravity_x - axis_x_uhs_axes3_y*gravity_y -
             axis_x_uhs_axes3_z*gravity_z
@@ -2188,7 +2188,7 @@ def _run_dynamics(m, X, V):
             uhs_c_2*(uhs_Jc_2_t_4*uhs_h_3_t_12 - uhs_J_2_in_spec2_yz -
             uhs_Jc_2_t_3*uhs_e_2_in_axes3_x)
         )
-        # (uhs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        # (uhs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
         uhs_mu_3_o_t = uhs_omega_3_in_axes3_z*uhs_omega_3_in_axes3_z
         uhs_mu_3_o_in_axes3_x = (
         uhs_B_3_o_in_axes3_yx*uhs_J_3_in_spec3_xy + uhs_B_3_o_in_axes3_zy*uhs_Sigma_3_in_axes3_yy
@@ -2211,7 +2211,7 @@ def _run_dynamics(m, X, V):
             uhs_B_3_o_in_axes3_xy*uhs_Sigma_3_in_axes3_yy -
             uhs_B_3_o_in_axes3_yz*uhs_J_3_in_spec3_xy - uhs_acc_3_o_in_axes3_x*uhs_h_3_in_spec3_z
         )
-        # (uhs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (uhs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         uhs_mu_2_o_t = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x
         uhs_mu_2_o_t_2 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y
         uhs_mu_2_o_t_3 = uhs_qd_2*uhs_qd_2
@@ -2240,7 +2240,7 @@ def _run_dynamics(m, X, V):
             uhs_mu_2_o_t_2) - uhs_J_2_in_spec2_yz*uhs_alpha_1_o_in_axes2_y -
             uhs_g_in_axes2_x*uhs_h_2_in_spec2_z - uhs_g_in_axes2_y*uhs_h_2_in_spec2_x
         )
-        # (uhs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        # (uhs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         uhs_N_2_o_in_axes2_x = uhs_mu_2_o_in_axes2_x + uhs_mu_3_o_in_axes3_z
         uhs_N_2_o_in_axes2_y = (
         uhs_mu_2_o_in_axes2_y - uhs_e_2_in_axes3_x*uhs_mu_3_o_in_axes3_y -
@@ -2315,7 +2315,7 @@ def _run_dynamics(m, X, V):
         -uhs_d_phi_3_in_axes3_yz - uhs_d_Gamma_1_in_axes3_z*uhs_w_1_in_axes3_y -
             uhs_d_Gamma_2_in_axes2_x*uhs_w_2_in_axes3_y
         )
-        # (uhs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (uhs-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         uhs_c_o_t = inv_uhs_h_3_t_9*uhs_N_2_o_in_axes2_z
         uhs_c_o_t_2 = (
         inv_uhs_v_1_in_axes2_z*(uhs_N_2_o_in_axes2_x*uhs_e_1_in_axes3_z + uhs_c_o_t*uhs_v_1_t_2 -
@@ -3247,23 +3247,23 @@ def _run_Z(m, X, V):
             uhs_beta_3_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x
         )
         uhs_bias_in_axes3_z = -uhs_W_2_t_3*uhs_joint3_offset_x - uhs_W_2_t_3*uhs_x_3_in_axes2_x
-        # (uhs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (uhs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         uhs_rel_o_in_axes3_x = uhs_u_1_in_axes3_x - uhs_bias_in_axes3_x
         uhs_rel_o_in_axes3_y = uhs_u_1_in_axes3_y - uhs_bias_in_axes3_y
         uhs_rel_o_in_axes3_z = uhs_u_1_in_axes3_z - uhs_bias_in_axes3_z
-        # (uhs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (uhs-qdd_1_o) remainder of: acceleration of joint 1
         uhs_qdd_1_o = (
         inv_uhs_v_1_in_axes2_z*(uhs_c_3*uhs_rel_o_in_axes3_x - uhs_rel_o_in_axes3_y*uhs_s_3)
         )
-        # (uhs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        # (uhs-qdd_2_o) remainder of: acceleration of joint 2
         uhs_qdd_2_o = (
         inv_uhs_root_2*(uhs_qdd_1_o*uhs_v_1_t_2 - uhs_c_3*uhs_rel_o_in_axes3_y -
             uhs_rel_o_in_axes3_x*uhs_s_3)
         )
-        # (uhs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        # (uhs-alpha_1_o) remainder of: angular acceleration of link 1
         uhs_alpha_1_o_in_axes2_x = uhs_e_1_in_axes3_z*uhs_qdd_1_o
         uhs_alpha_1_o_in_axes2_y = -uhs_c_2*uhs_qdd_1_o
-        # (uhs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (uhs-alpha_2_o) remainder of: angular acceleration of link 2
         uhs_alpha_2_o_in_axes2_x = uhs_W_2_in_axes2_yz + uhs_alpha_1_o_in_axes2_x
         uhs_alpha_2_o_in_axes2_y = uhs_alpha_1_o_in_axes2_y - uhs_W_2_in_axes2_xz
         # (uhs-B_2_o) remainder of the acceleration tensor of link 2
@@ -3271,7 +3271,7 @@ def _run_Z(m, X, V):
         uhs_B_2_o_in_axes2_yx = uhs_W_2_in_axes2_xy + uhs_qdd_2_o
         uhs_B_2_o_in_axes2_zx = uhs_W_2_in_axes2_xz - uhs_alpha_2_o_in_axes2_y
         uhs_B_2_o_in_axes2_zy = uhs_W_2_in_axes2_yz + uhs_alpha_2_o_in_axes2_x
-        # (uhs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        # (uhs-alpha_3_o) remainder of: angular acceleration of link 3
         uhs_alpha_3_o_in_axes3_x = (
         uhs_zeta_3_in_axes3_x + uhs_c_3*uhs_qdd_2_o - uhs_alpha_2_o_in_axes2_y*uhs_s_3
         )
@@ -3288,7 +3288,7 @@ def _run_Z(m, X, V):
         uhs_B_3_o_in_axes3_yz = uhs_W_3_in_axes3_yz - uhs_alpha_3_o_in_axes3_x
         uhs_B_3_o_in_axes3_zx = uhs_W_3_in_axes3_xz - uhs_alpha_3_o_in_axes3_y
         uhs_B_3_o_in_axes3_zy = uhs_W_3_in_axes3_yz + uhs_alpha_3_o_in_axes3_x
-        # (uhs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        # (uhs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         uhs_acc_3_o_in_axes3_x = (
         uhs_u_1_in_axes3_x - axis_x_uhs_axes3_x*gravity_x - axis_x_uhs_axes3_y*gravity_y -
             axis_x_uhs_axes3_z*gravity_z
@@ -3301,7 +3301,7 @@ def _run_Z(m, X, V):
         uhs_u_1_in_axes3_z - axis_z_uhs_axes3_x*gravity_x - axis_z_uhs_axes3_y*gravity_y -
             axis_z_uhs_axes3_z*gravity_z
         )
-        # (uhs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        # (uhs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
         uhs_mu_3_o_t = uhs_omega_3_in_axes3_z*uhs_omega_3_in_axes3_z
         uhs_mu_3_o_in_axes3_x = (
         uhs_B_3_o_in_axes3_yx*uhs_J_3_in_spec3_xy + uhs_B_3_o_in_axes3_zy*uhs_Sigma_3_in_axes3_yy
@@ -3324,7 +3324,7 @@ def _run_Z(m, X, V):
             uhs_B_3_o_in_axes3_xy*uhs_Sigma_3_in_axes3_yy -
             uhs_B_3_o_in_axes3_yz*uhs_J_3_in_spec3_xy - uhs_acc_3_o_in_axes3_x*uhs_h_3_in_spec3_z
         )
-        # (uhs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (uhs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         uhs_mu_2_o_t = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x
         uhs_mu_2_o_t_2 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y
         uhs_mu_2_o_t_3 = uhs_qd_2*uhs_qd_2
@@ -3353,7 +3353,7 @@ def _run_Z(m, X, V):
             uhs_mu_2_o_t_2) - uhs_J_2_in_spec2_yz*uhs_alpha_1_o_in_axes2_y -
             uhs_g_in_axes2_x*uhs_h_2_in_spec2_z - uhs_g_in_axes2_y*uhs_h_2_in_spec2_x
         )
-        # (uhs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        # (uhs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         uhs_N_2_o_in_axes2_x = uhs_mu_2_o_in_axes2_x + uhs_mu_3_o_in_axes3_z
         uhs_N_2_o_in_axes2_y = (
         uhs_mu_2_o_in_axes2_y - uhs_c_3*uhs_mu_3_o_in_axes3_y - uhs_mu_3_o_in_axes3_x*uhs_s_3
@@ -3361,7 +3361,7 @@ def _run_Z(m, X, V):
         uhs_N_2_o_in_axes2_z = (
         uhs_mu_2_o_in_axes2_z + uhs_c_3*uhs_mu_3_o_in_axes3_x - uhs_mu_3_o_in_axes3_y*uhs_s_3
         )
-        # (uhs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (uhs-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         uhs_c_o_t = inv_uhs_root_2*uhs_N_2_o_in_axes2_z
         uhs_c_o_t_2 = (
         inv_uhs_v_1_in_axes2_z*(uhs_N_2_o_in_axes2_x*uhs_e_1_in_axes3_z + uhs_c_o_t*uhs_v_1_t_2 -

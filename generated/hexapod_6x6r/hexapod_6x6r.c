@@ -2046,8 +2046,7 @@ INLINE void stage_six_r_q(const prepared *m, size_t w, size_t i, size_t j, const
     /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
     const real six_r_joint2_offset_x = m->six_r_joint2_offset_x[i];
     const real six_r_d_2_in_spec2_x = six_r_c_2*six_r_joint2_offset_x;
-    /* (six_r-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-       link 3, less gravity */
+    /* (six_r-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
     const real six_r_acc_3_t = m->six_r_acc_3_t[i];
     const real six_r_acc_3_t_2 = m->six_r_acc_3_t_2[i];
     const real six_r_g_in_axes1_x = six_r_acc_3_t*six_r_c_1 + six_r_acc_3_t_2*six_r_s_1;
@@ -4423,8 +4422,8 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
             six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y) -
             six_r_d_2_in_axes5_z*(six_r_bias_t_7 + six_r_bias_t_8) -
             six_r_d_3_in_axes5_z*(six_r_bias_t_13 + six_r_bias_t_14);
-        /* (six_r-rel_o) remainder without the acceleration in: acceleration of the connection point left
-           to the joint accelerations */
+        /* (six_r-rel_o) remainder of: acceleration of the connection point left to the joint
+           accelerations */
         const real six_r_rel_o_in_axes5_x = six_r_u_1_in_axes5_x - six_r_bias_in_axes5_x;
         const real six_r_rel_o_in_axes5_y = six_r_u_1_in_axes5_y - six_r_bias_in_axes5_y;
         const real six_r_rel_o_in_axes5_z = six_r_u_1_in_axes5_z - six_r_bias_in_axes5_z;
@@ -4466,7 +4465,7 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
             six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 + six_r_nu_1_t_3*(six_r_nu_1_t +
             six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z);
         const real six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2;
-        /* (six_r-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        /* (six_r-qdd_1_o) remainder of: acceleration of joint 1 */
         const real six_r_qdd_1_o_t = six_r_nu_1*six_r_size;
         const real six_r_qdd_1_o_t_2 = six_r_nu_2*six_r_size;
         const real six_r_qdd_1_o_t_3 = inv_six_r_w_1_t_79*(six_r_m1_w_1_t*six_r_qdd_1_o_t +
@@ -4480,15 +4479,15 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
             six_r_qdd_1_o_t_4*six_r_w_1_t_55 + six_r_rel_o_in_axes5_y*six_r_w_1_t_51 -
             six_r_qdd_1_o_t*six_r_w_1_t_53 - six_r_qdd_1_o_t_2*six_r_w_1_t_54 -
             six_r_rel_o_in_axes5_x*six_r_w_1_t_50 - six_r_rel_o_in_axes5_z*six_r_w_1_t_52);
-        /* (six_r-qdd_4_o) remainder without the acceleration in: acceleration of joint 4 */
+        /* (six_r-qdd_4_o) remainder of: acceleration of joint 4 */
         const real six_r_qdd_4_o = inv_six_r_w_1_t_28*(six_r_qdd_1_o_t*six_r_w_1_t_31 +
             six_r_qdd_1_o_t_2*six_r_w_1_t_32 + six_r_qdd_1_o_t_3*six_r_w_1_t_44 +
             six_r_qdd_1_o_t_4*six_r_w_1_t_39 + six_r_rel_o_in_axes5_z*six_r_w_1_t_30 -
             six_r_qdd_1_o_t_5*six_r_w_1_t_33 - six_r_rel_o_in_axes5_y*six_r_w_1_t_29);
-        /* (six_r-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+        /* (six_r-alpha_1_o) remainder of: angular acceleration of link 1 */
         const real six_r_alpha_1_o_t = v.six_r_c_2*six_r_qdd_1_o_t_5;
         const real six_r_alpha_1_o_in_axes2_y = six_r_qdd_1_o_t_5*v.six_r_s_2;
-        /* (six_r-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (six_r-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real six_r_alpha_2_o_in_axes2_x = six_r_W_2_in_axes2_yz - six_r_alpha_1_o_t;
         const real six_r_alpha_2_o_in_axes2_y = six_r_alpha_1_o_in_axes2_y +
             six_r_zeta_2_in_axes2_y;
@@ -4498,7 +4497,7 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
         const real six_r_B_2_o_in_axes2_zx = -six_r_alpha_2_o_in_axes2_y -
             six_r_zeta_2_in_axes2_y;
         const real six_r_B_2_o_in_axes2_zy = six_r_W_2_in_axes2_yz + six_r_alpha_2_o_in_axes2_x;
-        /* (six_r-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (six_r-alpha_3_o) remainder of: angular acceleration of link 3 */
         const real six_r_alpha_3_o_in_axes3_x = six_r_zeta_3_in_axes3_x +
             six_r_alpha_2_o_in_axes2_x*v.six_r_s_3 - six_r_alpha_2_o_in_axes2_y*v.six_r_c_3;
         const real six_r_alpha_3_o_in_axes3_y = six_r_alpha_2_o_in_axes2_x*v.six_r_c_3 +
@@ -4511,7 +4510,7 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
         const real six_r_B_3_o_in_axes3_yz = six_r_W_3_in_axes3_yz - six_r_alpha_3_o_in_axes3_x;
         const real six_r_B_3_o_in_axes3_zx = six_r_W_3_in_axes3_xz - six_r_alpha_3_o_in_axes3_y;
         const real six_r_B_3_o_in_axes3_zy = six_r_W_3_in_axes3_yz + six_r_alpha_3_o_in_axes3_x;
-        /* (six_r-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4 */
+        /* (six_r-alpha_4_o) remainder of: angular acceleration of link 4 */
         const real six_r_alpha_4_o_in_axes4_x = six_r_zeta_4_in_axes4_x +
             six_r_alpha_3_o_in_axes3_z*v.six_r_h_4_t -
             six_r_alpha_3_o_in_axes3_x*v.six_r_e_2_in_axes5_z;
@@ -4570,7 +4569,7 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
             v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_z +
             v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_z +
             v.six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_z;
-        /* (six_r-alpha_5_o) remainder without the acceleration in: angular acceleration of link 5 */
+        /* (six_r-alpha_5_o) remainder of: angular acceleration of link 5 */
         const real six_r_alpha_5_o_in_axes5_x = six_r_zeta_5_in_axes5_x +
             v.six_r_J_5_t*six_r_alpha_4_o_in_axes4_x +
             six_r_alpha_4_o_in_axes4_z*v.six_r_e_4_in_axes5_x;
@@ -4588,7 +4587,7 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
         const real six_r_B_5_o_in_axes5_yz = six_r_W_5_in_axes5_yz - six_r_alpha_5_o_in_axes5_x;
         const real six_r_B_5_o_in_axes5_zx = six_r_W_5_in_axes5_xz - six_r_alpha_5_o_in_axes5_y;
         const real six_r_B_5_o_in_axes5_zy = six_r_W_5_in_axes5_yz + six_r_alpha_5_o_in_axes5_x;
-        /* (six_r-a_o_3_o) remainder without the acceleration in: acceleration of the origin of joint 3 */
+        /* (six_r-a_o_3_o) remainder of: acceleration of the origin of joint 3 */
         const real six_r_a_o_3_o_t = six_r_omega_1_in_axes2_y*six_r_omega_1_in_axes2_y;
         const real six_r_a_o_3_o_t_2 = six_r_qd_1_t_4*six_r_qd_1_t_4;
         const real six_r_joint3_offset_x = m->six_r_joint3_offset_x[i];
@@ -4600,19 +4599,18 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
             six_r_a_o_3_o_in_axes2_y*v.six_r_c_3;
         const real six_r_a_o_3_o_in_axes3_y = six_r_a_o_3_o_in_axes2_x*v.six_r_c_3 +
             six_r_a_o_3_o_in_axes2_y*v.six_r_s_3;
-        /* (six_r-a_o_4_o) remainder without the acceleration in: acceleration of the origin of joint 4 */
+        /* (six_r-a_o_4_o) remainder of: acceleration of the origin of joint 4 */
         const real six_r_a_o_4_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x +
             six_r_B_3_o_in_axes3_xy*six_r_joint4_offset_x;
         const real six_r_a_o_4_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y -
             six_r_W_3_t_3*six_r_joint4_offset_x;
         const real six_r_a_o_4_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z +
             six_r_B_3_o_in_axes3_zy*six_r_joint4_offset_x;
-        /* (six_r-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
+        /* (six_r-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
         const real six_r_acc_3_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x - v.six_r_g_in_axes3_x;
         const real six_r_acc_3_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y - v.six_r_g_in_axes3_y;
         const real six_r_acc_3_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z - v.six_r_g_in_axes1_y;
-        /* (six_r-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight */
+        /* (six_r-f_3_o) remainder of: inertia force of link 3 less its weight */
         const real six_r_f_3_o_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y;
         const real six_r_h_3_in_spec3_x = m->six_r_h_3_in_spec3_x[i];
         const real six_r_h_3_in_spec3_y = m->six_r_h_3_in_spec3_y[i];
@@ -4629,8 +4627,7 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
             six_r_acc_3_o_in_axes3_z*six_r_link3_mass -
             six_r_B_3_o_in_axes3_zx*six_r_h_3_in_spec3_y - six_r_h_3_in_spec3_z*(six_r_W_3_t +
             six_r_f_3_o_t);
-        /* (six_r-acc_4_o) remainder without the acceleration in: acceleration of the reference point of
-           link 4, less gravity */
+        /* (six_r-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity */
         const real six_r_acc_4_o_in_axes4_x = six_r_a_o_4_o_in_axes3_z*v.six_r_h_4_t +
             v.six_r_e_2_in_axes5_z*v.six_r_g_in_axes3_x -
             six_r_a_o_4_o_in_axes3_x*v.six_r_e_2_in_axes5_z - v.six_r_g_in_axes1_y*v.six_r_h_4_t;
@@ -4638,7 +4635,7 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
             six_r_a_o_4_o_in_axes3_z*v.six_r_e_2_in_axes5_z -
             v.six_r_e_2_in_axes5_z*v.six_r_g_in_axes1_y - v.six_r_g_in_axes3_x*v.six_r_h_4_t;
         const real six_r_acc_4_o_in_axes4_z = six_r_a_o_4_o_in_axes3_y - v.six_r_g_in_axes3_y;
-        /* (six_r-f_4_o) remainder without the acceleration in: inertia force of link 4 less its weight */
+        /* (six_r-f_4_o) remainder of: inertia force of link 4 less its weight */
         const real six_r_f_4_o_t = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x;
         const real six_r_f_4_o_t_2 = six_r_omega_4_in_axes4_z*six_r_omega_4_in_axes4_z;
         const real six_r_h_4_in_spec4_x = m->six_r_h_4_in_spec4_x[i];
@@ -4661,8 +4658,7 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
             v.six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_x;
         const real six_r_f_4_o_in_axes3_z = v.six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_y +
             six_r_f_4_o_in_axes4_x*v.six_r_h_4_t;
-        /* (six_r-acc_5_o) remainder without the acceleration in: acceleration of the reference point of
-           link 5, less gravity */
+        /* (six_r-acc_5_o) remainder of: acceleration of the reference point of link 5, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
@@ -4686,8 +4682,8 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
             six_r_h_5_in_spec5_y*(v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_x +
             v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_x +
             v.six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_x - six_r_w_5_t_5);
-        /* (six_r-mu_5_o) remainder without the acceleration in: inertia moment of the links that turn
-           with link 5, about their reference points */
+        /* (six_r-mu_5_o) remainder of: inertia moment of the links that turn with link 5, about their
+           reference points */
         const real six_r_J_5_in_spec5_xy = m->six_r_J_5_in_spec5_xy[i];
         const real six_r_J_5_in_spec5_xz = m->six_r_J_5_in_spec5_xz[i];
         const real six_r_J_5_in_spec5_yz = m->six_r_J_5_in_spec5_yz[i];
@@ -4751,8 +4747,8 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
             six_r_d_Gamma_5_t*six_r_w_1_t_13 - six_r_d_Gamma_5_t_2*six_r_w_1_t_29 -
             six_r_d_Gamma_5_t_3*six_r_w_1_t_51 - six_r_d_Gamma_5_t_4*six_r_w_1_t_69 -
             six_r_d_Gamma_5_t_5*six_r_w_1_t_81;
-        /* (six_r-mu_4_o) remainder without the acceleration in: inertia moment of the links that turn
-           with link 4, about their reference points */
+        /* (six_r-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their
+           reference points */
         const real six_r_J_4_in_spec4_xy = m->six_r_J_4_in_spec4_xy[i];
         const real six_r_J_4_in_spec4_xz = m->six_r_J_4_in_spec4_xz[i];
         const real six_r_J_4_in_spec4_yz = m->six_r_J_4_in_spec4_yz[i];
@@ -4780,8 +4776,8 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
             six_r_B_4_o_in_axes4_xy*six_r_Sigma_4_in_axes4_yy -
             six_r_B_4_o_in_axes4_yz*six_r_J_4_in_spec4_xy -
             six_r_acc_4_o_in_axes4_x*six_r_h_4_in_spec4_z;
-        /* (six_r-N_4_o) remainder without the acceleration in: moment about joint 4 of the links from 4
-           outwards, the force at the connection point left out */
+        /* (six_r-N_4_o) remainder of: moment about joint 4 of the links from 4 outwards, the force at the
+           connection point left out */
         const real six_r_N_4_o_in_axes4_x = six_r_mu_4_o_in_axes4_x +
             v.six_r_J_5_t*six_r_mu_5_o_in_axes5_x +
             v.six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_y;
@@ -4828,8 +4824,8 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
             six_r_d_Gamma_4_t_2*six_r_w_1_t_30 + six_r_d_Gamma_4_t_3*six_r_w_1_t_52 +
             six_r_d_Gamma_4_t_4*six_r_w_1_t_70 + six_r_d_Gamma_4_t_5*six_r_w_1_t_82 +
             v.six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_y;
-        /* (six_r-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn
-           with link 3, about their reference points */
+        /* (six_r-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+           reference points */
         const real six_r_J_3_in_spec3_xy = m->six_r_J_3_in_spec3_xy[i];
         const real six_r_J_3_in_spec3_xz = m->six_r_J_3_in_spec3_xz[i];
         const real six_r_J_3_in_spec3_yz = m->six_r_J_3_in_spec3_yz[i];
@@ -4856,8 +4852,8 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
             six_r_B_3_o_in_axes3_xy*six_r_Sigma_3_in_axes3_yy - six_r_J_3_in_spec3_xy*(six_r_W_3_t
             - six_r_f_3_o_t) - six_r_acc_3_o_in_axes3_x*six_r_h_3_in_spec3_x -
             six_r_acc_3_o_in_axes3_y*six_r_h_3_in_spec3_y;
-        /* (six_r-N_3_o) remainder without the acceleration in: moment about joint 3 of the links from 3
-           outwards, the force at the connection point left out */
+        /* (six_r-N_3_o) remainder of: moment about joint 3 of the links from 3 outwards, the force at the
+           connection point left out */
         const real six_r_N_3_o_in_axes3_x = six_r_mu_3_o_in_axes3_x +
             six_r_N_4_o_in_axes4_y*v.six_r_h_4_t + six_r_f_4_o_in_axes3_z*six_r_joint4_offset_x -
             six_r_N_4_o_in_axes4_x*v.six_r_e_2_in_axes5_z;
@@ -4865,8 +4861,8 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
         const real six_r_N_3_o_in_axes3_z = six_r_mu_3_o_in_axes3_z +
             six_r_N_4_o_in_axes4_x*v.six_r_h_4_t + six_r_N_4_o_in_axes4_y*v.six_r_e_2_in_axes5_z -
             six_r_f_4_o_in_axes3_x*six_r_joint4_offset_x;
-        /* (six_r-T_3_o) remainder without the acceleration in: inertia force of the links from 3
-           outwards, the last link left out */
+        /* (six_r-T_3_o) remainder of: inertia force of the links from 3 outwards, the last link left out
+           */
         const real six_r_T_3_o_in_axes3_x = six_r_f_3_o_in_axes3_x + six_r_f_4_o_in_axes3_x;
         const real six_r_T_3_o_in_axes3_y = six_r_f_3_o_in_axes3_y + six_r_f_4_o_in_axes4_z;
         const real six_r_T_3_o_in_axes3_z = six_r_f_3_o_in_axes3_z + six_r_f_4_o_in_axes3_z;
@@ -4914,8 +4910,8 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
         const real six_r_d_Gamma_3_in_axes5_z = v.six_r_d_Gamma_3_t_3 +
             six_r_d_Gamma_3_t_10*six_r_w_1_t_70 + six_r_d_Gamma_3_t_12*six_r_w_1_t_82 +
             six_r_d_Gamma_3_t_6*six_r_w_1_t_30 + six_r_d_Gamma_3_t_8*six_r_w_1_t_52;
-        /* (six_r-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn
-           with link 2, about their reference points */
+        /* (six_r-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real six_r_mu_2_o_t = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_x;
         const real six_r_J_2_in_spec2_xy = m->six_r_J_2_in_spec2_xy[i];
         const real six_r_J_2_in_spec2_xz = m->six_r_J_2_in_spec2_xz[i];
@@ -4946,8 +4942,8 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
             v.six_r_g_in_axes2_x*six_r_h_2_in_spec2_y -
             six_r_B_2_o_in_axes2_xy*six_r_Sigma_2_in_axes2_yy -
             six_r_J_2_in_spec2_xz*six_r_alpha_1_o_t - v.six_r_g_in_axes2_y*six_r_h_2_in_spec2_x;
-        /* (six_r-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
+        /* (six_r-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+           connection point left out */
         const real six_r_N_2_o_in_axes2_x = six_r_mu_2_o_in_axes2_x +
             six_r_N_3_o_in_axes3_x*v.six_r_s_3 + six_r_N_3_o_in_axes3_y*v.six_r_c_3;
         const real six_r_N_2_o_in_axes2_y = six_r_mu_2_o_in_axes2_y +
@@ -4991,15 +4987,15 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
         const real six_r_d_Gamma_2_in_axes5_z = v.six_r_d_Gamma_3_t_3 +
             six_r_d_Gamma_2_t*six_r_w_1_t_30 + six_r_d_Gamma_2_t_2*six_r_w_1_t_52 +
             six_r_d_Gamma_2_t_3*six_r_w_1_t_70 + six_r_d_Gamma_2_t_4*six_r_w_1_t_82;
-        /* (six_r-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn
-           with link 1, about their reference points */
+        /* (six_r-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+           reference points */
         const real six_r_J_1_in_spec1_xx = m->six_r_J_1_in_spec1_xx[i];
         const real six_r_h_1_in_spec1_y = m->six_r_h_1_in_spec1_y[i];
         const real six_r_h_1_in_spec1_z = m->six_r_h_1_in_spec1_z[i];
         const real six_r_mu_1_o_in_axes1_z = v.six_r_g_in_axes1_x*six_r_h_1_in_spec1_z -
             six_r_J_1_in_spec1_xx*six_r_qdd_1_o_t_5 - v.six_r_g_in_axes1_y*six_r_h_1_in_spec1_y;
-        /* (six_r-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
+        /* (six_r-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+           connection point left out */
         const real six_r_N_1_o_in_axes1_z = six_r_mu_1_o_in_axes1_z +
             six_r_N_2_o_in_axes2_x*v.six_r_c_2 - six_r_N_2_o_in_axes2_y*v.six_r_s_2;
         /* (six_r-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
@@ -5087,8 +5083,8 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
         const real six_r_d_G_m1_z = axis_x_six_r_axes5_z*six_r_d_G_m1_in_axes5_x +
             axis_y_six_r_axes5_z*six_r_d_G_m1_in_axes5_y +
             axis_z_six_r_axes5_z*six_r_d_G_m1_in_axes5_z;
-        /* (six_r-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that
-           balances the leg's inertia and weight along all degrees of freedom */
+        /* (six_r-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia
+           and weight along all degrees of freedom */
         const real six_r_G_m1_o_t = inv_six_r_w_1_t_12*six_r_mu_5_o_in_axes5_z;
         const real six_r_G_m1_o_t_2 = inv_six_r_w_1_t_28*(six_r_G_m1_o_t*six_r_w_1_t_15 -
             six_r_N_4_o_in_axes4_z);
@@ -5149,8 +5145,8 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
         const real six_r_d_G_m2_z = axis_x_six_r_axes5_z*six_r_d_G_m2_in_axes5_x +
             axis_y_six_r_axes5_z*six_r_d_G_m2_in_axes5_y +
             axis_z_six_r_axes5_z*six_r_d_G_m2_in_axes5_z;
-        /* (six_r-G_m2_o) remainder without the acceleration in: moment along moment direction 2 that
-           balances the leg's inertia and weight along all degrees of freedom */
+        /* (six_r-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia
+           and weight along all degrees of freedom */
         const real six_r_G_m2_o_t = six_r_size*(six_r_G_m1_o_t_2*six_r_w_1_t_32 +
             six_r_G_m1_o_t_3*six_r_w_1_t_54 + six_r_G_m1_o_t_4*six_r_w_1_t_72 -
             six_r_G_m1_o_t*six_r_w_1_t_14 - six_r_G_m1_o_t_5*six_r_m2_w_1_t);
@@ -5160,8 +5156,8 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
         const real six_r_d_G_m_xy = six_r_d_G_m1_y*six_r_n_m1_x + six_r_d_G_m2_y*six_r_n_m2_x;
         const real six_r_d_G_m_xz = six_r_d_G_m1_z*six_r_n_m1_x + six_r_d_G_m2_z*six_r_n_m2_x;
         const real six_r_d_G_m_yx = six_r_d_G_m1_x*six_r_n_m1_y + six_r_d_G_m2_x*six_r_n_m2_y;
-        /* (six_r-G_m_o) remainder without the acceleration in: moment at the connection point that
-           balances the leg's inertia and weight along all degrees of freedom */
+        /* (six_r-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real six_r_G_m_o_in_axes5_x = six_r_G_m1_o_t_6*six_r_end_p1_in_axes5_y;
         const real six_r_G_m_o_in_axes5_y = six_r_G_m2_o_t*six_r_end_p1_in_axes5_z -
             six_r_G_m1_o_t_6*six_r_n_m1_in_axes5_y;
@@ -5272,8 +5268,8 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
             six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_y -
             six_r_d_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_y -
             six_r_d_alpha_5_in_axes5_zz*six_r_h_5_in_spec5_x;
-        /* (six_r-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (six_r-c_o) remainder of: leg force on the platform without actuation and without the mass at
+           the connection point */
         const real six_r_c_o_in_axes5_x = six_r_G_m1_o_t_3*six_r_w_1_t_50 +
             six_r_G_m1_o_t_4*six_r_w_1_t_68 + six_r_W_5_t_3*six_r_h_5_in_spec5_x -
             six_r_B_5_o_in_axes5_xy*six_r_h_5_in_spec5_y -
@@ -5331,8 +5327,7 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
         const real six_r_Q_t_13 = axis_y_six_r_axes5_z*six_r_Q_t_7 -
             axis_z_six_r_axes5_z*six_r_Q_t_10;
         const real six_r_Q_zz = -2*six_r_Q_t_13 - six_r_d_c_in_axes5_xx;
-        /* (six_r-c_m_o) remainder without the acceleration in: moment of the leg on the platform without
-           actuation */
+        /* (six_r-c_m_o) remainder of: moment of the leg on the platform without actuation */
         const real six_r_c_m_o_in_axes5_z = six_r_G_m2_o_t*six_r_end_p1_in_axes5_y;
         /* (six_r-U) velocity and gravity terms of the leg force */
         const real six_r_U_x = -axis_x_six_r_axes5_x*six_r_c_o_in_axes5_x -
@@ -7040,8 +7035,8 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
             six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y) -
             six_r_d_2_in_axes5_z*(six_r_bias_t_7 + six_r_bias_t_8) -
             six_r_d_3_in_axes5_z*(six_r_bias_t_13 + six_r_bias_t_14);
-        /* (six_r-rel_o) remainder without the acceleration in: acceleration of the connection point left
-           to the joint accelerations */
+        /* (six_r-rel_o) remainder of: acceleration of the connection point left to the joint
+           accelerations */
         const real six_r_rel_o_in_axes5_x = six_r_u_1_in_axes5_x - six_r_bias_in_axes5_x;
         const real six_r_rel_o_in_axes5_y = six_r_u_1_in_axes5_y - six_r_bias_in_axes5_y;
         const real six_r_rel_o_in_axes5_z = six_r_u_1_in_axes5_z - six_r_bias_in_axes5_z;
@@ -7075,7 +7070,7 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
             six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 + six_r_nu_1_t_3*(six_r_nu_1_t +
             v.six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z);
         const real six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2;
-        /* (six_r-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        /* (six_r-qdd_1_o) remainder of: acceleration of joint 1 */
         const real six_r_qdd_1_o_t = six_r_nu_1*six_r_size;
         const real six_r_qdd_1_o_t_2 = six_r_nu_2*six_r_size;
         const real six_r_qdd_1_o_t_3 = v.inv_six_r_w_1_t_79*(v.six_r_qd_1_t*six_r_rel_o_in_axes5_x
@@ -7089,15 +7084,15 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
             six_r_qdd_1_o_t_4*v.six_r_w_1_t_55 + six_r_rel_o_in_axes5_y*v.six_r_w_1_t_51 -
             six_r_qdd_1_o_t*v.six_r_w_1_t_53 - six_r_qdd_1_o_t_2*v.six_r_w_1_t_54 -
             six_r_rel_o_in_axes5_x*v.six_r_w_1_t_50 - six_r_rel_o_in_axes5_z*v.six_r_w_1_t_52);
-        /* (six_r-qdd_4_o) remainder without the acceleration in: acceleration of joint 4 */
+        /* (six_r-qdd_4_o) remainder of: acceleration of joint 4 */
         const real six_r_qdd_4_o = v.inv_six_r_w_1_t_28*(six_r_qdd_1_o_t*v.six_r_w_1_t_31 +
             six_r_qdd_1_o_t_2*v.six_r_w_1_t_32 + six_r_qdd_1_o_t_3*v.six_r_w_1_t_44 +
             six_r_qdd_1_o_t_4*v.six_r_w_1_t_39 + six_r_rel_o_in_axes5_z*v.six_r_w_1_t_30 -
             six_r_qdd_1_o_t_5*v.six_r_w_1_t_33 - six_r_rel_o_in_axes5_y*v.six_r_w_1_t_29);
-        /* (six_r-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+        /* (six_r-alpha_1_o) remainder of: angular acceleration of link 1 */
         const real six_r_alpha_1_o_t = v.six_r_c_2*six_r_qdd_1_o_t_5;
         const real six_r_alpha_1_o_in_axes2_y = six_r_qdd_1_o_t_5*v.six_r_s_2;
-        /* (six_r-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (six_r-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real six_r_alpha_2_o_in_axes2_x = six_r_W_2_in_axes2_yz - six_r_alpha_1_o_t;
         const real six_r_alpha_2_o_in_axes2_y = six_r_alpha_1_o_in_axes2_y +
             six_r_zeta_2_in_axes2_y;
@@ -7107,7 +7102,7 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real six_r_B_2_o_in_axes2_zx = -six_r_alpha_2_o_in_axes2_y -
             six_r_zeta_2_in_axes2_y;
         const real six_r_B_2_o_in_axes2_zy = six_r_W_2_in_axes2_yz + six_r_alpha_2_o_in_axes2_x;
-        /* (six_r-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (six_r-alpha_3_o) remainder of: angular acceleration of link 3 */
         const real six_r_alpha_3_o_in_axes3_x = six_r_zeta_3_in_axes3_x +
             six_r_alpha_2_o_in_axes2_x*v.six_r_s_3 - six_r_alpha_2_o_in_axes2_y*v.six_r_c_3;
         const real six_r_alpha_3_o_in_axes3_y = six_r_alpha_2_o_in_axes2_x*v.six_r_c_3 +
@@ -7120,7 +7115,7 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real six_r_B_3_o_in_axes3_yz = six_r_W_3_in_axes3_yz - six_r_alpha_3_o_in_axes3_x;
         const real six_r_B_3_o_in_axes3_zx = six_r_W_3_in_axes3_xz - six_r_alpha_3_o_in_axes3_y;
         const real six_r_B_3_o_in_axes3_zy = six_r_W_3_in_axes3_yz + six_r_alpha_3_o_in_axes3_x;
-        /* (six_r-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4 */
+        /* (six_r-alpha_4_o) remainder of: angular acceleration of link 4 */
         const real six_r_alpha_4_o_in_axes4_x = six_r_zeta_4_in_axes4_x +
             six_r_alpha_3_o_in_axes3_z*v.six_r_s_4 - six_r_alpha_3_o_in_axes3_x*v.six_r_c_4;
         const real six_r_alpha_4_o_in_axes4_y = six_r_alpha_3_o_in_axes3_x*v.six_r_s_4 +
@@ -7133,7 +7128,7 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real six_r_B_4_o_in_axes4_yz = six_r_W_4_in_axes4_yz - six_r_alpha_4_o_in_axes4_x;
         const real six_r_B_4_o_in_axes4_zx = six_r_W_4_in_axes4_xz - six_r_alpha_4_o_in_axes4_y;
         const real six_r_B_4_o_in_axes4_zy = six_r_W_4_in_axes4_yz + six_r_alpha_4_o_in_axes4_x;
-        /* (six_r-alpha_5_o) remainder without the acceleration in: angular acceleration of link 5 */
+        /* (six_r-alpha_5_o) remainder of: angular acceleration of link 5 */
         const real six_r_alpha_5_o_in_axes5_x = six_r_zeta_5_in_axes5_x +
             six_r_alpha_4_o_in_axes4_x*v.six_r_s_5 + six_r_alpha_4_o_in_axes4_z*v.six_r_c_5;
         const real six_r_alpha_5_o_in_axes5_y = six_r_alpha_4_o_in_axes4_x*v.six_r_c_5 -
@@ -7150,7 +7145,7 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real six_r_B_5_o_in_axes5_yz = six_r_W_5_in_axes5_yz - six_r_alpha_5_o_in_axes5_x;
         const real six_r_B_5_o_in_axes5_zx = six_r_W_5_in_axes5_xz - six_r_alpha_5_o_in_axes5_y;
         const real six_r_B_5_o_in_axes5_zy = six_r_W_5_in_axes5_yz + six_r_alpha_5_o_in_axes5_x;
-        /* (six_r-a_o_3_o) remainder without the acceleration in: acceleration of the origin of joint 3 */
+        /* (six_r-a_o_3_o) remainder of: acceleration of the origin of joint 3 */
         const real six_r_a_o_3_o_t = six_r_omega_1_in_axes2_y*six_r_omega_1_in_axes2_y;
         const real six_r_a_o_3_o_t_2 = six_r_qd_1_t_9*six_r_qd_1_t_9;
         const real six_r_joint3_offset_x = m->six_r_joint3_offset_x[i];
@@ -7162,19 +7157,18 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
             six_r_a_o_3_o_in_axes2_y*v.six_r_c_3;
         const real six_r_a_o_3_o_in_axes3_y = six_r_a_o_3_o_in_axes2_x*v.six_r_c_3 +
             six_r_a_o_3_o_in_axes2_y*v.six_r_s_3;
-        /* (six_r-a_o_4_o) remainder without the acceleration in: acceleration of the origin of joint 4 */
+        /* (six_r-a_o_4_o) remainder of: acceleration of the origin of joint 4 */
         const real six_r_a_o_4_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x +
             six_r_B_3_o_in_axes3_xy*six_r_joint4_offset_x;
         const real six_r_a_o_4_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y -
             six_r_W_3_t_3*six_r_joint4_offset_x;
         const real six_r_a_o_4_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z +
             six_r_B_3_o_in_axes3_zy*six_r_joint4_offset_x;
-        /* (six_r-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
+        /* (six_r-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
         const real six_r_acc_3_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x - v.six_r_g_in_axes3_x;
         const real six_r_acc_3_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y - v.six_r_g_in_axes3_y;
         const real six_r_acc_3_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z - v.six_r_g_in_axes1_y;
-        /* (six_r-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight */
+        /* (six_r-f_3_o) remainder of: inertia force of link 3 less its weight */
         const real six_r_f_3_o_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y;
         const real six_r_h_3_in_spec3_x = m->six_r_h_3_in_spec3_x[i];
         const real six_r_h_3_in_spec3_y = m->six_r_h_3_in_spec3_y[i];
@@ -7191,8 +7185,7 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
             six_r_acc_3_o_in_axes3_z*six_r_link3_mass -
             six_r_B_3_o_in_axes3_zx*six_r_h_3_in_spec3_y - six_r_h_3_in_spec3_z*(six_r_W_3_t +
             six_r_f_3_o_t);
-        /* (six_r-acc_4_o) remainder without the acceleration in: acceleration of the reference point of
-           link 4, less gravity */
+        /* (six_r-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity */
         const real six_r_acc_4_o_in_axes4_x = six_r_a_o_4_o_in_axes3_z*v.six_r_s_4 +
             v.six_r_c_4*v.six_r_g_in_axes3_x - six_r_a_o_4_o_in_axes3_x*v.six_r_c_4 -
             v.six_r_g_in_axes1_y*v.six_r_s_4;
@@ -7200,7 +7193,7 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
             six_r_a_o_4_o_in_axes3_z*v.six_r_c_4 - v.six_r_c_4*v.six_r_g_in_axes1_y -
             v.six_r_g_in_axes3_x*v.six_r_s_4;
         const real six_r_acc_4_o_in_axes4_z = six_r_a_o_4_o_in_axes3_y - v.six_r_g_in_axes3_y;
-        /* (six_r-f_4_o) remainder without the acceleration in: inertia force of link 4 less its weight */
+        /* (six_r-f_4_o) remainder of: inertia force of link 4 less its weight */
         const real six_r_f_4_o_t = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x;
         const real six_r_f_4_o_t_2 = six_r_omega_4_in_axes4_z*six_r_omega_4_in_axes4_z;
         const real six_r_h_4_in_spec4_x = m->six_r_h_4_in_spec4_x[i];
@@ -7223,8 +7216,7 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
             v.six_r_c_4*six_r_f_4_o_in_axes4_x;
         const real six_r_f_4_o_in_axes3_z = v.six_r_c_4*six_r_f_4_o_in_axes4_y +
             six_r_f_4_o_in_axes4_x*v.six_r_s_4;
-        /* (six_r-acc_5_o) remainder without the acceleration in: acceleration of the reference point of
-           link 5, less gravity */
+        /* (six_r-acc_5_o) remainder of: acceleration of the reference point of link 5, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
@@ -7237,8 +7229,8 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real six_r_acc_5_o_in_axes5_z = six_r_u_1_in_axes5_z -
             v.axis_z_six_r_axes5_x*gravity_x - v.axis_z_six_r_axes5_y*gravity_y -
             v.axis_z_six_r_axes5_z*gravity_z;
-        /* (six_r-mu_5_o) remainder without the acceleration in: inertia moment of the links that turn
-           with link 5, about their reference points */
+        /* (six_r-mu_5_o) remainder of: inertia moment of the links that turn with link 5, about their
+           reference points */
         const real six_r_J_5_in_spec5_xy = m->six_r_J_5_in_spec5_xy[i];
         const real six_r_J_5_in_spec5_xz = m->six_r_J_5_in_spec5_xz[i];
         const real six_r_J_5_in_spec5_yz = m->six_r_J_5_in_spec5_yz[i];
@@ -7268,8 +7260,8 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
             six_r_B_5_o_in_axes5_xy*six_r_Sigma_5_in_axes5_yy -
             six_r_B_5_o_in_axes5_yz*six_r_J_5_in_spec5_xz -
             six_r_acc_5_o_in_axes5_x*six_r_h_5_in_spec5_y;
-        /* (six_r-mu_4_o) remainder without the acceleration in: inertia moment of the links that turn
-           with link 4, about their reference points */
+        /* (six_r-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their
+           reference points */
         const real six_r_J_4_in_spec4_xy = m->six_r_J_4_in_spec4_xy[i];
         const real six_r_J_4_in_spec4_xz = m->six_r_J_4_in_spec4_xz[i];
         const real six_r_J_4_in_spec4_yz = m->six_r_J_4_in_spec4_yz[i];
@@ -7297,15 +7289,15 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
             six_r_B_4_o_in_axes4_xy*six_r_Sigma_4_in_axes4_yy -
             six_r_B_4_o_in_axes4_yz*six_r_J_4_in_spec4_xy -
             six_r_acc_4_o_in_axes4_x*six_r_h_4_in_spec4_z;
-        /* (six_r-N_4_o) remainder without the acceleration in: moment about joint 4 of the links from 4
-           outwards, the force at the connection point left out */
+        /* (six_r-N_4_o) remainder of: moment about joint 4 of the links from 4 outwards, the force at the
+           connection point left out */
         const real six_r_N_4_o_in_axes4_x = six_r_mu_4_o_in_axes4_x +
             v.six_r_c_5*six_r_mu_5_o_in_axes5_y + six_r_mu_5_o_in_axes5_x*v.six_r_s_5;
         const real six_r_N_4_o_in_axes4_y = six_r_mu_4_o_in_axes4_y + six_r_mu_5_o_in_axes5_z;
         const real six_r_N_4_o_in_axes4_z = six_r_mu_4_o_in_axes4_z +
             v.six_r_c_5*six_r_mu_5_o_in_axes5_x - six_r_mu_5_o_in_axes5_y*v.six_r_s_5;
-        /* (six_r-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn
-           with link 3, about their reference points */
+        /* (six_r-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+           reference points */
         const real six_r_J_3_in_spec3_xy = m->six_r_J_3_in_spec3_xy[i];
         const real six_r_J_3_in_spec3_xz = m->six_r_J_3_in_spec3_xz[i];
         const real six_r_J_3_in_spec3_yz = m->six_r_J_3_in_spec3_yz[i];
@@ -7332,8 +7324,8 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
             six_r_B_3_o_in_axes3_xy*six_r_Sigma_3_in_axes3_yy - six_r_J_3_in_spec3_xy*(six_r_W_3_t
             - six_r_f_3_o_t) - six_r_acc_3_o_in_axes3_x*six_r_h_3_in_spec3_x -
             six_r_acc_3_o_in_axes3_y*six_r_h_3_in_spec3_y;
-        /* (six_r-N_3_o) remainder without the acceleration in: moment about joint 3 of the links from 3
-           outwards, the force at the connection point left out */
+        /* (six_r-N_3_o) remainder of: moment about joint 3 of the links from 3 outwards, the force at the
+           connection point left out */
         const real six_r_N_3_o_in_axes3_x = six_r_mu_3_o_in_axes3_x +
             six_r_N_4_o_in_axes4_y*v.six_r_s_4 + six_r_f_4_o_in_axes3_z*six_r_joint4_offset_x -
             six_r_N_4_o_in_axes4_x*v.six_r_c_4;
@@ -7341,13 +7333,13 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real six_r_N_3_o_in_axes3_z = six_r_mu_3_o_in_axes3_z +
             six_r_N_4_o_in_axes4_x*v.six_r_s_4 + six_r_N_4_o_in_axes4_y*v.six_r_c_4 -
             six_r_f_4_o_in_axes3_x*six_r_joint4_offset_x;
-        /* (six_r-T_3_o) remainder without the acceleration in: inertia force of the links from 3
-           outwards, the last link left out */
+        /* (six_r-T_3_o) remainder of: inertia force of the links from 3 outwards, the last link left out
+           */
         const real six_r_T_3_o_in_axes3_x = six_r_f_3_o_in_axes3_x + six_r_f_4_o_in_axes3_x;
         const real six_r_T_3_o_in_axes3_y = six_r_f_3_o_in_axes3_y + six_r_f_4_o_in_axes4_z;
         const real six_r_T_3_o_in_axes3_z = six_r_f_3_o_in_axes3_z + six_r_f_4_o_in_axes3_z;
-        /* (six_r-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn
-           with link 2, about their reference points */
+        /* (six_r-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real six_r_mu_2_o_t = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_x;
         const real six_r_J_2_in_spec2_xy = m->six_r_J_2_in_spec2_xy[i];
         const real six_r_J_2_in_spec2_xz = m->six_r_J_2_in_spec2_xz[i];
@@ -7378,8 +7370,8 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
             v.six_r_g_in_axes2_x*six_r_h_2_in_spec2_y -
             six_r_B_2_o_in_axes2_xy*six_r_Sigma_2_in_axes2_yy -
             six_r_J_2_in_spec2_xz*six_r_alpha_1_o_t - v.six_r_g_in_axes2_y*six_r_h_2_in_spec2_x;
-        /* (six_r-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
+        /* (six_r-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+           connection point left out */
         const real six_r_N_2_o_in_axes2_x = six_r_mu_2_o_in_axes2_x +
             six_r_N_3_o_in_axes3_x*v.six_r_s_3 + six_r_N_3_o_in_axes3_y*v.six_r_c_3;
         const real six_r_N_2_o_in_axes2_y = six_r_mu_2_o_in_axes2_y +
@@ -7388,19 +7380,19 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real six_r_N_2_o_in_axes2_z = six_r_N_3_o_in_axes3_z + six_r_mu_2_o_in_axes2_z -
             six_r_joint3_offset_x*(six_r_T_3_o_in_axes3_x*v.six_r_c_3 -
             six_r_T_3_o_in_axes3_y*v.six_r_s_3);
-        /* (six_r-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn
-           with link 1, about their reference points */
+        /* (six_r-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+           reference points */
         const real six_r_J_1_in_spec1_xx = m->six_r_J_1_in_spec1_xx[i];
         const real six_r_h_1_in_spec1_y = m->six_r_h_1_in_spec1_y[i];
         const real six_r_h_1_in_spec1_z = m->six_r_h_1_in_spec1_z[i];
         const real six_r_mu_1_o_in_axes1_z = v.six_r_g_in_axes1_x*six_r_h_1_in_spec1_z -
             six_r_J_1_in_spec1_xx*six_r_qdd_1_o_t_5 - v.six_r_g_in_axes1_y*six_r_h_1_in_spec1_y;
-        /* (six_r-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
+        /* (six_r-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+           connection point left out */
         const real six_r_N_1_o_in_axes1_z = six_r_mu_1_o_in_axes1_z +
             six_r_N_2_o_in_axes2_x*v.six_r_c_2 - six_r_N_2_o_in_axes2_y*v.six_r_s_2;
-        /* (six_r-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that
-           balances the leg's inertia and weight along all degrees of freedom */
+        /* (six_r-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia
+           and weight along all degrees of freedom */
         const real six_r_G_m1_o_t = v.inv_six_r_w_1_t_12*six_r_mu_5_o_in_axes5_z;
         const real six_r_G_m1_o_t_2 = v.inv_six_r_w_1_t_28*(six_r_G_m1_o_t*v.six_r_w_1_t_15 -
             six_r_N_4_o_in_axes4_z);
@@ -7415,18 +7407,18 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real six_r_G_m1_o_t_6 = six_r_size*(six_r_G_m1_o_t_2*v.six_r_w_1_t_31 +
             six_r_G_m1_o_t_3*v.six_r_w_1_t_53 + six_r_G_m1_o_t_4*v.six_r_w_1_t_71 -
             six_r_G_m1_o_t_5*v.six_r_qd_1_t_4);
-        /* (six_r-G_m2_o) remainder without the acceleration in: moment along moment direction 2 that
-           balances the leg's inertia and weight along all degrees of freedom */
+        /* (six_r-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia
+           and weight along all degrees of freedom */
         const real six_r_G_m2_o_t = six_r_size*(six_r_G_m1_o_t_2*v.six_r_w_1_t_32 +
             six_r_G_m1_o_t_3*v.six_r_w_1_t_54 + six_r_G_m1_o_t_4*v.six_r_w_1_t_72 -
             six_r_G_m1_o_t*v.six_r_w_1_t_14 - six_r_G_m1_o_t_5*v.six_r_qd_1_t_5);
-        /* (six_r-G_m_o) remainder without the acceleration in: moment at the connection point that
-           balances the leg's inertia and weight along all degrees of freedom */
+        /* (six_r-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real six_r_G_m_o_in_axes5_x = six_r_G_m1_o_t_6*v.six_r_n_m2_in_axes5_z;
         const real six_r_G_m_o_in_axes5_y = six_r_G_m2_o_t*v.six_r_end_p1_in_axes5_z -
             six_r_G_m1_o_t_6*v.six_r_n_m1_in_axes5_y;
-        /* (six_r-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (six_r-c_o) remainder of: leg force on the platform without actuation and without the mass at
+           the connection point */
         const real six_r_c_o_in_axes5_x = six_r_G_m1_o_t_3*v.six_r_w_1_t_50 +
             six_r_G_m1_o_t_4*v.six_r_w_1_t_68 + six_r_W_5_t_3*six_r_h_5_in_spec5_x -
             six_r_B_5_o_in_axes5_xy*six_r_h_5_in_spec5_y -
@@ -7442,8 +7434,7 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
             six_r_h_5_in_spec5_z*(six_r_W_5_t + six_r_bias_t_2) -
             six_r_B_5_o_in_axes5_zx*six_r_h_5_in_spec5_x -
             six_r_B_5_o_in_axes5_zy*six_r_h_5_in_spec5_y - six_r_G_m1_o_t_5*v.six_r_qd_1_t_3;
-        /* (six_r-c_m_o) remainder without the acceleration in: moment of the leg on the platform without
-           actuation */
+        /* (six_r-c_m_o) remainder of: moment of the leg on the platform without actuation */
         const real six_r_c_m_o_in_axes5_z = six_r_G_m2_o_t*v.six_r_n_m2_in_axes5_z;
         /* (six_r-U) velocity and gravity terms of the leg force */
         const real six_r_U_x = -v.axis_x_six_r_axes5_x*six_r_c_o_in_axes5_x -

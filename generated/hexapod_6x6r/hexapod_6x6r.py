@@ -1342,10 +1342,10 @@ class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
     sqrt = staticmethod(math.sqrt)
-    sin = staticmethod(lambda x: float(np.sin(x)))
-    cos = staticmethod(lambda x: float(np.cos(x)))
+    sin = staticmethod(lambda x: float(np.sin(x)) if math.isfinite(x) else math.nan)
+    cos = staticmethod(lambda x: float(np.cos(x)) if math.isfinite(x) else math.nan)
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
-    least = staticmethod(lambda x, y: float(np.minimum(x, y)))
+    least = staticmethod(lambda x, y: y if y < x or y != y else x)
 
     def __init__(self, p, states, kept=None):
         self.p, self.states = p, states
@@ -1498,7 +1498,7 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
     Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
     where a single state needs no arrays.
     """
-    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    p, read = _given(p), [a[4:] != ("unused",) for a in arguments]
     lists = plain and _lists(arguments)
     if lists:
         found = _state(_Single(p, 1), steps, lists, read)
@@ -1523,7 +1523,7 @@ def _lists(arguments):
     for row in arguments:
         value, shape = row[1:3]
         if type(value) is np.ndarray:
-            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+            if value.shape != shape or value.dtype is not _REAL or row[4:] == ("positive",):
                 return None
             found.append(_Vector(value.tolist()))
         elif value is None and len(row) > 3 and row[3] is not None:
@@ -3138,7 +3138,7 @@ def _run_dynamics(m, X, V, q):
             six_r_d_2_in_axes5_z*(six_r_bias_t_7 + six_r_bias_t_8) -
             six_r_d_3_in_axes5_z*(six_r_bias_t_13 + six_r_bias_t_14)
         )
-        # (six_r-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (six_r-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         six_r_rel_o_in_axes5_x = six_r_u_1_in_axes5_x - six_r_bias_in_axes5_x
         six_r_rel_o_in_axes5_y = six_r_u_1_in_axes5_y - six_r_bias_in_axes5_y
         six_r_rel_o_in_axes5_z = six_r_u_1_in_axes5_z - six_r_bias_in_axes5_z
@@ -3193,7 +3193,7 @@ def _run_dynamics(m, X, V, q):
             six_r_nu_1_t_3*(six_r_nu_1_t + six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z)
         )
         six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2
-        # (six_r-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (six_r-qdd_1_o) remainder of: acceleration of joint 1
         six_r_qdd_1_o_t = six_r_nu_1*six_r_size
         six_r_qdd_1_o_t_2 = six_r_nu_2*six_r_size
         six_r_qdd_1_o_t_3 = (
@@ -3212,17 +3212,17 @@ def _run_dynamics(m, X, V, q):
             six_r_qdd_1_o_t_2*six_r_w_1_t_54 - six_r_rel_o_in_axes5_x*six_r_w_1_t_50 -
             six_r_rel_o_in_axes5_z*six_r_w_1_t_52)
         )
-        # (six_r-qdd_4_o) remainder without the acceleration in: acceleration of joint 4
+        # (six_r-qdd_4_o) remainder of: acceleration of joint 4
         six_r_qdd_4_o = (
         inv_six_r_w_1_t_28*(six_r_qdd_1_o_t*six_r_w_1_t_31 + six_r_qdd_1_o_t_2*six_r_w_1_t_32 +
             six_r_qdd_1_o_t_3*six_r_w_1_t_44 + six_r_qdd_1_o_t_4*six_r_w_1_t_39 +
             six_r_rel_o_in_axes5_z*six_r_w_1_t_30 - six_r_qdd_1_o_t_5*six_r_w_1_t_33 -
             six_r_rel_o_in_axes5_y*six_r_w_1_t_29)
         )
-        # (six_r-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        # (six_r-alpha_1_o) remainder of: angular acceleration of link 1
         six_r_alpha_1_o_t = six_r_c_2*six_r_qdd_1_o_t_5
         six_r_alpha_1_o_in_axes2_y = six_r_qdd_1_o_t_5*six_r_s_2
-        # (six_r-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (six_r-alpha_2_o) remainder of: angular acceleration of link 2
         six_r_alpha_2_o_in_axes2_x = six_r_W_2_in_axes2_yz - six_r_alpha_1_o_t
         six_r_alpha_2_o_in_axes2_y = six_r_alpha_1_o_in_axes2_y + six_r_zeta_2_in_axes2_y
         # (six_r-B_2_o) remainder of the acceleration tensor of link 2
@@ -3230,7 +3230,7 @@ def _run_dynamics(m, X, V, q):
         six_r_B_2_o_in_axes2_yx = six_r_W_2_in_axes2_xy + six_r_qdd_1_o_t_4
         six_r_B_2_o_in_axes2_zx = -six_r_alpha_2_o_in_axes2_y - six_r_zeta_2_in_axes2_y
         six_r_B_2_o_in_axes2_zy = six_r_W_2_in_axes2_yz + six_r_alpha_2_o_in_axes2_x
-        # (six_r-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        # (six_r-alpha_3_o) remainder of: angular acceleration of link 3
         six_r_alpha_3_o_in_axes3_x = (
         six_r_zeta_3_in_axes3_x + six_r_alpha_2_o_in_axes2_x*six_r_s_3 -
             six_r_alpha_2_o_in_axes2_y*six_r_c_3
@@ -3247,7 +3247,7 @@ def _run_dynamics(m, X, V, q):
         six_r_B_3_o_in_axes3_yz = six_r_W_3_in_axes3_yz - six_r_alpha_3_o_in_axes3_x
         six_r_B_3_o_in_axes3_zx = six_r_W_3_in_axes3_xz - six_r_alpha_3_o_in_axes3_y
         six_r_B_3_o_in_axes3_zy = six_r_W_3_in_axes3_yz + six_r_alpha_3_o_in_axes3_x
-        # (six_r-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4
+        # (six_r-alpha_4_o) remainder of: angular acceleration of link 4
         six_r_alpha_4_o_in_axes4_x = (
         six_r_zeta_4_in_axes4_x + six_r_alpha_3_o_in_axes3_z*six_r_h_4_t -
             six_r_alpha_3_o_in_axes3_x*six_r_e_2_in_axes5_z
@@ -3318,7 +3318,7 @@ def _run_dynamics(m, X, V, q):
         six_r_w_5_in_axes5_z + six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_z +
             six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_z + six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_z
         )
-        # (six_r-alpha_5_o) remainder without the acceleration in: angular acceleration of link 5
+        # (six_r-alpha_5_o) remainder of: angular acceleration of link 5
         six_r_alpha_5_o_in_axes5_x = (
         six_r_zeta_5_in_axes5_x + six_r_J_5_t*six_r_alpha_4_o_in_axes4_x +
             six_r_alpha_4_o_in_axes4_z*six_r_e_4_in_axes5_x
@@ -3340,7 +3340,7 @@ def _run_dynamics(m, X, V, q):
         six_r_B_5_o_in_axes5_yz = six_r_W_5_in_axes5_yz - six_r_alpha_5_o_in_axes5_x
         six_r_B_5_o_in_axes5_zx = six_r_W_5_in_axes5_xz - six_r_alpha_5_o_in_axes5_y
         six_r_B_5_o_in_axes5_zy = six_r_W_5_in_axes5_yz + six_r_alpha_5_o_in_axes5_x
-        # (six_r-a_o_3_o) remainder without the acceleration in: acceleration of the origin of joint 3
+        # (six_r-a_o_3_o) remainder of: acceleration of the origin of joint 3
         six_r_a_o_3_o_t = six_r_omega_1_in_axes2_y*six_r_omega_1_in_axes2_y
         six_r_a_o_3_o_t_2 = six_r_qd_1_t_4*six_r_qd_1_t_4
         six_r_a_o_3_o_in_axes2_x = -six_r_joint3_offset_x*(six_r_a_o_3_o_t + six_r_a_o_3_o_t_2)
@@ -3352,7 +3352,7 @@ def _run_dynamics(m, X, V, q):
         six_r_a_o_3_o_in_axes3_y = (
         six_r_a_o_3_o_in_axes2_x*six_r_c_3 + six_r_a_o_3_o_in_axes2_y*six_r_s_3
         )
-        # (six_r-a_o_4_o) remainder without the acceleration in: acceleration of the origin of joint 4
+        # (six_r-a_o_4_o) remainder of: acceleration of the origin of joint 4
         six_r_a_o_4_o_in_axes3_x = (
         six_r_a_o_3_o_in_axes3_x + six_r_B_3_o_in_axes3_xy*six_r_joint4_offset_x
         )
@@ -3360,7 +3360,7 @@ def _run_dynamics(m, X, V, q):
         six_r_a_o_4_o_in_axes3_z = (
         six_r_a_o_3_o_in_axes2_z + six_r_B_3_o_in_axes3_zy*six_r_joint4_offset_x
         )
-        # (six_r-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        # (six_r-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         six_r_g_in_axes1_x = six_r_acc_3_t*six_r_c_1 + six_r_acc_3_t_2*six_r_s_1
         six_r_g_in_axes1_y = six_r_acc_3_t_2*six_r_c_1 - six_r_acc_3_t*six_r_s_1
         six_r_g_in_axes2_x = six_r_c_2*six_r_g_in_axes1_z + six_r_g_in_axes1_x*six_r_s_2
@@ -3370,7 +3370,7 @@ def _run_dynamics(m, X, V, q):
         six_r_acc_3_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x - six_r_g_in_axes3_x
         six_r_acc_3_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y - six_r_g_in_axes3_y
         six_r_acc_3_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z - six_r_g_in_axes1_y
-        # (six_r-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight
+        # (six_r-f_3_o) remainder of: inertia force of link 3 less its weight
         six_r_f_3_o_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y
         six_r_f_3_o_in_axes3_x = (
         six_r_B_3_o_in_axes3_xy*six_r_h_3_in_spec3_x +
@@ -3387,7 +3387,7 @@ def _run_dynamics(m, X, V, q):
             six_r_B_3_o_in_axes3_zx*six_r_h_3_in_spec3_y - six_r_h_3_in_spec3_z*(six_r_W_3_t +
             six_r_f_3_o_t)
         )
-        # (six_r-acc_4_o) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+        # (six_r-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity
         six_r_acc_4_o_in_axes4_x = (
         six_r_a_o_4_o_in_axes3_z*six_r_h_4_t + six_r_e_2_in_axes5_z*six_r_g_in_axes3_x -
             six_r_a_o_4_o_in_axes3_x*six_r_e_2_in_axes5_z - six_r_g_in_axes1_y*six_r_h_4_t
@@ -3397,7 +3397,7 @@ def _run_dynamics(m, X, V, q):
             six_r_e_2_in_axes5_z*six_r_g_in_axes1_y - six_r_g_in_axes3_x*six_r_h_4_t
         )
         six_r_acc_4_o_in_axes4_z = six_r_a_o_4_o_in_axes3_y - six_r_g_in_axes3_y
-        # (six_r-f_4_o) remainder without the acceleration in: inertia force of link 4 less its weight
+        # (six_r-f_4_o) remainder of: inertia force of link 4 less its weight
         six_r_f_4_o_t = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x
         six_r_f_4_o_t_2 = six_r_omega_4_in_axes4_z*six_r_omega_4_in_axes4_z
         six_r_f_4_o_in_axes4_x = (
@@ -3424,7 +3424,7 @@ def _run_dynamics(m, X, V, q):
         six_r_f_4_o_in_axes3_z = (
         six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_y + six_r_f_4_o_in_axes4_x*six_r_h_4_t
         )
-        # (six_r-acc_5_o) remainder without the acceleration in: acceleration of the reference point of link 5, less gravity
+        # (six_r-acc_5_o) remainder of: acceleration of the reference point of link 5, less gravity
         six_r_acc_5_o_in_axes5_x = (
         six_r_u_1_in_axes5_x - axis_x_six_r_axes5_x*gravity_x - axis_x_six_r_axes5_y*gravity_y -
             axis_x_six_r_axes5_z*gravity_z
@@ -3568,7 +3568,7 @@ def _run_dynamics(m, X, V, q):
         )
         # (six_r-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link about the connection point
         six_r_Jc_1_in_axes1_zz = six_r_J_1_in_spec1_xx + six_r_Jc_2_in_axes1_zz
-        # (six_r-mu_5_o) remainder without the acceleration in: inertia moment of the links that turn with link 5, about their reference points
+        # (six_r-mu_5_o) remainder of: inertia moment of the links that turn with link 5, about their reference points
         six_r_mu_5_o_in_axes5_x = (
         six_r_B_5_o_in_axes5_yx*six_r_J_5_in_spec5_xz +
             six_r_B_5_o_in_axes5_zy*six_r_Sigma_5_in_axes5_yy + six_r_J_5_in_spec5_yz*(six_r_W_5_t
@@ -3641,7 +3641,7 @@ def _run_dynamics(m, X, V, q):
             six_r_d_Gamma_5_t_2*six_r_w_1_t_29 - six_r_d_Gamma_5_t_3*six_r_w_1_t_51 -
             six_r_d_Gamma_5_t_4*six_r_w_1_t_69 - six_r_d_Gamma_5_t_5*six_r_w_1_t_81
         )
-        # (six_r-mu_4_o) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
+        # (six_r-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their reference points
         six_r_mu_4_o_in_axes4_x = (
         six_r_B_4_o_in_axes4_yx*six_r_J_4_in_spec4_xy +
             six_r_B_4_o_in_axes4_zy*six_r_Sigma_4_in_axes4_yy +
@@ -3669,7 +3669,7 @@ def _run_dynamics(m, X, V, q):
             six_r_B_4_o_in_axes4_yz*six_r_J_4_in_spec4_xy -
             six_r_acc_4_o_in_axes4_x*six_r_h_4_in_spec4_z
         )
-        # (six_r-N_4_o) remainder without the acceleration in: moment about joint 4 of the links from 4 outwards, the force at the connection point left out
+        # (six_r-N_4_o) remainder of: moment about joint 4 of the links from 4 outwards, the force at the connection point left out
         six_r_N_4_o_in_axes4_x = (
         six_r_mu_4_o_in_axes4_x + six_r_J_5_t*six_r_mu_5_o_in_axes5_x +
             six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_y
@@ -3729,7 +3729,7 @@ def _run_dynamics(m, X, V, q):
             six_r_d_Gamma_4_t_3*six_r_w_1_t_52 + six_r_d_Gamma_4_t_4*six_r_w_1_t_70 +
             six_r_d_Gamma_4_t_5*six_r_w_1_t_82 + six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_y
         )
-        # (six_r-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        # (six_r-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
         six_r_mu_3_o_in_axes3_x = (
         six_r_B_3_o_in_axes3_zx*six_r_J_3_in_spec3_xy +
             six_r_B_3_o_in_axes3_zy*six_r_Sigma_3_in_axes3_yy +
@@ -3755,7 +3755,7 @@ def _run_dynamics(m, X, V, q):
             - six_r_f_3_o_t) - six_r_acc_3_o_in_axes3_x*six_r_h_3_in_spec3_x -
             six_r_acc_3_o_in_axes3_y*six_r_h_3_in_spec3_y
         )
-        # (six_r-N_3_o) remainder without the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
+        # (six_r-N_3_o) remainder of: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
         six_r_N_3_o_in_axes3_x = (
         six_r_mu_3_o_in_axes3_x + six_r_N_4_o_in_axes4_y*six_r_h_4_t +
             six_r_f_4_o_in_axes3_z*six_r_joint4_offset_x -
@@ -3767,7 +3767,7 @@ def _run_dynamics(m, X, V, q):
             six_r_N_4_o_in_axes4_y*six_r_e_2_in_axes5_z -
             six_r_f_4_o_in_axes3_x*six_r_joint4_offset_x
         )
-        # (six_r-T_3_o) remainder without the acceleration in: inertia force of the links from 3 outwards, the last link left out
+        # (six_r-T_3_o) remainder of: inertia force of the links from 3 outwards, the last link left out
         six_r_T_3_o_in_axes3_x = six_r_f_3_o_in_axes3_x + six_r_f_4_o_in_axes3_x
         six_r_T_3_o_in_axes3_y = six_r_f_3_o_in_axes3_y + six_r_f_4_o_in_axes4_z
         six_r_T_3_o_in_axes3_z = six_r_f_3_o_in_axes3_z + six_r_f_4_o_in_axes3_z
@@ -3836,7 +3836,7 @@ def _run_dynamics(m, X, V, q):
             six_r_d_Gamma_3_t_12*six_r_w_1_t_82 + six_r_d_Gamma_3_t_6*six_r_w_1_t_30 +
             six_r_d_Gamma_3_t_8*six_r_w_1_t_52
         )
-        # (six_r-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (six_r-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         six_r_mu_2_o_t = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_x
         six_r_mu_2_o_in_axes2_x = (
         six_r_B_2_o_in_axes2_yx*six_r_J_2_in_spec2_xz +
@@ -3862,7 +3862,7 @@ def _run_dynamics(m, X, V, q):
             six_r_B_2_o_in_axes2_xy*six_r_Sigma_2_in_axes2_yy -
             six_r_J_2_in_spec2_xz*six_r_alpha_1_o_t - six_r_g_in_axes2_y*six_r_h_2_in_spec2_x
         )
-        # (six_r-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        # (six_r-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         six_r_N_2_o_in_axes2_x = (
         six_r_mu_2_o_in_axes2_x + six_r_N_3_o_in_axes3_x*six_r_s_3 +
             six_r_N_3_o_in_axes3_y*six_r_c_3
@@ -3923,12 +3923,12 @@ def _run_dynamics(m, X, V, q):
             six_r_d_Gamma_2_t_2*six_r_w_1_t_52 + six_r_d_Gamma_2_t_3*six_r_w_1_t_70 +
             six_r_d_Gamma_2_t_4*six_r_w_1_t_82
         )
-        # (six_r-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        # (six_r-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         six_r_mu_1_o_in_axes1_z = (
         six_r_g_in_axes1_x*six_r_h_1_in_spec1_z - six_r_J_1_in_spec1_xx*six_r_qdd_1_o_t_5 -
             six_r_g_in_axes1_y*six_r_h_1_in_spec1_y
         )
-        # (six_r-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        # (six_r-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         six_r_N_1_o_in_axes1_z = (
         six_r_mu_1_o_in_axes1_z + six_r_N_2_o_in_axes2_x*six_r_c_2 -
             six_r_N_2_o_in_axes2_y*six_r_s_2
@@ -4048,7 +4048,7 @@ def _run_dynamics(m, X, V, q):
             axis_y_six_r_axes5_z*six_r_d_G_m1_in_axes5_y +
             axis_z_six_r_axes5_z*six_r_d_G_m1_in_axes5_z
         )
-        # (six_r-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
+        # (six_r-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         six_r_G_m1_o_t = inv_six_r_w_1_t_12*six_r_mu_5_o_in_axes5_z
         six_r_G_m1_o_t_2 = (
         inv_six_r_w_1_t_28*(six_r_G_m1_o_t*six_r_w_1_t_15 - six_r_N_4_o_in_axes4_z)
@@ -4133,7 +4133,7 @@ def _run_dynamics(m, X, V, q):
             axis_y_six_r_axes5_z*six_r_d_G_m2_in_axes5_y +
             axis_z_six_r_axes5_z*six_r_d_G_m2_in_axes5_z
         )
-        # (six_r-G_m2_o) remainder without the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
+        # (six_r-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         six_r_G_m2_o_t = (
         six_r_size*(six_r_G_m1_o_t_2*six_r_w_1_t_32 + six_r_G_m1_o_t_3*six_r_w_1_t_54 +
             six_r_G_m1_o_t_4*six_r_w_1_t_72 - six_r_G_m1_o_t*six_r_w_1_t_14 -
@@ -4144,7 +4144,7 @@ def _run_dynamics(m, X, V, q):
         six_r_d_G_m_xy = six_r_d_G_m1_y*six_r_n_m1_x + six_r_d_G_m2_y*six_r_n_m2_x
         six_r_d_G_m_xz = six_r_d_G_m1_z*six_r_n_m1_x + six_r_d_G_m2_z*six_r_n_m2_x
         six_r_d_G_m_yx = six_r_d_G_m1_x*six_r_n_m1_y + six_r_d_G_m2_x*six_r_n_m2_y
-        # (six_r-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (six_r-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         six_r_G_m_o_in_axes5_x = six_r_G_m1_o_t_6*six_r_end_p1_in_axes5_y
         six_r_G_m_o_in_axes5_y = (
         six_r_G_m2_o_t*six_r_end_p1_in_axes5_z - six_r_G_m1_o_t_6*six_r_n_m1_in_axes5_y
@@ -4277,7 +4277,7 @@ def _run_dynamics(m, X, V, q):
             six_r_d_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_y -
             six_r_d_alpha_5_in_axes5_zz*six_r_h_5_in_spec5_x
         )
-        # (six_r-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (six_r-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         six_r_c_o_in_axes5_x = (
         six_r_G_m1_o_t_3*six_r_w_1_t_50 + six_r_G_m1_o_t_4*six_r_w_1_t_68 +
             six_r_W_5_t_3*six_r_h_5_in_spec5_x - six_r_B_5_o_in_axes5_xy*six_r_h_5_in_spec5_y -
@@ -4348,7 +4348,7 @@ def _run_dynamics(m, X, V, q):
         )
         six_r_Q_t_13 = axis_y_six_r_axes5_z*six_r_Q_t_7 - axis_z_six_r_axes5_z*six_r_Q_t_10
         six_r_Q_zz = -2.0*six_r_Q_t_13 - six_r_d_c_in_axes5_xx
-        # (six_r-c_m_o) remainder without the acceleration in: moment of the leg on the platform without actuation
+        # (six_r-c_m_o) remainder of: moment of the leg on the platform without actuation
         six_r_c_m_o_in_axes5_z = six_r_G_m2_o_t*six_r_end_p1_in_axes5_y
         # (six_r-U) velocity and gravity terms of the leg force
         six_r_U_x = (
@@ -6916,7 +6916,7 @@ def _run_Z(m, X, V, q):
             six_r_d_2_in_axes5_z*(six_r_bias_t_7 + six_r_bias_t_8) -
             six_r_d_3_in_axes5_z*(six_r_bias_t_13 + six_r_bias_t_14)
         )
-        # (six_r-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (six_r-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         six_r_rel_o_in_axes5_x = six_r_u_1_in_axes5_x - six_r_bias_in_axes5_x
         six_r_rel_o_in_axes5_y = six_r_u_1_in_axes5_y - six_r_bias_in_axes5_y
         six_r_rel_o_in_axes5_z = six_r_u_1_in_axes5_z - six_r_bias_in_axes5_z
@@ -6971,7 +6971,7 @@ def _run_Z(m, X, V, q):
             six_r_nu_1_t_3*(six_r_nu_1_t + six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z)
         )
         six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2
-        # (six_r-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (six_r-qdd_1_o) remainder of: acceleration of joint 1
         six_r_qdd_1_o_t = six_r_nu_1*six_r_size
         six_r_qdd_1_o_t_2 = six_r_nu_2*six_r_size
         six_r_qdd_1_o_t_3 = (
@@ -6990,17 +6990,17 @@ def _run_Z(m, X, V, q):
             six_r_qdd_1_o_t_2*six_r_w_1_t_54 - six_r_rel_o_in_axes5_x*six_r_w_1_t_50 -
             six_r_rel_o_in_axes5_z*six_r_w_1_t_52)
         )
-        # (six_r-qdd_4_o) remainder without the acceleration in: acceleration of joint 4
+        # (six_r-qdd_4_o) remainder of: acceleration of joint 4
         six_r_qdd_4_o = (
         inv_six_r_w_1_t_28*(six_r_qdd_1_o_t*six_r_w_1_t_31 + six_r_qdd_1_o_t_2*six_r_w_1_t_32 +
             six_r_qdd_1_o_t_3*six_r_w_1_t_44 + six_r_qdd_1_o_t_4*six_r_w_1_t_39 +
             six_r_rel_o_in_axes5_z*six_r_w_1_t_30 - six_r_qdd_1_o_t_5*six_r_w_1_t_33 -
             six_r_rel_o_in_axes5_y*six_r_w_1_t_29)
         )
-        # (six_r-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        # (six_r-alpha_1_o) remainder of: angular acceleration of link 1
         six_r_alpha_1_o_t = six_r_c_2*six_r_qdd_1_o_t_5
         six_r_alpha_1_o_in_axes2_y = six_r_qdd_1_o_t_5*six_r_s_2
-        # (six_r-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (six_r-alpha_2_o) remainder of: angular acceleration of link 2
         six_r_alpha_2_o_in_axes2_x = six_r_W_2_in_axes2_yz - six_r_alpha_1_o_t
         six_r_alpha_2_o_in_axes2_y = six_r_alpha_1_o_in_axes2_y + six_r_zeta_2_in_axes2_y
         # (six_r-B_2_o) remainder of the acceleration tensor of link 2
@@ -7008,7 +7008,7 @@ def _run_Z(m, X, V, q):
         six_r_B_2_o_in_axes2_yx = six_r_W_2_in_axes2_xy + six_r_qdd_1_o_t_4
         six_r_B_2_o_in_axes2_zx = -six_r_alpha_2_o_in_axes2_y - six_r_zeta_2_in_axes2_y
         six_r_B_2_o_in_axes2_zy = six_r_W_2_in_axes2_yz + six_r_alpha_2_o_in_axes2_x
-        # (six_r-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        # (six_r-alpha_3_o) remainder of: angular acceleration of link 3
         six_r_alpha_3_o_in_axes3_x = (
         six_r_zeta_3_in_axes3_x + six_r_alpha_2_o_in_axes2_x*six_r_s_3 -
             six_r_alpha_2_o_in_axes2_y*six_r_c_3
@@ -7025,7 +7025,7 @@ def _run_Z(m, X, V, q):
         six_r_B_3_o_in_axes3_yz = six_r_W_3_in_axes3_yz - six_r_alpha_3_o_in_axes3_x
         six_r_B_3_o_in_axes3_zx = six_r_W_3_in_axes3_xz - six_r_alpha_3_o_in_axes3_y
         six_r_B_3_o_in_axes3_zy = six_r_W_3_in_axes3_yz + six_r_alpha_3_o_in_axes3_x
-        # (six_r-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4
+        # (six_r-alpha_4_o) remainder of: angular acceleration of link 4
         six_r_alpha_4_o_in_axes4_x = (
         six_r_zeta_4_in_axes4_x + six_r_alpha_3_o_in_axes3_z*six_r_s_4 -
             six_r_alpha_3_o_in_axes3_x*six_r_c_4
@@ -7042,7 +7042,7 @@ def _run_Z(m, X, V, q):
         six_r_B_4_o_in_axes4_yz = six_r_W_4_in_axes4_yz - six_r_alpha_4_o_in_axes4_x
         six_r_B_4_o_in_axes4_zx = six_r_W_4_in_axes4_xz - six_r_alpha_4_o_in_axes4_y
         six_r_B_4_o_in_axes4_zy = six_r_W_4_in_axes4_yz + six_r_alpha_4_o_in_axes4_x
-        # (six_r-alpha_5_o) remainder without the acceleration in: angular acceleration of link 5
+        # (six_r-alpha_5_o) remainder of: angular acceleration of link 5
         six_r_alpha_5_o_in_axes5_x = (
         six_r_zeta_5_in_axes5_x + six_r_alpha_4_o_in_axes4_x*six_r_s_5 +
             six_r_alpha_4_o_in_axes4_z*six_r_c_5
@@ -7064,7 +7064,7 @@ def _run_Z(m, X, V, q):
         six_r_B_5_o_in_axes5_yz = six_r_W_5_in_axes5_yz - six_r_alpha_5_o_in_axes5_x
         six_r_B_5_o_in_axes5_zx = six_r_W_5_in_axes5_xz - six_r_alpha_5_o_in_axes5_y
         six_r_B_5_o_in_axes5_zy = six_r_W_5_in_axes5_yz + six_r_alpha_5_o_in_axes5_x
-        # (six_r-a_o_3_o) remainder without the acceleration in: acceleration of the origin of joint 3
+        # (six_r-a_o_3_o) remainder of: acceleration of the origin of joint 3
         six_r_a_o_3_o_t = six_r_omega_1_in_axes2_y*six_r_omega_1_in_axes2_y
         six_r_a_o_3_o_t_2 = six_r_qd_1_t_9*six_r_qd_1_t_9
         six_r_a_o_3_o_in_axes2_x = -six_r_joint3_offset_x*(six_r_a_o_3_o_t + six_r_a_o_3_o_t_2)
@@ -7076,7 +7076,7 @@ def _run_Z(m, X, V, q):
         six_r_a_o_3_o_in_axes3_y = (
         six_r_a_o_3_o_in_axes2_x*six_r_c_3 + six_r_a_o_3_o_in_axes2_y*six_r_s_3
         )
-        # (six_r-a_o_4_o) remainder without the acceleration in: acceleration of the origin of joint 4
+        # (six_r-a_o_4_o) remainder of: acceleration of the origin of joint 4
         six_r_a_o_4_o_in_axes3_x = (
         six_r_a_o_3_o_in_axes3_x + six_r_B_3_o_in_axes3_xy*six_r_joint4_offset_x
         )
@@ -7084,7 +7084,7 @@ def _run_Z(m, X, V, q):
         six_r_a_o_4_o_in_axes3_z = (
         six_r_a_o_3_o_in_axes2_z + six_r_B_3_o_in_axes3_zy*six_r_joint4_offset_x
         )
-        # (six_r-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        # (six_r-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         six_r_g_in_axes1_x = six_r_acc_3_t*six_r_c_1 + six_r_acc_3_t_2*six_r_s_1
         six_r_g_in_axes1_y = six_r_acc_3_t_2*six_r_c_1 - six_r_acc_3_t*six_r_s_1
         six_r_g_in_axes2_x = six_r_c_2*six_r_g_in_axes1_z + six_r_g_in_axes1_x*six_r_s_2
@@ -7094,7 +7094,7 @@ def _run_Z(m, X, V, q):
         six_r_acc_3_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x - six_r_g_in_axes3_x
         six_r_acc_3_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y - six_r_g_in_axes3_y
         six_r_acc_3_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z - six_r_g_in_axes1_y
-        # (six_r-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight
+        # (six_r-f_3_o) remainder of: inertia force of link 3 less its weight
         six_r_f_3_o_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y
         six_r_f_3_o_in_axes3_x = (
         six_r_B_3_o_in_axes3_xy*six_r_h_3_in_spec3_x +
@@ -7111,7 +7111,7 @@ def _run_Z(m, X, V, q):
             six_r_B_3_o_in_axes3_zx*six_r_h_3_in_spec3_y - six_r_h_3_in_spec3_z*(six_r_W_3_t +
             six_r_f_3_o_t)
         )
-        # (six_r-acc_4_o) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+        # (six_r-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity
         six_r_acc_4_o_in_axes4_x = (
         six_r_a_o_4_o_in_axes3_z*six_r_s_4 + six_r_c_4*six_r_g_in_axes3_x -
             six_r_a_o_4_o_in_axes3_x*six_r_c_4 - six_r_g_in_axes1_y*six_r_s_4
@@ -7121,7 +7121,7 @@ def _run_Z(m, X, V, q):
             six_r_c_4*six_r_g_in_axes1_y - six_r_g_in_axes3_x*six_r_s_4
         )
         six_r_acc_4_o_in_axes4_z = six_r_a_o_4_o_in_axes3_y - six_r_g_in_axes3_y
-        # (six_r-f_4_o) remainder without the acceleration in: inertia force of link 4 less its weight
+        # (six_r-f_4_o) remainder of: inertia force of link 4 less its weight
         six_r_f_4_o_t = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x
         six_r_f_4_o_t_2 = six_r_omega_4_in_axes4_z*six_r_omega_4_in_axes4_z
         six_r_f_4_o_in_axes4_x = (
@@ -7148,7 +7148,7 @@ def _run_Z(m, X, V, q):
         six_r_f_4_o_in_axes3_z = (
         six_r_c_4*six_r_f_4_o_in_axes4_y + six_r_f_4_o_in_axes4_x*six_r_s_4
         )
-        # (six_r-acc_5_o) remainder without the acceleration in: acceleration of the reference point of link 5, less gravity
+        # (six_r-acc_5_o) remainder of: acceleration of the reference point of link 5, less gravity
         six_r_acc_5_o_in_axes5_x = (
         six_r_u_1_in_axes5_x - axis_x_six_r_axes5_x*gravity_x - axis_x_six_r_axes5_y*gravity_y -
             axis_x_six_r_axes5_z*gravity_z
@@ -7161,7 +7161,7 @@ def _run_Z(m, X, V, q):
         six_r_u_1_in_axes5_z - axis_z_six_r_axes5_x*gravity_x - axis_z_six_r_axes5_y*gravity_y -
             axis_z_six_r_axes5_z*gravity_z
         )
-        # (six_r-mu_5_o) remainder without the acceleration in: inertia moment of the links that turn with link 5, about their reference points
+        # (six_r-mu_5_o) remainder of: inertia moment of the links that turn with link 5, about their reference points
         six_r_mu_5_o_in_axes5_x = (
         six_r_B_5_o_in_axes5_yx*six_r_J_5_in_spec5_xz +
             six_r_B_5_o_in_axes5_zy*six_r_Sigma_5_in_axes5_yy + six_r_J_5_in_spec5_yz*(six_r_W_5_t
@@ -7188,7 +7188,7 @@ def _run_Z(m, X, V, q):
             six_r_B_5_o_in_axes5_yz*six_r_J_5_in_spec5_xz -
             six_r_acc_5_o_in_axes5_x*six_r_h_5_in_spec5_y
         )
-        # (six_r-mu_4_o) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
+        # (six_r-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their reference points
         six_r_mu_4_o_in_axes4_x = (
         six_r_B_4_o_in_axes4_yx*six_r_J_4_in_spec4_xy +
             six_r_B_4_o_in_axes4_zy*six_r_Sigma_4_in_axes4_yy +
@@ -7216,7 +7216,7 @@ def _run_Z(m, X, V, q):
             six_r_B_4_o_in_axes4_yz*six_r_J_4_in_spec4_xy -
             six_r_acc_4_o_in_axes4_x*six_r_h_4_in_spec4_z
         )
-        # (six_r-N_4_o) remainder without the acceleration in: moment about joint 4 of the links from 4 outwards, the force at the connection point left out
+        # (six_r-N_4_o) remainder of: moment about joint 4 of the links from 4 outwards, the force at the connection point left out
         six_r_N_4_o_in_axes4_x = (
         six_r_mu_4_o_in_axes4_x + six_r_c_5*six_r_mu_5_o_in_axes5_y +
             six_r_mu_5_o_in_axes5_x*six_r_s_5
@@ -7226,7 +7226,7 @@ def _run_Z(m, X, V, q):
         six_r_mu_4_o_in_axes4_z + six_r_c_5*six_r_mu_5_o_in_axes5_x -
             six_r_mu_5_o_in_axes5_y*six_r_s_5
         )
-        # (six_r-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        # (six_r-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
         six_r_mu_3_o_in_axes3_x = (
         six_r_B_3_o_in_axes3_zx*six_r_J_3_in_spec3_xy +
             six_r_B_3_o_in_axes3_zy*six_r_Sigma_3_in_axes3_yy +
@@ -7252,7 +7252,7 @@ def _run_Z(m, X, V, q):
             - six_r_f_3_o_t) - six_r_acc_3_o_in_axes3_x*six_r_h_3_in_spec3_x -
             six_r_acc_3_o_in_axes3_y*six_r_h_3_in_spec3_y
         )
-        # (six_r-N_3_o) remainder without the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
+        # (six_r-N_3_o) remainder of: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
         six_r_N_3_o_in_axes3_x = (
         six_r_mu_3_o_in_axes3_x + six_r_N_4_o_in_axes4_y*six_r_s_4 +
             six_r_f_4_o_in_axes3_z*six_r_joint4_offset_x - six_r_N_4_o_in_axes4_x*six_r_c_4
@@ -7262,11 +7262,11 @@ def _run_Z(m, X, V, q):
         six_r_mu_3_o_in_axes3_z + six_r_N_4_o_in_axes4_x*six_r_s_4 +
             six_r_N_4_o_in_axes4_y*six_r_c_4 - six_r_f_4_o_in_axes3_x*six_r_joint4_offset_x
         )
-        # (six_r-T_3_o) remainder without the acceleration in: inertia force of the links from 3 outwards, the last link left out
+        # (six_r-T_3_o) remainder of: inertia force of the links from 3 outwards, the last link left out
         six_r_T_3_o_in_axes3_x = six_r_f_3_o_in_axes3_x + six_r_f_4_o_in_axes3_x
         six_r_T_3_o_in_axes3_y = six_r_f_3_o_in_axes3_y + six_r_f_4_o_in_axes4_z
         six_r_T_3_o_in_axes3_z = six_r_f_3_o_in_axes3_z + six_r_f_4_o_in_axes3_z
-        # (six_r-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (six_r-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         six_r_mu_2_o_t = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_x
         six_r_mu_2_o_in_axes2_x = (
         six_r_B_2_o_in_axes2_yx*six_r_J_2_in_spec2_xz +
@@ -7292,7 +7292,7 @@ def _run_Z(m, X, V, q):
             six_r_B_2_o_in_axes2_xy*six_r_Sigma_2_in_axes2_yy -
             six_r_J_2_in_spec2_xz*six_r_alpha_1_o_t - six_r_g_in_axes2_y*six_r_h_2_in_spec2_x
         )
-        # (six_r-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        # (six_r-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         six_r_N_2_o_in_axes2_x = (
         six_r_mu_2_o_in_axes2_x + six_r_N_3_o_in_axes3_x*six_r_s_3 +
             six_r_N_3_o_in_axes3_y*six_r_c_3
@@ -7306,17 +7306,17 @@ def _run_Z(m, X, V, q):
             six_r_joint3_offset_x*(six_r_T_3_o_in_axes3_x*six_r_c_3 -
             six_r_T_3_o_in_axes3_y*six_r_s_3)
         )
-        # (six_r-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        # (six_r-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         six_r_mu_1_o_in_axes1_z = (
         six_r_g_in_axes1_x*six_r_h_1_in_spec1_z - six_r_J_1_in_spec1_xx*six_r_qdd_1_o_t_5 -
             six_r_g_in_axes1_y*six_r_h_1_in_spec1_y
         )
-        # (six_r-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        # (six_r-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         six_r_N_1_o_in_axes1_z = (
         six_r_mu_1_o_in_axes1_z + six_r_N_2_o_in_axes2_x*six_r_c_2 -
             six_r_N_2_o_in_axes2_y*six_r_s_2
         )
-        # (six_r-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
+        # (six_r-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         six_r_G_m1_o_t = inv_six_r_w_1_t_12*six_r_mu_5_o_in_axes5_z
         six_r_G_m1_o_t_2 = (
         inv_six_r_w_1_t_28*(six_r_G_m1_o_t*six_r_w_1_t_15 - six_r_N_4_o_in_axes4_z)
@@ -7338,18 +7338,18 @@ def _run_Z(m, X, V, q):
         six_r_size*(six_r_G_m1_o_t_2*six_r_w_1_t_31 + six_r_G_m1_o_t_3*six_r_w_1_t_53 +
             six_r_G_m1_o_t_4*six_r_w_1_t_71 - six_r_G_m1_o_t_5*six_r_qd_1_t_4)
         )
-        # (six_r-G_m2_o) remainder without the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
+        # (six_r-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         six_r_G_m2_o_t = (
         six_r_size*(six_r_G_m1_o_t_2*six_r_w_1_t_32 + six_r_G_m1_o_t_3*six_r_w_1_t_54 +
             six_r_G_m1_o_t_4*six_r_w_1_t_72 - six_r_G_m1_o_t*six_r_w_1_t_14 -
             six_r_G_m1_o_t_5*six_r_qd_1_t_5)
         )
-        # (six_r-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (six_r-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         six_r_G_m_o_in_axes5_x = six_r_G_m1_o_t_6*six_r_n_m2_in_axes5_z
         six_r_G_m_o_in_axes5_y = (
         six_r_G_m2_o_t*six_r_end_p1_in_axes5_z - six_r_G_m1_o_t_6*six_r_n_m1_in_axes5_y
         )
-        # (six_r-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (six_r-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         six_r_c_o_in_axes5_x = (
         six_r_G_m1_o_t_3*six_r_w_1_t_50 + six_r_G_m1_o_t_4*six_r_w_1_t_68 +
             six_r_W_5_t_3*six_r_h_5_in_spec5_x - six_r_B_5_o_in_axes5_xy*six_r_h_5_in_spec5_y -
@@ -7368,7 +7368,7 @@ def _run_Z(m, X, V, q):
             - six_r_B_5_o_in_axes5_zx*six_r_h_5_in_spec5_x -
             six_r_B_5_o_in_axes5_zy*six_r_h_5_in_spec5_y - six_r_G_m1_o_t_5*six_r_qd_1_t_3
         )
-        # (six_r-c_m_o) remainder without the acceleration in: moment of the leg on the platform without actuation
+        # (six_r-c_m_o) remainder of: moment of the leg on the platform without actuation
         six_r_c_m_o_in_axes5_z = six_r_G_m2_o_t*six_r_n_m2_in_axes5_z
         # (six_r-U) velocity and gravity terms of the leg force
         six_r_U_x = (

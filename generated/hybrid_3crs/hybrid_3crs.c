@@ -1638,8 +1638,7 @@ INLINE void stage_crs_X(const prepared *m, size_t w, size_t i, size_t j, const r
         axis_y_crs_axes3_y*crs_w_2_in_axes3_y;
     const real crs_w_2_z = axis_x_crs_axes3_z*crs_w_2_in_axes3_x +
         axis_y_crs_axes3_z*crs_w_2_in_axes3_y;
-    /* (crs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-       link 3, less gravity */
+    /* (crs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
     const real crs_acc_3_t = m->crs_acc_3_t[i];
     const real crs_acc_3_t_2 = m->crs_acc_3_t_2[i];
     const real crs_g_in_axes1_x = crs_acc_3_t*crs_c_1 + crs_acc_3_t_2*crs_s_1;
@@ -1893,30 +1892,29 @@ INLINE void stage_crs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real crs_u_1_z = v->crs_S_dot_t_2*omega_x - v->crs_S_dot_t*omega_y;
     const real crs_u_1_in_axes3_z = v->axis_z_crs_axes3_x*crs_u_1_x +
         v->axis_z_crs_axes3_y*crs_u_1_y + v->axis_z_crs_axes3_z*crs_u_1_z;
-    /* (crs-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-       the joint accelerations */
+    /* (crs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
     const real crs_rel_o_in_axes3_z = crs_u_1_in_axes3_z - v->crs_bias_in_axes3_z;
-    /* (crs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+    /* (crs-qdd_1_o) remainder of: acceleration of joint 1 */
     const real crs_qdd_1_o = crs_rel_o_in_axes3_z*v->crs_w_1_in_axes3_z;
-    /* (crs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+    /* (crs-alpha_1_o) remainder of: angular acceleration of link 1 */
     const real crs_alpha_1_o_in_axes3_x = v->crs_c_3*crs_qdd_1_o;
     const real crs_alpha_1_o_in_axes3_y = -crs_qdd_1_o*v->crs_s_3;
-    /* (crs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
+    /* (crs-alpha_3_o) remainder of: angular acceleration of link 3 */
     const real crs_alpha_3_o_in_axes3_x = v->crs_W_3_in_axes3_yz + crs_alpha_1_o_in_axes3_x;
     const real crs_alpha_3_o_in_axes3_y = crs_alpha_1_o_in_axes3_y - v->crs_W_3_in_axes3_xz;
     /* (crs-B_3_o) remainder of the acceleration tensor of link 3 */
     const real crs_B_3_o_in_axes3_zx = v->crs_W_3_in_axes3_xz - crs_alpha_3_o_in_axes3_y;
     const real crs_B_3_o_in_axes3_zy = v->crs_W_3_in_axes3_yz + crs_alpha_3_o_in_axes3_x;
-    /* (crs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-       link 3, less gravity */
+    /* (crs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
     const real crs_acc_3_o_in_axes3_z = crs_u_1_in_axes3_z - v->crs_g_in_axes1_y;
-    /* (crs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
-       link 3, about their reference points */
+    /* (crs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+       reference points */
     const real crs_mu_3_o_t = v->crs_omega_1_in_axes3_x*v->crs_omega_1_in_axes3_x;
     const real crs_mu_3_o_t_2 = v->crs_omega_1_in_axes3_y*v->crs_omega_1_in_axes3_y;
     const real crs_mu_3_o_t_3 = v->crs_qd_2_t*v->crs_qd_2_t;
-    /* (crs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
-       link 1, about their reference points */
+    /* (crs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
     const real crs_J_2_in_spec1_xx = m->crs_J_2_in_spec1_xx[i];
     const real crs_h_2_in_spec1_y = m->crs_h_2_in_spec1_y[i];
     const real crs_h_2_in_spec1_z = m->crs_h_2_in_spec1_z[i];
@@ -2165,32 +2163,30 @@ INLINE void dynamics_legs_crs(const prepared *m, size_t w, size_t leg, size_t le
             v.axis_x_crs_axes3_y*v.crs_u_1_y + v.axis_x_crs_axes3_z*v.crs_u_1_z;
         const real crs_u_1_in_axes3_y = v.axis_y_crs_axes3_x*v.crs_u_1_x +
             v.axis_y_crs_axes3_y*v.crs_u_1_y + v.axis_y_crs_axes3_z*v.crs_u_1_z;
-        /* (crs-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
+        /* (crs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real crs_rel_o_in_axes3_x = crs_u_1_in_axes3_x - v.crs_bias_in_axes3_x;
         const real crs_rel_o_in_axes3_y = crs_u_1_in_axes3_y - v.crs_bias_in_axes3_y;
-        /* (crs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
+        /* (crs-qdd_3_o) remainder of: acceleration of joint 3 */
         const real crs_qdd_3_o = v.inv_crs_d_4_in_axes1_z*(v.crs_c_3*crs_rel_o_in_axes3_y +
             crs_rel_o_in_axes3_x*v.crs_s_3);
         /* (crs-B_3_o) remainder of the acceleration tensor of link 3 */
         const real crs_B_3_o_in_axes3_xy = v.crs_W_3_in_axes3_xy - crs_qdd_3_o;
         const real crs_B_3_o_in_axes3_yx = v.crs_W_3_in_axes3_xy + crs_qdd_3_o;
-        /* (crs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
+        /* (crs-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
         const real crs_g_in_axes1_z = m->crs_g_in_axes1_z[i];
         const real crs_acc_2_o_in_axes1_z = v.crs_c_3*crs_rel_o_in_axes3_x +
             crs_qdd_3_o*v.crs_r_1_in_axes1_x - crs_g_in_axes1_z - crs_rel_o_in_axes3_y*v.crs_s_3;
-        /* (crs-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
+        /* (crs-f_2_o) remainder of: inertia force of link 2 less its weight */
         const real crs_link2_mass = m->crs_link2_mass[i];
         const real crs_f_2_o_in_axes1_z = crs_acc_2_o_in_axes1_z*crs_link2_mass;
-        /* (crs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
+        /* (crs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
         const real crs_acc_3_o_in_axes3_x = crs_u_1_in_axes3_x - v.crs_c_3*crs_g_in_axes1_z -
             v.crs_g_in_axes1_x*v.crs_s_3;
         const real crs_acc_3_o_in_axes3_y = crs_u_1_in_axes3_y + crs_g_in_axes1_z*v.crs_s_3 -
             v.crs_c_3*v.crs_g_in_axes1_x;
-        /* (crs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 3, about their reference points */
+        /* (crs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+           reference points */
         const real crs_J_3_in_spec3_xy = m->crs_J_3_in_spec3_xy[i];
         const real crs_J_3_in_spec3_xz = m->crs_J_3_in_spec3_xz[i];
         const real crs_J_3_in_spec3_yz = m->crs_J_3_in_spec3_yz[i];
@@ -2220,8 +2216,8 @@ INLINE void dynamics_legs_crs(const prepared *m, size_t w, size_t leg, size_t le
             crs_acc_3_o_in_axes3_y*crs_h_3_in_spec3_x -
             crs_B_3_o_in_axes3_xy*crs_Sigma_3_in_axes3_yy -
             crs_acc_3_o_in_axes3_x*crs_h_3_in_spec3_y;
-        /* (crs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
+        /* (crs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+           connection point left out */
         const real crs_N_1_o_in_axes1_z = v.crs_mu_1_o_in_axes1_z +
             v.crs_c_3*crs_mu_3_o_in_axes3_x - crs_mu_3_o_in_axes3_y*v.crs_s_3;
         /* (crs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
@@ -2232,8 +2228,8 @@ INLINE void dynamics_legs_crs(const prepared *m, size_t w, size_t leg, size_t le
         const real crs_d_c_in_axes3_xy = crs_h_3_in_spec3_y*v.crs_w_3_in_axes3_y -
             v.crs_d_Gamma_2_in_axes3_y*v.crs_w_2_in_axes3_x -
             v.crs_d_Gamma_3_in_axes3_y*v.crs_w_3_in_axes3_x;
-        /* (crs-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (crs-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+           connection point */
         const real crs_c_o_t = v.inv_crs_d_4_in_axes1_z*(crs_mu_3_o_in_axes3_z +
             crs_f_2_o_in_axes1_z*v.crs_r_1_in_axes1_x);
         const real crs_c_o_in_axes3_x = crs_h_3_in_spec3_x*(v.crs_mu_3_o_t_2 + v.crs_mu_3_o_t_3) -
@@ -2917,32 +2913,30 @@ INLINE void Z_legs_crs(const prepared *m, size_t w, size_t leg, size_t legs, con
             axis_x_crs_axes3_y*v.crs_u_1_y + axis_x_crs_axes3_z*v.crs_u_1_z;
         const real crs_u_1_in_axes3_y = axis_y_crs_axes3_x*v.crs_u_1_x +
             axis_y_crs_axes3_y*v.crs_u_1_y + axis_y_crs_axes3_z*v.crs_u_1_z;
-        /* (crs-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
+        /* (crs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real crs_rel_o_in_axes3_x = crs_u_1_in_axes3_x - v.crs_bias_in_axes3_x;
         const real crs_rel_o_in_axes3_y = crs_u_1_in_axes3_y - v.crs_bias_in_axes3_y;
-        /* (crs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
+        /* (crs-qdd_3_o) remainder of: acceleration of joint 3 */
         const real crs_qdd_3_o = v.inv_crs_d_4_in_axes1_z*(v.crs_c_3*crs_rel_o_in_axes3_y +
             crs_rel_o_in_axes3_x*v.crs_s_3);
         /* (crs-B_3_o) remainder of the acceleration tensor of link 3 */
         const real crs_B_3_o_in_axes3_xy = v.crs_W_3_in_axes3_xy - crs_qdd_3_o;
         const real crs_B_3_o_in_axes3_yx = v.crs_W_3_in_axes3_xy + crs_qdd_3_o;
-        /* (crs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
+        /* (crs-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
         const real crs_g_in_axes1_z = m->crs_g_in_axes1_z[i];
         const real crs_acc_2_o_in_axes1_z = v.crs_c_3*crs_rel_o_in_axes3_x +
             crs_qdd_3_o*v.crs_r_1_in_axes1_x - crs_g_in_axes1_z - crs_rel_o_in_axes3_y*v.crs_s_3;
-        /* (crs-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
+        /* (crs-f_2_o) remainder of: inertia force of link 2 less its weight */
         const real crs_link2_mass = m->crs_link2_mass[i];
         const real crs_f_2_o_in_axes1_z = crs_acc_2_o_in_axes1_z*crs_link2_mass;
-        /* (crs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
+        /* (crs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
         const real crs_acc_3_o_in_axes3_x = crs_u_1_in_axes3_x - v.crs_c_3*crs_g_in_axes1_z -
             v.crs_g_in_axes1_x*v.crs_s_3;
         const real crs_acc_3_o_in_axes3_y = crs_u_1_in_axes3_y + crs_g_in_axes1_z*v.crs_s_3 -
             v.crs_c_3*v.crs_g_in_axes1_x;
-        /* (crs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 3, about their reference points */
+        /* (crs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+           reference points */
         const real crs_J_3_in_spec3_xy = m->crs_J_3_in_spec3_xy[i];
         const real crs_J_3_in_spec3_xz = m->crs_J_3_in_spec3_xz[i];
         const real crs_J_3_in_spec3_yz = m->crs_J_3_in_spec3_yz[i];
@@ -2972,12 +2966,12 @@ INLINE void Z_legs_crs(const prepared *m, size_t w, size_t leg, size_t legs, con
             crs_acc_3_o_in_axes3_y*crs_h_3_in_spec3_x -
             crs_B_3_o_in_axes3_xy*crs_Sigma_3_in_axes3_yy -
             crs_acc_3_o_in_axes3_x*crs_h_3_in_spec3_y;
-        /* (crs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
+        /* (crs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+           connection point left out */
         const real crs_N_1_o_in_axes1_z = v.crs_mu_1_o_in_axes1_z +
             v.crs_c_3*crs_mu_3_o_in_axes3_x - crs_mu_3_o_in_axes3_y*v.crs_s_3;
-        /* (crs-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (crs-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+           connection point */
         const real crs_c_o_t = v.inv_crs_d_4_in_axes1_z*(crs_mu_3_o_in_axes3_z +
             crs_f_2_o_in_axes1_z*v.crs_r_1_in_axes1_x);
         const real crs_c_o_in_axes3_x = crs_h_3_in_spec3_x*(v.crs_mu_3_o_t_2 + v.crs_mu_3_o_t_3) -

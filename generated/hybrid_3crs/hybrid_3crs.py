@@ -895,10 +895,10 @@ class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
     sqrt = staticmethod(math.sqrt)
-    sin = staticmethod(lambda x: float(np.sin(x)))
-    cos = staticmethod(lambda x: float(np.cos(x)))
+    sin = staticmethod(lambda x: float(np.sin(x)) if math.isfinite(x) else math.nan)
+    cos = staticmethod(lambda x: float(np.cos(x)) if math.isfinite(x) else math.nan)
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
-    least = staticmethod(lambda x, y: float(np.minimum(x, y)))
+    least = staticmethod(lambda x, y: y if y < x or y != y else x)
 
     def __init__(self, p, states, kept=None):
         self.p, self.states = p, states
@@ -1051,7 +1051,7 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
     Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
     where a single state needs no arrays.
     """
-    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    p, read = _given(p), [a[4:] != ("unused",) for a in arguments]
     lists = plain and _lists(arguments)
     if lists:
         found = _state(_Single(p, 1), steps, lists, read)
@@ -1076,7 +1076,7 @@ def _lists(arguments):
     for row in arguments:
         value, shape = row[1:3]
         if type(value) is np.ndarray:
-            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+            if value.shape != shape or value.dtype is not _REAL or row[4:] == ("positive",):
                 return None
             found.append(_Vector(value.tolist()))
         elif value is None and len(row) > 3 and row[3] is not None:
@@ -2010,23 +2010,23 @@ def _run_dynamics(m, X, V):
         crs_W_3_in_axes3_xz*crs_platform_joint_offset_x + crs_bias_t_2*crs_omega_1_in_axes3_x -
             2.0*crs_qd_2*(crs_c_3*crs_omega_1_in_axes3_y + crs_omega_1_in_axes3_x*crs_s_3)
         )
-        # (crs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (crs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         crs_rel_o_in_axes3_x = crs_u_1_in_axes3_x - crs_bias_in_axes3_x
         crs_rel_o_in_axes3_y = crs_u_1_in_axes3_y - crs_bias_in_axes3_y
         crs_rel_o_in_axes3_z = crs_u_1_in_axes3_z - crs_bias_in_axes3_z
-        # (crs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (crs-qdd_1_o) remainder of: acceleration of joint 1
         crs_qdd_1_o = crs_rel_o_in_axes3_z*crs_w_1_in_axes3_z
-        # (crs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
+        # (crs-qdd_3_o) remainder of: acceleration of joint 3
         crs_qdd_3_o = (
         inv_crs_d_4_in_axes1_z*(crs_c_3*crs_rel_o_in_axes3_y + crs_rel_o_in_axes3_x*crs_s_3)
         )
-        # (crs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        # (crs-alpha_1_o) remainder of: angular acceleration of link 1
         crs_alpha_1_o_in_axes3_x = crs_c_3*crs_qdd_1_o
         crs_alpha_1_o_in_axes3_y = -crs_qdd_1_o*crs_s_3
         # (crs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
         crs_d_alpha_3_in_axes3_xz = crs_c_3*crs_w_1_in_axes3_z
         crs_d_alpha_3_t = crs_s_3*crs_w_1_in_axes3_z
-        # (crs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        # (crs-alpha_3_o) remainder of: angular acceleration of link 3
         crs_alpha_3_o_in_axes3_x = crs_W_3_in_axes3_yz + crs_alpha_1_o_in_axes3_x
         crs_alpha_3_o_in_axes3_y = crs_alpha_1_o_in_axes3_y - crs_W_3_in_axes3_xz
         # (crs-B_3_o) remainder of the acceleration tensor of link 3
@@ -2034,14 +2034,14 @@ def _run_dynamics(m, X, V):
         crs_B_3_o_in_axes3_yx = crs_W_3_in_axes3_xy + crs_qdd_3_o
         crs_B_3_o_in_axes3_zx = crs_W_3_in_axes3_xz - crs_alpha_3_o_in_axes3_y
         crs_B_3_o_in_axes3_zy = crs_W_3_in_axes3_yz + crs_alpha_3_o_in_axes3_x
-        # (crs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        # (crs-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
         crs_acc_2_o_in_axes1_z = (
         crs_c_3*crs_rel_o_in_axes3_x + crs_qdd_3_o*crs_r_1_in_axes1_x - crs_g_in_axes1_z -
             crs_rel_o_in_axes3_y*crs_s_3
         )
-        # (crs-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight
+        # (crs-f_2_o) remainder of: inertia force of link 2 less its weight
         crs_f_2_o_in_axes1_z = crs_acc_2_o_in_axes1_z*crs_link2_mass
-        # (crs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        # (crs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         crs_g_in_axes1_x = crs_acc_3_t*crs_c_1 + crs_acc_3_t_2*crs_s_1
         crs_g_in_axes1_y = crs_acc_3_t_2*crs_c_1 - crs_acc_3_t*crs_s_1
         crs_acc_3_o_in_axes3_x = (
@@ -2051,7 +2051,7 @@ def _run_dynamics(m, X, V):
         crs_u_1_in_axes3_y + crs_g_in_axes1_z*crs_s_3 - crs_c_3*crs_g_in_axes1_x
         )
         crs_acc_3_o_in_axes3_z = crs_u_1_in_axes3_z - crs_g_in_axes1_y
-        # (crs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        # (crs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
         crs_mu_3_o_t = crs_omega_1_in_axes3_x*crs_omega_1_in_axes3_x
         crs_mu_3_o_t_2 = crs_omega_1_in_axes3_y*crs_omega_1_in_axes3_y
         crs_mu_3_o_t_3 = crs_qd_2_t*crs_qd_2_t
@@ -2084,12 +2084,12 @@ def _run_dynamics(m, X, V):
         crs_d_Gamma_3_t = crs_J_3_in_spec3_zz*inv_crs_d_4_in_axes1_z
         crs_d_Gamma_3_in_axes3_x = crs_d_Gamma_3_t*crs_s_3 - crs_h_3_in_spec3_y
         crs_d_Gamma_3_in_axes3_y = crs_h_3_in_spec3_x + crs_c_3*crs_d_Gamma_3_t
-        # (crs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        # (crs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         crs_mu_1_o_in_axes1_z = (
         crs_J_2_in_spec1_xx*crs_qdd_1_o + crs_g_in_axes1_x*crs_h_2_in_spec1_z -
             crs_g_in_axes1_y*crs_h_2_in_spec1_y
         )
-        # (crs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        # (crs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         crs_N_1_o_in_axes1_z = (
         crs_mu_1_o_in_axes1_z + crs_c_3*crs_mu_3_o_in_axes3_x - crs_mu_3_o_in_axes3_y*crs_s_3
         )
@@ -2118,7 +2118,7 @@ def _run_dynamics(m, X, V):
         crs_d_c_in_axes3_yz = (
         crs_d_alpha_3_in_axes3_xz*crs_h_3_in_spec3_z - crs_d_Gamma_3_in_axes3_z*crs_w_3_in_axes3_y
         )
-        # (crs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (crs-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         crs_c_o_t = (
         inv_crs_d_4_in_axes1_z*(crs_mu_3_o_in_axes3_z + crs_f_2_o_in_axes1_z*crs_r_1_in_axes1_x)
         )
@@ -2967,20 +2967,20 @@ def _run_Z(m, X, V):
         crs_W_3_in_axes3_xz*crs_platform_joint_offset_x + crs_bias_t_2*crs_omega_1_in_axes3_x -
             2.0*crs_qd_2*(crs_c_3*crs_omega_1_in_axes3_y + crs_omega_1_in_axes3_x*crs_s_3)
         )
-        # (crs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (crs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         crs_rel_o_in_axes3_x = crs_u_1_in_axes3_x - crs_bias_in_axes3_x
         crs_rel_o_in_axes3_y = crs_u_1_in_axes3_y - crs_bias_in_axes3_y
         crs_rel_o_in_axes3_z = crs_u_1_in_axes3_z - crs_bias_in_axes3_z
-        # (crs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (crs-qdd_1_o) remainder of: acceleration of joint 1
         crs_qdd_1_o = crs_rel_o_in_axes3_z*crs_w_1_in_axes3_z
-        # (crs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
+        # (crs-qdd_3_o) remainder of: acceleration of joint 3
         crs_qdd_3_o = (
         inv_crs_d_4_in_axes1_z*(crs_c_3*crs_rel_o_in_axes3_y + crs_rel_o_in_axes3_x*crs_s_3)
         )
-        # (crs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        # (crs-alpha_1_o) remainder of: angular acceleration of link 1
         crs_alpha_1_o_in_axes3_x = crs_c_3*crs_qdd_1_o
         crs_alpha_1_o_in_axes3_y = -crs_qdd_1_o*crs_s_3
-        # (crs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        # (crs-alpha_3_o) remainder of: angular acceleration of link 3
         crs_alpha_3_o_in_axes3_x = crs_W_3_in_axes3_yz + crs_alpha_1_o_in_axes3_x
         crs_alpha_3_o_in_axes3_y = crs_alpha_1_o_in_axes3_y - crs_W_3_in_axes3_xz
         # (crs-B_3_o) remainder of the acceleration tensor of link 3
@@ -2988,14 +2988,14 @@ def _run_Z(m, X, V):
         crs_B_3_o_in_axes3_yx = crs_W_3_in_axes3_xy + crs_qdd_3_o
         crs_B_3_o_in_axes3_zx = crs_W_3_in_axes3_xz - crs_alpha_3_o_in_axes3_y
         crs_B_3_o_in_axes3_zy = crs_W_3_in_axes3_yz + crs_alpha_3_o_in_axes3_x
-        # (crs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        # (crs-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
         crs_acc_2_o_in_axes1_z = (
         crs_c_3*crs_rel_o_in_axes3_x + crs_qdd_3_o*crs_r_1_in_axes1_x - crs_g_in_axes1_z -
             crs_rel_o_in_axes3_y*crs_s_3
         )
-        # (crs-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight
+        # (crs-f_2_o) remainder of: inertia force of link 2 less its weight
         crs_f_2_o_in_axes1_z = crs_acc_2_o_in_axes1_z*crs_link2_mass
-        # (crs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        # (crs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         crs_g_in_axes1_x = crs_acc_3_t*crs_c_1 + crs_acc_3_t_2*crs_s_1
         crs_g_in_axes1_y = crs_acc_3_t_2*crs_c_1 - crs_acc_3_t*crs_s_1
         crs_acc_3_o_in_axes3_x = (
@@ -3005,7 +3005,7 @@ def _run_Z(m, X, V):
         crs_u_1_in_axes3_y + crs_g_in_axes1_z*crs_s_3 - crs_c_3*crs_g_in_axes1_x
         )
         crs_acc_3_o_in_axes3_z = crs_u_1_in_axes3_z - crs_g_in_axes1_y
-        # (crs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        # (crs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
         crs_mu_3_o_t = crs_omega_1_in_axes3_x*crs_omega_1_in_axes3_x
         crs_mu_3_o_t_2 = crs_omega_1_in_axes3_y*crs_omega_1_in_axes3_y
         crs_mu_3_o_t_3 = crs_qd_2_t*crs_qd_2_t
@@ -3031,16 +3031,16 @@ def _run_Z(m, X, V):
             crs_B_3_o_in_axes3_xy*crs_Sigma_3_in_axes3_yy -
             crs_acc_3_o_in_axes3_x*crs_h_3_in_spec3_y
         )
-        # (crs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        # (crs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         crs_mu_1_o_in_axes1_z = (
         crs_J_2_in_spec1_xx*crs_qdd_1_o + crs_g_in_axes1_x*crs_h_2_in_spec1_z -
             crs_g_in_axes1_y*crs_h_2_in_spec1_y
         )
-        # (crs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        # (crs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         crs_N_1_o_in_axes1_z = (
         crs_mu_1_o_in_axes1_z + crs_c_3*crs_mu_3_o_in_axes3_x - crs_mu_3_o_in_axes3_y*crs_s_3
         )
-        # (crs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (crs-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         crs_c_o_t = (
         inv_crs_d_4_in_axes1_z*(crs_mu_3_o_in_axes3_z + crs_f_2_o_in_axes1_z*crs_r_1_in_axes1_x)
         )

@@ -1548,8 +1548,7 @@ INLINE void stage_prps_X(const prepared *m, size_t w, size_t i, size_t j, const 
         prps_base_frame_yx*prps_s_2;
     const real axis_y_prps_axes2_z = prps_base_frame_zy*prps_c_2 -
         prps_base_frame_zx*prps_s_2;
-    /* (prps-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-       link 3, less gravity */
+    /* (prps-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
     const real prps_g_in_axes0_x = m->prps_g_in_axes0_x[i];
     const real prps_g_in_axes0_y = m->prps_g_in_axes0_y[i];
     const real prps_g_in_axes2_x = prps_c_2*prps_g_in_axes0_x + prps_g_in_axes0_y*prps_s_2;
@@ -1702,34 +1701,32 @@ INLINE void stage_prps_Z_dynamics(const prepared *m, size_t w, size_t i, size_t 
     const real prps_u_1_z = omega_x*v->prps_S_dot_t_2 - omega_y*v->prps_S_dot_t;
     const real prps_u_1_in_axes2_y = v->axis_y_prps_axes2_x*prps_u_1_x +
         v->axis_y_prps_axes2_y*prps_u_1_y + v->axis_y_prps_axes2_z*prps_u_1_z;
-    /* (prps-rel_o) remainder without the acceleration in: acceleration of the connection point left
-       to the joint accelerations */
+    /* (prps-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
     const real prps_rel_o_in_axes2_y = prps_u_1_in_axes2_y -
         2*v->prps_S_dot_in_axes2_x*v->prps_qd_2;
-    /* (prps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+    /* (prps-qdd_2_o) remainder of: acceleration of joint 2 */
     const real prps_qdd_2_o = v->inv_prps_q_3*prps_rel_o_in_axes2_y;
-    /* (prps-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
-       link 1, less gravity */
+    /* (prps-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
     const real prps_base_frame_xz = m->prps_base_frame_xz[i];
     const real prps_base_frame_yz = m->prps_base_frame_yz[i];
     const real prps_base_frame_zz = m->prps_base_frame_zz[i];
     const real prps_g_in_axes0_z = m->prps_g_in_axes0_z[i];
     const real prps_acc_1_o_in_axes0_z = prps_base_frame_xz*prps_u_1_x +
         prps_base_frame_yz*prps_u_1_y + prps_base_frame_zz*prps_u_1_z - prps_g_in_axes0_z;
-    /* (prps-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-       link 3, less gravity */
+    /* (prps-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
     const real prps_acc_3_o_in_axes2_x = v->axis_x_prps_axes2_x*prps_u_1_x +
         v->axis_x_prps_axes2_y*prps_u_1_y + v->axis_x_prps_axes2_z*prps_u_1_z -
         v->prps_g_in_axes2_x;
     const real prps_acc_3_o_in_axes2_y = prps_u_1_in_axes2_y - v->prps_g_in_axes2_y;
-    /* (prps-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
-       about its reference point */
+    /* (prps-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
+       */
     const real prps_h_3_in_spec2_x = m->prps_h_3_in_spec2_x[i];
     const real prps_h_3_in_spec2_y = m->prps_h_3_in_spec2_y[i];
     const real prps_phi_3_o_in_axes2_x = v->prps_W_2_in_axes2_xx*prps_h_3_in_spec2_x -
         prps_h_3_in_spec2_y*prps_qdd_2_o;
-    /* (prps-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-       link 2, about their reference points */
+    /* (prps-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
     const real prps_Jc_2_in_axes2_zz = m->prps_Jc_2_in_axes2_zz[i];
     const real prps_h_2_in_spec2_x = m->prps_h_2_in_spec2_x[i];
     const real prps_h_2_in_spec2_y = m->prps_h_2_in_spec2_y[i];
@@ -1737,14 +1734,14 @@ INLINE void stage_prps_Z_dynamics(const prepared *m, size_t w, size_t i, size_t 
         prps_acc_3_o_in_axes2_y*prps_h_3_in_spec2_x + v->prps_g_in_axes2_x*prps_h_2_in_spec2_y
         - prps_acc_3_o_in_axes2_x*prps_h_3_in_spec2_y -
         v->prps_g_in_axes2_y*prps_h_2_in_spec2_x;
-    /* (prps-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards,
-       the last link left out */
+    /* (prps-T_1_o) remainder of: inertia force of the links from 1 outwards, the last link left out
+       */
     const real prps_link1_mass = m->prps_link1_mass[i];
     const real prps_link2_mass = m->prps_link2_mass[i];
     const real prps_T_1_o_in_axes0_z = prps_acc_1_o_in_axes0_z*prps_link1_mass +
         prps_acc_1_o_in_axes0_z*prps_link2_mass;
-    /* (prps-c_o) remainder without the acceleration in: leg force on the platform without actuation
-       and without the mass at the connection point */
+    /* (prps-c_o) remainder of: leg force on the platform without actuation and without the mass at
+       the connection point */
     const real prps_c_o_in_axes2_y = -v->inv_prps_q_3*prps_mu_2_o_in_axes2_z -
         v->prps_W_2_in_axes2_xx*prps_h_3_in_spec2_y - prps_h_3_in_spec2_x*prps_qdd_2_o;
     /* (prps-U) velocity and gravity terms of the leg force */

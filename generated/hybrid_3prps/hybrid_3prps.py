@@ -875,10 +875,10 @@ class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
     sqrt = staticmethod(math.sqrt)
-    sin = staticmethod(lambda x: float(np.sin(x)))
-    cos = staticmethod(lambda x: float(np.cos(x)))
+    sin = staticmethod(lambda x: float(np.sin(x)) if math.isfinite(x) else math.nan)
+    cos = staticmethod(lambda x: float(np.cos(x)) if math.isfinite(x) else math.nan)
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
-    least = staticmethod(lambda x, y: float(np.minimum(x, y)))
+    least = staticmethod(lambda x, y: y if y < x or y != y else x)
 
     def __init__(self, p, states, kept=None):
         self.p, self.states = p, states
@@ -1031,7 +1031,7 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
     Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
     where a single state needs no arrays.
     """
-    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    p, read = _given(p), [a[4:] != ("unused",) for a in arguments]
     lists = plain and _lists(arguments)
     if lists:
         found = _state(_Single(p, 1), steps, lists, read)
@@ -1056,7 +1056,7 @@ def _lists(arguments):
     for row in arguments:
         value, shape = row[1:3]
         if type(value) is np.ndarray:
-            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+            if value.shape != shape or value.dtype is not _REAL or row[4:] == ("positive",):
                 return None
             found.append(_Vector(value.tolist()))
         elif value is None and len(row) > 3 and row[3] is not None:
@@ -1887,16 +1887,16 @@ def _run_dynamics(m, X, V):
         axis_y_prps_axes2_x*prps_u_1_x + axis_y_prps_axes2_y*prps_u_1_y +
             axis_y_prps_axes2_z*prps_u_1_z
         )
-        # (prps-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (prps-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         prps_rel_o_in_axes2_y = prps_u_1_in_axes2_y - 2.0*prps_S_dot_in_axes2_x*prps_qd_2
-        # (prps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        # (prps-qdd_2_o) remainder of: acceleration of joint 2
         prps_qdd_2_o = inv_prps_q_3*prps_rel_o_in_axes2_y
-        # (prps-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+        # (prps-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity
         prps_acc_1_o_in_axes0_z = (
         prps_base_frame_xz*prps_u_1_x + prps_base_frame_yz*prps_u_1_y +
             prps_base_frame_zz*prps_u_1_z - prps_g_in_axes0_z
         )
-        # (prps-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        # (prps-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         prps_g_in_axes2_x = prps_c_2*prps_g_in_axes0_x + prps_g_in_axes0_y*prps_s_2
         prps_g_in_axes2_y = prps_c_2*prps_g_in_axes0_y - prps_g_in_axes0_x*prps_s_2
         prps_acc_3_o_in_axes2_x = (
@@ -1904,11 +1904,11 @@ def _run_dynamics(m, X, V):
             axis_x_prps_axes2_z*prps_u_1_z - prps_g_in_axes2_x
         )
         prps_acc_3_o_in_axes2_y = prps_u_1_in_axes2_y - prps_g_in_axes2_y
-        # (prps-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
+        # (prps-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
         prps_phi_3_o_in_axes2_x = (
         prps_W_2_in_axes2_xx*prps_h_3_in_spec2_x - prps_h_3_in_spec2_y*prps_qdd_2_o
         )
-        # (prps-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (prps-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         prps_mu_2_o_in_axes2_z = (
         prps_Jc_2_in_axes2_zz*prps_qdd_2_o + prps_acc_3_o_in_axes2_y*prps_h_3_in_spec2_x +
             prps_g_in_axes2_x*prps_h_2_in_spec2_y - prps_acc_3_o_in_axes2_x*prps_h_3_in_spec2_y -
@@ -1916,7 +1916,7 @@ def _run_dynamics(m, X, V):
         )
         # (prps-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         prps_d_Gamma_2_in_axes2_y = prps_h_3_in_spec2_x + inv_prps_q_3*prps_Jc_2_in_axes2_zz
-        # (prps-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
+        # (prps-T_1_o) remainder of: inertia force of the links from 1 outwards, the last link left out
         prps_T_1_o_in_axes0_z = (
         prps_acc_1_o_in_axes0_z*prps_link1_mass + prps_acc_1_o_in_axes0_z*prps_link2_mass
         )
@@ -1925,7 +1925,7 @@ def _run_dynamics(m, X, V):
         prps_d_c_in_axes2_yy = (
         -inv_prps_q_3*prps_d_Gamma_2_in_axes2_y - inv_prps_q_3*prps_h_3_in_spec2_x
         )
-        # (prps-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (prps-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         prps_c_o_in_axes2_y = (
         -inv_prps_q_3*prps_mu_2_o_in_axes2_z - prps_W_2_in_axes2_xx*prps_h_3_in_spec2_y -
             prps_h_3_in_spec2_x*prps_qdd_2_o
@@ -2553,16 +2553,16 @@ def _run_Z(m, X, V):
         axis_y_prps_axes2_x*prps_u_1_x + axis_y_prps_axes2_y*prps_u_1_y +
             axis_y_prps_axes2_z*prps_u_1_z
         )
-        # (prps-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (prps-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         prps_rel_o_in_axes2_y = prps_u_1_in_axes2_y - 2.0*prps_S_dot_in_axes2_x*prps_qd_2
-        # (prps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        # (prps-qdd_2_o) remainder of: acceleration of joint 2
         prps_qdd_2_o = inv_prps_q_3*prps_rel_o_in_axes2_y
-        # (prps-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+        # (prps-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity
         prps_acc_1_o_in_axes0_z = (
         prps_base_frame_xz*prps_u_1_x + prps_base_frame_yz*prps_u_1_y +
             prps_base_frame_zz*prps_u_1_z - prps_g_in_axes0_z
         )
-        # (prps-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        # (prps-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         prps_g_in_axes2_x = prps_c_2*prps_g_in_axes0_x + prps_g_in_axes0_y*prps_s_2
         prps_g_in_axes2_y = prps_c_2*prps_g_in_axes0_y - prps_g_in_axes0_x*prps_s_2
         prps_acc_3_o_in_axes2_x = (
@@ -2570,21 +2570,21 @@ def _run_Z(m, X, V):
             axis_x_prps_axes2_z*prps_u_1_z - prps_g_in_axes2_x
         )
         prps_acc_3_o_in_axes2_y = prps_u_1_in_axes2_y - prps_g_in_axes2_y
-        # (prps-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
+        # (prps-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
         prps_phi_3_o_in_axes2_x = (
         prps_W_2_in_axes2_xx*prps_h_3_in_spec2_x - prps_h_3_in_spec2_y*prps_qdd_2_o
         )
-        # (prps-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (prps-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         prps_mu_2_o_in_axes2_z = (
         prps_Jc_2_in_axes2_zz*prps_qdd_2_o + prps_acc_3_o_in_axes2_y*prps_h_3_in_spec2_x +
             prps_g_in_axes2_x*prps_h_2_in_spec2_y - prps_acc_3_o_in_axes2_x*prps_h_3_in_spec2_y -
             prps_g_in_axes2_y*prps_h_2_in_spec2_x
         )
-        # (prps-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
+        # (prps-T_1_o) remainder of: inertia force of the links from 1 outwards, the last link left out
         prps_T_1_o_in_axes0_z = (
         prps_acc_1_o_in_axes0_z*prps_link1_mass + prps_acc_1_o_in_axes0_z*prps_link2_mass
         )
-        # (prps-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (prps-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         prps_c_o_in_axes2_y = (
         -inv_prps_q_3*prps_mu_2_o_in_axes2_z - prps_W_2_in_axes2_xx*prps_h_3_in_spec2_y -
             prps_h_3_in_spec2_x*prps_qdd_2_o

@@ -1790,8 +1790,8 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
     const real rrrs_bias_t_2 = rrrs_joint2_offset_x*rrrs_s_2;
     const real rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x;
     const real rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t;
-    /* (rrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-       link 2, about their reference points */
+    /* (rrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
     const real rrrs_mu_2_t = m->rrrs_mu_2_t[i];
     const real rrrs_mu_2_t_2 = m->rrrs_mu_2_t_2[i];
     const real rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1;
@@ -2117,20 +2117,19 @@ INLINE void stage_rrrs_Z_dynamics(const prepared *m, size_t w, size_t j, const r
     const real rrrs_u_1_z = omega_x*v->rrrs_S_dot_t_2 - omega_y*v->rrrs_S_dot_t;
     const real rrrs_u_1_in_axes3_z = v->axis_z_rrrs_axes3_x*rrrs_u_1_x +
         v->axis_z_rrrs_axes3_y*rrrs_u_1_y + v->axis_z_rrrs_axes3_z*rrrs_u_1_z;
-    /* (rrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-       link 3, less gravity */
+    /* (rrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
     const real gravity_x = m->gravity_x;
     const real gravity_y = m->gravity_y;
     const real gravity_z = m->gravity_z;
     const real rrrs_acc_3_o_in_axes3_z = rrrs_u_1_in_axes3_z -
         v->axis_z_rrrs_axes3_x*gravity_x - v->axis_z_rrrs_axes3_y*gravity_y -
         v->axis_z_rrrs_axes3_z*gravity_z;
-    /* (rrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
-       link 3, about their reference points */
+    /* (rrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+       reference points */
     const real rrrs_mu_3_o_t = v->rrrs_omega_1_in_axes3_x*v->rrrs_omega_1_in_axes3_x;
     const real rrrs_mu_3_o_t_2 = v->rrrs_omega_1_in_axes3_y*v->rrrs_omega_1_in_axes3_y;
-    /* (rrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-       link 2, about their reference points */
+    /* (rrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
     const real rrrs_mu_2_o_t = v->rrrs_omega_1_in_axes2_x*v->rrrs_omega_1_in_axes2_x;
     const real rrrs_mu_2_o_t_2 = v->rrrs_omega_1_t*v->rrrs_omega_1_t;
     v->rrrs_u_1_x = rrrs_u_1_x;
@@ -2445,19 +2444,19 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t l
             v.axis_x_rrrs_axes3_y*v.rrrs_u_1_y + v.axis_x_rrrs_axes3_z*v.rrrs_u_1_z;
         const real rrrs_u_1_in_axes3_y = v.axis_y_rrrs_axes3_x*v.rrrs_u_1_x +
             v.axis_y_rrrs_axes3_y*v.rrrs_u_1_y + v.axis_y_rrrs_axes3_z*v.rrrs_u_1_z;
-        /* (rrrs-rel_o) remainder without the acceleration in: acceleration of the connection point left
-           to the joint accelerations */
+        /* (rrrs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real rrrs_rel_o_in_axes3_x = rrrs_u_1_in_axes3_x - v.rrrs_bias_in_axes3_x;
         const real rrrs_rel_o_in_axes3_y = rrrs_u_1_in_axes3_y - v.rrrs_bias_in_axes3_y;
         const real rrrs_rel_o_in_axes3_z = v.rrrs_u_1_in_axes3_z - v.rrrs_bias_in_axes3_z;
-        /* (rrrs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        /* (rrrs-qdd_1_o) remainder of: acceleration of joint 1 */
         const real rrrs_qdd_1_o = rrrs_rel_o_in_axes3_z*v.rrrs_w_1_in_axes3_z;
-        /* (rrrs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        /* (rrrs-qdd_2_o) remainder of: acceleration of joint 2 */
         const real rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*v.rrrs_w_2_in_axes3_x;
-        /* (rrrs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+        /* (rrrs-alpha_1_o) remainder of: angular acceleration of link 1 */
         const real rrrs_alpha_1_o_in_axes2_x = v.rrrs_c_2*rrrs_qdd_1_o;
         const real rrrs_alpha_1_o_t = rrrs_qdd_1_o*v.rrrs_s_2;
-        /* (rrrs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrrs-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real rrrs_alpha_2_o_in_axes2_x = v.rrrs_W_2_in_axes2_yz + rrrs_alpha_1_o_in_axes2_x;
         const real rrrs_alpha_2_o_in_axes2_y = v.rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_o_t;
         /* (rrrs-B_2_o) remainder of the acceleration tensor of link 2 */
@@ -2465,7 +2464,7 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t l
         const real rrrs_B_2_o_in_axes2_yx = v.rrrs_W_2_in_axes2_xy + rrrs_qdd_2_o;
         const real rrrs_B_2_o_in_axes2_zx = -rrrs_alpha_2_o_in_axes2_y - v.rrrs_zeta_2_in_axes2_y;
         const real rrrs_B_2_o_in_axes2_zy = v.rrrs_W_2_in_axes2_yz + rrrs_alpha_2_o_in_axes2_x;
-        /* (rrrs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (rrrs-alpha_3_o) remainder of: angular acceleration of link 3 */
         const real rrrs_alpha_3_o_in_axes3_x = rrrs_alpha_2_o_in_axes2_x*v.rrrs_c_3 +
             v.rrrs_omega_1_in_axes3_y*v.rrrs_qd_3 - rrrs_alpha_2_o_in_axes2_y*v.rrrs_s_3_t;
         const real rrrs_alpha_3_o_in_axes3_y = rrrs_alpha_2_o_in_axes2_x*v.rrrs_s_3_t +
@@ -2480,8 +2479,7 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t l
         const real rrrs_B_3_o_in_axes3_yz = v.rrrs_W_3_in_axes3_yz - rrrs_alpha_3_o_in_axes3_x;
         const real rrrs_B_3_o_in_axes3_zx = v.rrrs_W_3_in_axes3_xz - rrrs_alpha_3_o_in_axes3_y;
         const real rrrs_B_3_o_in_axes3_zy = v.rrrs_W_3_in_axes3_yz + rrrs_alpha_3_o_in_axes3_x;
-        /* (rrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
+        /* (rrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
@@ -2489,8 +2487,8 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t l
             - v.axis_x_rrrs_axes3_y*gravity_y - v.axis_x_rrrs_axes3_z*gravity_z;
         const real rrrs_acc_3_o_in_axes3_y = rrrs_u_1_in_axes3_y - v.axis_y_rrrs_axes3_x*gravity_x
             - v.axis_y_rrrs_axes3_y*gravity_y - v.axis_y_rrrs_axes3_z*gravity_z;
-        /* (rrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 3, about their reference points */
+        /* (rrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+           reference points */
         const real rrrs_mu_3_o_t_3 = v.rrrs_omega_3_in_axes3_z*v.rrrs_omega_3_in_axes3_z;
         const real rrrs_J_3_in_spec3_xy = m->rrrs_J_3_in_spec3_xy[i];
         const real rrrs_J_3_in_spec3_xz = m->rrrs_J_3_in_spec3_xz[i];
@@ -2522,8 +2520,8 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t l
             rrrs_B_3_o_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
             rrrs_B_3_o_in_axes3_yz*rrrs_J_3_in_spec3_xz -
             rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_y;
-        /* (rrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
+        /* (rrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real rrrs_mu_2_o_t_3 = v.rrrs_qd_2_t*v.rrrs_qd_2_t;
         const real rrrs_J_2_in_spec2_xy = m->rrrs_J_2_in_spec2_xy[i];
         const real rrrs_J_2_in_spec2_xz = m->rrrs_J_2_in_spec2_xz[i];
@@ -2551,29 +2549,29 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t l
             v.rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y -
             rrrs_B_2_o_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy -
             rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_t - v.rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x;
-        /* (rrrs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
+        /* (rrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+           connection point left out */
         const real rrrs_N_2_o_in_axes2_x = rrrs_mu_2_o_in_axes2_x +
             v.rrrs_c_3*rrrs_mu_3_o_in_axes3_x + rrrs_mu_3_o_in_axes3_y*v.rrrs_s_3_t;
         const real rrrs_N_2_o_in_axes2_y = rrrs_mu_2_o_in_axes2_y +
             v.rrrs_c_3*rrrs_mu_3_o_in_axes3_y - rrrs_mu_3_o_in_axes3_x*v.rrrs_s_3_t;
         const real rrrs_N_2_o_in_axes2_z = rrrs_mu_2_o_in_axes2_z + rrrs_mu_3_o_in_axes3_z;
-        /* (rrrs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
+        /* (rrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+           reference points */
         const real rrrs_J_1_in_spec1_xx = m->rrrs_J_1_in_spec1_xx[i];
         const real rrrs_h_1_in_spec1_y = m->rrrs_h_1_in_spec1_y[i];
         const real rrrs_h_1_in_spec1_z = m->rrrs_h_1_in_spec1_z[i];
         const real rrrs_mu_1_o_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o +
             v.rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z - v.rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y;
-        /* (rrrs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
+        /* (rrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+           connection point left out */
         const real rrrs_N_1_o_in_axes1_z = rrrs_mu_1_o_in_axes1_z +
             rrrs_N_2_o_in_axes2_x*v.rrrs_c_2 - rrrs_N_2_o_in_axes2_y*v.rrrs_s_2;
-        /* (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (rrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y;
-        /* (rrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (rrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at
+           the connection point */
         const real rrrs_c_o_in_axes3_x = rrrs_h_3_in_spec3_x*(v.rrrs_mu_3_o_t_2 + rrrs_mu_3_o_t_3)
             + v.rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*v.rrrs_r_2_in_axes3_x -
             rrrs_N_2_o_in_axes2_z) - rrrs_B_3_o_in_axes3_xy*rrrs_h_3_in_spec3_y -
@@ -3296,19 +3294,19 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, co
             rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
             rrrs_bias_t_4*v.rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*v.rrrs_omega_1_in_axes3_x -
             v.rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y;
-        /* (rrrs-rel_o) remainder without the acceleration in: acceleration of the connection point left
-           to the joint accelerations */
+        /* (rrrs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real rrrs_rel_o_in_axes3_x = rrrs_u_1_in_axes3_x - rrrs_bias_in_axes3_x;
         const real rrrs_rel_o_in_axes3_y = rrrs_u_1_in_axes3_y - rrrs_bias_in_axes3_y;
         const real rrrs_rel_o_in_axes3_z = v.rrrs_u_1_in_axes3_z - rrrs_bias_in_axes3_z;
-        /* (rrrs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        /* (rrrs-qdd_1_o) remainder of: acceleration of joint 1 */
         const real rrrs_qdd_1_o = rrrs_rel_o_in_axes3_z*v.rrrs_w_1_in_axes3_z;
-        /* (rrrs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        /* (rrrs-qdd_2_o) remainder of: acceleration of joint 2 */
         const real rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*v.rrrs_w_2_in_axes3_x;
-        /* (rrrs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+        /* (rrrs-alpha_1_o) remainder of: angular acceleration of link 1 */
         const real rrrs_alpha_1_o_in_axes2_x = v.rrrs_c_2*rrrs_qdd_1_o;
         const real rrrs_alpha_1_o_t = rrrs_qdd_1_o*v.rrrs_s_2;
-        /* (rrrs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrrs-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real rrrs_alpha_2_o_in_axes2_x = rrrs_W_2_in_axes2_yz + rrrs_alpha_1_o_in_axes2_x;
         const real rrrs_alpha_2_o_in_axes2_y = rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_o_t;
         /* (rrrs-B_2_o) remainder of the acceleration tensor of link 2 */
@@ -3316,7 +3314,7 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real rrrs_B_2_o_in_axes2_yx = v.rrrs_W_2_in_axes2_xy + rrrs_qdd_2_o;
         const real rrrs_B_2_o_in_axes2_zx = -rrrs_alpha_2_o_in_axes2_y - rrrs_zeta_2_in_axes2_y;
         const real rrrs_B_2_o_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_o_in_axes2_x;
-        /* (rrrs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (rrrs-alpha_3_o) remainder of: angular acceleration of link 3 */
         const real rrrs_alpha_3_o_in_axes3_x = rrrs_alpha_2_o_in_axes2_x*v.rrrs_c_3 +
             v.rrrs_omega_1_in_axes3_y*rrrs_qd_3 - rrrs_alpha_2_o_in_axes2_y*v.rrrs_s_3_t;
         const real rrrs_alpha_3_o_in_axes3_y = rrrs_alpha_2_o_in_axes2_x*v.rrrs_s_3_t +
@@ -3330,8 +3328,7 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real rrrs_B_3_o_in_axes3_yz = rrrs_W_3_in_axes3_yz - rrrs_alpha_3_o_in_axes3_x;
         const real rrrs_B_3_o_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_o_in_axes3_y;
         const real rrrs_B_3_o_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_o_in_axes3_x;
-        /* (rrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
+        /* (rrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
@@ -3339,8 +3336,8 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, co
             axis_x_rrrs_axes3_y*gravity_y - axis_x_rrrs_axes3_z*gravity_z;
         const real rrrs_acc_3_o_in_axes3_y = rrrs_u_1_in_axes3_y - axis_y_rrrs_axes3_x*gravity_x -
             axis_y_rrrs_axes3_y*gravity_y - axis_y_rrrs_axes3_z*gravity_z;
-        /* (rrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 3, about their reference points */
+        /* (rrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+           reference points */
         const real rrrs_mu_3_o_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z;
         const real rrrs_J_3_in_spec3_xy = m->rrrs_J_3_in_spec3_xy[i];
         const real rrrs_J_3_in_spec3_xz = m->rrrs_J_3_in_spec3_xz[i];
@@ -3372,8 +3369,8 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, co
             rrrs_B_3_o_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
             rrrs_B_3_o_in_axes3_yz*rrrs_J_3_in_spec3_xz -
             rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_y;
-        /* (rrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
+        /* (rrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real rrrs_mu_2_o_t_3 = rrrs_qd_2_t_3*rrrs_qd_2_t_3;
         const real rrrs_J_2_in_spec2_xy = m->rrrs_J_2_in_spec2_xy[i];
         const real rrrs_J_2_in_spec2_xz = m->rrrs_J_2_in_spec2_xz[i];
@@ -3401,29 +3398,29 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, co
             v.rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y -
             rrrs_B_2_o_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy -
             rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_t - v.rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x;
-        /* (rrrs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
+        /* (rrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+           connection point left out */
         const real rrrs_N_2_o_in_axes2_x = rrrs_mu_2_o_in_axes2_x +
             v.rrrs_c_3*rrrs_mu_3_o_in_axes3_x + rrrs_mu_3_o_in_axes3_y*v.rrrs_s_3_t;
         const real rrrs_N_2_o_in_axes2_y = rrrs_mu_2_o_in_axes2_y +
             v.rrrs_c_3*rrrs_mu_3_o_in_axes3_y - rrrs_mu_3_o_in_axes3_x*v.rrrs_s_3_t;
         const real rrrs_N_2_o_in_axes2_z = rrrs_mu_2_o_in_axes2_z + rrrs_mu_3_o_in_axes3_z;
-        /* (rrrs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
+        /* (rrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+           reference points */
         const real rrrs_J_1_in_spec1_xx = m->rrrs_J_1_in_spec1_xx[i];
         const real rrrs_h_1_in_spec1_y = m->rrrs_h_1_in_spec1_y[i];
         const real rrrs_h_1_in_spec1_z = m->rrrs_h_1_in_spec1_z[i];
         const real rrrs_mu_1_o_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o +
             v.rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z - v.rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y;
-        /* (rrrs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
+        /* (rrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+           connection point left out */
         const real rrrs_N_1_o_in_axes1_z = rrrs_mu_1_o_in_axes1_z +
             rrrs_N_2_o_in_axes2_x*v.rrrs_c_2 - rrrs_N_2_o_in_axes2_y*v.rrrs_s_2;
-        /* (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (rrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y;
-        /* (rrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (rrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at
+           the connection point */
         const real rrrs_c_o_in_axes3_x = rrrs_h_3_in_spec3_x*(v.rrrs_mu_3_o_t_2 + rrrs_mu_3_o_t_3)
             + v.rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*v.rrrs_r_2_in_axes3_x -
             rrrs_N_2_o_in_axes2_z) - rrrs_B_3_o_in_axes3_xy*rrrs_h_3_in_spec3_y -

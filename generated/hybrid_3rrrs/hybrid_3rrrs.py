@@ -1030,10 +1030,10 @@ class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
     sqrt = staticmethod(math.sqrt)
-    sin = staticmethod(lambda x: float(np.sin(x)))
-    cos = staticmethod(lambda x: float(np.cos(x)))
+    sin = staticmethod(lambda x: float(np.sin(x)) if math.isfinite(x) else math.nan)
+    cos = staticmethod(lambda x: float(np.cos(x)) if math.isfinite(x) else math.nan)
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
-    least = staticmethod(lambda x, y: float(np.minimum(x, y)))
+    least = staticmethod(lambda x, y: y if y < x or y != y else x)
 
     def __init__(self, p, states, kept=None):
         self.p, self.states = p, states
@@ -1186,7 +1186,7 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
     Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
     where a single state needs no arrays.
     """
-    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    p, read = _given(p), [a[4:] != ("unused",) for a in arguments]
     lists = plain and _lists(arguments)
     if lists:
         found = _state(_Single(p, 1), steps, lists, read)
@@ -1211,7 +1211,7 @@ def _lists(arguments):
     for row in arguments:
         value, shape = row[1:3]
         if type(value) is np.ndarray:
-            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+            if value.shape != shape or value.dtype is not _REAL or row[4:] == ("positive",):
                 return None
             found.append(_Vector(value.tolist()))
         elif value is None and len(row) > 3 and row[3] is not None:
@@ -2203,18 +2203,18 @@ def _run_dynamics(m, X, V):
             rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
             rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
         )
-        # (rrrs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (rrrs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrrs_rel_o_in_axes3_x = rrrs_u_1_in_axes3_x - rrrs_bias_in_axes3_x
         rrrs_rel_o_in_axes3_y = rrrs_u_1_in_axes3_y - rrrs_bias_in_axes3_y
         rrrs_rel_o_in_axes3_z = rrrs_u_1_in_axes3_z - rrrs_bias_in_axes3_z
-        # (rrrs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (rrrs-qdd_1_o) remainder of: acceleration of joint 1
         rrrs_qdd_1_o = rrrs_rel_o_in_axes3_z*rrrs_w_1_in_axes3_z
-        # (rrrs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        # (rrrs-qdd_2_o) remainder of: acceleration of joint 2
         rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*rrrs_w_2_in_axes3_x
-        # (rrrs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        # (rrrs-alpha_1_o) remainder of: angular acceleration of link 1
         rrrs_alpha_1_o_in_axes2_x = rrrs_c_2*rrrs_qdd_1_o
         rrrs_alpha_1_o_t = rrrs_qdd_1_o*rrrs_s_2
-        # (rrrs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (rrrs-alpha_2_o) remainder of: angular acceleration of link 2
         rrrs_alpha_2_o_in_axes2_x = rrrs_W_2_in_axes2_yz + rrrs_alpha_1_o_in_axes2_x
         rrrs_alpha_2_o_in_axes2_y = rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_o_t
         # (rrrs-B_2_o) remainder of the acceleration tensor of link 2
@@ -2225,7 +2225,7 @@ def _run_dynamics(m, X, V):
         # (rrrs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
         rrrs_d_alpha_3_in_axes3_xz = rrrs_e_1_in_axes3_x*rrrs_w_1_in_axes3_z
         rrrs_d_alpha_3_in_axes3_yz = rrrs_e_1_in_axes3_y*rrrs_w_1_in_axes3_z
-        # (rrrs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        # (rrrs-alpha_3_o) remainder of: angular acceleration of link 3
         rrrs_alpha_3_o_in_axes3_x = (
         rrrs_alpha_2_o_in_axes2_x*rrrs_c_3 + rrrs_omega_1_in_axes3_y*rrrs_qd_3 -
             rrrs_alpha_2_o_in_axes2_y*rrrs_s_3_t
@@ -2244,7 +2244,7 @@ def _run_dynamics(m, X, V):
         rrrs_B_3_o_in_axes3_yz = rrrs_W_3_in_axes3_yz - rrrs_alpha_3_o_in_axes3_x
         rrrs_B_3_o_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_o_in_axes3_y
         rrrs_B_3_o_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_o_in_axes3_x
-        # (rrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        # (rrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         rrrs_acc_3_o_in_axes3_x = (
         rrrs_u_1_in_axes3_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
             axis_x_rrrs_axes3_z*gravity_z
@@ -2276,7 +2276,7 @@ def _run_dynamics(m, X, V):
             rrrs_c_3*(rrrs_J_3_in_spec3_yy*rrrs_c_3 - rrrs_Jc_2_t) - rrrs_s_3_t*(rrrs_Jc_2_t_3 -
             rrrs_J_3_in_spec3_xx*rrrs_s_3_t)))
         )
-        # (rrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        # (rrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
         rrrs_mu_3_o_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x
         rrrs_mu_3_o_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y
         rrrs_mu_3_o_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z
@@ -2311,7 +2311,7 @@ def _run_dynamics(m, X, V):
         rrrs_d_Gamma_3_in_axes3_x = (
         rrrs_w_2_in_axes3_x*(rrrs_J_3_in_spec3_zz - rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y
         )
-        # (rrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (rrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrrs_mu_2_o_t = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
         rrrs_mu_2_o_t_2 = rrrs_omega_1_t*rrrs_omega_1_t
         rrrs_mu_2_o_t_3 = rrrs_qd_2_t*rrrs_qd_2_t
@@ -2341,7 +2341,7 @@ def _run_dynamics(m, X, V):
             rrrs_B_2_o_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy -
             rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x
         )
-        # (rrrs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        # (rrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         rrrs_N_2_o_in_axes2_x = (
         rrrs_mu_2_o_in_axes2_x + rrrs_c_3*rrrs_mu_3_o_in_axes3_x +
             rrrs_mu_3_o_in_axes3_y*rrrs_s_3_t
@@ -2355,12 +2355,12 @@ def _run_dynamics(m, X, V):
         rrrs_d_Gamma_2_in_axes3_x = (
         rrrs_w_2_in_axes3_x*(rrrs_Jc_2_in_axes2_zz - rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y
         )
-        # (rrrs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        # (rrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rrrs_mu_1_o_in_axes1_z = (
         rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o + rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z -
             rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y
         )
-        # (rrrs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        # (rrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrs_N_1_o_in_axes1_z = (
         rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_c_2 - rrrs_N_2_o_in_axes2_y*rrrs_s_2
         )
@@ -2377,7 +2377,7 @@ def _run_dynamics(m, X, V):
             rrrs_s_2*(rrrs_J_2_in_spec2_yz + rrrs_J_3_in_spec3_yz*rrrs_c_3 -
             rrrs_J_3_in_spec3_xz*rrrs_s_3_t))
         )
-        # (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (rrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y
         # (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrrs_d_c_in_axes3_xx = (
@@ -2396,7 +2396,7 @@ def _run_dynamics(m, X, V):
         rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_z -
             rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_y
         )
-        # (rrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (rrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrrs_c_o_in_axes3_x = (
         rrrs_h_3_in_spec3_x*(rrrs_mu_3_o_t_2 + rrrs_mu_3_o_t_3) +
             rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*rrrs_r_2_in_axes3_x - rrrs_N_2_o_in_axes2_z)
@@ -3356,18 +3356,18 @@ def _run_Z(m, X, V):
             rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
             rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
         )
-        # (rrrs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (rrrs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrrs_rel_o_in_axes3_x = rrrs_u_1_in_axes3_x - rrrs_bias_in_axes3_x
         rrrs_rel_o_in_axes3_y = rrrs_u_1_in_axes3_y - rrrs_bias_in_axes3_y
         rrrs_rel_o_in_axes3_z = rrrs_u_1_in_axes3_z - rrrs_bias_in_axes3_z
-        # (rrrs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (rrrs-qdd_1_o) remainder of: acceleration of joint 1
         rrrs_qdd_1_o = rrrs_rel_o_in_axes3_z*rrrs_w_1_in_axes3_z
-        # (rrrs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        # (rrrs-qdd_2_o) remainder of: acceleration of joint 2
         rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*rrrs_w_2_in_axes3_x
-        # (rrrs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        # (rrrs-alpha_1_o) remainder of: angular acceleration of link 1
         rrrs_alpha_1_o_in_axes2_x = rrrs_c_2*rrrs_qdd_1_o
         rrrs_alpha_1_o_t = rrrs_qdd_1_o*rrrs_s_2
-        # (rrrs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (rrrs-alpha_2_o) remainder of: angular acceleration of link 2
         rrrs_alpha_2_o_in_axes2_x = rrrs_W_2_in_axes2_yz + rrrs_alpha_1_o_in_axes2_x
         rrrs_alpha_2_o_in_axes2_y = rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_o_t
         # (rrrs-B_2_o) remainder of the acceleration tensor of link 2
@@ -3375,7 +3375,7 @@ def _run_Z(m, X, V):
         rrrs_B_2_o_in_axes2_yx = rrrs_W_2_in_axes2_xy + rrrs_qdd_2_o
         rrrs_B_2_o_in_axes2_zx = -rrrs_alpha_2_o_in_axes2_y - rrrs_zeta_2_in_axes2_y
         rrrs_B_2_o_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_o_in_axes2_x
-        # (rrrs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        # (rrrs-alpha_3_o) remainder of: angular acceleration of link 3
         rrrs_alpha_3_o_in_axes3_x = (
         rrrs_alpha_2_o_in_axes2_x*rrrs_c_3 + rrrs_omega_1_in_axes3_y*rrrs_qd_3 -
             rrrs_alpha_2_o_in_axes2_y*rrrs_s_3_t
@@ -3394,7 +3394,7 @@ def _run_Z(m, X, V):
         rrrs_B_3_o_in_axes3_yz = rrrs_W_3_in_axes3_yz - rrrs_alpha_3_o_in_axes3_x
         rrrs_B_3_o_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_o_in_axes3_y
         rrrs_B_3_o_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_o_in_axes3_x
-        # (rrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        # (rrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         rrrs_acc_3_o_in_axes3_x = (
         rrrs_u_1_in_axes3_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
             axis_x_rrrs_axes3_z*gravity_z
@@ -3407,7 +3407,7 @@ def _run_Z(m, X, V):
         rrrs_u_1_in_axes3_z - axis_z_rrrs_axes3_x*gravity_x - axis_z_rrrs_axes3_y*gravity_y -
             axis_z_rrrs_axes3_z*gravity_z
         )
-        # (rrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        # (rrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
         rrrs_mu_3_o_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x
         rrrs_mu_3_o_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y
         rrrs_mu_3_o_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z
@@ -3436,7 +3436,7 @@ def _run_Z(m, X, V):
             rrrs_B_3_o_in_axes3_yz*rrrs_J_3_in_spec3_xz -
             rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_y
         )
-        # (rrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (rrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrrs_mu_2_o_t = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
         rrrs_mu_2_o_t_2 = rrrs_omega_1_t*rrrs_omega_1_t
         rrrs_mu_2_o_t_3 = rrrs_qd_2_t_3*rrrs_qd_2_t_3
@@ -3466,7 +3466,7 @@ def _run_Z(m, X, V):
             rrrs_B_2_o_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy -
             rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x
         )
-        # (rrrs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        # (rrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         rrrs_N_2_o_in_axes2_x = (
         rrrs_mu_2_o_in_axes2_x + rrrs_c_3*rrrs_mu_3_o_in_axes3_x +
             rrrs_mu_3_o_in_axes3_y*rrrs_s_3_t
@@ -3476,18 +3476,18 @@ def _run_Z(m, X, V):
             rrrs_mu_3_o_in_axes3_x*rrrs_s_3_t
         )
         rrrs_N_2_o_in_axes2_z = rrrs_mu_2_o_in_axes2_z + rrrs_mu_3_o_in_axes3_z
-        # (rrrs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        # (rrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rrrs_mu_1_o_in_axes1_z = (
         rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o + rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z -
             rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y
         )
-        # (rrrs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        # (rrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrs_N_1_o_in_axes1_z = (
         rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_c_2 - rrrs_N_2_o_in_axes2_y*rrrs_s_2
         )
-        # (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (rrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y
-        # (rrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (rrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrrs_c_o_in_axes3_x = (
         rrrs_h_3_in_spec3_x*(rrrs_mu_3_o_t_2 + rrrs_mu_3_o_t_3) +
             rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*rrrs_r_2_in_axes3_x - rrrs_N_2_o_in_axes2_z)

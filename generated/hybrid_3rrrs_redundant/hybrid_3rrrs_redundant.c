@@ -2354,8 +2354,7 @@ INLINE void stage_rrrrs_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real rrrrs_d_3_in_axes4_y = rrrrs_bias_t_5*rrrrs_s_4_t - rrrrs_bias_t_6*rrrrs_c_4;
     const real rrrrs_d_4_in_axes4_x = rrrrs_c_4*rrrrs_joint4_offset_x;
     const real rrrrs_d_4_in_axes4_y = rrrrs_joint4_offset_x*rrrrs_s_4_t;
-    /* (rrrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-       link 3, less gravity */
+    /* (rrrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
     const real rrrrs_acc_3_t = m->rrrrs_acc_3_t[i];
     const real rrrrs_acc_3_t_2 = m->rrrrs_acc_3_t_2[i];
     const real rrrrs_g_in_axes1_x = rrrrs_acc_3_t*rrrrs_c_1 + rrrrs_acc_3_t_2*rrrrs_s_1;
@@ -3313,8 +3312,8 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
     const real rrrs_bias_t_2 = rrrs_joint2_offset_x*rrrs_s_2;
     const real rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x;
     const real rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t;
-    /* (rrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-       link 2, about their reference points */
+    /* (rrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
     const real rrrs_mu_2_t = m->rrrs_mu_2_t[i];
     const real rrrs_mu_2_t_2 = m->rrrs_mu_2_t_2[i];
     const real rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1;
@@ -3640,20 +3639,19 @@ INLINE void stage_rrrs_Z_dynamics(const prepared *m, size_t w, size_t j, const r
     const real rrrs_u_1_z = omega_x*v->rrrs_S_dot_t_2 - omega_y*v->rrrs_S_dot_t;
     const real rrrs_u_1_in_axes3_z = v->axis_z_rrrs_axes3_x*rrrs_u_1_x +
         v->axis_z_rrrs_axes3_y*rrrs_u_1_y + v->axis_z_rrrs_axes3_z*rrrs_u_1_z;
-    /* (rrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-       link 3, less gravity */
+    /* (rrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
     const real gravity_x = m->gravity_x;
     const real gravity_y = m->gravity_y;
     const real gravity_z = m->gravity_z;
     const real rrrs_acc_3_o_in_axes3_z = rrrs_u_1_in_axes3_z -
         v->axis_z_rrrs_axes3_x*gravity_x - v->axis_z_rrrs_axes3_y*gravity_y -
         v->axis_z_rrrs_axes3_z*gravity_z;
-    /* (rrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
-       link 3, about their reference points */
+    /* (rrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+       reference points */
     const real rrrs_mu_3_o_t = v->rrrs_omega_1_in_axes3_x*v->rrrs_omega_1_in_axes3_x;
     const real rrrs_mu_3_o_t_2 = v->rrrs_omega_1_in_axes3_y*v->rrrs_omega_1_in_axes3_y;
-    /* (rrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-       link 2, about their reference points */
+    /* (rrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
     const real rrrs_mu_2_o_t = v->rrrs_omega_1_in_axes2_x*v->rrrs_omega_1_in_axes2_x;
     const real rrrs_mu_2_o_t_2 = v->rrrs_omega_1_t*v->rrrs_omega_1_t;
     v->rrrs_u_1_x = rrrs_u_1_x;
@@ -4124,19 +4122,19 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
             rrrrs_platform_joint_offset_x*(rrrrs_W_4_in_axes4_xz - rrrrs_beta_4_in_axes4_y) +
             2*rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
             2*rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2;
-        /* (rrrrs-rel_o) remainder without the acceleration in: acceleration of the connection point left
-           to the joint accelerations */
+        /* (rrrrs-rel_o) remainder of: acceleration of the connection point left to the joint
+           accelerations */
         const real rrrrs_rel_o_in_axes4_x = rrrrs_u_1_in_axes4_x - rrrrs_bias_in_axes4_x;
         const real rrrrs_rel_o_in_axes4_y = rrrrs_u_1_in_axes4_y - rrrrs_bias_in_axes4_y;
         const real rrrrs_rel_o_in_axes4_z = rrrrs_u_1_in_axes4_z - rrrrs_bias_in_axes4_z;
-        /* (rrrrs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        /* (rrrrs-qdd_1_o) remainder of: acceleration of joint 1 */
         const real rrrrs_qdd_1_o = rrrrs_rel_o_in_axes4_z*v.rrrrs_w_1_in_axes4_z;
-        /* (rrrrs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
+        /* (rrrrs-qdd_3_o) remainder of: acceleration of joint 3 */
         const real rrrrs_qdd_3_o = rrrrs_rel_o_in_axes4_x*v.rrrrs_w_3_in_axes4_x;
-        /* (rrrrs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+        /* (rrrrs-alpha_1_o) remainder of: angular acceleration of link 1 */
         const real rrrrs_alpha_1_o_in_axes2_x = v.rrrrs_h_3_t_6*rrrrs_qdd_1_o;
         const real rrrrs_alpha_1_o_in_axes2_y = -v.rrrrs_h_3_t_7*rrrrs_qdd_1_o;
-        /* (rrrrs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrrrs-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real rrrrs_alpha_2_o_in_axes2_x = rrrrs_W_2_in_axes2_yz +
             rrrrs_alpha_1_o_in_axes2_x;
         const real rrrrs_alpha_2_o_in_axes2_y = rrrrs_alpha_1_o_in_axes2_y -
@@ -4144,7 +4142,7 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
         /* (rrrrs-B_2_o) remainder of the acceleration tensor of link 2 */
         const real rrrrs_B_2_o_in_axes2_zx = rrrrs_W_2_in_axes2_xz - rrrrs_alpha_2_o_in_axes2_y;
         const real rrrrs_B_2_o_in_axes2_zy = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_2_o_in_axes2_x;
-        /* (rrrrs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (rrrrs-alpha_3_o) remainder of: angular acceleration of link 3 */
         const real rrrrs_alpha_3_o_in_axes3_x = rrrrs_zeta_3_in_axes3_x +
             rrrrs_alpha_2_o_in_axes2_x*v.rrrrs_h_3_t_26 +
             rrrrs_alpha_2_o_in_axes2_y*v.rrrrs_h_3_t_27;
@@ -4158,7 +4156,7 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
         const real rrrrs_B_3_o_in_axes3_yz = rrrrs_W_3_in_axes3_yz - rrrrs_alpha_3_o_in_axes3_x;
         const real rrrrs_B_3_o_in_axes3_zx = rrrrs_W_3_in_axes3_xz - rrrrs_alpha_3_o_in_axes3_y;
         const real rrrrs_B_3_o_in_axes3_zy = rrrrs_W_3_in_axes3_yz + rrrrs_alpha_3_o_in_axes3_x;
-        /* (rrrrs-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4 */
+        /* (rrrrs-alpha_4_o) remainder of: angular acceleration of link 4 */
         const real rrrrs_alpha_4_o_in_axes4_x = rrrrs_alpha_3_o_in_axes3_x*v.rrrrs_c_4 +
             rrrrs_omega_1_in_axes4_y*rrrrs_qd_4 - rrrrs_alpha_3_o_in_axes3_y*v.rrrrs_s_4_t;
         const real rrrrs_alpha_4_o_in_axes4_y = rrrrs_alpha_3_o_in_axes3_x*v.rrrrs_s_4_t +
@@ -4176,10 +4174,9 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
         const real rrrrs_a_o_3_t = rrrrs_omega_1_in_axes2_y*rrrrs_omega_1_in_axes2_y;
         const real rrrrs_a_o_3_in_axes2_x = -rrrrs_joint3_offset_x*(rrrrs_a_o_3_t +
             v.rrrrs_bias_t);
-        /* (rrrrs-a_o_3_o) remainder without the acceleration in: acceleration of the origin of joint 3 */
+        /* (rrrrs-a_o_3_o) remainder of: acceleration of the origin of joint 3 */
         const real rrrrs_a_o_3_o_in_axes2_y = rrrrs_W_2_in_axes2_xy*rrrrs_joint3_offset_x;
-        /* (rrrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
+        /* (rrrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
         const real rrrrs_acc_3_t = m->rrrrs_acc_3_t[i];
         const real rrrrs_acc_3_t_2 = m->rrrrs_acc_3_t_2[i];
         const real rrrrs_g_in_axes1_x = rrrrs_acc_3_t*v.rrrrs_c_1 + rrrrs_acc_3_t_2*v.rrrrs_s_1;
@@ -4197,7 +4194,7 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
             rrrrs_g_in_axes2_y*v.rrrrs_h_3_t_26;
         const real rrrrs_acc_3_o_in_axes3_z = rrrrs_B_2_o_in_axes2_zx*rrrrs_joint3_offset_x -
             rrrrs_g_in_axes1_y;
-        /* (rrrrs-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight */
+        /* (rrrrs-f_3_o) remainder of: inertia force of link 3 less its weight */
         const real rrrrs_f_3_o_t = rrrrs_omega_1_t*rrrrs_omega_1_t;
         const real rrrrs_f_3_o_t_2 = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2;
         const real rrrrs_h_3_in_spec3_x = m->rrrrs_h_3_in_spec3_x[i];
@@ -4216,8 +4213,7 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
             rrrrs_B_3_o_in_axes3_zy*rrrrs_h_3_in_spec3_y +
             rrrrs_acc_3_o_in_axes3_z*rrrrs_link3_mass - rrrrs_h_3_in_spec3_z*(rrrrs_f_3_o_t +
             rrrrs_f_3_o_t_2);
-        /* (rrrrs-acc_4_o) remainder without the acceleration in: acceleration of the reference point of
-           link 4, less gravity */
+        /* (rrrrs-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
@@ -4230,8 +4226,8 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
         const real rrrrs_acc_4_o_in_axes4_z = rrrrs_u_1_in_axes4_z -
             v.axis_z_rrrrs_axes4_x*gravity_x - v.axis_z_rrrrs_axes4_y*gravity_y -
             v.axis_z_rrrrs_axes4_z*gravity_z;
-        /* (rrrrs-mu_4_o) remainder without the acceleration in: inertia moment of the links that turn
-           with link 4, about their reference points */
+        /* (rrrrs-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their
+           reference points */
         const real rrrrs_J_4_in_spec4_xy = m->rrrrs_J_4_in_spec4_xy[i];
         const real rrrrs_J_4_in_spec4_xz = m->rrrrs_J_4_in_spec4_xz[i];
         const real rrrrs_J_4_in_spec4_yz = m->rrrrs_J_4_in_spec4_yz[i];
@@ -4268,8 +4264,8 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
             v.rrrrs_r_3_in_axes4_x*rrrrs_w_3_t_7);
         const real rrrrs_dy_2_Gamma_4 = rrrrs_J_4_in_spec4_zz + rrrrs_dy_2_Gamma_4_t +
             rrrrs_J_4_in_spec4_zz*rrrrs_w_3_t_7;
-        /* (rrrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn
-           with link 3, about their reference points */
+        /* (rrrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+           reference points */
         const real rrrrs_J_3_in_spec3_xy = m->rrrrs_J_3_in_spec3_xy[i];
         const real rrrrs_J_3_in_spec3_xz = m->rrrrs_J_3_in_spec3_xz[i];
         const real rrrrs_J_3_in_spec3_yz = m->rrrrs_J_3_in_spec3_yz[i];
@@ -4297,8 +4293,8 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
             rrrrs_B_3_o_in_axes3_xy*rrrrs_Sigma_3_in_axes3_yy -
             rrrrs_B_3_o_in_axes3_yz*rrrrs_J_3_in_spec3_xz -
             rrrrs_acc_3_o_in_axes3_x*rrrrs_h_3_in_spec3_y;
-        /* (rrrrs-N_3_o) remainder without the acceleration in: moment about joint 3 of the links from 3
-           outwards, the force at the connection point left out */
+        /* (rrrrs-N_3_o) remainder of: moment about joint 3 of the links from 3 outwards, the force at the
+           connection point left out */
         const real rrrrs_N_3_o_in_axes3_x = rrrrs_mu_3_o_in_axes3_x +
             v.rrrrs_c_4*rrrrs_mu_4_o_in_axes4_x + rrrrs_mu_4_o_in_axes4_y*v.rrrrs_s_4_t;
         const real rrrrs_N_3_o_in_axes3_y = rrrrs_mu_3_o_in_axes3_y +
@@ -4309,8 +4305,8 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
         const real rrrrs_Jc_3_in_axes3_zz = m->rrrrs_Jc_3_in_axes3_zz[i];
         const real rrrrs_dy_2_Gamma_3 = v.rrrrs_L_c_3_2_in_axes2_z + rrrrs_dy_2_Gamma_4_t +
             rrrrs_Jc_3_in_axes3_zz*rrrrs_w_3_t_7;
-        /* (rrrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn
-           with link 2, about their reference points */
+        /* (rrrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real rrrrs_mu_2_o_t = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_x;
         const real rrrrs_J_2_in_spec2_xy = m->rrrrs_J_2_in_spec2_xy[i];
         const real rrrrs_J_2_in_spec2_xz = m->rrrrs_J_2_in_spec2_xz[i];
@@ -4340,8 +4336,8 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
             rrrrs_g_in_axes2_x*rrrrs_h_2_in_spec2_y -
             rrrrs_Sigma_2_in_axes2_yy*rrrrs_W_2_in_axes2_xy -
             rrrrs_g_in_axes2_y*rrrrs_h_2_in_spec2_x;
-        /* (rrrrs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
+        /* (rrrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+           connection point left out */
         const real rrrrs_N_2_o_in_axes2_x = rrrrs_mu_2_o_in_axes2_x +
             rrrrs_N_3_o_in_axes3_x*v.rrrrs_h_3_t_26 - rrrrs_N_3_o_in_axes3_y*v.rrrrs_h_3_t_27;
         const real rrrrs_N_2_o_in_axes2_y = rrrrs_mu_2_o_in_axes2_y +
@@ -4356,28 +4352,28 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
         const real rrrrs_dy_2_Gamma_2 = rrrrs_J_2_in_spec2_zz + v.rrrrs_Jc_2_t_7 +
             rrrrs_Jc_3_in_axes3_zz + rrrrs_dy_2_Gamma_4_t +
             v.rrrrs_L_c_3_2_in_axes2_z*rrrrs_w_3_t_7;
-        /* (rrrrs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn
-           with link 1, about their reference points */
+        /* (rrrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+           reference points */
         const real rrrrs_J_1_in_spec1_xx = m->rrrrs_J_1_in_spec1_xx[i];
         const real rrrrs_h_1_in_spec1_y = m->rrrrs_h_1_in_spec1_y[i];
         const real rrrrs_h_1_in_spec1_z = m->rrrrs_h_1_in_spec1_z[i];
         const real rrrrs_mu_1_o_in_axes1_z = rrrrs_J_1_in_spec1_xx*rrrrs_qdd_1_o +
             rrrrs_g_in_axes1_x*rrrrs_h_1_in_spec1_z - rrrrs_g_in_axes1_y*rrrrs_h_1_in_spec1_y;
-        /* (rrrrs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
+        /* (rrrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+           connection point left out */
         const real rrrrs_N_1_o_in_axes1_z = rrrrs_mu_1_o_in_axes1_z +
             rrrrs_N_2_o_in_axes2_x*v.rrrrs_h_3_t_6 - rrrrs_N_2_o_in_axes2_y*v.rrrrs_h_3_t_7;
         /* (rrrrs-dy_2_G) coefficient of the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all degrees of freedom */
         const real rrrrs_dy_2_G_in_axes4_y = rrrrs_dy_2_Gamma_4*rrrrs_w_4_in_axes4_y;
-        /* (rrrrs-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (rrrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real rrrrs_G_o_in_axes4_y = rrrrs_mu_4_o_in_axes4_z*rrrrs_w_4_in_axes4_y;
         const real rrrrs_G_o_in_axes4_x =
             -v.rrrrs_w_3_in_axes4_x*(rrrrs_G_o_in_axes4_y*v.rrrrs_r_3_in_axes4_x -
             rrrrs_N_3_o_in_axes3_z);
-        /* (rrrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (rrrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at
+           the connection point */
         const real rrrrs_c_o_in_axes4_x = rrrrs_W_4_t_2*rrrrs_h_4_in_spec4_x -
             rrrrs_G_o_in_axes4_x - rrrrs_B_4_o_in_axes4_xy*rrrrs_h_4_in_spec4_y -
             rrrrs_B_4_o_in_axes4_xz*rrrrs_h_4_in_spec4_z;
@@ -4454,8 +4450,8 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
             v.rrrrs_r_2_in_axes4_y*v.rrrrs_w_3_in_axes4_x*(rrrrs_dy_2_G_in_axes4_y*v.rrrrs_r_3_in_axes4_x
             - rrrrs_dy_2_Gamma_3);
         const real rrrrs_dy_2_P_2 = rrrrs_dy_2_Gamma_2 - rrrrs_dy_2_P_2_t;
-        /* (rrrrs-P_2_o) remainder without the acceleration in: inertia and weight of the leg along the
-           extra degree of freedom of joint 2 */
+        /* (rrrrs-P_2_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
+           joint 2 */
         const real rrrrs_P_2_o_t = rrrrs_G_o_in_axes4_x*v.rrrrs_r_2_in_axes4_y -
             rrrrs_G_o_in_axes4_y*v.rrrrs_r_2_in_axes4_x;
         const real rrrrs_P_2_o = rrrrs_N_2_o_in_axes2_z + rrrrs_P_2_o_t;
@@ -4527,8 +4523,8 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
         gather(&terms[24*count + k], add, rrrrs_Z_a_t);  /* Z_a_x_of_legs */
         gather(&terms[25*count + k], add, rrrrs_Z_a_t_2);  /* Z_a_y_of_legs */
         gather(&terms[26*count + k], add, rrrrs_Z_a_t_3);  /* Z_a_z_of_legs */
-        /* (rrrrs-P_2_o) remainder without the acceleration in: inertia and weight of the leg along the
-           extra degree of freedom of joint 2 */
+        /* (rrrrs-P_2_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
+           joint 2 */
         o[0*count + k] = rrrrs_P_2_o;
         /* (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra
            degree of freedom of joint 2 */
@@ -4638,19 +4634,19 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t l
             v.axis_x_rrrs_axes3_y*v.rrrs_u_1_y + v.axis_x_rrrs_axes3_z*v.rrrs_u_1_z;
         const real rrrs_u_1_in_axes3_y = v.axis_y_rrrs_axes3_x*v.rrrs_u_1_x +
             v.axis_y_rrrs_axes3_y*v.rrrs_u_1_y + v.axis_y_rrrs_axes3_z*v.rrrs_u_1_z;
-        /* (rrrs-rel_o) remainder without the acceleration in: acceleration of the connection point left
-           to the joint accelerations */
+        /* (rrrs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real rrrs_rel_o_in_axes3_x = rrrs_u_1_in_axes3_x - v.rrrs_bias_in_axes3_x;
         const real rrrs_rel_o_in_axes3_y = rrrs_u_1_in_axes3_y - v.rrrs_bias_in_axes3_y;
         const real rrrs_rel_o_in_axes3_z = v.rrrs_u_1_in_axes3_z - v.rrrs_bias_in_axes3_z;
-        /* (rrrs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        /* (rrrs-qdd_1_o) remainder of: acceleration of joint 1 */
         const real rrrs_qdd_1_o = rrrs_rel_o_in_axes3_z*v.rrrs_w_1_in_axes3_z;
-        /* (rrrs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        /* (rrrs-qdd_2_o) remainder of: acceleration of joint 2 */
         const real rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*v.rrrs_w_2_in_axes3_x;
-        /* (rrrs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+        /* (rrrs-alpha_1_o) remainder of: angular acceleration of link 1 */
         const real rrrs_alpha_1_o_in_axes2_x = v.rrrs_c_2*rrrs_qdd_1_o;
         const real rrrs_alpha_1_o_t = rrrs_qdd_1_o*v.rrrs_s_2;
-        /* (rrrs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrrs-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real rrrs_alpha_2_o_in_axes2_x = v.rrrs_W_2_in_axes2_yz + rrrs_alpha_1_o_in_axes2_x;
         const real rrrs_alpha_2_o_in_axes2_y = v.rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_o_t;
         /* (rrrs-B_2_o) remainder of the acceleration tensor of link 2 */
@@ -4658,7 +4654,7 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t l
         const real rrrs_B_2_o_in_axes2_yx = v.rrrs_W_2_in_axes2_xy + rrrs_qdd_2_o;
         const real rrrs_B_2_o_in_axes2_zx = -rrrs_alpha_2_o_in_axes2_y - v.rrrs_zeta_2_in_axes2_y;
         const real rrrs_B_2_o_in_axes2_zy = v.rrrs_W_2_in_axes2_yz + rrrs_alpha_2_o_in_axes2_x;
-        /* (rrrs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (rrrs-alpha_3_o) remainder of: angular acceleration of link 3 */
         const real rrrs_alpha_3_o_in_axes3_x = rrrs_alpha_2_o_in_axes2_x*v.rrrs_c_3 +
             v.rrrs_omega_1_in_axes3_y*v.rrrs_qd_3 - rrrs_alpha_2_o_in_axes2_y*v.rrrs_s_3_t;
         const real rrrs_alpha_3_o_in_axes3_y = rrrs_alpha_2_o_in_axes2_x*v.rrrs_s_3_t +
@@ -4673,8 +4669,7 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t l
         const real rrrs_B_3_o_in_axes3_yz = v.rrrs_W_3_in_axes3_yz - rrrs_alpha_3_o_in_axes3_x;
         const real rrrs_B_3_o_in_axes3_zx = v.rrrs_W_3_in_axes3_xz - rrrs_alpha_3_o_in_axes3_y;
         const real rrrs_B_3_o_in_axes3_zy = v.rrrs_W_3_in_axes3_yz + rrrs_alpha_3_o_in_axes3_x;
-        /* (rrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
+        /* (rrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
@@ -4682,8 +4677,8 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t l
             - v.axis_x_rrrs_axes3_y*gravity_y - v.axis_x_rrrs_axes3_z*gravity_z;
         const real rrrs_acc_3_o_in_axes3_y = rrrs_u_1_in_axes3_y - v.axis_y_rrrs_axes3_x*gravity_x
             - v.axis_y_rrrs_axes3_y*gravity_y - v.axis_y_rrrs_axes3_z*gravity_z;
-        /* (rrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 3, about their reference points */
+        /* (rrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+           reference points */
         const real rrrs_mu_3_o_t_3 = v.rrrs_omega_3_in_axes3_z*v.rrrs_omega_3_in_axes3_z;
         const real rrrs_J_3_in_spec3_xy = m->rrrs_J_3_in_spec3_xy[i];
         const real rrrs_J_3_in_spec3_xz = m->rrrs_J_3_in_spec3_xz[i];
@@ -4715,8 +4710,8 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t l
             rrrs_B_3_o_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
             rrrs_B_3_o_in_axes3_yz*rrrs_J_3_in_spec3_xz -
             rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_y;
-        /* (rrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
+        /* (rrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real rrrs_mu_2_o_t_3 = v.rrrs_qd_2_t*v.rrrs_qd_2_t;
         const real rrrs_J_2_in_spec2_xy = m->rrrs_J_2_in_spec2_xy[i];
         const real rrrs_J_2_in_spec2_xz = m->rrrs_J_2_in_spec2_xz[i];
@@ -4744,29 +4739,29 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t l
             v.rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y -
             rrrs_B_2_o_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy -
             rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_t - v.rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x;
-        /* (rrrs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
+        /* (rrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+           connection point left out */
         const real rrrs_N_2_o_in_axes2_x = rrrs_mu_2_o_in_axes2_x +
             v.rrrs_c_3*rrrs_mu_3_o_in_axes3_x + rrrs_mu_3_o_in_axes3_y*v.rrrs_s_3_t;
         const real rrrs_N_2_o_in_axes2_y = rrrs_mu_2_o_in_axes2_y +
             v.rrrs_c_3*rrrs_mu_3_o_in_axes3_y - rrrs_mu_3_o_in_axes3_x*v.rrrs_s_3_t;
         const real rrrs_N_2_o_in_axes2_z = rrrs_mu_2_o_in_axes2_z + rrrs_mu_3_o_in_axes3_z;
-        /* (rrrs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
+        /* (rrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+           reference points */
         const real rrrs_J_1_in_spec1_xx = m->rrrs_J_1_in_spec1_xx[i];
         const real rrrs_h_1_in_spec1_y = m->rrrs_h_1_in_spec1_y[i];
         const real rrrs_h_1_in_spec1_z = m->rrrs_h_1_in_spec1_z[i];
         const real rrrs_mu_1_o_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o +
             v.rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z - v.rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y;
-        /* (rrrs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
+        /* (rrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+           connection point left out */
         const real rrrs_N_1_o_in_axes1_z = rrrs_mu_1_o_in_axes1_z +
             rrrs_N_2_o_in_axes2_x*v.rrrs_c_2 - rrrs_N_2_o_in_axes2_y*v.rrrs_s_2;
-        /* (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (rrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y;
-        /* (rrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (rrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at
+           the connection point */
         const real rrrs_c_o_in_axes3_x = rrrs_h_3_in_spec3_x*(v.rrrs_mu_3_o_t_2 + rrrs_mu_3_o_t_3)
             + v.rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*v.rrrs_r_2_in_axes3_x -
             rrrs_N_2_o_in_axes2_z) - rrrs_B_3_o_in_axes3_xy*rrrs_h_3_in_spec3_y -
@@ -5803,19 +5798,19 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
             rrrrs_platform_joint_offset_x*(rrrrs_W_4_in_axes4_xz - rrrrs_beta_4_in_axes4_y) +
             2*v.rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
             2*v.rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2;
-        /* (rrrrs-rel_o) remainder without the acceleration in: acceleration of the connection point left
-           to the joint accelerations */
+        /* (rrrrs-rel_o) remainder of: acceleration of the connection point left to the joint
+           accelerations */
         const real rrrrs_rel_o_in_axes4_x = rrrrs_u_1_in_axes4_x - rrrrs_bias_in_axes4_x;
         const real rrrrs_rel_o_in_axes4_y = rrrrs_u_1_in_axes4_y - rrrrs_bias_in_axes4_y;
         const real rrrrs_rel_o_in_axes4_z = rrrrs_u_1_in_axes4_z - rrrrs_bias_in_axes4_z;
-        /* (rrrrs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        /* (rrrrs-qdd_1_o) remainder of: acceleration of joint 1 */
         const real rrrrs_qdd_1_o = rrrrs_rel_o_in_axes4_z*v.rrrrs_w_1_in_axes4_z;
-        /* (rrrrs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
+        /* (rrrrs-qdd_3_o) remainder of: acceleration of joint 3 */
         const real rrrrs_qdd_3_o = rrrrs_rel_o_in_axes4_x*v.rrrrs_w_3_in_axes4_x;
-        /* (rrrrs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+        /* (rrrrs-alpha_1_o) remainder of: angular acceleration of link 1 */
         const real rrrrs_alpha_1_o_in_axes2_x = v.rrrrs_c_2*rrrrs_qdd_1_o;
         const real rrrrs_alpha_1_o_in_axes2_y = -rrrrs_qdd_1_o*v.rrrrs_s_2;
-        /* (rrrrs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrrrs-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real rrrrs_alpha_2_o_in_axes2_x = rrrrs_W_2_in_axes2_yz +
             rrrrs_alpha_1_o_in_axes2_x;
         const real rrrrs_alpha_2_o_in_axes2_y = rrrrs_alpha_1_o_in_axes2_y -
@@ -5823,7 +5818,7 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         /* (rrrrs-B_2_o) remainder of the acceleration tensor of link 2 */
         const real rrrrs_B_2_o_in_axes2_zx = rrrrs_W_2_in_axes2_xz - rrrrs_alpha_2_o_in_axes2_y;
         const real rrrrs_B_2_o_in_axes2_zy = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_2_o_in_axes2_x;
-        /* (rrrrs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (rrrrs-alpha_3_o) remainder of: angular acceleration of link 3 */
         const real rrrrs_alpha_3_o_in_axes3_x = rrrrs_zeta_3_in_axes3_x +
             rrrrs_alpha_2_o_in_axes2_x*v.rrrrs_c_3 + rrrrs_alpha_2_o_in_axes2_y*v.rrrrs_s_3;
         const real rrrrs_alpha_3_o_in_axes3_y = rrrrs_zeta_3_in_axes3_y +
@@ -5835,7 +5830,7 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real rrrrs_B_3_o_in_axes3_yz = rrrrs_W_3_in_axes3_yz - rrrrs_alpha_3_o_in_axes3_x;
         const real rrrrs_B_3_o_in_axes3_zx = rrrrs_W_3_in_axes3_xz - rrrrs_alpha_3_o_in_axes3_y;
         const real rrrrs_B_3_o_in_axes3_zy = rrrrs_W_3_in_axes3_yz + rrrrs_alpha_3_o_in_axes3_x;
-        /* (rrrrs-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4 */
+        /* (rrrrs-alpha_4_o) remainder of: angular acceleration of link 4 */
         const real rrrrs_alpha_4_o_in_axes4_x = rrrrs_alpha_3_o_in_axes3_x*v.rrrrs_c_4 +
             rrrrs_omega_1_in_axes4_y*rrrrs_qd_4 - rrrrs_alpha_3_o_in_axes3_y*v.rrrrs_s_4_t;
         const real rrrrs_alpha_4_o_in_axes4_y = rrrrs_alpha_3_o_in_axes3_x*v.rrrrs_s_4_t +
@@ -5854,10 +5849,9 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real rrrrs_joint3_offset_x = m->rrrrs_joint3_offset_x[i];
         const real rrrrs_a_o_3_in_axes2_x = -rrrrs_joint3_offset_x*(rrrrs_a_o_3_t +
             v.rrrrs_bias_t);
-        /* (rrrrs-a_o_3_o) remainder without the acceleration in: acceleration of the origin of joint 3 */
+        /* (rrrrs-a_o_3_o) remainder of: acceleration of the origin of joint 3 */
         const real rrrrs_a_o_3_o_in_axes2_y = rrrrs_W_2_in_axes2_xy*rrrrs_joint3_offset_x;
-        /* (rrrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
+        /* (rrrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
         const real rrrrs_acc_3_o_in_axes3_x = rrrrs_a_o_3_in_axes2_x*v.rrrrs_c_3 +
             rrrrs_a_o_3_o_in_axes2_y*v.rrrrs_s_3 - v.rrrrs_c_3*v.rrrrs_g_in_axes2_x -
             v.rrrrs_g_in_axes2_y*v.rrrrs_s_3;
@@ -5866,7 +5860,7 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
             v.rrrrs_c_3*v.rrrrs_g_in_axes2_y;
         const real rrrrs_acc_3_o_in_axes3_z = rrrrs_B_2_o_in_axes2_zx*rrrrs_joint3_offset_x -
             v.rrrrs_g_in_axes1_y;
-        /* (rrrrs-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight */
+        /* (rrrrs-f_3_o) remainder of: inertia force of link 3 less its weight */
         const real rrrrs_f_3_o_t = rrrrs_omega_1_t*rrrrs_omega_1_t;
         const real rrrrs_f_3_o_t_2 = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2;
         const real rrrrs_h_3_in_spec3_x = m->rrrrs_h_3_in_spec3_x[i];
@@ -5885,8 +5879,7 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
             rrrrs_B_3_o_in_axes3_zy*rrrrs_h_3_in_spec3_y +
             rrrrs_acc_3_o_in_axes3_z*rrrrs_link3_mass - rrrrs_h_3_in_spec3_z*(rrrrs_f_3_o_t +
             rrrrs_f_3_o_t_2);
-        /* (rrrrs-acc_4_o) remainder without the acceleration in: acceleration of the reference point of
-           link 4, less gravity */
+        /* (rrrrs-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
@@ -5899,8 +5892,8 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real rrrrs_acc_4_o_in_axes4_z = rrrrs_u_1_in_axes4_z -
             v.axis_z_rrrrs_axes4_x*gravity_x - v.axis_z_rrrrs_axes4_y*gravity_y -
             v.axis_z_rrrrs_axes4_z*gravity_z;
-        /* (rrrrs-mu_4_o) remainder without the acceleration in: inertia moment of the links that turn
-           with link 4, about their reference points */
+        /* (rrrrs-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their
+           reference points */
         const real rrrrs_J_4_in_spec4_xy = m->rrrrs_J_4_in_spec4_xy[i];
         const real rrrrs_J_4_in_spec4_xz = m->rrrrs_J_4_in_spec4_xz[i];
         const real rrrrs_J_4_in_spec4_yz = m->rrrrs_J_4_in_spec4_yz[i];
@@ -5929,8 +5922,8 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
             rrrrs_B_4_o_in_axes4_xy*rrrrs_Sigma_4_in_axes4_yy -
             rrrrs_B_4_o_in_axes4_yz*rrrrs_J_4_in_spec4_xz -
             rrrrs_acc_4_o_in_axes4_x*rrrrs_h_4_in_spec4_y;
-        /* (rrrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn
-           with link 3, about their reference points */
+        /* (rrrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+           reference points */
         const real rrrrs_J_3_in_spec3_xy = m->rrrrs_J_3_in_spec3_xy[i];
         const real rrrrs_J_3_in_spec3_xz = m->rrrrs_J_3_in_spec3_xz[i];
         const real rrrrs_J_3_in_spec3_yz = m->rrrrs_J_3_in_spec3_yz[i];
@@ -5958,15 +5951,15 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
             rrrrs_B_3_o_in_axes3_xy*rrrrs_Sigma_3_in_axes3_yy -
             rrrrs_B_3_o_in_axes3_yz*rrrrs_J_3_in_spec3_xz -
             rrrrs_acc_3_o_in_axes3_x*rrrrs_h_3_in_spec3_y;
-        /* (rrrrs-N_3_o) remainder without the acceleration in: moment about joint 3 of the links from 3
-           outwards, the force at the connection point left out */
+        /* (rrrrs-N_3_o) remainder of: moment about joint 3 of the links from 3 outwards, the force at the
+           connection point left out */
         const real rrrrs_N_3_o_in_axes3_x = rrrrs_mu_3_o_in_axes3_x +
             v.rrrrs_c_4*rrrrs_mu_4_o_in_axes4_x + rrrrs_mu_4_o_in_axes4_y*v.rrrrs_s_4_t;
         const real rrrrs_N_3_o_in_axes3_y = rrrrs_mu_3_o_in_axes3_y +
             v.rrrrs_c_4*rrrrs_mu_4_o_in_axes4_y - rrrrs_mu_4_o_in_axes4_x*v.rrrrs_s_4_t;
         const real rrrrs_N_3_o_in_axes3_z = rrrrs_mu_3_o_in_axes3_z + rrrrs_mu_4_o_in_axes4_z;
-        /* (rrrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn
-           with link 2, about their reference points */
+        /* (rrrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real rrrrs_mu_2_o_t = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_x;
         const real rrrrs_J_2_in_spec2_xy = m->rrrrs_J_2_in_spec2_xy[i];
         const real rrrrs_J_2_in_spec2_xz = m->rrrrs_J_2_in_spec2_xz[i];
@@ -5997,8 +5990,8 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
             v.rrrrs_g_in_axes2_x*rrrrs_h_2_in_spec2_y -
             rrrrs_Sigma_2_in_axes2_yy*rrrrs_W_2_in_axes2_xy -
             v.rrrrs_g_in_axes2_y*rrrrs_h_2_in_spec2_x;
-        /* (rrrrs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
+        /* (rrrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+           connection point left out */
         const real rrrrs_N_2_o_in_axes2_x = rrrrs_mu_2_o_in_axes2_x +
             rrrrs_N_3_o_in_axes3_x*v.rrrrs_c_3 - rrrrs_N_3_o_in_axes3_y*v.rrrrs_s_3;
         const real rrrrs_N_2_o_in_axes2_y = rrrrs_mu_2_o_in_axes2_y +
@@ -6007,25 +6000,25 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real rrrrs_N_2_o_in_axes2_z = rrrrs_N_3_o_in_axes3_z + rrrrs_mu_2_o_in_axes2_z +
             rrrrs_joint3_offset_x*(v.rrrrs_c_3*rrrrs_f_3_o_in_axes3_y +
             rrrrs_f_3_o_in_axes3_x*v.rrrrs_s_3);
-        /* (rrrrs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn
-           with link 1, about their reference points */
+        /* (rrrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+           reference points */
         const real rrrrs_J_1_in_spec1_xx = m->rrrrs_J_1_in_spec1_xx[i];
         const real rrrrs_h_1_in_spec1_y = m->rrrrs_h_1_in_spec1_y[i];
         const real rrrrs_h_1_in_spec1_z = m->rrrrs_h_1_in_spec1_z[i];
         const real rrrrs_mu_1_o_in_axes1_z = rrrrs_J_1_in_spec1_xx*rrrrs_qdd_1_o +
             v.rrrrs_g_in_axes1_x*rrrrs_h_1_in_spec1_z - v.rrrrs_g_in_axes1_y*rrrrs_h_1_in_spec1_y;
-        /* (rrrrs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
+        /* (rrrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+           connection point left out */
         const real rrrrs_N_1_o_in_axes1_z = rrrrs_mu_1_o_in_axes1_z +
             rrrrs_N_2_o_in_axes2_x*v.rrrrs_c_2 - rrrrs_N_2_o_in_axes2_y*v.rrrrs_s_2;
-        /* (rrrrs-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (rrrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real rrrrs_G_o_in_axes4_y = rrrrs_mu_4_o_in_axes4_z*rrrrs_w_4_in_axes4_y;
         const real rrrrs_G_o_in_axes4_x =
             -v.rrrrs_w_3_in_axes4_x*(rrrrs_G_o_in_axes4_y*v.rrrrs_r_3_in_axes4_x -
             rrrrs_N_3_o_in_axes3_z);
-        /* (rrrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (rrrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at
+           the connection point */
         const real rrrrs_c_o_in_axes4_x = rrrrs_W_4_t_2*rrrrs_h_4_in_spec4_x -
             rrrrs_G_o_in_axes4_x - rrrrs_B_4_o_in_axes4_xy*rrrrs_h_4_in_spec4_y -
             rrrrs_B_4_o_in_axes4_xz*rrrrs_h_4_in_spec4_z;
@@ -6046,8 +6039,8 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real rrrrs_U_z = -axis_x_rrrrs_axes4_z*rrrrs_c_o_in_axes4_x -
             axis_y_rrrrs_axes4_z*rrrrs_c_o_in_axes4_y -
             v.axis_z_rrrrs_axes4_z*rrrrs_c_o_in_axes4_z;
-        /* (rrrrs-P_2_o) remainder without the acceleration in: inertia and weight of the leg along the
-           extra degree of freedom of joint 2 */
+        /* (rrrrs-P_2_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
+           joint 2 */
         const real rrrrs_P_2_o_t = rrrrs_G_o_in_axes4_x*v.rrrrs_r_2_in_axes4_y -
             rrrrs_G_o_in_axes4_y*v.rrrrs_r_2_in_axes4_x;
         const real rrrrs_P_2_o = rrrrs_N_2_o_in_axes2_z + rrrrs_P_2_o_t;
@@ -6063,8 +6056,8 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         gather(&terms[3*count + k], add, rrrrs_Z_a_t);  /* Z_a_x_of_legs */
         gather(&terms[4*count + k], add, rrrrs_Z_a_t_2);  /* Z_a_y_of_legs */
         gather(&terms[5*count + k], add, rrrrs_Z_a_t_3);  /* Z_a_z_of_legs */
-        /* (rrrrs-P_2_o) remainder without the acceleration in: inertia and weight of the leg along the
-           extra degree of freedom of joint 2 */
+        /* (rrrrs-P_2_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
+           joint 2 */
         o[0*count + k] = rrrrs_P_2_o;
         o[3*count + k] = rrrrs_P_2_o;
         const real rrrrs_size_t_3 = m->rrrrs_size_t_3[i];
@@ -6166,19 +6159,19 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, co
             rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
             rrrs_bias_t_4*v.rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*v.rrrs_omega_1_in_axes3_x -
             v.rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y;
-        /* (rrrs-rel_o) remainder without the acceleration in: acceleration of the connection point left
-           to the joint accelerations */
+        /* (rrrs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real rrrs_rel_o_in_axes3_x = rrrs_u_1_in_axes3_x - rrrs_bias_in_axes3_x;
         const real rrrs_rel_o_in_axes3_y = rrrs_u_1_in_axes3_y - rrrs_bias_in_axes3_y;
         const real rrrs_rel_o_in_axes3_z = v.rrrs_u_1_in_axes3_z - rrrs_bias_in_axes3_z;
-        /* (rrrs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        /* (rrrs-qdd_1_o) remainder of: acceleration of joint 1 */
         const real rrrs_qdd_1_o = rrrs_rel_o_in_axes3_z*v.rrrs_w_1_in_axes3_z;
-        /* (rrrs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        /* (rrrs-qdd_2_o) remainder of: acceleration of joint 2 */
         const real rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*v.rrrs_w_2_in_axes3_x;
-        /* (rrrs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+        /* (rrrs-alpha_1_o) remainder of: angular acceleration of link 1 */
         const real rrrs_alpha_1_o_in_axes2_x = v.rrrs_c_2*rrrs_qdd_1_o;
         const real rrrs_alpha_1_o_t = rrrs_qdd_1_o*v.rrrs_s_2;
-        /* (rrrs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrrs-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real rrrs_alpha_2_o_in_axes2_x = rrrs_W_2_in_axes2_yz + rrrs_alpha_1_o_in_axes2_x;
         const real rrrs_alpha_2_o_in_axes2_y = rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_o_t;
         /* (rrrs-B_2_o) remainder of the acceleration tensor of link 2 */
@@ -6186,7 +6179,7 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real rrrs_B_2_o_in_axes2_yx = v.rrrs_W_2_in_axes2_xy + rrrs_qdd_2_o;
         const real rrrs_B_2_o_in_axes2_zx = -rrrs_alpha_2_o_in_axes2_y - rrrs_zeta_2_in_axes2_y;
         const real rrrs_B_2_o_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_o_in_axes2_x;
-        /* (rrrs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (rrrs-alpha_3_o) remainder of: angular acceleration of link 3 */
         const real rrrs_alpha_3_o_in_axes3_x = rrrs_alpha_2_o_in_axes2_x*v.rrrs_c_3 +
             v.rrrs_omega_1_in_axes3_y*rrrs_qd_3 - rrrs_alpha_2_o_in_axes2_y*v.rrrs_s_3_t;
         const real rrrs_alpha_3_o_in_axes3_y = rrrs_alpha_2_o_in_axes2_x*v.rrrs_s_3_t +
@@ -6200,8 +6193,7 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real rrrs_B_3_o_in_axes3_yz = rrrs_W_3_in_axes3_yz - rrrs_alpha_3_o_in_axes3_x;
         const real rrrs_B_3_o_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_o_in_axes3_y;
         const real rrrs_B_3_o_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_o_in_axes3_x;
-        /* (rrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
+        /* (rrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
@@ -6209,8 +6201,8 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, co
             axis_x_rrrs_axes3_y*gravity_y - axis_x_rrrs_axes3_z*gravity_z;
         const real rrrs_acc_3_o_in_axes3_y = rrrs_u_1_in_axes3_y - axis_y_rrrs_axes3_x*gravity_x -
             axis_y_rrrs_axes3_y*gravity_y - axis_y_rrrs_axes3_z*gravity_z;
-        /* (rrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 3, about their reference points */
+        /* (rrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+           reference points */
         const real rrrs_mu_3_o_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z;
         const real rrrs_J_3_in_spec3_xy = m->rrrs_J_3_in_spec3_xy[i];
         const real rrrs_J_3_in_spec3_xz = m->rrrs_J_3_in_spec3_xz[i];
@@ -6242,8 +6234,8 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, co
             rrrs_B_3_o_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
             rrrs_B_3_o_in_axes3_yz*rrrs_J_3_in_spec3_xz -
             rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_y;
-        /* (rrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
+        /* (rrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real rrrs_mu_2_o_t_3 = rrrs_qd_2_t_3*rrrs_qd_2_t_3;
         const real rrrs_J_2_in_spec2_xy = m->rrrs_J_2_in_spec2_xy[i];
         const real rrrs_J_2_in_spec2_xz = m->rrrs_J_2_in_spec2_xz[i];
@@ -6271,29 +6263,29 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, co
             v.rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y -
             rrrs_B_2_o_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy -
             rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_t - v.rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x;
-        /* (rrrs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
+        /* (rrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+           connection point left out */
         const real rrrs_N_2_o_in_axes2_x = rrrs_mu_2_o_in_axes2_x +
             v.rrrs_c_3*rrrs_mu_3_o_in_axes3_x + rrrs_mu_3_o_in_axes3_y*v.rrrs_s_3_t;
         const real rrrs_N_2_o_in_axes2_y = rrrs_mu_2_o_in_axes2_y +
             v.rrrs_c_3*rrrs_mu_3_o_in_axes3_y - rrrs_mu_3_o_in_axes3_x*v.rrrs_s_3_t;
         const real rrrs_N_2_o_in_axes2_z = rrrs_mu_2_o_in_axes2_z + rrrs_mu_3_o_in_axes3_z;
-        /* (rrrs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
+        /* (rrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+           reference points */
         const real rrrs_J_1_in_spec1_xx = m->rrrs_J_1_in_spec1_xx[i];
         const real rrrs_h_1_in_spec1_y = m->rrrs_h_1_in_spec1_y[i];
         const real rrrs_h_1_in_spec1_z = m->rrrs_h_1_in_spec1_z[i];
         const real rrrs_mu_1_o_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o +
             v.rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z - v.rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y;
-        /* (rrrs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
+        /* (rrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+           connection point left out */
         const real rrrs_N_1_o_in_axes1_z = rrrs_mu_1_o_in_axes1_z +
             rrrs_N_2_o_in_axes2_x*v.rrrs_c_2 - rrrs_N_2_o_in_axes2_y*v.rrrs_s_2;
-        /* (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (rrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y;
-        /* (rrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (rrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at
+           the connection point */
         const real rrrs_c_o_in_axes3_x = rrrs_h_3_in_spec3_x*(v.rrrs_mu_3_o_t_2 + rrrs_mu_3_o_t_3)
             + v.rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*v.rrrs_r_2_in_axes3_x -
             rrrs_N_2_o_in_axes2_z) - rrrs_B_3_o_in_axes3_xy*rrrs_h_3_in_spec3_y -

@@ -1664,10 +1664,10 @@ class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
     sqrt = staticmethod(math.sqrt)
-    sin = staticmethod(lambda x: float(np.sin(x)))
-    cos = staticmethod(lambda x: float(np.cos(x)))
+    sin = staticmethod(lambda x: float(np.sin(x)) if math.isfinite(x) else math.nan)
+    cos = staticmethod(lambda x: float(np.cos(x)) if math.isfinite(x) else math.nan)
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
-    least = staticmethod(lambda x, y: float(np.minimum(x, y)))
+    least = staticmethod(lambda x, y: y if y < x or y != y else x)
 
     def __init__(self, p, states, kept=None):
         self.p, self.states = p, states
@@ -1820,7 +1820,7 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
     Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
     where a single state needs no arrays.
     """
-    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    p, read = _given(p), [a[4:] != ("unused",) for a in arguments]
     lists = plain and _lists(arguments)
     if lists:
         found = _state(_Single(p, 1), steps, lists, read)
@@ -1845,7 +1845,7 @@ def _lists(arguments):
     for row in arguments:
         value, shape = row[1:3]
         if type(value) is np.ndarray:
-            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+            if value.shape != shape or value.dtype is not _REAL or row[4:] == ("positive",):
                 return None
             found.append(_Vector(value.tolist()))
         elif value is None and len(row) > 3 and row[3] is not None:
@@ -2891,24 +2891,24 @@ def _run_dynamics(m, X, V):
             2.0*rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
             2.0*rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2
         )
-        # (rrrrs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (rrrrs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrrrs_rel_o_in_axes4_x = rrrrs_u_1_in_axes4_x - rrrrs_bias_in_axes4_x
         rrrrs_rel_o_in_axes4_y = rrrrs_u_1_in_axes4_y - rrrrs_bias_in_axes4_y
         rrrrs_rel_o_in_axes4_z = rrrrs_u_1_in_axes4_z - rrrrs_bias_in_axes4_z
-        # (rrrrs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (rrrrs-qdd_1_o) remainder of: acceleration of joint 1
         rrrrs_qdd_1_o = rrrrs_rel_o_in_axes4_z*rrrrs_w_1_in_axes4_z
-        # (rrrrs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
+        # (rrrrs-qdd_3_o) remainder of: acceleration of joint 3
         rrrrs_qdd_3_o = rrrrs_rel_o_in_axes4_x*rrrrs_w_3_in_axes4_x
-        # (rrrrs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        # (rrrrs-alpha_1_o) remainder of: angular acceleration of link 1
         rrrrs_alpha_1_o_in_axes2_x = rrrrs_h_3_t_6*rrrrs_qdd_1_o
         rrrrs_alpha_1_o_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_qdd_1_o
-        # (rrrrs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (rrrrs-alpha_2_o) remainder of: angular acceleration of link 2
         rrrrs_alpha_2_o_in_axes2_x = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_1_o_in_axes2_x
         rrrrs_alpha_2_o_in_axes2_y = rrrrs_alpha_1_o_in_axes2_y - rrrrs_W_2_in_axes2_xz
         # (rrrrs-B_2_o) remainder of the acceleration tensor of link 2
         rrrrs_B_2_o_in_axes2_zx = rrrrs_W_2_in_axes2_xz - rrrrs_alpha_2_o_in_axes2_y
         rrrrs_B_2_o_in_axes2_zy = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_2_o_in_axes2_x
-        # (rrrrs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        # (rrrrs-alpha_3_o) remainder of: angular acceleration of link 3
         rrrrs_alpha_3_o_in_axes3_x = (
         rrrrs_zeta_3_in_axes3_x + rrrrs_alpha_2_o_in_axes2_x*rrrrs_h_3_t_26 +
             rrrrs_alpha_2_o_in_axes2_y*rrrrs_h_3_t_27
@@ -2927,7 +2927,7 @@ def _run_dynamics(m, X, V):
         # (rrrrs-d_alpha_4) coefficient of the acceleration in: angular acceleration of link 4
         rrrrs_d_alpha_4_in_axes4_xz = rrrrs_e_1_in_axes4_x*rrrrs_w_1_in_axes4_z
         rrrrs_d_alpha_4_in_axes4_yz = rrrrs_e_1_in_axes4_y*rrrrs_w_1_in_axes4_z
-        # (rrrrs-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4
+        # (rrrrs-alpha_4_o) remainder of: angular acceleration of link 4
         rrrrs_alpha_4_o_in_axes4_x = (
         rrrrs_alpha_3_o_in_axes3_x*rrrrs_c_4 + rrrrs_omega_1_in_axes4_y*rrrrs_qd_4 -
             rrrrs_alpha_3_o_in_axes3_y*rrrrs_s_4_t
@@ -2950,9 +2950,9 @@ def _run_dynamics(m, X, V):
         # (rrrrs-a_o_3) acceleration of the origin of joint 3
         rrrrs_a_o_3_t = rrrrs_omega_1_in_axes2_y*rrrrs_omega_1_in_axes2_y
         rrrrs_a_o_3_in_axes2_x = -rrrrs_joint3_offset_x*(rrrrs_a_o_3_t + rrrrs_bias_t)
-        # (rrrrs-a_o_3_o) remainder without the acceleration in: acceleration of the origin of joint 3
+        # (rrrrs-a_o_3_o) remainder of: acceleration of the origin of joint 3
         rrrrs_a_o_3_o_in_axes2_y = rrrrs_W_2_in_axes2_xy*rrrrs_joint3_offset_x
-        # (rrrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        # (rrrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         rrrrs_g_in_axes1_x = rrrrs_acc_3_t*rrrrs_c_1 + rrrrs_acc_3_t_2*rrrrs_s_1
         rrrrs_g_in_axes1_y = rrrrs_acc_3_t_2*rrrrs_c_1 - rrrrs_acc_3_t*rrrrs_s_1
         rrrrs_g_in_axes2_x = rrrrs_g_in_axes1_x*rrrrs_h_3_t_7 + rrrrs_g_in_axes1_z*rrrrs_h_3_t_6
@@ -2968,7 +2968,7 @@ def _run_dynamics(m, X, V):
         rrrrs_acc_3_o_in_axes3_z = (
         rrrrs_B_2_o_in_axes2_zx*rrrrs_joint3_offset_x - rrrrs_g_in_axes1_y
         )
-        # (rrrrs-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight
+        # (rrrrs-f_3_o) remainder of: inertia force of link 3 less its weight
         rrrrs_f_3_o_t = rrrrs_omega_1_t*rrrrs_omega_1_t
         rrrrs_f_3_o_t_2 = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2
         rrrrs_f_3_o_in_axes3_x = (
@@ -2989,7 +2989,7 @@ def _run_dynamics(m, X, V):
             rrrrs_acc_3_o_in_axes3_z*rrrrs_link3_mass - rrrrs_h_3_in_spec3_z*(rrrrs_f_3_o_t +
             rrrrs_f_3_o_t_2)
         )
-        # (rrrrs-acc_4_o) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+        # (rrrrs-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity
         rrrrs_acc_4_o_in_axes4_x = (
         rrrrs_u_1_in_axes4_x - axis_x_rrrrs_axes4_x*gravity_x - axis_x_rrrrs_axes4_y*gravity_y -
             axis_x_rrrrs_axes4_z*gravity_z
@@ -3063,7 +3063,7 @@ def _run_dynamics(m, X, V):
             + rrrrs_Jc_3_in_axes3_yy*rrrrs_h_3_t_26) + rrrrs_h_3_t_27*(rrrrs_Jc_2_t_4 +
             rrrrs_Jc_3_in_axes3_xx*rrrrs_h_3_t_27)))
         )
-        # (rrrrs-mu_4_o) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
+        # (rrrrs-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their reference points
         rrrrs_mu_4_o_in_axes4_x = (
         rrrrs_B_4_o_in_axes4_yx*rrrrs_J_4_in_spec4_xz +
             rrrrs_B_4_o_in_axes4_zy*rrrrs_Sigma_4_in_axes4_yy +
@@ -3103,7 +3103,7 @@ def _run_dynamics(m, X, V):
         rrrrs_dy_2_Gamma_4 = (
         rrrrs_J_4_in_spec4_zz + rrrrs_dy_2_Gamma_4_t + rrrrs_J_4_in_spec4_zz*rrrrs_w_3_t_7
         )
-        # (rrrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        # (rrrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
         rrrrs_mu_3_o_in_axes3_x = (
         rrrrs_B_3_o_in_axes3_yx*rrrrs_J_3_in_spec3_xz +
             rrrrs_B_3_o_in_axes3_zy*rrrrs_Sigma_3_in_axes3_yy +
@@ -3131,7 +3131,7 @@ def _run_dynamics(m, X, V):
             rrrrs_B_3_o_in_axes3_yz*rrrrs_J_3_in_spec3_xz -
             rrrrs_acc_3_o_in_axes3_x*rrrrs_h_3_in_spec3_y
         )
-        # (rrrrs-N_3_o) remainder without the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
+        # (rrrrs-N_3_o) remainder of: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
         rrrrs_N_3_o_in_axes3_x = (
         rrrrs_mu_3_o_in_axes3_x + rrrrs_c_4*rrrrs_mu_4_o_in_axes4_x +
             rrrrs_mu_4_o_in_axes4_y*rrrrs_s_4_t
@@ -3149,7 +3149,7 @@ def _run_dynamics(m, X, V):
         rrrrs_dy_2_Gamma_3 = (
         rrrrs_L_c_3_2_in_axes2_z + rrrrs_dy_2_Gamma_4_t + rrrrs_Jc_3_in_axes3_zz*rrrrs_w_3_t_7
         )
-        # (rrrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (rrrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrrrs_mu_2_o_t = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_x
         rrrrs_mu_2_o_in_axes2_x = (
         rrrrs_B_2_o_in_axes2_zy*rrrrs_Sigma_2_in_axes2_yy +
@@ -3176,7 +3176,7 @@ def _run_dynamics(m, X, V):
             rrrrs_Sigma_2_in_axes2_yy*rrrrs_W_2_in_axes2_xy -
             rrrrs_g_in_axes2_y*rrrrs_h_2_in_spec2_x
         )
-        # (rrrrs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        # (rrrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         rrrrs_N_2_o_in_axes2_x = (
         rrrrs_mu_2_o_in_axes2_x + rrrrs_N_3_o_in_axes3_x*rrrrs_h_3_t_26 -
             rrrrs_N_3_o_in_axes3_y*rrrrs_h_3_t_27
@@ -3200,12 +3200,12 @@ def _run_dynamics(m, X, V):
         rrrrs_J_2_in_spec2_zz + rrrrs_Jc_2_t_7 + rrrrs_Jc_3_in_axes3_zz + rrrrs_dy_2_Gamma_4_t +
             rrrrs_L_c_3_2_in_axes2_z*rrrrs_w_3_t_7
         )
-        # (rrrrs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        # (rrrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rrrrs_mu_1_o_in_axes1_z = (
         rrrrs_J_1_in_spec1_xx*rrrrs_qdd_1_o + rrrrs_g_in_axes1_x*rrrrs_h_1_in_spec1_z -
             rrrrs_g_in_axes1_y*rrrrs_h_1_in_spec1_y
         )
-        # (rrrrs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        # (rrrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrrs_N_1_o_in_axes1_z = (
         rrrrs_mu_1_o_in_axes1_z + rrrrs_N_2_o_in_axes2_x*rrrrs_h_3_t_6 -
             rrrrs_N_2_o_in_axes2_y*rrrrs_h_3_t_7
@@ -3232,7 +3232,7 @@ def _run_dynamics(m, X, V):
         )
         # (rrrrs-dy_2_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrrs_dy_2_G_in_axes4_y = rrrrs_dy_2_Gamma_4*rrrrs_w_4_in_axes4_y
-        # (rrrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (rrrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrrs_G_o_in_axes4_y = rrrrs_mu_4_o_in_axes4_z*rrrrs_w_4_in_axes4_y
         rrrrs_G_o_in_axes4_x = (
         -rrrrs_w_3_in_axes4_x*(rrrrs_G_o_in_axes4_y*rrrrs_r_3_in_axes4_x - rrrrs_N_3_o_in_axes3_z)
@@ -3248,7 +3248,7 @@ def _run_dynamics(m, X, V):
         rrrrs_d_c_in_axes4_yz = (
         rrrrs_d_alpha_4_in_axes4_xz*rrrrs_h_4_in_spec4_z - rrrrs_d_G_in_axes4_yz
         )
-        # (rrrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (rrrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrrrs_c_o_in_axes4_x = (
         rrrrs_W_4_t_2*rrrrs_h_4_in_spec4_x - rrrrs_G_o_in_axes4_x -
             rrrrs_B_4_o_in_axes4_xy*rrrrs_h_4_in_spec4_y -
@@ -3360,7 +3360,7 @@ def _run_dynamics(m, X, V):
             - rrrrs_dy_2_Gamma_3)
         )
         rrrrs_dy_2_P_2 = rrrrs_dy_2_Gamma_2 - rrrrs_dy_2_P_2_t
-        # (rrrrs-P_2_o) remainder without the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 2
+        # (rrrrs-P_2_o) remainder of: inertia and weight of the leg along the extra degree of freedom of joint 2
         rrrrs_P_2_o_t = (
         rrrrs_G_o_in_axes4_x*rrrrs_r_2_in_axes4_y - rrrrs_G_o_in_axes4_y*rrrrs_r_2_in_axes4_x
         )
@@ -3439,7 +3439,7 @@ def _run_dynamics(m, X, V):
         Z_a_rrrrs_x += rrrrs_Z_a_t
         Z_a_rrrrs_y += rrrrs_Z_a_t_2
         Z_a_rrrrs_z += rrrrs_Z_a_t_3
-        # (rrrrs-P_2_o) remainder without the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 2
+        # (rrrrs-P_2_o) remainder of: inertia and weight of the leg along the extra degree of freedom of joint 2
         out_Z[_Z_rrrrs[0][leg]] = rrrrs_P_2_o
         # (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 2
         out_M[_M_rrrrs[0][leg]] = rrrrs_d_P_2_x
@@ -3708,18 +3708,18 @@ def _run_dynamics(m, X, V):
             rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
             rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
         )
-        # (rrrs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (rrrs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrrs_rel_o_in_axes3_x = rrrs_u_1_in_axes3_x - rrrs_bias_in_axes3_x
         rrrs_rel_o_in_axes3_y = rrrs_u_1_in_axes3_y - rrrs_bias_in_axes3_y
         rrrs_rel_o_in_axes3_z = rrrs_u_1_in_axes3_z - rrrs_bias_in_axes3_z
-        # (rrrs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (rrrs-qdd_1_o) remainder of: acceleration of joint 1
         rrrs_qdd_1_o = rrrs_rel_o_in_axes3_z*rrrs_w_1_in_axes3_z
-        # (rrrs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        # (rrrs-qdd_2_o) remainder of: acceleration of joint 2
         rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*rrrs_w_2_in_axes3_x
-        # (rrrs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        # (rrrs-alpha_1_o) remainder of: angular acceleration of link 1
         rrrs_alpha_1_o_in_axes2_x = rrrs_c_2*rrrs_qdd_1_o
         rrrs_alpha_1_o_t = rrrs_qdd_1_o*rrrs_s_2
-        # (rrrs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (rrrs-alpha_2_o) remainder of: angular acceleration of link 2
         rrrs_alpha_2_o_in_axes2_x = rrrs_W_2_in_axes2_yz + rrrs_alpha_1_o_in_axes2_x
         rrrs_alpha_2_o_in_axes2_y = rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_o_t
         # (rrrs-B_2_o) remainder of the acceleration tensor of link 2
@@ -3730,7 +3730,7 @@ def _run_dynamics(m, X, V):
         # (rrrs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
         rrrs_d_alpha_3_in_axes3_xz = rrrs_e_1_in_axes3_x*rrrs_w_1_in_axes3_z
         rrrs_d_alpha_3_in_axes3_yz = rrrs_e_1_in_axes3_y*rrrs_w_1_in_axes3_z
-        # (rrrs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        # (rrrs-alpha_3_o) remainder of: angular acceleration of link 3
         rrrs_alpha_3_o_in_axes3_x = (
         rrrs_alpha_2_o_in_axes2_x*rrrs_c_3 + rrrs_omega_1_in_axes3_y*rrrs_qd_3 -
             rrrs_alpha_2_o_in_axes2_y*rrrs_s_3_t
@@ -3749,7 +3749,7 @@ def _run_dynamics(m, X, V):
         rrrs_B_3_o_in_axes3_yz = rrrs_W_3_in_axes3_yz - rrrs_alpha_3_o_in_axes3_x
         rrrs_B_3_o_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_o_in_axes3_y
         rrrs_B_3_o_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_o_in_axes3_x
-        # (rrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        # (rrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         rrrs_acc_3_o_in_axes3_x = (
         rrrs_u_1_in_axes3_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
             axis_x_rrrs_axes3_z*gravity_z
@@ -3781,7 +3781,7 @@ def _run_dynamics(m, X, V):
             rrrs_c_3*(rrrs_J_3_in_spec3_yy*rrrs_c_3 - rrrs_Jc_2_t) - rrrs_s_3_t*(rrrs_Jc_2_t_3 -
             rrrs_J_3_in_spec3_xx*rrrs_s_3_t)))
         )
-        # (rrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        # (rrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
         rrrs_mu_3_o_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x
         rrrs_mu_3_o_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y
         rrrs_mu_3_o_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z
@@ -3816,7 +3816,7 @@ def _run_dynamics(m, X, V):
         rrrs_d_Gamma_3_in_axes3_x = (
         rrrs_w_2_in_axes3_x*(rrrs_J_3_in_spec3_zz - rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y
         )
-        # (rrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (rrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrrs_mu_2_o_t = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
         rrrs_mu_2_o_t_2 = rrrs_omega_1_t*rrrs_omega_1_t
         rrrs_mu_2_o_t_3 = rrrs_qd_2_t*rrrs_qd_2_t
@@ -3846,7 +3846,7 @@ def _run_dynamics(m, X, V):
             rrrs_B_2_o_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy -
             rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x
         )
-        # (rrrs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        # (rrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         rrrs_N_2_o_in_axes2_x = (
         rrrs_mu_2_o_in_axes2_x + rrrs_c_3*rrrs_mu_3_o_in_axes3_x +
             rrrs_mu_3_o_in_axes3_y*rrrs_s_3_t
@@ -3860,12 +3860,12 @@ def _run_dynamics(m, X, V):
         rrrs_d_Gamma_2_in_axes3_x = (
         rrrs_w_2_in_axes3_x*(rrrs_Jc_2_in_axes2_zz - rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y
         )
-        # (rrrs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        # (rrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rrrs_mu_1_o_in_axes1_z = (
         rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o + rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z -
             rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y
         )
-        # (rrrs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        # (rrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrs_N_1_o_in_axes1_z = (
         rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_c_2 - rrrs_N_2_o_in_axes2_y*rrrs_s_2
         )
@@ -3882,7 +3882,7 @@ def _run_dynamics(m, X, V):
             rrrs_s_2*(rrrs_J_2_in_spec2_yz + rrrs_J_3_in_spec3_yz*rrrs_c_3 -
             rrrs_J_3_in_spec3_xz*rrrs_s_3_t))
         )
-        # (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (rrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y
         # (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrrs_d_c_in_axes3_xx = (
@@ -3901,7 +3901,7 @@ def _run_dynamics(m, X, V):
         rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_z -
             rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_y
         )
-        # (rrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (rrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrrs_c_o_in_axes3_x = (
         rrrs_h_3_in_spec3_x*(rrrs_mu_3_o_t_2 + rrrs_mu_3_o_t_3) +
             rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*rrrs_r_2_in_axes3_x - rrrs_N_2_o_in_axes2_z)
@@ -5397,24 +5397,24 @@ def _run_Z(m, X, V):
             2.0*rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
             2.0*rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2
         )
-        # (rrrrs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (rrrrs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrrrs_rel_o_in_axes4_x = rrrrs_u_1_in_axes4_x - rrrrs_bias_in_axes4_x
         rrrrs_rel_o_in_axes4_y = rrrrs_u_1_in_axes4_y - rrrrs_bias_in_axes4_y
         rrrrs_rel_o_in_axes4_z = rrrrs_u_1_in_axes4_z - rrrrs_bias_in_axes4_z
-        # (rrrrs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (rrrrs-qdd_1_o) remainder of: acceleration of joint 1
         rrrrs_qdd_1_o = rrrrs_rel_o_in_axes4_z*rrrrs_w_1_in_axes4_z
-        # (rrrrs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
+        # (rrrrs-qdd_3_o) remainder of: acceleration of joint 3
         rrrrs_qdd_3_o = rrrrs_rel_o_in_axes4_x*rrrrs_w_3_in_axes4_x
-        # (rrrrs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        # (rrrrs-alpha_1_o) remainder of: angular acceleration of link 1
         rrrrs_alpha_1_o_in_axes2_x = rrrrs_c_2*rrrrs_qdd_1_o
         rrrrs_alpha_1_o_in_axes2_y = -rrrrs_qdd_1_o*rrrrs_s_2
-        # (rrrrs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (rrrrs-alpha_2_o) remainder of: angular acceleration of link 2
         rrrrs_alpha_2_o_in_axes2_x = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_1_o_in_axes2_x
         rrrrs_alpha_2_o_in_axes2_y = rrrrs_alpha_1_o_in_axes2_y - rrrrs_W_2_in_axes2_xz
         # (rrrrs-B_2_o) remainder of the acceleration tensor of link 2
         rrrrs_B_2_o_in_axes2_zx = rrrrs_W_2_in_axes2_xz - rrrrs_alpha_2_o_in_axes2_y
         rrrrs_B_2_o_in_axes2_zy = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_2_o_in_axes2_x
-        # (rrrrs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        # (rrrrs-alpha_3_o) remainder of: angular acceleration of link 3
         rrrrs_alpha_3_o_in_axes3_x = (
         rrrrs_zeta_3_in_axes3_x + rrrrs_alpha_2_o_in_axes2_x*rrrrs_c_3 +
             rrrrs_alpha_2_o_in_axes2_y*rrrrs_s_3
@@ -5430,7 +5430,7 @@ def _run_Z(m, X, V):
         rrrrs_B_3_o_in_axes3_yz = rrrrs_W_3_in_axes3_yz - rrrrs_alpha_3_o_in_axes3_x
         rrrrs_B_3_o_in_axes3_zx = rrrrs_W_3_in_axes3_xz - rrrrs_alpha_3_o_in_axes3_y
         rrrrs_B_3_o_in_axes3_zy = rrrrs_W_3_in_axes3_yz + rrrrs_alpha_3_o_in_axes3_x
-        # (rrrrs-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4
+        # (rrrrs-alpha_4_o) remainder of: angular acceleration of link 4
         rrrrs_alpha_4_o_in_axes4_x = (
         rrrrs_alpha_3_o_in_axes3_x*rrrrs_c_4 + rrrrs_omega_1_in_axes4_y*rrrrs_qd_4 -
             rrrrs_alpha_3_o_in_axes3_y*rrrrs_s_4_t
@@ -5453,9 +5453,9 @@ def _run_Z(m, X, V):
         # (rrrrs-a_o_3) acceleration of the origin of joint 3
         rrrrs_a_o_3_t = rrrrs_omega_1_in_axes2_y*rrrrs_omega_1_in_axes2_y
         rrrrs_a_o_3_in_axes2_x = -rrrrs_joint3_offset_x*(rrrrs_a_o_3_t + rrrrs_bias_t)
-        # (rrrrs-a_o_3_o) remainder without the acceleration in: acceleration of the origin of joint 3
+        # (rrrrs-a_o_3_o) remainder of: acceleration of the origin of joint 3
         rrrrs_a_o_3_o_in_axes2_y = rrrrs_W_2_in_axes2_xy*rrrrs_joint3_offset_x
-        # (rrrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        # (rrrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         rrrrs_g_in_axes1_x = rrrrs_acc_3_t*rrrrs_c_1 + rrrrs_acc_3_t_2*rrrrs_s_1
         rrrrs_g_in_axes1_y = rrrrs_acc_3_t_2*rrrrs_c_1 - rrrrs_acc_3_t*rrrrs_s_1
         rrrrs_g_in_axes2_x = rrrrs_c_2*rrrrs_g_in_axes1_z + rrrrs_g_in_axes1_x*rrrrs_s_2
@@ -5471,7 +5471,7 @@ def _run_Z(m, X, V):
         rrrrs_acc_3_o_in_axes3_z = (
         rrrrs_B_2_o_in_axes2_zx*rrrrs_joint3_offset_x - rrrrs_g_in_axes1_y
         )
-        # (rrrrs-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight
+        # (rrrrs-f_3_o) remainder of: inertia force of link 3 less its weight
         rrrrs_f_3_o_t = rrrrs_omega_1_t*rrrrs_omega_1_t
         rrrrs_f_3_o_t_2 = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2
         rrrrs_f_3_o_in_axes3_x = (
@@ -5492,7 +5492,7 @@ def _run_Z(m, X, V):
             rrrrs_acc_3_o_in_axes3_z*rrrrs_link3_mass - rrrrs_h_3_in_spec3_z*(rrrrs_f_3_o_t +
             rrrrs_f_3_o_t_2)
         )
-        # (rrrrs-acc_4_o) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+        # (rrrrs-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity
         rrrrs_acc_4_o_in_axes4_x = (
         rrrrs_u_1_in_axes4_x - axis_x_rrrrs_axes4_x*gravity_x - axis_x_rrrrs_axes4_y*gravity_y -
             axis_x_rrrrs_axes4_z*gravity_z
@@ -5505,7 +5505,7 @@ def _run_Z(m, X, V):
         rrrrs_u_1_in_axes4_z - axis_z_rrrrs_axes4_x*gravity_x - axis_z_rrrrs_axes4_y*gravity_y -
             axis_z_rrrrs_axes4_z*gravity_z
         )
-        # (rrrrs-mu_4_o) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
+        # (rrrrs-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their reference points
         rrrrs_mu_4_o_in_axes4_x = (
         rrrrs_B_4_o_in_axes4_yx*rrrrs_J_4_in_spec4_xz +
             rrrrs_B_4_o_in_axes4_zy*rrrrs_Sigma_4_in_axes4_yy +
@@ -5531,7 +5531,7 @@ def _run_Z(m, X, V):
             rrrrs_B_4_o_in_axes4_yz*rrrrs_J_4_in_spec4_xz -
             rrrrs_acc_4_o_in_axes4_x*rrrrs_h_4_in_spec4_y
         )
-        # (rrrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        # (rrrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
         rrrrs_mu_3_o_in_axes3_x = (
         rrrrs_B_3_o_in_axes3_yx*rrrrs_J_3_in_spec3_xz +
             rrrrs_B_3_o_in_axes3_zy*rrrrs_Sigma_3_in_axes3_yy +
@@ -5559,7 +5559,7 @@ def _run_Z(m, X, V):
             rrrrs_B_3_o_in_axes3_yz*rrrrs_J_3_in_spec3_xz -
             rrrrs_acc_3_o_in_axes3_x*rrrrs_h_3_in_spec3_y
         )
-        # (rrrrs-N_3_o) remainder without the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
+        # (rrrrs-N_3_o) remainder of: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
         rrrrs_N_3_o_in_axes3_x = (
         rrrrs_mu_3_o_in_axes3_x + rrrrs_c_4*rrrrs_mu_4_o_in_axes4_x +
             rrrrs_mu_4_o_in_axes4_y*rrrrs_s_4_t
@@ -5569,7 +5569,7 @@ def _run_Z(m, X, V):
             rrrrs_mu_4_o_in_axes4_x*rrrrs_s_4_t
         )
         rrrrs_N_3_o_in_axes3_z = rrrrs_mu_3_o_in_axes3_z + rrrrs_mu_4_o_in_axes4_z
-        # (rrrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (rrrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrrrs_mu_2_o_t = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_x
         rrrrs_mu_2_o_in_axes2_x = (
         rrrrs_B_2_o_in_axes2_zy*rrrrs_Sigma_2_in_axes2_yy +
@@ -5596,7 +5596,7 @@ def _run_Z(m, X, V):
             rrrrs_Sigma_2_in_axes2_yy*rrrrs_W_2_in_axes2_xy -
             rrrrs_g_in_axes2_y*rrrrs_h_2_in_spec2_x
         )
-        # (rrrrs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        # (rrrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         rrrrs_N_2_o_in_axes2_x = (
         rrrrs_mu_2_o_in_axes2_x + rrrrs_N_3_o_in_axes3_x*rrrrs_c_3 -
             rrrrs_N_3_o_in_axes3_y*rrrrs_s_3
@@ -5610,22 +5610,22 @@ def _run_Z(m, X, V):
             rrrrs_joint3_offset_x*(rrrrs_c_3*rrrrs_f_3_o_in_axes3_y +
             rrrrs_f_3_o_in_axes3_x*rrrrs_s_3)
         )
-        # (rrrrs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        # (rrrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rrrrs_mu_1_o_in_axes1_z = (
         rrrrs_J_1_in_spec1_xx*rrrrs_qdd_1_o + rrrrs_g_in_axes1_x*rrrrs_h_1_in_spec1_z -
             rrrrs_g_in_axes1_y*rrrrs_h_1_in_spec1_y
         )
-        # (rrrrs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        # (rrrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrrs_N_1_o_in_axes1_z = (
         rrrrs_mu_1_o_in_axes1_z + rrrrs_N_2_o_in_axes2_x*rrrrs_c_2 -
             rrrrs_N_2_o_in_axes2_y*rrrrs_s_2
         )
-        # (rrrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (rrrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrrs_G_o_in_axes4_y = rrrrs_mu_4_o_in_axes4_z*rrrrs_w_4_in_axes4_y
         rrrrs_G_o_in_axes4_x = (
         -rrrrs_w_3_in_axes4_x*(rrrrs_G_o_in_axes4_y*rrrrs_r_3_in_axes4_x - rrrrs_N_3_o_in_axes3_z)
         )
-        # (rrrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (rrrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrrrs_c_o_in_axes4_x = (
         rrrrs_W_4_t_2*rrrrs_h_4_in_spec4_x - rrrrs_G_o_in_axes4_x -
             rrrrs_B_4_o_in_axes4_xy*rrrrs_h_4_in_spec4_y -
@@ -5655,7 +5655,7 @@ def _run_Z(m, X, V):
         -axis_x_rrrrs_axes4_z*rrrrs_c_o_in_axes4_x - axis_y_rrrrs_axes4_z*rrrrs_c_o_in_axes4_y -
             axis_z_rrrrs_axes4_z*rrrrs_c_o_in_axes4_z
         )
-        # (rrrrs-P_2_o) remainder without the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 2
+        # (rrrrs-P_2_o) remainder of: inertia and weight of the leg along the extra degree of freedom of joint 2
         rrrrs_P_2_o_t = (
         rrrrs_G_o_in_axes4_x*rrrrs_r_2_in_axes4_y - rrrrs_G_o_in_axes4_y*rrrrs_r_2_in_axes4_x
         )
@@ -5678,7 +5678,7 @@ def _run_Z(m, X, V):
         Z_a_rrrrs_x += rrrrs_Z_a_t
         Z_a_rrrrs_y += rrrrs_Z_a_t_2
         Z_a_rrrrs_z += rrrrs_Z_a_t_3
-        # (rrrrs-P_2_o) remainder without the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 2
+        # (rrrrs-P_2_o) remainder of: inertia and weight of the leg along the extra degree of freedom of joint 2
         out_Z[_Z_rrrrs[0][leg]] = rrrrs_P_2_o
     Z_t_rrrs_x, Z_t_rrrs_y, Z_t_rrrs_z, Z_a_rrrs_x, Z_a_rrrs_y, Z_a_rrrs_z = [0.0] * 6
     for leg, k in legs[1]:
@@ -5894,18 +5894,18 @@ def _run_Z(m, X, V):
             rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
             rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
         )
-        # (rrrs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (rrrs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrrs_rel_o_in_axes3_x = rrrs_u_1_in_axes3_x - rrrs_bias_in_axes3_x
         rrrs_rel_o_in_axes3_y = rrrs_u_1_in_axes3_y - rrrs_bias_in_axes3_y
         rrrs_rel_o_in_axes3_z = rrrs_u_1_in_axes3_z - rrrs_bias_in_axes3_z
-        # (rrrs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (rrrs-qdd_1_o) remainder of: acceleration of joint 1
         rrrs_qdd_1_o = rrrs_rel_o_in_axes3_z*rrrs_w_1_in_axes3_z
-        # (rrrs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        # (rrrs-qdd_2_o) remainder of: acceleration of joint 2
         rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*rrrs_w_2_in_axes3_x
-        # (rrrs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        # (rrrs-alpha_1_o) remainder of: angular acceleration of link 1
         rrrs_alpha_1_o_in_axes2_x = rrrs_c_2*rrrs_qdd_1_o
         rrrs_alpha_1_o_t = rrrs_qdd_1_o*rrrs_s_2
-        # (rrrs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (rrrs-alpha_2_o) remainder of: angular acceleration of link 2
         rrrs_alpha_2_o_in_axes2_x = rrrs_W_2_in_axes2_yz + rrrs_alpha_1_o_in_axes2_x
         rrrs_alpha_2_o_in_axes2_y = rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_o_t
         # (rrrs-B_2_o) remainder of the acceleration tensor of link 2
@@ -5913,7 +5913,7 @@ def _run_Z(m, X, V):
         rrrs_B_2_o_in_axes2_yx = rrrs_W_2_in_axes2_xy + rrrs_qdd_2_o
         rrrs_B_2_o_in_axes2_zx = -rrrs_alpha_2_o_in_axes2_y - rrrs_zeta_2_in_axes2_y
         rrrs_B_2_o_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_o_in_axes2_x
-        # (rrrs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        # (rrrs-alpha_3_o) remainder of: angular acceleration of link 3
         rrrs_alpha_3_o_in_axes3_x = (
         rrrs_alpha_2_o_in_axes2_x*rrrs_c_3 + rrrs_omega_1_in_axes3_y*rrrs_qd_3 -
             rrrs_alpha_2_o_in_axes2_y*rrrs_s_3_t
@@ -5932,7 +5932,7 @@ def _run_Z(m, X, V):
         rrrs_B_3_o_in_axes3_yz = rrrs_W_3_in_axes3_yz - rrrs_alpha_3_o_in_axes3_x
         rrrs_B_3_o_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_o_in_axes3_y
         rrrs_B_3_o_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_o_in_axes3_x
-        # (rrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        # (rrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         rrrs_acc_3_o_in_axes3_x = (
         rrrs_u_1_in_axes3_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
             axis_x_rrrs_axes3_z*gravity_z
@@ -5945,7 +5945,7 @@ def _run_Z(m, X, V):
         rrrs_u_1_in_axes3_z - axis_z_rrrs_axes3_x*gravity_x - axis_z_rrrs_axes3_y*gravity_y -
             axis_z_rrrs_axes3_z*gravity_z
         )
-        # (rrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        # (rrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
         rrrs_mu_3_o_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x
         rrrs_mu_3_o_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y
         rrrs_mu_3_o_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z
@@ -5974,7 +5974,7 @@ def _run_Z(m, X, V):
             rrrs_B_3_o_in_axes3_yz*rrrs_J_3_in_spec3_xz -
             rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_y
         )
-        # (rrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (rrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrrs_mu_2_o_t = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
         rrrs_mu_2_o_t_2 = rrrs_omega_1_t*rrrs_omega_1_t
         rrrs_mu_2_o_t_3 = rrrs_qd_2_t_3*rrrs_qd_2_t_3
@@ -6004,7 +6004,7 @@ def _run_Z(m, X, V):
             rrrs_B_2_o_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy -
             rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x
         )
-        # (rrrs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        # (rrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         rrrs_N_2_o_in_axes2_x = (
         rrrs_mu_2_o_in_axes2_x + rrrs_c_3*rrrs_mu_3_o_in_axes3_x +
             rrrs_mu_3_o_in_axes3_y*rrrs_s_3_t
@@ -6014,18 +6014,18 @@ def _run_Z(m, X, V):
             rrrs_mu_3_o_in_axes3_x*rrrs_s_3_t
         )
         rrrs_N_2_o_in_axes2_z = rrrs_mu_2_o_in_axes2_z + rrrs_mu_3_o_in_axes3_z
-        # (rrrs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        # (rrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rrrs_mu_1_o_in_axes1_z = (
         rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o + rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z -
             rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y
         )
-        # (rrrs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        # (rrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrs_N_1_o_in_axes1_z = (
         rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_c_2 - rrrs_N_2_o_in_axes2_y*rrrs_s_2
         )
-        # (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (rrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y
-        # (rrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (rrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrrs_c_o_in_axes3_x = (
         rrrs_h_3_in_spec3_x*(rrrs_mu_3_o_t_2 + rrrs_mu_3_o_t_3) +
             rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*rrrs_r_2_in_axes3_x - rrrs_N_2_o_in_axes2_z)

@@ -1307,8 +1307,7 @@ INLINE void stage_prr_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
         v->axis_y_prr_axes2_x*prr_u_1_t;
     const real prr_u_1_in_axes2_y = v->axis_y_prr_axes2_x*prr_u_1_x -
         v->axis_x_prr_axes2_x*prr_u_1_t;
-    /* (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-       link 2, less gravity */
+    /* (prr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
     const real prr_g_in_axes0_x = m->prr_g_in_axes0_x[i];
     const real prr_g_in_axes0_y = m->prr_g_in_axes0_y[i];
     const real prr_acc_2_o_in_axes2_x = prr_u_1_in_axes2_x - v->prr_c_2*prr_g_in_axes0_x -
@@ -1440,32 +1439,31 @@ INLINE void dynamics_legs_prr(const prepared *m, size_t w, size_t leg, size_t le
         stage_prr_V_X(m, w, i, j, V, &v);
         stage_prr_M_dynamics(m, i, &v);
         stage_prr_Z_dynamics(m, w, i, j, V, &v);
-        /* (prr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
+        /* (prr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
         const real prr_rel_o_in_axes2_x = v.prr_u_1_in_axes2_x +
             prr_platform_joint_offset_x*v.prr_qd_2_t*v.prr_qd_2_t;
         /* (prr-B_2_o) remainder of the acceleration tensor of link 2 */
         const real prr_B_2_o_in_axes2_xy = v.prr_w_1_t*(v.prr_c_2*v.prr_u_1_in_axes2_y +
             prr_rel_o_in_axes2_x*v.prr_s_2);
-        /* (prr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
-           link 1, less gravity */
+        /* (prr-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
         const real prr_g_in_axes0_x = m->prr_g_in_axes0_x[i];
         const real prr_acc_1_o_in_axes0_x = prr_B_2_o_in_axes2_xy*v.prr_v_2_in_axes0_x +
             v.prr_c_2*prr_rel_o_in_axes2_x - prr_g_in_axes0_x - v.prr_s_2*v.prr_u_1_in_axes2_y;
-        /* (prr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight */
+        /* (prr-f_1_o) remainder of: inertia force of link 1 less its weight */
         const real prr_link1_mass = m->prr_link1_mass[i];
         const real prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*prr_link1_mass;
-        /* (prr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
+        /* (prr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real prr_J_2_in_spec2_zz = m->prr_J_2_in_spec2_zz[i];
         const real prr_h_2_in_spec2_x = m->prr_h_2_in_spec2_x[i];
         const real prr_h_2_in_spec2_y = m->prr_h_2_in_spec2_y[i];
         const real prr_mu_2_o_in_axes2_z = v.prr_acc_2_o_in_axes2_y*prr_h_2_in_spec2_x -
             prr_B_2_o_in_axes2_xy*prr_J_2_in_spec2_zz -
             v.prr_acc_2_o_in_axes2_x*prr_h_2_in_spec2_y;
-        /* (prr-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (prr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+           connection point */
         const real prr_c_o_t = v.prr_w_1_t*(prr_mu_2_o_in_axes2_z -
             prr_f_1_o_in_axes0_x*v.prr_v_2_in_axes0_x);
         const real prr_c_o_in_axes2_x = v.prr_W_2_t*prr_h_2_in_spec2_x + prr_c_o_t*v.prr_s_2 -
@@ -1795,32 +1793,31 @@ INLINE void Z_legs_prr(const prepared *m, size_t w, size_t leg, size_t legs, con
             v.prr_S_dot_y*prr_base_frame_yy);
         /* (prr-W_2) centripetal tensor of link 2 */
         const real prr_W_2_t = prr_qd_2_t_2*prr_qd_2_t_2;
-        /* (prr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
+        /* (prr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
         const real prr_rel_o_in_axes2_x = v.prr_u_1_in_axes2_x +
             prr_platform_joint_offset_x*prr_qd_2_t_2*prr_qd_2_t_2;
         /* (prr-B_2_o) remainder of the acceleration tensor of link 2 */
         const real prr_B_2_o_in_axes2_xy = prr_qd_2_t*(v.prr_c_2*v.prr_u_1_in_axes2_y +
             prr_rel_o_in_axes2_x*v.prr_s_2);
-        /* (prr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
-           link 1, less gravity */
+        /* (prr-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
         const real prr_g_in_axes0_x = m->prr_g_in_axes0_x[i];
         const real prr_acc_1_o_in_axes0_x = prr_B_2_o_in_axes2_xy*v.prr_v_2_in_axes0_x +
             v.prr_c_2*prr_rel_o_in_axes2_x - prr_g_in_axes0_x - v.prr_s_2*v.prr_u_1_in_axes2_y;
-        /* (prr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight */
+        /* (prr-f_1_o) remainder of: inertia force of link 1 less its weight */
         const real prr_link1_mass = m->prr_link1_mass[i];
         const real prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*prr_link1_mass;
-        /* (prr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
+        /* (prr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real prr_J_2_in_spec2_zz = m->prr_J_2_in_spec2_zz[i];
         const real prr_h_2_in_spec2_x = m->prr_h_2_in_spec2_x[i];
         const real prr_h_2_in_spec2_y = m->prr_h_2_in_spec2_y[i];
         const real prr_mu_2_o_in_axes2_z = v.prr_acc_2_o_in_axes2_y*prr_h_2_in_spec2_x -
             prr_B_2_o_in_axes2_xy*prr_J_2_in_spec2_zz -
             v.prr_acc_2_o_in_axes2_x*prr_h_2_in_spec2_y;
-        /* (prr-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (prr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+           connection point */
         const real prr_c_o_t = prr_qd_2_t*(prr_mu_2_o_in_axes2_z -
             prr_f_1_o_in_axes0_x*v.prr_v_2_in_axes0_x);
         const real prr_c_o_in_axes2_x = prr_W_2_t*prr_h_2_in_spec2_x + prr_c_o_t*v.prr_s_2 -

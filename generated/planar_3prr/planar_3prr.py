@@ -724,10 +724,10 @@ class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
     sqrt = staticmethod(math.sqrt)
-    sin = staticmethod(lambda x: float(np.sin(x)))
-    cos = staticmethod(lambda x: float(np.cos(x)))
+    sin = staticmethod(lambda x: float(np.sin(x)) if math.isfinite(x) else math.nan)
+    cos = staticmethod(lambda x: float(np.cos(x)) if math.isfinite(x) else math.nan)
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
-    least = staticmethod(lambda x, y: float(np.minimum(x, y)))
+    least = staticmethod(lambda x, y: y if y < x or y != y else x)
 
     def __init__(self, p, states, kept=None):
         self.p, self.states = p, states
@@ -880,7 +880,7 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
     Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
     where a single state needs no arrays.
     """
-    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    p, read = _given(p), [a[4:] != ("unused",) for a in arguments]
     lists = plain and _lists(arguments)
     if lists:
         found = _state(_Single(p, 1), steps, lists, read)
@@ -905,7 +905,7 @@ def _lists(arguments):
     for row in arguments:
         value, shape = row[1:3]
         if type(value) is np.ndarray:
-            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+            if value.shape != shape or value.dtype is not _REAL or row[4:] == ("positive",):
                 return None
             found.append(_Vector(value.tolist()))
         elif value is None and len(row) > 3 and row[3] is not None:
@@ -1599,7 +1599,7 @@ def _run_dynamics(m, X, V):
         prr_u_1_t = omega_z*prr_S_dot_t
         prr_u_1_in_axes2_x = axis_x_prr_axes2_x*prr_u_1_x + axis_y_prr_axes2_x*prr_u_1_t
         prr_u_1_in_axes2_y = axis_y_prr_axes2_x*prr_u_1_x - axis_x_prr_axes2_x*prr_u_1_t
-        # (prr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (prr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         prr_rel_o_in_axes2_x = (
         prr_u_1_in_axes2_x + prr_platform_joint_offset_x*prr_qd_2_t*prr_qd_2_t
         )
@@ -1607,21 +1607,21 @@ def _run_dynamics(m, X, V):
         prr_B_2_o_in_axes2_xy = (
         prr_w_1_t*(prr_c_2*prr_u_1_in_axes2_y + prr_rel_o_in_axes2_x*prr_s_2)
         )
-        # (prr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+        # (prr-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity
         prr_acc_1_o_in_axes0_x = (
         prr_B_2_o_in_axes2_xy*prr_v_2_in_axes0_x + prr_c_2*prr_rel_o_in_axes2_x - prr_g_in_axes0_x
             - prr_s_2*prr_u_1_in_axes2_y
         )
-        # (prr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight
+        # (prr-f_1_o) remainder of: inertia force of link 1 less its weight
         prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*prr_link1_mass
-        # (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        # (prr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
         prr_acc_2_o_in_axes2_x = (
         prr_u_1_in_axes2_x - prr_c_2*prr_g_in_axes0_x - prr_g_in_axes0_y*prr_s_2
         )
         prr_acc_2_o_in_axes2_y = (
         prr_u_1_in_axes2_y + prr_g_in_axes0_x*prr_s_2 - prr_c_2*prr_g_in_axes0_y
         )
-        # (prr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (prr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         prr_mu_2_o_in_axes2_z = (
         prr_acc_2_o_in_axes2_y*prr_h_2_in_spec2_x - prr_B_2_o_in_axes2_xy*prr_J_2_in_spec2_zz -
             prr_acc_2_o_in_axes2_x*prr_h_2_in_spec2_y
@@ -1642,7 +1642,7 @@ def _run_dynamics(m, X, V):
         prr_d_Gamma_2_in_axes2_y*prr_w_2_t + prr_h_2_in_spec2_y*prr_w_2_in_axes2_y -
             prr_d_Gamma_1_in_axes2_y*prr_w_1_in_axes2_x
         )
-        # (prr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (prr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         prr_c_o_t = prr_w_1_t*(prr_mu_2_o_in_axes2_z - prr_f_1_o_in_axes0_x*prr_v_2_in_axes0_x)
         prr_c_o_in_axes2_x = (
         prr_W_2_t*prr_h_2_in_spec2_x + prr_c_o_t*prr_s_2 -
@@ -1929,7 +1929,7 @@ def _run_Z(m, X, V):
         prr_u_1_t = omega_z*prr_S_dot_t
         prr_u_1_in_axes2_x = axis_x_prr_axes2_x*prr_u_1_x + axis_y_prr_axes2_x*prr_u_1_t
         prr_u_1_in_axes2_y = axis_y_prr_axes2_x*prr_u_1_x - axis_x_prr_axes2_x*prr_u_1_t
-        # (prr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (prr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         prr_rel_o_in_axes2_x = (
         prr_u_1_in_axes2_x + prr_platform_joint_offset_x*prr_qd_2_t_2*prr_qd_2_t_2
         )
@@ -1937,26 +1937,26 @@ def _run_Z(m, X, V):
         prr_B_2_o_in_axes2_xy = (
         prr_qd_2_t*(prr_c_2*prr_u_1_in_axes2_y + prr_rel_o_in_axes2_x*prr_s_2)
         )
-        # (prr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+        # (prr-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity
         prr_acc_1_o_in_axes0_x = (
         prr_B_2_o_in_axes2_xy*prr_v_2_in_axes0_x + prr_c_2*prr_rel_o_in_axes2_x - prr_g_in_axes0_x
             - prr_s_2*prr_u_1_in_axes2_y
         )
-        # (prr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight
+        # (prr-f_1_o) remainder of: inertia force of link 1 less its weight
         prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*prr_link1_mass
-        # (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        # (prr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
         prr_acc_2_o_in_axes2_x = (
         prr_u_1_in_axes2_x - prr_c_2*prr_g_in_axes0_x - prr_g_in_axes0_y*prr_s_2
         )
         prr_acc_2_o_in_axes2_y = (
         prr_u_1_in_axes2_y + prr_g_in_axes0_x*prr_s_2 - prr_c_2*prr_g_in_axes0_y
         )
-        # (prr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (prr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         prr_mu_2_o_in_axes2_z = (
         prr_acc_2_o_in_axes2_y*prr_h_2_in_spec2_x - prr_B_2_o_in_axes2_xy*prr_J_2_in_spec2_zz -
             prr_acc_2_o_in_axes2_x*prr_h_2_in_spec2_y
         )
-        # (prr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (prr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         prr_c_o_t = prr_qd_2_t*(prr_mu_2_o_in_axes2_z - prr_f_1_o_in_axes0_x*prr_v_2_in_axes0_x)
         prr_c_o_in_axes2_x = (
         prr_W_2_t*prr_h_2_in_spec2_x + prr_c_o_t*prr_s_2 -

@@ -1547,35 +1547,34 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
             v.axis_y_rrr_axes2_x*rrr_u_1_t;
         const real rrr_u_1_in_axes2_y = v.axis_y_rrr_axes2_x*rrr_u_1_x -
             v.axis_x_rrr_axes2_x*rrr_u_1_t;
-        /* (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
+        /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - v.rrr_bias_in_axes2_x;
         const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
         const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
             v.rrr_W_1_t*rrr_joint2_offset_x*v.rrr_s_2;
         /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
         const real rrr_B_1_o_in_axes1_xy = v.inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x;
-        /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
         const real rrr_alpha_2_o_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y +
             rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
-        /* (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
+        /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + v.axis_y_rrr_axes2_x*gravity_y -
             v.axis_x_rrr_axes2_x*gravity_x;
         const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - v.axis_x_rrr_axes2_x*gravity_y -
             v.axis_y_rrr_axes2_x*gravity_x;
-        /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
+        /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
         const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
         const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
         const real rrr_mu_2_o_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
             rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y;
-        /* (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
+        /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+           reference points */
         const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
         const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
         const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
@@ -1584,14 +1583,14 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(v.rrr_c_1*rrr_mu_1_t +
             rrr_mu_1_t_2*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
             rrr_h_1_in_spec1_x*(v.rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v.rrr_s_1);
-        /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
+        /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+           connection point left out */
         const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
-        /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y;
-        /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+           connection point */
         const real rrr_c_o_in_axes2_x = v.rrr_W_2_t*rrr_h_2_in_spec2_x +
             rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
             v.inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x -
@@ -1957,33 +1956,32 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
             rrr_W_1_t*v.rrr_c_2*rrr_joint2_offset_x;
-        /* (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
+        /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x;
         const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
             rrr_W_1_t*rrr_joint2_offset_x*v.rrr_s_2;
         /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
         const real rrr_B_1_o_in_axes1_xy = v.inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x;
-        /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real rrr_alpha_2_o_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y +
             rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
-        /* (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
+        /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
             axis_x_rrr_axes2_x*gravity_x;
         const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
             axis_y_rrr_axes2_x*gravity_x;
-        /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
+        /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
         const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
         const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
         const real rrr_mu_2_o_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
             rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y;
-        /* (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
+        /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+           reference points */
         const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
         const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
         const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
@@ -1992,14 +1990,14 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(v.rrr_c_1*rrr_mu_1_t +
             rrr_mu_1_t_2*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
             rrr_h_1_in_spec1_x*(v.rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v.rrr_s_1);
-        /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
+        /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+           connection point left out */
         const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
-        /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y;
-        /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+           connection point */
         const real rrr_c_o_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
             rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
             v.inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x -

@@ -1255,7 +1255,8 @@ static void nearest_within(size_t n, const real *a, const real *b, const real *c
     real start[2*BIG] = {0}, t[2*BIG] = {0};
     copy(n, a, start);
     const int known = all_finite(a, n) && all_finite(b, n*n) && all_finite(c, n) && all_finite(d, n);
-    doubt(known, known && nearest_point(n, start, b, c, d, t), unreachable, overflow);
+    const int found = known && nearest_point(n, start, b, c, d, t) && all_finite(t, n);
+    doubt(known, found, unreachable, overflow);
     copy(n, t, x);
 }
 
@@ -1432,14 +1433,13 @@ INLINE void stage_rpr_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real rpr_u_1_y = -omega_z*v->rpr_S_dot_t;
     const real rpr_u_1_in_axes1_y = v->axis_x_rpr_axes1_x*rpr_u_1_y +
         v->axis_x_rpr_axes1_y*rpr_u_1_t;
-    /* (rpr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-       the joint accelerations */
+    /* (rpr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
     const real rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y -
         2*v->rpr_S_dot_in_axes1_x*v->rpr_qd_1;
-    /* (rpr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+    /* (rpr-qdd_1_o) remainder of: acceleration of joint 1 */
     const real rpr_qdd_1_o = v->inv_rpr_q_2*rpr_rel_o_in_axes1_y;
-    /* (rpr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-       link 2, less gravity */
+    /* (rpr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
     const real gravity_x = m->gravity_x;
     const real gravity_y = m->gravity_y;
     const real rpr_g_in_axes1_x = v->axis_x_rpr_axes1_x*gravity_x +
@@ -1449,22 +1449,22 @@ INLINE void stage_rpr_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real rpr_acc_2_o_in_axes1_x = v->axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x -
         v->axis_x_rpr_axes1_x*rpr_u_1_t;
     const real rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y;
-    /* (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning
-       about its reference point */
+    /* (rpr-phi_2_o) remainder of: inertia force of link 2 from its turning about its reference point
+       */
     const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
     const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
     const real rpr_phi_2_o_in_axes1_x = v->rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x -
         rpr_h_2_in_spec1_y*rpr_qdd_1_o;
-    /* (rpr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
-       link 1, about their reference points */
+    /* (rpr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
     const real rpr_J_group_1_in_axes1_zz = m->rpr_J_group_1_in_axes1_zz[i];
     const real rpr_h_1_in_spec1_x = m->rpr_h_1_in_spec1_x[i];
     const real rpr_h_1_in_spec1_y = m->rpr_h_1_in_spec1_y[i];
     const real rpr_mu_1_o_in_axes1_z = rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o +
         rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x + rpr_g_in_axes1_x*rpr_h_1_in_spec1_y -
         rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y - rpr_g_in_axes1_y*rpr_h_1_in_spec1_x;
-    /* (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation
-       and without the mass at the connection point */
+    /* (rpr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
     const real rpr_c_o_in_axes1_y = -v->inv_rpr_q_2*rpr_mu_1_o_in_axes1_z -
         v->rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y - rpr_h_2_in_spec1_x*rpr_qdd_1_o;
     /* (rpr-U) velocity and gravity terms of the leg force */

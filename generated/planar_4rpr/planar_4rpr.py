@@ -703,10 +703,10 @@ class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
     sqrt = staticmethod(math.sqrt)
-    sin = staticmethod(lambda x: float(np.sin(x)))
-    cos = staticmethod(lambda x: float(np.cos(x)))
+    sin = staticmethod(lambda x: float(np.sin(x)) if math.isfinite(x) else math.nan)
+    cos = staticmethod(lambda x: float(np.cos(x)) if math.isfinite(x) else math.nan)
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
-    least = staticmethod(lambda x, y: float(np.minimum(x, y)))
+    least = staticmethod(lambda x, y: y if y < x or y != y else x)
 
     def __init__(self, p, states, kept=None):
         self.p, self.states = p, states
@@ -859,7 +859,7 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
     Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
     where a single state needs no arrays.
     """
-    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    p, read = _given(p), [a[4:] != ("unused",) for a in arguments]
     lists = plain and _lists(arguments)
     if lists:
         found = _state(_Single(p, 1), steps, lists, read)
@@ -884,7 +884,7 @@ def _lists(arguments):
     for row in arguments:
         value, shape = row[1:3]
         if type(value) is np.ndarray:
-            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+            if value.shape != shape or value.dtype is not _REAL or row[4:] == ("positive",):
                 return None
             found.append(_Vector(value.tolist()))
         elif value is None and len(row) > 3 and row[3] is not None:
@@ -1654,22 +1654,22 @@ def _run_dynamics(m, X, V):
         rpr_u_1_t = omega_z*rpr_S_dot_t_2
         rpr_u_1_y = -omega_z*rpr_S_dot_t
         rpr_u_1_in_axes1_y = axis_x_rpr_axes1_x*rpr_u_1_y + axis_x_rpr_axes1_y*rpr_u_1_t
-        # (rpr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (rpr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
-        # (rpr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (rpr-qdd_1_o) remainder of: acceleration of joint 1
         rpr_qdd_1_o = inv_rpr_q_2*rpr_rel_o_in_axes1_y
-        # (rpr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        # (rpr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
         rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
         rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
         rpr_acc_2_o_in_axes1_x = (
         axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x - axis_x_rpr_axes1_x*rpr_u_1_t
         )
         rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y
-        # (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning about its reference point
+        # (rpr-phi_2_o) remainder of: inertia force of link 2 from its turning about its reference point
         rpr_phi_2_o_in_axes1_x = (
         rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x - rpr_h_2_in_spec1_y*rpr_qdd_1_o
         )
-        # (rpr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        # (rpr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rpr_mu_1_o_in_axes1_z = (
         rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o + rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x +
             rpr_g_in_axes1_x*rpr_h_1_in_spec1_y - rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y -
@@ -1681,7 +1681,7 @@ def _run_dynamics(m, X, V):
         -inv_rpr_q_2*rpr_h_2_in_spec1_x - inv_rpr_q_2*(rpr_h_2_in_spec1_x +
             inv_rpr_q_2*rpr_J_group_1_in_axes1_zz)
         )
-        # (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (rpr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rpr_c_o_in_axes1_y = (
         -inv_rpr_q_2*rpr_mu_1_o_in_axes1_z - rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y -
             rpr_h_2_in_spec1_x*rpr_qdd_1_o
@@ -1930,28 +1930,28 @@ def _run_Z(m, X, V):
         rpr_u_1_t = omega_z*rpr_S_dot_t_2
         rpr_u_1_y = -omega_z*rpr_S_dot_t
         rpr_u_1_in_axes1_y = axis_x_rpr_axes1_x*rpr_u_1_y + axis_x_rpr_axes1_y*rpr_u_1_t
-        # (rpr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (rpr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
-        # (rpr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (rpr-qdd_1_o) remainder of: acceleration of joint 1
         rpr_qdd_1_o = inv_rpr_q_2*rpr_rel_o_in_axes1_y
-        # (rpr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        # (rpr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
         rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
         rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
         rpr_acc_2_o_in_axes1_x = (
         axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x - axis_x_rpr_axes1_x*rpr_u_1_t
         )
         rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y
-        # (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning about its reference point
+        # (rpr-phi_2_o) remainder of: inertia force of link 2 from its turning about its reference point
         rpr_phi_2_o_in_axes1_x = (
         rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x - rpr_h_2_in_spec1_y*rpr_qdd_1_o
         )
-        # (rpr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        # (rpr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rpr_mu_1_o_in_axes1_z = (
         rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o + rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x +
             rpr_g_in_axes1_x*rpr_h_1_in_spec1_y - rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y -
             rpr_g_in_axes1_y*rpr_h_1_in_spec1_x
         )
-        # (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (rpr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rpr_c_o_in_axes1_y = (
         -inv_rpr_q_2*rpr_mu_1_o_in_axes1_z - rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y -
             rpr_h_2_in_spec1_x*rpr_qdd_1_o

@@ -1616,8 +1616,7 @@ INLINE void stage_prr_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
         v->axis_y_prr_axes2_x*prr_u_1_t;
     const real prr_u_1_in_axes2_y = v->axis_y_prr_axes2_x*prr_u_1_x -
         v->axis_x_prr_axes2_x*prr_u_1_t;
-    /* (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-       link 2, less gravity */
+    /* (prr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
     const real prr_g_in_axes0_x = m->prr_g_in_axes0_x[i];
     const real prr_g_in_axes0_y = m->prr_g_in_axes0_y[i];
     const real prr_acc_2_o_in_axes2_x = prr_u_1_in_axes2_x - v->prr_c_2*prr_g_in_axes0_x -
@@ -1823,14 +1822,13 @@ INLINE void stage_rpr_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real rpr_u_1_y = -omega_z*v->rpr_S_dot_t;
     const real rpr_u_1_in_axes1_y = v->axis_x_rpr_axes1_x*rpr_u_1_y +
         v->axis_x_rpr_axes1_y*rpr_u_1_t;
-    /* (rpr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-       the joint accelerations */
+    /* (rpr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
     const real rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y -
         2*v->rpr_S_dot_in_axes1_x*v->rpr_qd_1;
-    /* (rpr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+    /* (rpr-qdd_1_o) remainder of: acceleration of joint 1 */
     const real rpr_qdd_1_o = v->inv_rpr_q_2*rpr_rel_o_in_axes1_y;
-    /* (rpr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-       link 2, less gravity */
+    /* (rpr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
     const real gravity_x = m->gravity_x;
     const real gravity_y = m->gravity_y;
     const real rpr_g_in_axes1_x = v->axis_x_rpr_axes1_x*gravity_x +
@@ -1840,22 +1838,22 @@ INLINE void stage_rpr_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real rpr_acc_2_o_in_axes1_x = v->axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x -
         v->axis_x_rpr_axes1_x*rpr_u_1_t;
     const real rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y;
-    /* (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning
-       about its reference point */
+    /* (rpr-phi_2_o) remainder of: inertia force of link 2 from its turning about its reference point
+       */
     const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
     const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
     const real rpr_phi_2_o_in_axes1_x = v->rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x -
         rpr_h_2_in_spec1_y*rpr_qdd_1_o;
-    /* (rpr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
-       link 1, about their reference points */
+    /* (rpr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
     const real rpr_J_group_1_in_axes1_zz = m->rpr_J_group_1_in_axes1_zz[i];
     const real rpr_h_1_in_spec1_x = m->rpr_h_1_in_spec1_x[i];
     const real rpr_h_1_in_spec1_y = m->rpr_h_1_in_spec1_y[i];
     const real rpr_mu_1_o_in_axes1_z = rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o +
         rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x + rpr_g_in_axes1_x*rpr_h_1_in_spec1_y -
         rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y - rpr_g_in_axes1_y*rpr_h_1_in_spec1_x;
-    /* (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation
-       and without the mass at the connection point */
+    /* (rpr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
     const real rpr_c_o_in_axes1_y = -v->inv_rpr_q_2*rpr_mu_1_o_in_axes1_z -
         v->rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y - rpr_h_2_in_spec1_x*rpr_qdd_1_o;
     /* (rpr-U) velocity and gravity terms of the leg force */
@@ -2403,35 +2401,34 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
             v.axis_y_rrr_axes2_x*rrr_u_1_t;
         const real rrr_u_1_in_axes2_y = v.axis_y_rrr_axes2_x*rrr_u_1_x -
             v.axis_x_rrr_axes2_x*rrr_u_1_t;
-        /* (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
+        /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - v.rrr_bias_in_axes2_x;
         const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
         const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
             v.rrr_W_1_t*rrr_joint2_offset_x*v.rrr_s_2;
         /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
         const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*v.rrr_w_1_in_axes2_x;
-        /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
         const real rrr_alpha_2_o_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y +
             rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
-        /* (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
+        /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + v.axis_y_rrr_axes2_x*gravity_y -
             v.axis_x_rrr_axes2_x*gravity_x;
         const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - v.axis_x_rrr_axes2_x*gravity_y -
             v.axis_y_rrr_axes2_x*gravity_x;
-        /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
+        /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
         const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
         const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
         const real rrr_mu_2_o_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
             rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y;
-        /* (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
+        /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+           reference points */
         const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
         const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
         const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
@@ -2440,14 +2437,14 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(v.rrr_c_1*rrr_mu_1_t +
             rrr_mu_1_t_2*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
             rrr_h_1_in_spec1_x*(v.rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v.rrr_s_1);
-        /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
+        /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+           connection point left out */
         const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
-        /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y;
-        /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+           connection point */
         const real rrr_c_o_in_axes2_x = v.rrr_W_2_t*rrr_h_2_in_spec2_x +
             rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
             v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
@@ -2532,32 +2529,31 @@ INLINE void dynamics_legs_prr(const prepared *m, size_t w, size_t leg, size_t le
         stage_prr_V_X(m, w, i, j, V, &v);
         stage_prr_M_dynamics(m, i, &v);
         stage_prr_Z_dynamics(m, w, i, j, V, &v);
-        /* (prr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
+        /* (prr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
         const real prr_rel_o_in_axes2_x = v.prr_u_1_in_axes2_x +
             prr_platform_joint_offset_x*v.prr_qd_2*v.prr_qd_2;
         /* (prr-B_2_o) remainder of the acceleration tensor of link 2 */
         const real prr_B_2_o_in_axes2_xy = v.prr_w_1_t*(v.prr_c_2*v.prr_u_1_in_axes2_y +
             prr_rel_o_in_axes2_x*v.prr_s_2);
-        /* (prr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
-           link 1, less gravity */
+        /* (prr-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
         const real prr_g_in_axes0_x = m->prr_g_in_axes0_x[i];
         const real prr_acc_1_o_in_axes0_x = prr_B_2_o_in_axes2_xy*v.prr_v_2_in_axes0_x +
             v.prr_c_2*prr_rel_o_in_axes2_x - prr_g_in_axes0_x - v.prr_s_2*v.prr_u_1_in_axes2_y;
-        /* (prr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight */
+        /* (prr-f_1_o) remainder of: inertia force of link 1 less its weight */
         const real prr_link1_mass = m->prr_link1_mass[i];
         const real prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*prr_link1_mass;
-        /* (prr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
+        /* (prr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real prr_J_2_in_spec2_zz = m->prr_J_2_in_spec2_zz[i];
         const real prr_h_2_in_spec2_x = m->prr_h_2_in_spec2_x[i];
         const real prr_h_2_in_spec2_y = m->prr_h_2_in_spec2_y[i];
         const real prr_mu_2_o_in_axes2_z = v.prr_acc_2_o_in_axes2_y*prr_h_2_in_spec2_x -
             prr_B_2_o_in_axes2_xy*prr_J_2_in_spec2_zz -
             v.prr_acc_2_o_in_axes2_x*prr_h_2_in_spec2_y;
-        /* (prr-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (prr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+           connection point */
         const real prr_c_o_t = v.prr_w_1_t*(prr_mu_2_o_in_axes2_z -
             prr_f_1_o_in_axes0_x*v.prr_v_2_in_axes0_x);
         const real prr_c_o_in_axes2_x = v.prr_W_2_t*prr_h_2_in_spec2_x + prr_c_o_t*v.prr_s_2 -
@@ -3101,33 +3097,32 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
             rrr_W_1_t*v.rrr_c_2*rrr_joint2_offset_x;
-        /* (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
+        /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x;
         const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
             rrr_W_1_t*rrr_joint2_offset_x*v.rrr_s_2;
         /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
         const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*v.rrr_w_1_in_axes2_x;
-        /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real rrr_alpha_2_o_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y +
             rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
-        /* (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
+        /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
             axis_x_rrr_axes2_x*gravity_x;
         const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
             axis_y_rrr_axes2_x*gravity_x;
-        /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
+        /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
         const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
         const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
         const real rrr_mu_2_o_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
             rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y;
-        /* (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
+        /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+           reference points */
         const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
         const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
         const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
@@ -3136,14 +3131,14 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(v.rrr_c_1*rrr_mu_1_t +
             rrr_mu_1_t_2*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
             rrr_h_1_in_spec1_x*(v.rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v.rrr_s_1);
-        /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
+        /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+           connection point left out */
         const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
-        /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y;
-        /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+           connection point */
         const real rrr_c_o_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
             rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
             v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
@@ -3195,32 +3190,31 @@ INLINE void Z_legs_prr(const prepared *m, size_t w, size_t leg, size_t legs, con
             v.prr_S_dot_y*prr_base_frame_yy);
         /* (prr-W_2) centripetal tensor of link 2 */
         const real prr_W_2_t = prr_qd_2*prr_qd_2;
-        /* (prr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
+        /* (prr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
         const real prr_rel_o_in_axes2_x = v.prr_u_1_in_axes2_x +
             prr_platform_joint_offset_x*prr_qd_2*prr_qd_2;
         /* (prr-B_2_o) remainder of the acceleration tensor of link 2 */
         const real prr_B_2_o_in_axes2_xy = prr_qd_2_t*(v.prr_c_2*v.prr_u_1_in_axes2_y +
             prr_rel_o_in_axes2_x*v.prr_s_2);
-        /* (prr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
-           link 1, less gravity */
+        /* (prr-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
         const real prr_g_in_axes0_x = m->prr_g_in_axes0_x[i];
         const real prr_acc_1_o_in_axes0_x = prr_B_2_o_in_axes2_xy*v.prr_v_2_in_axes0_x +
             v.prr_c_2*prr_rel_o_in_axes2_x - prr_g_in_axes0_x - v.prr_s_2*v.prr_u_1_in_axes2_y;
-        /* (prr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight */
+        /* (prr-f_1_o) remainder of: inertia force of link 1 less its weight */
         const real prr_link1_mass = m->prr_link1_mass[i];
         const real prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*prr_link1_mass;
-        /* (prr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
+        /* (prr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real prr_J_2_in_spec2_zz = m->prr_J_2_in_spec2_zz[i];
         const real prr_h_2_in_spec2_x = m->prr_h_2_in_spec2_x[i];
         const real prr_h_2_in_spec2_y = m->prr_h_2_in_spec2_y[i];
         const real prr_mu_2_o_in_axes2_z = v.prr_acc_2_o_in_axes2_y*prr_h_2_in_spec2_x -
             prr_B_2_o_in_axes2_xy*prr_J_2_in_spec2_zz -
             v.prr_acc_2_o_in_axes2_x*prr_h_2_in_spec2_y;
-        /* (prr-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (prr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+           connection point */
         const real prr_c_o_t = prr_qd_2_t*(prr_mu_2_o_in_axes2_z -
             prr_f_1_o_in_axes0_x*v.prr_v_2_in_axes0_x);
         const real prr_c_o_in_axes2_x = prr_W_2_t*prr_h_2_in_spec2_x + prr_c_o_t*v.prr_s_2 -

@@ -1182,10 +1182,10 @@ class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
     sqrt = staticmethod(math.sqrt)
-    sin = staticmethod(lambda x: float(np.sin(x)))
-    cos = staticmethod(lambda x: float(np.cos(x)))
+    sin = staticmethod(lambda x: float(np.sin(x)) if math.isfinite(x) else math.nan)
+    cos = staticmethod(lambda x: float(np.cos(x)) if math.isfinite(x) else math.nan)
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
-    least = staticmethod(lambda x, y: float(np.minimum(x, y)))
+    least = staticmethod(lambda x, y: y if y < x or y != y else x)
 
     def __init__(self, p, states, kept=None):
         self.p, self.states = p, states
@@ -1338,7 +1338,7 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
     Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
     where a single state needs no arrays.
     """
-    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    p, read = _given(p), [a[4:] != ("unused",) for a in arguments]
     lists = plain and _lists(arguments)
     if lists:
         found = _state(_Single(p, 1), steps, lists, read)
@@ -1363,7 +1363,7 @@ def _lists(arguments):
     for row in arguments:
         value, shape = row[1:3]
         if type(value) is np.ndarray:
-            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+            if value.shape != shape or value.dtype is not _REAL or row[4:] == ("positive",):
                 return None
             found.append(_Vector(value.tolist()))
         elif value is None and len(row) > 3 and row[3] is not None:
@@ -2038,22 +2038,22 @@ def _run_dynamics(m, X, V):
         rpr_u_1_t = omega_z*rpr_S_dot_t_2
         rpr_u_1_y = -omega_z*rpr_S_dot_t
         rpr_u_1_in_axes1_y = axis_x_rpr_axes1_x*rpr_u_1_y + axis_x_rpr_axes1_y*rpr_u_1_t
-        # (rpr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (rpr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
-        # (rpr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (rpr-qdd_1_o) remainder of: acceleration of joint 1
         rpr_qdd_1_o = inv_rpr_q_2*rpr_rel_o_in_axes1_y
-        # (rpr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        # (rpr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
         rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
         rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
         rpr_acc_2_o_in_axes1_x = (
         axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x - axis_x_rpr_axes1_x*rpr_u_1_t
         )
         rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y
-        # (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning about its reference point
+        # (rpr-phi_2_o) remainder of: inertia force of link 2 from its turning about its reference point
         rpr_phi_2_o_in_axes1_x = (
         rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x - rpr_h_2_in_spec1_y*rpr_qdd_1_o
         )
-        # (rpr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        # (rpr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rpr_mu_1_o_in_axes1_z = (
         rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o + rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x +
             rpr_g_in_axes1_x*rpr_h_1_in_spec1_y - rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y -
@@ -2065,7 +2065,7 @@ def _run_dynamics(m, X, V):
         -inv_rpr_q_2*rpr_h_2_in_spec1_x - inv_rpr_q_2*(rpr_h_2_in_spec1_x +
             inv_rpr_q_2*rpr_J_group_1_in_axes1_zz)
         )
-        # (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (rpr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rpr_c_o_in_axes1_y = (
         -inv_rpr_q_2*rpr_mu_1_o_in_axes1_z - rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y -
             rpr_h_2_in_spec1_x*rpr_qdd_1_o
@@ -2204,24 +2204,24 @@ def _run_dynamics(m, X, V):
         rrr_bias_in_axes2_x = (
         -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        # (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x
         rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         # (rrr-B_1_o) remainder of the acceleration tensor of link 1
         rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*rrr_w_1_in_axes2_x
-        # (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (rrr-alpha_2_o) remainder of: angular acceleration of link 2
         rrr_alpha_2_o_in_axes2_z = (
         rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y + rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) -
             rrr_B_1_o_in_axes1_xy
         )
-        # (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        # (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
         rrr_acc_2_o_in_axes2_x = (
         rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
         )
         rrr_acc_2_o_in_axes2_y = (
         rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
         )
-        # (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_o_in_axes2_z = (
         rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z + rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x -
             rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y
@@ -2231,26 +2231,26 @@ def _run_dynamics(m, X, V):
         rrr_d_Gamma_2_in_axes2_x = (
         rrr_w_1_in_axes2_x*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y
         )
-        # (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        # (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rrr_mu_1_o_in_axes1_z = (
         rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
             rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
             rrr_mu_1_t*rrr_s_1)
         )
-        # (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        # (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
         # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         rrr_d_Gamma_1_in_axes2_x = (
         rrr_w_1_in_axes2_x*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y
         )
-        # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrr_d_c_in_axes2_xy = (
         rrr_d_phi_2_t - rrr_d_Gamma_2_in_axes2_y*rrr_w_1_in_axes2_x -
             rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x
         )
-        # (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_c_o_in_axes2_x = (
         rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
             rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
@@ -2363,27 +2363,27 @@ def _run_dynamics(m, X, V):
         prr_u_1_t = omega_z*prr_S_dot_t
         prr_u_1_in_axes2_x = axis_x_prr_axes2_x*prr_u_1_x + axis_y_prr_axes2_x*prr_u_1_t
         prr_u_1_in_axes2_y = axis_y_prr_axes2_x*prr_u_1_x - axis_x_prr_axes2_x*prr_u_1_t
-        # (prr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (prr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         prr_rel_o_in_axes2_x = prr_u_1_in_axes2_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2
         # (prr-B_2_o) remainder of the acceleration tensor of link 2
         prr_B_2_o_in_axes2_xy = (
         prr_w_1_t*(prr_c_2*prr_u_1_in_axes2_y + prr_rel_o_in_axes2_x*prr_s_2)
         )
-        # (prr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+        # (prr-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity
         prr_acc_1_o_in_axes0_x = (
         prr_B_2_o_in_axes2_xy*prr_v_2_in_axes0_x + prr_c_2*prr_rel_o_in_axes2_x - prr_g_in_axes0_x
             - prr_s_2*prr_u_1_in_axes2_y
         )
-        # (prr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight
+        # (prr-f_1_o) remainder of: inertia force of link 1 less its weight
         prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*prr_link1_mass
-        # (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        # (prr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
         prr_acc_2_o_in_axes2_x = (
         prr_u_1_in_axes2_x - prr_c_2*prr_g_in_axes0_x - prr_g_in_axes0_y*prr_s_2
         )
         prr_acc_2_o_in_axes2_y = (
         prr_u_1_in_axes2_y + prr_g_in_axes0_x*prr_s_2 - prr_c_2*prr_g_in_axes0_y
         )
-        # (prr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (prr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         prr_mu_2_o_in_axes2_z = (
         prr_acc_2_o_in_axes2_y*prr_h_2_in_spec2_x - prr_B_2_o_in_axes2_xy*prr_J_2_in_spec2_zz -
             prr_acc_2_o_in_axes2_x*prr_h_2_in_spec2_y
@@ -2404,7 +2404,7 @@ def _run_dynamics(m, X, V):
         prr_d_Gamma_2_in_axes2_y*prr_w_2_t + prr_h_2_in_spec2_y*prr_w_2_in_axes2_y -
             prr_d_Gamma_1_in_axes2_y*prr_w_1_in_axes2_x
         )
-        # (prr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (prr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         prr_c_o_t = prr_w_1_t*(prr_mu_2_o_in_axes2_z - prr_f_1_o_in_axes0_x*prr_v_2_in_axes0_x)
         prr_c_o_in_axes2_x = (
         prr_W_2_t*prr_h_2_in_spec2_x + prr_c_o_t*prr_s_2 -
@@ -2835,28 +2835,28 @@ def _run_Z(m, X, V):
         rpr_u_1_t = omega_z*rpr_S_dot_t_2
         rpr_u_1_y = -omega_z*rpr_S_dot_t
         rpr_u_1_in_axes1_y = axis_x_rpr_axes1_x*rpr_u_1_y + axis_x_rpr_axes1_y*rpr_u_1_t
-        # (rpr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (rpr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
-        # (rpr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (rpr-qdd_1_o) remainder of: acceleration of joint 1
         rpr_qdd_1_o = inv_rpr_q_2*rpr_rel_o_in_axes1_y
-        # (rpr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        # (rpr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
         rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
         rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
         rpr_acc_2_o_in_axes1_x = (
         axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x - axis_x_rpr_axes1_x*rpr_u_1_t
         )
         rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y
-        # (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning about its reference point
+        # (rpr-phi_2_o) remainder of: inertia force of link 2 from its turning about its reference point
         rpr_phi_2_o_in_axes1_x = (
         rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x - rpr_h_2_in_spec1_y*rpr_qdd_1_o
         )
-        # (rpr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        # (rpr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rpr_mu_1_o_in_axes1_z = (
         rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o + rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x +
             rpr_g_in_axes1_x*rpr_h_1_in_spec1_y - rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y -
             rpr_g_in_axes1_y*rpr_h_1_in_spec1_x
         )
-        # (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (rpr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rpr_c_o_in_axes1_y = (
         -inv_rpr_q_2*rpr_mu_1_o_in_axes1_z - rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y -
             rpr_h_2_in_spec1_x*rpr_qdd_1_o
@@ -2959,39 +2959,39 @@ def _run_Z(m, X, V):
         rrr_bias_in_axes2_x = (
         -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        # (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x
         rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         # (rrr-B_1_o) remainder of the acceleration tensor of link 1
         rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*rrr_w_1_in_axes2_x
-        # (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (rrr-alpha_2_o) remainder of: angular acceleration of link 2
         rrr_alpha_2_o_in_axes2_z = (
         rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y + rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) -
             rrr_B_1_o_in_axes1_xy
         )
-        # (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        # (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
         rrr_acc_2_o_in_axes2_x = (
         rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
         )
         rrr_acc_2_o_in_axes2_y = (
         rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
         )
-        # (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_o_in_axes2_z = (
         rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z + rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x -
             rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y
         )
-        # (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        # (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rrr_mu_1_o_in_axes1_z = (
         rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
             rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
             rrr_mu_1_t*rrr_s_1)
         )
-        # (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        # (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
-        # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
-        # (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_c_o_in_axes2_x = (
         rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
             rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
@@ -3059,32 +3059,32 @@ def _run_Z(m, X, V):
         prr_u_1_t = omega_z*prr_S_dot_t
         prr_u_1_in_axes2_x = axis_x_prr_axes2_x*prr_u_1_x + axis_y_prr_axes2_x*prr_u_1_t
         prr_u_1_in_axes2_y = axis_y_prr_axes2_x*prr_u_1_x - axis_x_prr_axes2_x*prr_u_1_t
-        # (prr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (prr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         prr_rel_o_in_axes2_x = prr_u_1_in_axes2_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2
         # (prr-B_2_o) remainder of the acceleration tensor of link 2
         prr_B_2_o_in_axes2_xy = (
         prr_qd_2_t*(prr_c_2*prr_u_1_in_axes2_y + prr_rel_o_in_axes2_x*prr_s_2)
         )
-        # (prr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+        # (prr-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity
         prr_acc_1_o_in_axes0_x = (
         prr_B_2_o_in_axes2_xy*prr_v_2_in_axes0_x + prr_c_2*prr_rel_o_in_axes2_x - prr_g_in_axes0_x
             - prr_s_2*prr_u_1_in_axes2_y
         )
-        # (prr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight
+        # (prr-f_1_o) remainder of: inertia force of link 1 less its weight
         prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*prr_link1_mass
-        # (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        # (prr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
         prr_acc_2_o_in_axes2_x = (
         prr_u_1_in_axes2_x - prr_c_2*prr_g_in_axes0_x - prr_g_in_axes0_y*prr_s_2
         )
         prr_acc_2_o_in_axes2_y = (
         prr_u_1_in_axes2_y + prr_g_in_axes0_x*prr_s_2 - prr_c_2*prr_g_in_axes0_y
         )
-        # (prr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (prr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         prr_mu_2_o_in_axes2_z = (
         prr_acc_2_o_in_axes2_y*prr_h_2_in_spec2_x - prr_B_2_o_in_axes2_xy*prr_J_2_in_spec2_zz -
             prr_acc_2_o_in_axes2_x*prr_h_2_in_spec2_y
         )
-        # (prr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (prr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         prr_c_o_t = prr_qd_2_t*(prr_mu_2_o_in_axes2_z - prr_f_1_o_in_axes0_x*prr_v_2_in_axes0_x)
         prr_c_o_in_axes2_x = (
         prr_W_2_t*prr_h_2_in_spec2_x + prr_c_o_t*prr_s_2 -

@@ -656,7 +656,7 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
             gravity_y*prrr_base_frame_yx;
         const real prrr_g_in_axes0_x = gravity_x*prrr_base_frame_xy +
             gravity_y*prrr_base_frame_yy;
-        /* (prrr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight */
+        /* (prrr-f_1_o) remainder of: inertia force of link 1 less its weight */
         const real prrr_f_1_o_in_axes0_x = -prrr_g_in_axes0_x*prrr_link1_mass;
         /* (prrr-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
            about its reference point */
@@ -1653,7 +1653,7 @@ INLINE void stage_prrr_Z_dynamics(const prepared *m, size_t w, size_t i, size_t 
     const real omega_z = V[2*w + j];
     const real prrr_u_1_x = -omega_z*v->prrr_S_dot_t_2;
     const real prrr_u_1_t = omega_z*v->prrr_S_dot_t;
-    /* (prrr-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
+    /* (prrr-f_2_o) remainder of: inertia force of link 2 less its weight */
     const real prrr_acc_1_in_axes0_y = m->prrr_acc_1_in_axes0_y[i];
     const real prrr_g_in_axes0_x = m->prrr_g_in_axes0_x[i];
     const real prrr_g_in_axes2_x = prrr_acc_1_in_axes0_y*v->prrr_c_2 +
@@ -2177,19 +2177,19 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t w, size_t leg, size_t l
             v.axis_y_prrr_axes3_x*v.prrr_u_1_t;
         const real prrr_u_1_in_axes3_y = v.axis_y_prrr_axes3_x*v.prrr_u_1_x -
             v.axis_x_prrr_axes3_x*v.prrr_u_1_t;
-        /* (prrr-rel_o) remainder without the acceleration in: acceleration of the connection point left
-           to the joint accelerations */
+        /* (prrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real prrr_rel_o_in_axes3_x = prrr_u_1_in_axes3_x - v.prrr_bias_in_axes3_x;
         const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
         const real prrr_rel_o_in_axes3_y = prrr_u_1_in_axes3_y -
             v.prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*v.prrr_s_3_t;
         /* (prrr-B_2_o) remainder of the acceleration tensor of link 2 */
         const real prrr_B_2_o_in_axes2_xy = v.inv_prrr_r_2_in_axes3_y*prrr_rel_o_in_axes3_x;
-        /* (prrr-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (prrr-alpha_3_o) remainder of: angular acceleration of link 3 */
         const real prrr_w_3_in_axes3_y = m->prrr_w_3_in_axes3_y[i];
         const real prrr_alpha_3_o_in_axes3_z = prrr_w_3_in_axes3_y*(prrr_rel_o_in_axes3_y +
             prrr_B_2_o_in_axes2_xy*v.prrr_r_2_in_axes3_x) - prrr_B_2_o_in_axes2_xy;
-        /* (prrr-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
+        /* (prrr-f_2_o) remainder of: inertia force of link 2 less its weight */
         const real prrr_h_2_in_spec2_x = m->prrr_h_2_in_spec2_x[i];
         const real prrr_h_2_in_spec2_y = m->prrr_h_2_in_spec2_y[i];
         const real prrr_link2_mass = m->prrr_link2_mass[i];
@@ -2197,16 +2197,15 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t w, size_t leg, size_t l
             v.prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_x - v.prrr_g_in_axes2_x*prrr_link2_mass;
         const real prrr_f_2_o_in_axes2_y = v.prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_y -
             prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_x - v.prrr_g_in_axes2_y*prrr_link2_mass;
-        /* (prrr-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
+        /* (prrr-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real prrr_acc_3_o_in_axes3_x = prrr_u_1_in_axes3_x + v.axis_y_prrr_axes3_x*gravity_y
             - v.axis_x_prrr_axes3_x*gravity_x;
         const real prrr_acc_3_o_in_axes3_y = prrr_u_1_in_axes3_y - v.axis_x_prrr_axes3_x*gravity_y
             - v.axis_y_prrr_axes3_x*gravity_x;
-        /* (prrr-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 3, about their reference points */
+        /* (prrr-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+           reference points */
         const real prrr_J_3_in_spec3_zz = m->prrr_J_3_in_spec3_zz[i];
         const real prrr_h_3_in_spec3_x = m->prrr_h_3_in_spec3_x[i];
         const real prrr_h_3_in_spec3_y = m->prrr_h_3_in_spec3_y[i];
@@ -2219,21 +2218,21 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t w, size_t leg, size_t l
             prrr_J_3_in_spec3_zz*prrr_w_3_in_axes3_y*(v.prrr_e_1_in_axes3_y +
             v.prrr_r_2_in_axes3_x*prrr_w_2_t_2);
         const real prrr_dy_1_Gamma_3 = prrr_J_3_in_spec3_zz*prrr_w_2_t_2 - prrr_dy_1_Gamma_3_t;
-        /* (prrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
+        /* (prrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real prrr_J_2_in_spec2_zz = m->prrr_J_2_in_spec2_zz[i];
         const real prrr_mu_2_o_in_axes2_z = v.prrr_g_in_axes2_x*prrr_h_2_in_spec2_y -
             prrr_B_2_o_in_axes2_xy*prrr_J_2_in_spec2_zz - v.prrr_g_in_axes2_y*prrr_h_2_in_spec2_x;
-        /* (prrr-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
+        /* (prrr-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+           connection point left out */
         const real prrr_N_2_o_in_axes2_z = prrr_mu_2_o_in_axes2_z + prrr_mu_3_o_in_axes3_z;
         /* (prrr-dy_1_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
            links' inertia and weight */
         const real prrr_Jc_2_in_axes2_zz = m->prrr_Jc_2_in_axes2_zz[i];
         const real prrr_dy_1_Gamma_2 = v.prrr_P_c_2_in_axes0_x +
             prrr_Jc_2_in_axes2_zz*prrr_w_2_t_2 - prrr_dy_1_Gamma_3_t;
-        /* (prrr-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards,
-           the last link left out */
+        /* (prrr-T_1_o) remainder of: inertia force of the links from 1 outwards, the last link left out
+           */
         const real prrr_f_1_o_in_axes0_x = m->prrr_f_1_o_in_axes0_x[i];
         const real prrr_T_1_o_in_axes0_x = prrr_f_1_o_in_axes0_x +
             v.prrr_c_2*prrr_f_2_o_in_axes2_y + prrr_f_2_o_in_axes2_x*v.prrr_s_2;
@@ -2245,14 +2244,14 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t w, size_t leg, size_t l
         /* (prrr-dy_1_G) coefficient of the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all degrees of freedom */
         const real prrr_dy_1_G_in_axes3_y = prrr_dy_1_Gamma_3*prrr_w_3_in_axes3_y;
-        /* (prrr-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (prrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real prrr_G_o_in_axes3_y = prrr_mu_3_o_in_axes3_z*prrr_w_3_in_axes3_y;
         const real prrr_G_o_in_axes3_x =
             v.inv_prrr_r_2_in_axes3_y*(prrr_G_o_in_axes3_y*v.prrr_r_2_in_axes3_x -
             prrr_N_2_o_in_axes2_z);
-        /* (prrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (prrr-c_o) remainder of: leg force on the platform without actuation and without the mass at
+           the connection point */
         const real prrr_c_o_in_axes3_x = v.prrr_W_3_t*prrr_h_3_in_spec3_x +
             prrr_alpha_3_o_in_axes3_z*prrr_h_3_in_spec3_y - prrr_G_o_in_axes3_x;
         const real prrr_c_o_in_axes3_y = v.prrr_W_3_t*prrr_h_3_in_spec3_y - prrr_G_o_in_axes3_y -
@@ -2290,8 +2289,8 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t w, size_t leg, size_t l
             v.axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_y;
         const real prrr_d_P_1_y = v.axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_y -
             v.axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_x;
-        /* (prrr-P_1_o) remainder without the acceleration in: inertia and weight of the leg along the
-           extra degree of freedom of joint 1 */
+        /* (prrr-P_1_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
+           joint 1 */
         const real prrr_P_1_o_t = prrr_G_o_in_axes3_x*v.prrr_w_2_t -
             prrr_G_o_in_axes3_y*v.prrr_e_1_in_axes3_y;
         const real prrr_P_1_o = prrr_P_1_o_t + prrr_T_1_o_in_axes0_x;
@@ -2320,8 +2319,8 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t w, size_t leg, size_t l
         gather(&terms[7*count + k], add, prrr_U_y);  /* Z_t_y_of_legs */
         /* (Z_a) rotational part of Z */
         gather(&terms[8*count + k], add, prrr_Z_a_t);  /* Z_a_z_of_legs */
-        /* (prrr-P_1_o) remainder without the acceleration in: inertia and weight of the leg along the
-           extra degree of freedom of joint 1 */
+        /* (prrr-P_1_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
+           joint 1 */
         o[0*count + k] = prrr_P_1_o;
         /* (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra
            degree of freedom of joint 1 */
@@ -2395,35 +2394,34 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
             v.axis_y_rrr_axes2_x*rrr_u_1_t;
         const real rrr_u_1_in_axes2_y = v.axis_y_rrr_axes2_x*rrr_u_1_x -
             v.axis_x_rrr_axes2_x*rrr_u_1_t;
-        /* (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
+        /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - v.rrr_bias_in_axes2_x;
         const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
         const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
             v.rrr_W_1_t*rrr_joint2_offset_x*v.rrr_s_2;
         /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
         const real rrr_B_1_o_in_axes1_xy = v.inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x;
-        /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
         const real rrr_alpha_2_o_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y +
             rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
-        /* (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
+        /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + v.axis_y_rrr_axes2_x*gravity_y -
             v.axis_x_rrr_axes2_x*gravity_x;
         const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - v.axis_x_rrr_axes2_x*gravity_y -
             v.axis_y_rrr_axes2_x*gravity_x;
-        /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
+        /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
         const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
         const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
         const real rrr_mu_2_o_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
             rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y;
-        /* (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
+        /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+           reference points */
         const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
         const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
         const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
@@ -2432,14 +2430,14 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(v.rrr_c_1*rrr_mu_1_t +
             rrr_mu_1_t_2*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
             rrr_h_1_in_spec1_x*(v.rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v.rrr_s_1);
-        /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
+        /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+           connection point left out */
         const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
-        /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y;
-        /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+           connection point */
         const real rrr_c_o_in_axes2_x = v.rrr_W_2_t*rrr_h_2_in_spec2_x +
             rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
             v.inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x -
@@ -2954,17 +2952,17 @@ INLINE void Z_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
         const real prrr_bias_in_axes3_x = prrr_W_2_in_axes2_xx*v.prrr_c_3*prrr_joint3_offset_x -
             prrr_W_3_t*prrr_platform_joint_offset_x;
-        /* (prrr-rel_o) remainder without the acceleration in: acceleration of the connection point left
-           to the joint accelerations */
+        /* (prrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real prrr_rel_o_in_axes3_x = prrr_u_1_in_axes3_x - prrr_bias_in_axes3_x;
         const real prrr_rel_o_in_axes3_y = prrr_u_1_in_axes3_y -
             prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*v.prrr_s_3_t;
         /* (prrr-B_2_o) remainder of the acceleration tensor of link 2 */
         const real prrr_B_2_o_in_axes2_xy = v.inv_prrr_r_2_in_axes3_y*prrr_rel_o_in_axes3_x;
-        /* (prrr-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (prrr-alpha_3_o) remainder of: angular acceleration of link 3 */
         const real prrr_alpha_3_o_in_axes3_z = prrr_w_3_in_axes3_y*(prrr_rel_o_in_axes3_y +
             prrr_B_2_o_in_axes2_xy*v.prrr_r_2_in_axes3_x) - prrr_B_2_o_in_axes2_xy;
-        /* (prrr-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
+        /* (prrr-f_2_o) remainder of: inertia force of link 2 less its weight */
         const real prrr_h_2_in_spec2_x = m->prrr_h_2_in_spec2_x[i];
         const real prrr_h_2_in_spec2_y = m->prrr_h_2_in_spec2_y[i];
         const real prrr_link2_mass = m->prrr_link2_mass[i];
@@ -2972,43 +2970,42 @@ INLINE void Z_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, co
             prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_x - v.prrr_g_in_axes2_x*prrr_link2_mass;
         const real prrr_f_2_o_in_axes2_y = prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_y -
             prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_x - v.prrr_g_in_axes2_y*prrr_link2_mass;
-        /* (prrr-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
+        /* (prrr-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real prrr_acc_3_o_in_axes3_x = prrr_u_1_in_axes3_x + axis_y_prrr_axes3_x*gravity_y -
             axis_x_prrr_axes3_x*gravity_x;
         const real prrr_acc_3_o_in_axes3_y = prrr_u_1_in_axes3_y - axis_x_prrr_axes3_x*gravity_y -
             axis_y_prrr_axes3_x*gravity_x;
-        /* (prrr-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 3, about their reference points */
+        /* (prrr-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+           reference points */
         const real prrr_J_3_in_spec3_zz = m->prrr_J_3_in_spec3_zz[i];
         const real prrr_h_3_in_spec3_x = m->prrr_h_3_in_spec3_x[i];
         const real prrr_h_3_in_spec3_y = m->prrr_h_3_in_spec3_y[i];
         const real prrr_mu_3_o_in_axes3_z = prrr_J_3_in_spec3_zz*prrr_alpha_3_o_in_axes3_z +
             prrr_acc_3_o_in_axes3_y*prrr_h_3_in_spec3_x -
             prrr_acc_3_o_in_axes3_x*prrr_h_3_in_spec3_y;
-        /* (prrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
+        /* (prrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real prrr_J_2_in_spec2_zz = m->prrr_J_2_in_spec2_zz[i];
         const real prrr_mu_2_o_in_axes2_z = v.prrr_g_in_axes2_x*prrr_h_2_in_spec2_y -
             prrr_B_2_o_in_axes2_xy*prrr_J_2_in_spec2_zz - v.prrr_g_in_axes2_y*prrr_h_2_in_spec2_x;
-        /* (prrr-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
+        /* (prrr-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+           connection point left out */
         const real prrr_N_2_o_in_axes2_z = prrr_mu_2_o_in_axes2_z + prrr_mu_3_o_in_axes3_z;
-        /* (prrr-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards,
-           the last link left out */
+        /* (prrr-T_1_o) remainder of: inertia force of the links from 1 outwards, the last link left out
+           */
         const real prrr_f_1_o_in_axes0_x = m->prrr_f_1_o_in_axes0_x[i];
         const real prrr_T_1_o_in_axes0_x = prrr_f_1_o_in_axes0_x +
             v.prrr_c_2*prrr_f_2_o_in_axes2_y + prrr_f_2_o_in_axes2_x*v.prrr_s_2;
-        /* (prrr-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (prrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real prrr_G_o_in_axes3_y = prrr_mu_3_o_in_axes3_z*prrr_w_3_in_axes3_y;
         const real prrr_G_o_in_axes3_x =
             v.inv_prrr_r_2_in_axes3_y*(prrr_G_o_in_axes3_y*v.prrr_r_2_in_axes3_x -
             prrr_N_2_o_in_axes2_z);
-        /* (prrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (prrr-c_o) remainder of: leg force on the platform without actuation and without the mass at
+           the connection point */
         const real prrr_c_o_in_axes3_x = prrr_W_3_t*prrr_h_3_in_spec3_x +
             prrr_alpha_3_o_in_axes3_z*prrr_h_3_in_spec3_y - prrr_G_o_in_axes3_x;
         const real prrr_c_o_in_axes3_y = prrr_W_3_t*prrr_h_3_in_spec3_y - prrr_G_o_in_axes3_y -
@@ -3018,8 +3015,8 @@ INLINE void Z_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, co
             axis_y_prrr_axes3_x*prrr_c_o_in_axes3_y;
         const real prrr_U_y = axis_y_prrr_axes3_x*prrr_c_o_in_axes3_x -
             axis_x_prrr_axes3_x*prrr_c_o_in_axes3_y;
-        /* (prrr-P_1_o) remainder without the acceleration in: inertia and weight of the leg along the
-           extra degree of freedom of joint 1 */
+        /* (prrr-P_1_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
+           joint 1 */
         const real prrr_P_1_o_t = prrr_G_o_in_axes3_x*v.prrr_qd_2_t -
             prrr_G_o_in_axes3_y*v.prrr_e_1_in_axes3_y;
         const real prrr_P_1_o = prrr_P_1_o_t + prrr_T_1_o_in_axes0_x;
@@ -3030,8 +3027,8 @@ INLINE void Z_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, co
         gather(&terms[1*count + k], add, prrr_U_y);  /* Z_t_y_of_legs */
         /* (Z_a) rotational part of Z */
         gather(&terms[2*count + k], add, prrr_Z_a_t);  /* Z_a_z_of_legs */
-        /* (prrr-P_1_o) remainder without the acceleration in: inertia and weight of the leg along the
-           extra degree of freedom of joint 1 */
+        /* (prrr-P_1_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
+           joint 1 */
         o[0*count + k] = prrr_P_1_o;
         o[3*count + k] = prrr_P_1_o;
         const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
@@ -3094,33 +3091,32 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
             rrr_W_1_t*v.rrr_c_2*rrr_joint2_offset_x;
-        /* (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
+        /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x;
         const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
             rrr_W_1_t*rrr_joint2_offset_x*v.rrr_s_2;
         /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
         const real rrr_B_1_o_in_axes1_xy = v.inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x;
-        /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real rrr_alpha_2_o_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y +
             rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
-        /* (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
+        /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
             axis_x_rrr_axes2_x*gravity_x;
         const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
             axis_y_rrr_axes2_x*gravity_x;
-        /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
+        /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
         const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
         const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
         const real rrr_mu_2_o_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
             rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y;
-        /* (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
+        /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+           reference points */
         const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
         const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
         const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
@@ -3129,14 +3125,14 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(v.rrr_c_1*rrr_mu_1_t +
             rrr_mu_1_t_2*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
             rrr_h_1_in_spec1_x*(v.rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v.rrr_s_1);
-        /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
+        /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+           connection point left out */
         const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
-        /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y;
-        /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+           connection point */
         const real rrr_c_o_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
             rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
             v.inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x -

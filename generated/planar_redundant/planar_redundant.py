@@ -668,7 +668,7 @@ def _prepare(p):
     # (prrr-acc_1) acceleration of the reference point of link 1, less gravity
     prrr_acc_1_in_axes0_y = gravity_x*prrr_base_frame_xx + gravity_y*prrr_base_frame_yx
     prrr_g_in_axes0_x = gravity_x*prrr_base_frame_xy + gravity_y*prrr_base_frame_yy
-    # (prrr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight
+    # (prrr-f_1_o) remainder of: inertia force of link 1 less its weight
     prrr_f_1_o_in_axes0_x = -prrr_g_in_axes0_x*prrr_link1_mass
     # (prrr-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
     prrr_d_phi_3_t = prrr_h_3_in_spec3_y*prrr_w_3_in_axes3_y
@@ -1093,10 +1093,10 @@ class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
     sqrt = staticmethod(math.sqrt)
-    sin = staticmethod(lambda x: float(np.sin(x)))
-    cos = staticmethod(lambda x: float(np.cos(x)))
+    sin = staticmethod(lambda x: float(np.sin(x)) if math.isfinite(x) else math.nan)
+    cos = staticmethod(lambda x: float(np.cos(x)) if math.isfinite(x) else math.nan)
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
-    least = staticmethod(lambda x, y: float(np.minimum(x, y)))
+    least = staticmethod(lambda x, y: y if y < x or y != y else x)
 
     def __init__(self, p, states, kept=None):
         self.p, self.states = p, states
@@ -1249,7 +1249,7 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
     Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
     where a single state needs no arrays.
     """
-    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    p, read = _given(p), [a[4:] != ("unused",) for a in arguments]
     lists = plain and _lists(arguments)
     if lists:
         found = _state(_Single(p, 1), steps, lists, read)
@@ -1274,7 +1274,7 @@ def _lists(arguments):
     for row in arguments:
         value, shape = row[1:3]
         if type(value) is np.ndarray:
-            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+            if value.shape != shape or value.dtype is not _REAL or row[4:] == ("positive",):
                 return None
             found.append(_Vector(value.tolist()))
         elif value is None and len(row) > 3 and row[3] is not None:
@@ -2027,19 +2027,19 @@ def _run_dynamics(m, X, V):
         prrr_W_2_in_axes2_xx*prrr_c_3*prrr_joint3_offset_x -
             prrr_W_3_t*prrr_platform_joint_offset_x
         )
-        # (prrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (prrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         prrr_rel_o_in_axes3_x = prrr_u_1_in_axes3_x - prrr_bias_in_axes3_x
         prrr_rel_o_in_axes3_y = (
         prrr_u_1_in_axes3_y - prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t
         )
         # (prrr-B_2_o) remainder of the acceleration tensor of link 2
         prrr_B_2_o_in_axes2_xy = inv_prrr_r_2_in_axes3_y*prrr_rel_o_in_axes3_x
-        # (prrr-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        # (prrr-alpha_3_o) remainder of: angular acceleration of link 3
         prrr_alpha_3_o_in_axes3_z = (
         prrr_w_3_in_axes3_y*(prrr_rel_o_in_axes3_y + prrr_B_2_o_in_axes2_xy*prrr_r_2_in_axes3_x) -
             prrr_B_2_o_in_axes2_xy
         )
-        # (prrr-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight
+        # (prrr-f_2_o) remainder of: inertia force of link 2 less its weight
         prrr_g_in_axes2_x = prrr_acc_1_in_axes0_y*prrr_c_2 + prrr_g_in_axes0_x*prrr_s_2
         prrr_g_in_axes2_y = prrr_c_2*prrr_g_in_axes0_x - prrr_acc_1_in_axes0_y*prrr_s_2
         prrr_f_2_o_in_axes2_x = (
@@ -2050,7 +2050,7 @@ def _run_dynamics(m, X, V):
         prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_y - prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_x -
             prrr_g_in_axes2_y*prrr_link2_mass
         )
-        # (prrr-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        # (prrr-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         prrr_acc_3_o_in_axes3_x = (
         prrr_u_1_in_axes3_x + axis_y_prrr_axes3_x*gravity_y - axis_x_prrr_axes3_x*gravity_x
         )
@@ -2059,7 +2059,7 @@ def _run_dynamics(m, X, V):
         )
         # (prrr-P_c_2) force that accelerates joint 2, per unit
         prrr_P_c_2_in_axes0_x = prrr_c_2*prrr_h_2_in_spec2_x - prrr_h_2_in_spec2_y*prrr_s_2
-        # (prrr-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        # (prrr-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
         prrr_mu_3_o_in_axes3_z = (
         prrr_J_3_in_spec3_zz*prrr_alpha_3_o_in_axes3_z +
             prrr_acc_3_o_in_axes3_y*prrr_h_3_in_spec3_x -
@@ -2076,12 +2076,12 @@ def _run_dynamics(m, X, V):
             prrr_r_2_in_axes3_x*prrr_w_2_t_2)
         )
         prrr_dy_1_Gamma_3 = prrr_J_3_in_spec3_zz*prrr_w_2_t_2 - prrr_dy_1_Gamma_3_t
-        # (prrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (prrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         prrr_mu_2_o_in_axes2_z = (
         prrr_g_in_axes2_x*prrr_h_2_in_spec2_y - prrr_B_2_o_in_axes2_xy*prrr_J_2_in_spec2_zz -
             prrr_g_in_axes2_y*prrr_h_2_in_spec2_x
         )
-        # (prrr-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        # (prrr-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         prrr_N_2_o_in_axes2_z = prrr_mu_2_o_in_axes2_z + prrr_mu_3_o_in_axes3_z
         # (prrr-dy_1_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         prrr_dy_1_Gamma_2 = (
@@ -2092,7 +2092,7 @@ def _run_dynamics(m, X, V):
         -prrr_h_3_in_spec3_y - inv_prrr_r_2_in_axes3_y*(prrr_Jc_2_in_axes2_zz -
             prrr_d_Gamma_3_t_2)
         )
-        # (prrr-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
+        # (prrr-T_1_o) remainder of: inertia force of the links from 1 outwards, the last link left out
         prrr_T_1_o_in_axes0_x = (
         prrr_f_1_o_in_axes0_x + prrr_c_2*prrr_f_2_o_in_axes2_y + prrr_f_2_o_in_axes2_x*prrr_s_2
         )
@@ -2109,14 +2109,14 @@ def _run_dynamics(m, X, V):
         prrr_d_Gamma_3_in_axes3_y*prrr_w_3_in_axes3_x -
             inv_prrr_r_2_in_axes3_y*prrr_d_Gamma_3_in_axes3_y
         )
-        # (prrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (prrr-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         prrr_G_o_in_axes3_y = prrr_mu_3_o_in_axes3_z*prrr_w_3_in_axes3_y
         prrr_G_o_in_axes3_x = (
         inv_prrr_r_2_in_axes3_y*(prrr_G_o_in_axes3_y*prrr_r_2_in_axes3_x - prrr_N_2_o_in_axes2_z)
         )
         # (prrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         prrr_d_c_in_axes3_xy = prrr_d_phi_3_t - prrr_d_G_in_axes3_xy
-        # (prrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (prrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         prrr_c_o_in_axes3_x = (
         prrr_W_3_t*prrr_h_3_in_spec3_x + prrr_alpha_3_o_in_axes3_z*prrr_h_3_in_spec3_y -
             prrr_G_o_in_axes3_x
@@ -2163,7 +2163,7 @@ def _run_dynamics(m, X, V):
         prrr_d_P_1_y = (
         axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_y - axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_x
         )
-        # (prrr-P_1_o) remainder without the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 1
+        # (prrr-P_1_o) remainder of: inertia and weight of the leg along the extra degree of freedom of joint 1
         prrr_P_1_o_t = prrr_G_o_in_axes3_x*prrr_w_2_t - prrr_G_o_in_axes3_y*prrr_e_1_in_axes3_y
         prrr_P_1_o = prrr_P_1_o_t + prrr_T_1_o_in_axes0_x
         # (M_ta) coupling block of M
@@ -2195,7 +2195,7 @@ def _run_dynamics(m, X, V):
         Z_t_prrr_y += prrr_U_y
         # (Z_a) rotational part of Z
         Z_a_prrr_z += prrr_Z_a_t
-        # (prrr-P_1_o) remainder without the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 1
+        # (prrr-P_1_o) remainder of: inertia and weight of the leg along the extra degree of freedom of joint 1
         out_Z[_Z_prrr[0][leg]] = prrr_P_1_o
         # (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 1
         out_M[_M_prrr[0][leg]] = prrr_d_P_1_x
@@ -2304,24 +2304,24 @@ def _run_dynamics(m, X, V):
         rrr_bias_in_axes2_x = (
         -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        # (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x
         rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         # (rrr-B_1_o) remainder of the acceleration tensor of link 1
         rrr_B_1_o_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x
-        # (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (rrr-alpha_2_o) remainder of: angular acceleration of link 2
         rrr_alpha_2_o_in_axes2_z = (
         rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y + rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) -
             rrr_B_1_o_in_axes1_xy
         )
-        # (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        # (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
         rrr_acc_2_o_in_axes2_x = (
         rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
         )
         rrr_acc_2_o_in_axes2_y = (
         rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
         )
-        # (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_o_in_axes2_z = (
         rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z + rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x -
             rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y
@@ -2331,26 +2331,26 @@ def _run_dynamics(m, X, V):
         rrr_d_Gamma_2_in_axes2_x = (
         -rrr_h_2_in_spec2_y - inv_rrr_r_1_in_axes2_y*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2)
         )
-        # (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        # (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rrr_mu_1_o_in_axes1_z = (
         rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
             rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
             rrr_mu_1_t*rrr_s_1)
         )
-        # (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        # (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
         # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         rrr_d_Gamma_1_in_axes2_x = (
         -rrr_h_2_in_spec2_y - inv_rrr_r_1_in_axes2_y*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2)
         )
-        # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrr_d_c_in_axes2_xy = (
         inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_2_in_axes2_y - rrr_d_phi_2_in_axes2_xy -
             rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x
         )
-        # (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_c_o_in_axes2_x = (
         rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
             inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
@@ -2890,19 +2890,19 @@ def _run_Z(m, X, V):
         prrr_W_2_in_axes2_xx*prrr_c_3*prrr_joint3_offset_x -
             prrr_W_3_t*prrr_platform_joint_offset_x
         )
-        # (prrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (prrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         prrr_rel_o_in_axes3_x = prrr_u_1_in_axes3_x - prrr_bias_in_axes3_x
         prrr_rel_o_in_axes3_y = (
         prrr_u_1_in_axes3_y - prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t
         )
         # (prrr-B_2_o) remainder of the acceleration tensor of link 2
         prrr_B_2_o_in_axes2_xy = inv_prrr_r_2_in_axes3_y*prrr_rel_o_in_axes3_x
-        # (prrr-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        # (prrr-alpha_3_o) remainder of: angular acceleration of link 3
         prrr_alpha_3_o_in_axes3_z = (
         prrr_w_3_in_axes3_y*(prrr_rel_o_in_axes3_y + prrr_B_2_o_in_axes2_xy*prrr_r_2_in_axes3_x) -
             prrr_B_2_o_in_axes2_xy
         )
-        # (prrr-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight
+        # (prrr-f_2_o) remainder of: inertia force of link 2 less its weight
         prrr_g_in_axes2_x = prrr_acc_1_in_axes0_y*prrr_c_2 + prrr_g_in_axes0_x*prrr_s_2
         prrr_g_in_axes2_y = prrr_c_2*prrr_g_in_axes0_x - prrr_acc_1_in_axes0_y*prrr_s_2
         prrr_f_2_o_in_axes2_x = (
@@ -2913,36 +2913,36 @@ def _run_Z(m, X, V):
         prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_y - prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_x -
             prrr_g_in_axes2_y*prrr_link2_mass
         )
-        # (prrr-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        # (prrr-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         prrr_acc_3_o_in_axes3_x = (
         prrr_u_1_in_axes3_x + axis_y_prrr_axes3_x*gravity_y - axis_x_prrr_axes3_x*gravity_x
         )
         prrr_acc_3_o_in_axes3_y = (
         prrr_u_1_in_axes3_y - axis_x_prrr_axes3_x*gravity_y - axis_y_prrr_axes3_x*gravity_x
         )
-        # (prrr-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        # (prrr-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
         prrr_mu_3_o_in_axes3_z = (
         prrr_J_3_in_spec3_zz*prrr_alpha_3_o_in_axes3_z +
             prrr_acc_3_o_in_axes3_y*prrr_h_3_in_spec3_x -
             prrr_acc_3_o_in_axes3_x*prrr_h_3_in_spec3_y
         )
-        # (prrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (prrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         prrr_mu_2_o_in_axes2_z = (
         prrr_g_in_axes2_x*prrr_h_2_in_spec2_y - prrr_B_2_o_in_axes2_xy*prrr_J_2_in_spec2_zz -
             prrr_g_in_axes2_y*prrr_h_2_in_spec2_x
         )
-        # (prrr-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        # (prrr-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         prrr_N_2_o_in_axes2_z = prrr_mu_2_o_in_axes2_z + prrr_mu_3_o_in_axes3_z
-        # (prrr-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
+        # (prrr-T_1_o) remainder of: inertia force of the links from 1 outwards, the last link left out
         prrr_T_1_o_in_axes0_x = (
         prrr_f_1_o_in_axes0_x + prrr_c_2*prrr_f_2_o_in_axes2_y + prrr_f_2_o_in_axes2_x*prrr_s_2
         )
-        # (prrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (prrr-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         prrr_G_o_in_axes3_y = prrr_mu_3_o_in_axes3_z*prrr_w_3_in_axes3_y
         prrr_G_o_in_axes3_x = (
         inv_prrr_r_2_in_axes3_y*(prrr_G_o_in_axes3_y*prrr_r_2_in_axes3_x - prrr_N_2_o_in_axes2_z)
         )
-        # (prrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (prrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         prrr_c_o_in_axes3_x = (
         prrr_W_3_t*prrr_h_3_in_spec3_x + prrr_alpha_3_o_in_axes3_z*prrr_h_3_in_spec3_y -
             prrr_G_o_in_axes3_x
@@ -2958,7 +2958,7 @@ def _run_Z(m, X, V):
         prrr_U_y = (
         axis_y_prrr_axes3_x*prrr_c_o_in_axes3_x - axis_x_prrr_axes3_x*prrr_c_o_in_axes3_y
         )
-        # (prrr-P_1_o) remainder without the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 1
+        # (prrr-P_1_o) remainder of: inertia and weight of the leg along the extra degree of freedom of joint 1
         prrr_P_1_o_t = prrr_G_o_in_axes3_x*prrr_qd_2_t - prrr_G_o_in_axes3_y*prrr_e_1_in_axes3_y
         prrr_P_1_o = prrr_P_1_o_t + prrr_T_1_o_in_axes0_x
         # (Z_a) rotational part of Z
@@ -2972,7 +2972,7 @@ def _run_Z(m, X, V):
         Z_t_prrr_y += prrr_U_y
         # (Z_a) rotational part of Z
         Z_a_prrr_z += prrr_Z_a_t
-        # (prrr-P_1_o) remainder without the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 1
+        # (prrr-P_1_o) remainder of: inertia and weight of the leg along the extra degree of freedom of joint 1
         out_Z[_Z_prrr[0][leg]] = prrr_P_1_o
     Z_t_rrr_x, Z_t_rrr_y, Z_a_rrr_z = [0.0] * 3
     for leg, k in legs[1]:
@@ -3054,39 +3054,39 @@ def _run_Z(m, X, V):
         rrr_bias_in_axes2_x = (
         -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        # (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x
         rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         # (rrr-B_1_o) remainder of the acceleration tensor of link 1
         rrr_B_1_o_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x
-        # (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (rrr-alpha_2_o) remainder of: angular acceleration of link 2
         rrr_alpha_2_o_in_axes2_z = (
         rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y + rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) -
             rrr_B_1_o_in_axes1_xy
         )
-        # (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        # (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
         rrr_acc_2_o_in_axes2_x = (
         rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
         )
         rrr_acc_2_o_in_axes2_y = (
         rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
         )
-        # (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         rrr_mu_2_o_in_axes2_z = (
         rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z + rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x -
             rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y
         )
-        # (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        # (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rrr_mu_1_o_in_axes1_z = (
         rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
             rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
             rrr_mu_1_t*rrr_s_1)
         )
-        # (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        # (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
-        # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
-        # (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_c_o_in_axes2_x = (
         rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
             inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)

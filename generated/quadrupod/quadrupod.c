@@ -1730,7 +1730,8 @@ static void nearest_within(size_t n, const real *a, const real *b, const real *c
     real start[2*BIG] = {0}, t[2*BIG] = {0};
     copy(n, a, start);
     const int known = all_finite(a, n) && all_finite(b, n*n) && all_finite(c, n) && all_finite(d, n);
-    doubt(known, known && nearest_point(n, start, b, c, d, t), unreachable, overflow);
+    const int found = known && nearest_point(n, start, b, c, d, t) && all_finite(t, n);
+    doubt(known, found, unreachable, overflow);
     copy(n, t, x);
 }
 
@@ -2384,8 +2385,7 @@ INLINE void stage_tube_X(const prepared *m, size_t w, size_t i, size_t j, const 
     /* (tube-nd_m3) rate of moment direction 3 */
     const real tube_end_p3_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m3_t_4 -
         tube_c_2*tube_n_m3_t_3;
-    /* (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-       link 3, less gravity */
+    /* (tube-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
     const real tube_acc_3_t = m->tube_acc_3_t[i];
     const real tube_acc_3_t_2 = m->tube_acc_3_t_2[i];
     const real tube_g_in_axes2_z = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1;
@@ -2646,8 +2646,7 @@ INLINE void stage_tube_A_V_X(size_t w, size_t j, const real *V, values_tube *v)
 
 INLINE void stage_tube_Z_dynamics(const prepared *m, size_t i, values_tube *v)
 {
-    /* (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-       link 3, less gravity */
+    /* (tube-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
     const real tube_acc_3_t = m->tube_acc_3_t[i];
     const real tube_acc_3_t_2 = m->tube_acc_3_t_2[i];
     const real tube_acc_3_o_t = tube_acc_3_t*v->tube_c_1 + tube_acc_3_t_2*v->tube_s_1;
@@ -3254,8 +3253,7 @@ INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const r
         axis_x_ups_axes2_x*axis_z_ups_axes2_y;
     /* (ups-omega_1) angular velocity of link 1 */
     const real ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z;
-    /* (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-       link 3, less gravity */
+    /* (ups-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
     const real ups_acc_3_t = m->ups_acc_3_t[i];
     const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
     const real ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1;
@@ -3389,15 +3387,15 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real ups_u_1_z = omega_x*v->ups_S_dot_t_2 - omega_y*v->ups_S_dot_t;
     const real ups_u_1_in_axes2_z = v->axis_z_ups_axes2_x*ups_u_1_x +
         v->axis_z_ups_axes2_y*ups_u_1_y + v->axis_z_ups_axes2_z*ups_u_1_z;
-    /* (ups-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-       the joint accelerations */
+    /* (ups-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
     const real ups_rel_o_in_axes2_z = ups_u_1_in_axes2_z - v->ups_bias_in_axes2_z;
-    /* (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+    /* (ups-qdd_1_o) remainder of: acceleration of joint 1 */
     const real ups_qdd_1_o = v->inv_ups_root_1*ups_rel_o_in_axes2_z;
-    /* (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+    /* (ups-alpha_1_o) remainder of: angular acceleration of link 1 */
     const real ups_alpha_1_o_in_axes2_x = v->ups_e_1_in_axes2_x*ups_qdd_1_o;
     const real ups_alpha_1_o_in_axes2_y = -v->ups_c_2*ups_qdd_1_o;
-    /* (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+    /* (ups-alpha_2_o) remainder of: angular acceleration of link 2 */
     const real ups_alpha_2_o_in_axes2_x = v->ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x;
     const real ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - v->ups_W_2_in_axes2_xz;
     /* (ups-B_2_o) remainder of the acceleration tensor of link 2 */
@@ -3409,8 +3407,7 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real ups_B_2_o_in_axes2_xy = 2*v->ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx;
     const real ups_B_2_o_in_axes2_zx = v->ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y;
     const real ups_B_2_o_in_axes2_zy = v->ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x;
-    /* (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-       link 3, less gravity */
+    /* (ups-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
     const real ups_acc_3_t = m->ups_acc_3_t[i];
     const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
     const real ups_acc_3_o_t = ups_acc_3_t*v->ups_c_1 + ups_acc_3_t_2*v->ups_s_1;
@@ -3424,8 +3421,8 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real ups_acc_3_o_in_axes2_y = ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 -
         ups_g_in_axes2_y;
     const real ups_acc_3_o_in_axes2_z = ups_u_1_in_axes2_z - v->ups_g_in_axes2_z;
-    /* (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
-       about its reference point */
+    /* (ups-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
+       */
     const real ups_phi_3_o_t = v->ups_omega_1_in_axes2_y*v->ups_omega_1_in_axes2_y;
     const real ups_phi_3_o_t_2 = v->ups_qd_2*v->ups_qd_2;
     const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
@@ -3434,8 +3431,8 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real ups_phi_3_o_in_axes2_x = ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y +
         ups_h_3_in_spec2_x*(-ups_phi_3_o_t - ups_phi_3_o_t_2) -
         ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z;
-    /* (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-       link 2, about their reference points */
+    /* (ups-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
     const real ups_mu_2_o_t = v->ups_omega_1_in_axes2_x*v->ups_omega_1_in_axes2_x;
     const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
     const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
@@ -3467,8 +3464,8 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
         ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_x
         - ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z
         - ups_g_in_axes2_y*ups_h_2_in_spec2_x;
-    /* (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation
-       and without the mass at the connection point */
+    /* (ups-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
     const real ups_c_o_in_axes2_y = ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y -
         v->inv_ups_q_3*ups_mu_2_o_in_axes2_z - ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x -
         ups_h_3_in_spec2_z*(ups_mu_2_o_t + ups_phi_3_o_t_2);
@@ -3919,8 +3916,8 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_bias_t_5 = v.tube_bias_t_3*tube_omega_1_in_axes2_y;
         const real tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2;
         const real tube_bias_in_axes2_z = 2*tube_bias_t - tube_bias_t_5;
-        /* (tube-rel_o) remainder without the acceleration in: acceleration of the connection point left
-           to the joint accelerations */
+        /* (tube-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real tube_rel_o_in_axes2_y = v.axis_y_tube_axes2_x*v.tube_u_1_x +
             v.axis_y_tube_axes2_y*v.tube_u_1_y + v.axis_y_tube_axes2_z*v.tube_u_1_z -
             tube_bias_in_axes2_y;
@@ -3968,14 +3965,14 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
             tube_nu_1_t_2*(v.tube_end_p3_in_axes2_z*tube_qd_2 +
             v.tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
         const real tube_nu_3 = tube_W_2_in_axes2_yz*v.tube_end_p3_in_axes2_z - tube_nu_3_t;
-        /* (tube-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        /* (tube-qdd_1_o) remainder of: acceleration of joint 1 */
         const real tube_qdd_1_o_t = R(1.35)*tube_nu_1;
         const real tube_qdd_1_o_t_2 = R(1.35)*tube_nu_2;
         const real tube_qdd_1_o_t_3 = R(1.35)*tube_nu_3;
         const real tube_qdd_1_o = v.inv_tube_w_1_t_75*(tube_m1_w_1_t*tube_qdd_1_o_t +
             tube_m3_w_1_t*tube_qdd_1_o_t_3 + tube_rel_o_in_axes2_y*tube_w_1_t_76 +
             tube_rel_o_in_axes2_z*tube_w_1_t_77 - tube_m2_w_1_t*tube_qdd_1_o_t_2);
-        /* (tube-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        /* (tube-qdd_2_o) remainder of: acceleration of joint 2 */
         const real tube_qdd_2_o_t = v.inv_tube_w_1_t_63*(tube_qdd_1_o_t*v.tube_w_1_t_66 +
             tube_qdd_1_o_t_2*v.tube_w_1_t_67 + tube_qdd_1_o_t_3*v.tube_w_1_t_68 +
             tube_rel_o_in_axes2_y*v.tube_w_1_t_64 + tube_rel_o_in_axes2_z*v.tube_w_1_t_65 -
@@ -4004,10 +4001,10 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         /* (tube-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
         const real tube_d_alpha_1_in_axes2_xz = v.tube_e_1_in_axes2_x*tube_w_1_in_axes2_z;
         const real tube_d_alpha_1_t = v.tube_c_2*tube_w_1_in_axes2_z;
-        /* (tube-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+        /* (tube-alpha_1_o) remainder of: angular acceleration of link 1 */
         const real tube_alpha_1_o_in_axes2_x = v.tube_e_1_in_axes2_x*tube_qdd_1_o;
         const real tube_alpha_1_o_in_axes2_y = -v.tube_c_2*tube_qdd_1_o;
-        /* (tube-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (tube-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real tube_alpha_2_o_in_axes2_x = tube_W_2_in_axes2_yz + tube_alpha_1_o_in_axes2_x;
         const real tube_alpha_2_o_in_axes2_y = tube_alpha_1_o_in_axes2_y - tube_W_2_in_axes2_xz;
         /* (tube-B_2_o) remainder of the acceleration tensor of link 2 */
@@ -4029,13 +4026,12 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_d_acc_3_in_axes2_yz = v.tube_q_3*tube_w_2_in_axes2_z;
         const real tube_d_acc_3_in_axes2_zy = v.tube_q_3*tube_w_1_t_78;
         const real tube_d_acc_3_in_axes2_zz = tube_d_alpha_1_t*v.tube_q_3;
-        /* (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
+        /* (tube-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
         const real tube_acc_3_o_in_axes2_y = tube_bias_t_4 + v.tube_q_3*tube_qdd_2_o -
             tube_bias_t_2 - v.tube_g_in_axes2_y;
         const real tube_acc_3_o_in_axes2_z = tube_bias_t - tube_bias_t_5 - v.tube_g_in_axes2_z -
             tube_alpha_2_o_in_axes2_y*v.tube_q_3;
-        /* (tube-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight */
+        /* (tube-f_3_o) remainder of: inertia force of link 3 less its weight */
         const real tube_f_3_o_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x;
         const real tube_f_3_o_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y;
         const real tube_f_3_o_t_3 = tube_qd_2*tube_qd_2;
@@ -4053,8 +4049,8 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_f_3_o_in_axes2_z = tube_B_2_o_in_axes2_zx*tube_h_3_in_spec2_x +
             tube_acc_3_o_in_axes2_z*tube_link3_mass - tube_B_2_o_in_axes2_zy*tube_h_3_in_spec2_z -
             tube_h_3_in_spec2_y*(tube_f_3_o_t + tube_f_3_o_t_2);
-        /* (tube-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
+        /* (tube-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real tube_J_group_2_in_axes2_xy = m->tube_J_group_2_in_axes2_xy[i];
         const real tube_J_group_2_in_axes2_xz = m->tube_J_group_2_in_axes2_xz[i];
         const real tube_J_group_2_in_axes2_yz = m->tube_J_group_2_in_axes2_yz[i];
@@ -4130,8 +4126,8 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
             tube_h_3_in_spec2_x*tube_w_2_in_axes2_z -
             tube_d_alpha_1_in_axes2_xz*tube_h_3_in_spec2_y) -
             tube_J_group_2_in_axes2_yz*tube_d_alpha_1_t;
-        /* (tube-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
+        /* (tube-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+           connection point left out */
         const real tube_N_2_o_in_axes2_y = tube_mu_2_o_in_axes2_y -
             tube_f_3_o_in_axes2_z*v.tube_q_3;
         const real tube_N_2_o_in_axes2_z = tube_mu_2_o_in_axes2_z +
@@ -4229,8 +4225,8 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
            leg's inertia and weight along all degrees of freedom */
         const real tube_d_G_in_axes2_yz = tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y +
             tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_y;
-        /* (tube-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (tube-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real tube_G_o_t = v.inv_tube_w_1_t_13*tube_N_2_o_in_axes2_z;
         const real tube_G_o_t_2 = v.inv_tube_w_1_t_33*tube_G_o_t*v.tube_w_1_t_17;
         const real tube_G_o_t_3 = v.inv_tube_w_1_t_49*(tube_G_o_t*v.tube_w_1_t_21 -
@@ -4262,8 +4258,8 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
             tube_d_N_2_in_axes2_zy*tube_m1_w_2;
         const real tube_d_G_m1_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m1_w_1 +
             tube_d_N_2_in_axes2_zz*tube_m1_w_2;
-        /* (tube-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that
-           balances the leg's inertia and weight along all degrees of freedom */
+        /* (tube-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real tube_G_m1_o_t = tube_G_o_t*v.tube_w_1_t_15 + tube_G_o_t_2*v.tube_w_1_t_35 +
             tube_G_o_t_3*v.tube_w_1_t_51 + tube_G_o_t_4*v.tube_w_1_t_66 -
             tube_G_o_t_5*tube_m1_w_1_t;
@@ -4284,8 +4280,8 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
             tube_d_N_2_in_axes2_zy*tube_m2_w_2;
         const real tube_d_G_m2_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m2_w_1 +
             tube_d_N_2_in_axes2_zz*tube_m2_w_2;
-        /* (tube-G_m2_o) remainder without the acceleration in: moment along moment direction 2 that
-           balances the leg's inertia and weight along all degrees of freedom */
+        /* (tube-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real tube_G_m2_o_t = tube_G_o_t_4*v.tube_w_1_t_67 + tube_G_o_t_5*tube_m2_w_1_t;
         const real tube_G_m2_o = R(1.35)*tube_G_m2_o_t;
         /* (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that
@@ -4304,8 +4300,8 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
             tube_d_N_2_in_axes2_zy*tube_m3_w_2;
         const real tube_d_G_m3_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m3_w_1 +
             tube_d_N_2_in_axes2_zz*tube_m3_w_2;
-        /* (tube-G_m3_o) remainder without the acceleration in: moment along moment direction 3 that
-           balances the leg's inertia and weight along all degrees of freedom */
+        /* (tube-G_m3_o) remainder of: moment along moment direction 3 that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real tube_G_m3_o_t = tube_G_o_t*v.tube_w_1_t_16 + tube_G_o_t_2*v.tube_w_1_t_36 +
             tube_G_o_t_3*v.tube_w_1_t_52 + tube_G_o_t_4*v.tube_w_1_t_68 -
             tube_G_o_t_5*tube_m3_w_1_t;
@@ -4359,8 +4355,8 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
             tube_d_G_m3_in_axes2_y*v.tube_n_m3_in_axes2_z;
         const real tube_d_G_m_in_axes2_zz = tube_d_G_m1_in_axes2_z*v.tube_n_m1_in_axes2_z +
             tube_d_G_m3_in_axes2_z*v.tube_n_m3_in_axes2_z;
-        /* (tube-G_m_o) remainder without the acceleration in: moment at the connection point that
-           balances the leg's inertia and weight along all degrees of freedom */
+        /* (tube-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real tube_G_m_o_in_axes2_x = -tube_G_m2_o*v.tube_end_p2_in_axes2_y -
             tube_G_m3_o*v.tube_end_p3_in_axes2_z;
         const real tube_G_m_o_in_axes2_y = tube_G_m2_o*v.tube_n_m2_in_axes2_y -
@@ -5925,22 +5921,22 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_bias_t_5 = v.tube_bias_t_3*v.tube_omega_1_in_axes2_y;
         const real tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2;
         const real tube_bias_in_axes2_z = 2*tube_bias_t - tube_bias_t_5;
-        /* (tube-rel_o) remainder without the acceleration in: acceleration of the connection point left
-           to the joint accelerations */
+        /* (tube-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real tube_rel_o_in_axes2_y = v.axis_y_tube_axes2_x*v.tube_u_1_x +
             v.axis_y_tube_axes2_y*v.tube_u_1_y + v.axis_y_tube_axes2_z*v.tube_u_1_z -
             tube_bias_in_axes2_y;
         const real tube_rel_o_in_axes2_z = v.axis_z_tube_axes2_x*v.tube_u_1_x +
             v.axis_z_tube_axes2_y*v.tube_u_1_y + v.axis_z_tube_axes2_z*v.tube_u_1_z -
             tube_bias_in_axes2_z;
-        /* (tube-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        /* (tube-qdd_1_o) remainder of: acceleration of joint 1 */
         const real tube_qdd_1_o_t = R(1.35)*v.tube_nu_1;
         const real tube_qdd_1_o_t_2 = R(1.35)*v.tube_nu_2;
         const real tube_qdd_1_o_t_3 = R(1.35)*v.tube_nu_3;
         const real tube_qdd_1_o = v.inv_tube_w_1_t_75*(v.tube_qd_1_t*tube_rel_o_in_axes2_y +
             v.tube_qd_1_t_2*tube_rel_o_in_axes2_z + v.tube_qd_1_t_3*tube_qdd_1_o_t +
             v.tube_qd_1_t_5*tube_qdd_1_o_t_3 - v.tube_qd_1_t_4*tube_qdd_1_o_t_2);
-        /* (tube-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        /* (tube-qdd_2_o) remainder of: acceleration of joint 2 */
         const real tube_qdd_2_o_t = v.inv_tube_w_1_t_63*(tube_qdd_1_o_t*v.tube_w_1_t_66 +
             tube_qdd_1_o_t_2*v.tube_w_1_t_67 + tube_qdd_1_o_t_3*v.tube_w_1_t_68 +
             tube_rel_o_in_axes2_y*v.tube_w_1_t_64 + tube_rel_o_in_axes2_z*v.tube_w_1_t_65 -
@@ -5959,10 +5955,10 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
             tube_qdd_2_o_t_2*v.tube_w_1_t_37) - tube_qdd_1_o*v.tube_w_1_t_29 -
             tube_qdd_2_o_t*v.tube_w_1_t_25;
         const real tube_qdd_2_o = v.inv_tube_w_1_t_13*tube_qdd_2_o_t_3;
-        /* (tube-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+        /* (tube-alpha_1_o) remainder of: angular acceleration of link 1 */
         const real tube_alpha_1_o_in_axes2_x = v.tube_e_1_in_axes2_x*tube_qdd_1_o;
         const real tube_alpha_1_o_in_axes2_y = -v.tube_c_2*tube_qdd_1_o;
-        /* (tube-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (tube-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real tube_alpha_2_o_in_axes2_x = v.tube_W_2_in_axes2_yz + tube_alpha_1_o_in_axes2_x;
         const real tube_alpha_2_o_in_axes2_y = tube_alpha_1_o_in_axes2_y - v.tube_W_2_in_axes2_xz;
         /* (tube-B_2_o) remainder of the acceleration tensor of link 2 */
@@ -5970,13 +5966,12 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_B_2_o_in_axes2_yx = tube_W_2_in_axes2_xy + tube_qdd_2_o;
         const real tube_B_2_o_in_axes2_zx = v.tube_W_2_in_axes2_xz - tube_alpha_2_o_in_axes2_y;
         const real tube_B_2_o_in_axes2_zy = v.tube_W_2_in_axes2_yz + tube_alpha_2_o_in_axes2_x;
-        /* (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
+        /* (tube-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
         const real tube_acc_3_o_in_axes2_y = tube_bias_t_4 + v.tube_q_3*tube_qdd_2_o -
             tube_bias_t_2 - v.tube_g_in_axes2_y;
         const real tube_acc_3_o_in_axes2_z = tube_bias_t - tube_bias_t_5 - v.tube_g_in_axes2_z -
             tube_alpha_2_o_in_axes2_y*v.tube_q_3;
-        /* (tube-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight */
+        /* (tube-f_3_o) remainder of: inertia force of link 3 less its weight */
         const real tube_f_3_o_t = v.tube_omega_1_in_axes2_x*v.tube_omega_1_in_axes2_x;
         const real tube_f_3_o_t_2 = v.tube_omega_1_in_axes2_y*v.tube_omega_1_in_axes2_y;
         const real tube_f_3_o_t_3 = v.tube_qd_2*v.tube_qd_2;
@@ -5994,8 +5989,8 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_f_3_o_in_axes2_z = tube_B_2_o_in_axes2_zx*tube_h_3_in_spec2_x +
             tube_acc_3_o_in_axes2_z*tube_link3_mass - tube_B_2_o_in_axes2_zy*tube_h_3_in_spec2_z -
             tube_h_3_in_spec2_y*(tube_f_3_o_t + tube_f_3_o_t_2);
-        /* (tube-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
+        /* (tube-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real tube_J_group_2_in_axes2_xy = m->tube_J_group_2_in_axes2_xy[i];
         const real tube_J_group_2_in_axes2_xz = m->tube_J_group_2_in_axes2_xz[i];
         const real tube_J_group_2_in_axes2_yz = m->tube_J_group_2_in_axes2_yz[i];
@@ -6029,14 +6024,14 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
             tube_acc_3_o_in_axes2_y*tube_h_3_in_spec2_x -
             tube_B_2_o_in_axes2_xy*tube_Sigma_2_in_axes2_yy -
             v.tube_g_in_axes2_x*tube_h_2_in_spec2_z - v.tube_g_in_axes2_y*tube_h_2_in_spec2_x;
-        /* (tube-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
+        /* (tube-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+           connection point left out */
         const real tube_N_2_o_in_axes2_y = tube_mu_2_o_in_axes2_y -
             tube_f_3_o_in_axes2_z*v.tube_q_3;
         const real tube_N_2_o_in_axes2_z = tube_mu_2_o_in_axes2_z +
             tube_f_3_o_in_axes2_y*v.tube_q_3;
-        /* (tube-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (tube-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real tube_G_o_t = v.inv_tube_w_1_t_13*tube_N_2_o_in_axes2_z;
         const real tube_G_o_t_2 = v.inv_tube_w_1_t_33*tube_G_o_t*v.tube_w_1_t_17;
         const real tube_G_o_t_3 = v.inv_tube_w_1_t_49*(tube_G_o_t*v.tube_w_1_t_21 -
@@ -6052,24 +6047,24 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
             tube_G_o_t_5*v.tube_qd_1_t;
         const real tube_G_o_in_axes2_z = v.inv_tube_w_1_t_49*tube_G_o_t_3 +
             tube_G_o_t_4*v.tube_w_1_t_65 - tube_G_o_t_5*v.tube_qd_1_t_2;
-        /* (tube-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that
-           balances the leg's inertia and weight along all degrees of freedom */
+        /* (tube-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real tube_G_m1_o_t = tube_G_o_t*v.tube_w_1_t_15 + tube_G_o_t_2*v.tube_w_1_t_35 +
             tube_G_o_t_3*v.tube_w_1_t_51 + tube_G_o_t_4*v.tube_w_1_t_66 -
             tube_G_o_t_5*v.tube_qd_1_t_3;
         const real tube_G_m1_o = R(1.35)*tube_G_m1_o_t;
-        /* (tube-G_m2_o) remainder without the acceleration in: moment along moment direction 2 that
-           balances the leg's inertia and weight along all degrees of freedom */
+        /* (tube-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real tube_G_m2_o_t = tube_G_o_t_4*v.tube_w_1_t_67 + tube_G_o_t_5*v.tube_qd_1_t_4;
         const real tube_G_m2_o = R(1.35)*tube_G_m2_o_t;
-        /* (tube-G_m3_o) remainder without the acceleration in: moment along moment direction 3 that
-           balances the leg's inertia and weight along all degrees of freedom */
+        /* (tube-G_m3_o) remainder of: moment along moment direction 3 that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real tube_G_m3_o_t = tube_G_o_t*v.tube_w_1_t_16 + tube_G_o_t_2*v.tube_w_1_t_36 +
             tube_G_o_t_3*v.tube_w_1_t_52 + tube_G_o_t_4*v.tube_w_1_t_68 -
             tube_G_o_t_5*v.tube_qd_1_t_5;
         const real tube_G_m3_o = R(1.35)*tube_G_m3_o_t;
-        /* (tube-G_m_o) remainder without the acceleration in: moment at the connection point that
-           balances the leg's inertia and weight along all degrees of freedom */
+        /* (tube-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real tube_G_m_o_in_axes2_x = -tube_G_m2_o*v.tube_end_p2_in_axes2_y -
             tube_G_m3_o*v.tube_end_p3_in_axes2_z;
         const real tube_G_m_o_in_axes2_y = tube_G_m2_o*v.tube_n_m2_in_axes2_y -
@@ -6564,8 +6559,8 @@ INLINE void constraint_bias_legs_tube(const prepared *m, size_t w, size_t leg, s
             tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y*v.tube_q_3;
         const real tube_bias_in_axes2_z = 2*tube_W_2_in_axes2_xz*v.tube_q_3 -
             tube_bias_t*tube_omega_1_in_axes2_y;
-        /* (tube-rel_o) remainder without the acceleration in: acceleration of the connection point left
-           to the joint accelerations */
+        /* (tube-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real tube_rel_o_in_axes2_y = v.axis_y_tube_axes2_x*v.tube_u_1_x +
             v.axis_y_tube_axes2_y*v.tube_u_1_y + v.axis_y_tube_axes2_z*v.tube_u_1_z -
             tube_bias_in_axes2_y;

@@ -1312,10 +1312,10 @@ class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
     sqrt = staticmethod(math.sqrt)
-    sin = staticmethod(lambda x: float(np.sin(x)))
-    cos = staticmethod(lambda x: float(np.cos(x)))
+    sin = staticmethod(lambda x: float(np.sin(x)) if math.isfinite(x) else math.nan)
+    cos = staticmethod(lambda x: float(np.cos(x)) if math.isfinite(x) else math.nan)
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
-    least = staticmethod(lambda x, y: float(np.minimum(x, y)))
+    least = staticmethod(lambda x, y: y if y < x or y != y else x)
 
     def __init__(self, p, states, kept=None):
         self.p, self.states = p, states
@@ -1468,7 +1468,7 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
     Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
     where a single state needs no arrays.
     """
-    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    p, read = _given(p), [a[4:] != ("unused",) for a in arguments]
     lists = plain and _lists(arguments)
     if lists:
         found = _state(_Single(p, 1), steps, lists, read)
@@ -1493,7 +1493,7 @@ def _lists(arguments):
     for row in arguments:
         value, shape = row[1:3]
         if type(value) is np.ndarray:
-            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+            if value.shape != shape or value.dtype is not _REAL or row[4:] == ("positive",):
                 return None
             found.append(_Vector(value.tolist()))
         elif value is None and len(row) > 3 and row[3] is not None:
@@ -2478,16 +2478,16 @@ def _run_dynamics(m, X, V):
         # (ups-bias) acceleration of the connection point at zero joint accelerations
         ups_bias_t = 2.0*ups_S_dot_in_axes2_x
         ups_bias_in_axes2_z = 2.0*ups_W_2_in_axes2_xz*ups_q_3 - ups_bias_t*ups_omega_1_in_axes2_y
-        # (ups-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (ups-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         ups_rel_o_in_axes2_z = ups_u_1_in_axes2_z - ups_bias_in_axes2_z
-        # (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (ups-qdd_1_o) remainder of: acceleration of joint 1
         ups_qdd_1_o = inv_ups_root_1*ups_rel_o_in_axes2_z
         # (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
         ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_e_1_in_axes2_x
-        # (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        # (ups-alpha_1_o) remainder of: angular acceleration of link 1
         ups_alpha_1_o_in_axes2_x = ups_e_1_in_axes2_x*ups_qdd_1_o
         ups_alpha_1_o_in_axes2_y = -ups_c_2*ups_qdd_1_o
-        # (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (ups-alpha_2_o) remainder of: angular acceleration of link 2
         ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x
         ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz
         # (ups-B_2_o) remainder of the acceleration tensor of link 2
@@ -2500,7 +2500,7 @@ def _run_dynamics(m, X, V):
         ups_B_2_o_in_axes2_xy = 2.0*ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx
         ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y
         ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x
-        # (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        # (ups-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         ups_acc_3_o_t = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
         ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
         ups_g_in_axes2_x = ups_acc_3_o_t*ups_c_2 + ups_acc_3_t_3*ups_e_1_in_axes2_x
@@ -2514,14 +2514,14 @@ def _run_dynamics(m, X, V):
         # (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
         ups_d_phi_3_in_axes2_xy = inv_ups_q_3*ups_h_3_in_spec2_z
         ups_d_phi_3_in_axes2_yy = inv_ups_q_3*ups_h_3_in_spec2_x
-        # (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
+        # (ups-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
         ups_phi_3_o_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
         ups_phi_3_o_t_2 = ups_qd_2*ups_qd_2
         ups_phi_3_o_in_axes2_x = (
         ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y + ups_h_3_in_spec2_x*(-ups_phi_3_o_t -
             ups_phi_3_o_t_2) - ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z
         )
-        # (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (ups-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         ups_mu_2_o_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
         ups_mu_2_o_in_axes2_x = (
         ups_B_2_o_in_axes2_yx*ups_J_group_2_in_axes2_xz +
@@ -2567,7 +2567,7 @@ def _run_dynamics(m, X, V):
             ups_c_2*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz - ups_h_3_in_spec2_x -
             inv_ups_q_3*ups_J_group_2_in_axes2_yy))
         )
-        # (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (ups-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         ups_c_o_in_axes2_y = (
         ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_q_3*ups_mu_2_o_in_axes2_z -
             ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x - ups_h_3_in_spec2_z*(ups_mu_2_o_t +
@@ -3194,7 +3194,7 @@ def _run_dynamics(m, X, V):
         tube_bias_t_5 = tube_bias_t_3*tube_omega_1_in_axes2_y
         tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2
         tube_bias_in_axes2_z = 2.0*tube_bias_t - tube_bias_t_5
-        # (tube-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (tube-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         tube_rel_o_in_axes2_y = (
         axis_y_tube_axes2_x*tube_u_1_x + axis_y_tube_axes2_y*tube_u_1_y +
             axis_y_tube_axes2_z*tube_u_1_z - tube_bias_in_axes2_y
@@ -3263,7 +3263,7 @@ def _run_dynamics(m, X, V):
             tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3
         )
         tube_nu_3 = tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z - tube_nu_3_t
-        # (tube-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (tube-qdd_1_o) remainder of: acceleration of joint 1
         tube_qdd_1_o_t = 1.35*tube_nu_1
         tube_qdd_1_o_t_2 = 1.35*tube_nu_2
         tube_qdd_1_o_t_3 = 1.35*tube_nu_3
@@ -3272,7 +3272,7 @@ def _run_dynamics(m, X, V):
             tube_rel_o_in_axes2_y*tube_w_1_t_76 + tube_rel_o_in_axes2_z*tube_w_1_t_77 -
             tube_m2_w_1_t*tube_qdd_1_o_t_2)
         )
-        # (tube-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        # (tube-qdd_2_o) remainder of: acceleration of joint 2
         tube_qdd_2_o_t = (
         inv_tube_w_1_t_63*(tube_qdd_1_o_t*tube_w_1_t_66 + tube_qdd_1_o_t_2*tube_w_1_t_67 +
             tube_qdd_1_o_t_3*tube_w_1_t_68 + tube_rel_o_in_axes2_y*tube_w_1_t_64 +
@@ -3303,10 +3303,10 @@ def _run_dynamics(m, X, V):
         # (tube-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
         tube_d_alpha_1_in_axes2_xz = tube_e_1_in_axes2_x*tube_w_1_in_axes2_z
         tube_d_alpha_1_t = tube_c_2*tube_w_1_in_axes2_z
-        # (tube-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        # (tube-alpha_1_o) remainder of: angular acceleration of link 1
         tube_alpha_1_o_in_axes2_x = tube_e_1_in_axes2_x*tube_qdd_1_o
         tube_alpha_1_o_in_axes2_y = -tube_c_2*tube_qdd_1_o
-        # (tube-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (tube-alpha_2_o) remainder of: angular acceleration of link 2
         tube_alpha_2_o_in_axes2_x = tube_W_2_in_axes2_yz + tube_alpha_1_o_in_axes2_x
         tube_alpha_2_o_in_axes2_y = tube_alpha_1_o_in_axes2_y - tube_W_2_in_axes2_xz
         # (tube-B_2_o) remainder of the acceleration tensor of link 2
@@ -3326,7 +3326,7 @@ def _run_dynamics(m, X, V):
         tube_d_acc_3_in_axes2_yz = tube_q_3*tube_w_2_in_axes2_z
         tube_d_acc_3_in_axes2_zy = tube_q_3*tube_w_1_t_78
         tube_d_acc_3_in_axes2_zz = tube_d_alpha_1_t*tube_q_3
-        # (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        # (tube-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         tube_acc_3_o_t = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1
         tube_g_in_axes2_z = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1
         tube_g_in_axes2_x = tube_acc_3_o_t*tube_c_2 + tube_acc_3_t_3*tube_e_1_in_axes2_x
@@ -3341,7 +3341,7 @@ def _run_dynamics(m, X, V):
         tube_acc_3_o_in_axes2_z = (
         tube_bias_t - tube_bias_t_5 - tube_g_in_axes2_z - tube_alpha_2_o_in_axes2_y*tube_q_3
         )
-        # (tube-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight
+        # (tube-f_3_o) remainder of: inertia force of link 3 less its weight
         tube_f_3_o_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x
         tube_f_3_o_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y
         tube_f_3_o_t_3 = tube_qd_2*tube_qd_2
@@ -3360,7 +3360,7 @@ def _run_dynamics(m, X, V):
             tube_B_2_o_in_axes2_zy*tube_h_3_in_spec2_z - tube_h_3_in_spec2_y*(tube_f_3_o_t +
             tube_f_3_o_t_2)
         )
-        # (tube-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (tube-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         tube_mu_2_o_in_axes2_x = (
         tube_B_2_o_in_axes2_yx*tube_J_group_2_in_axes2_xz +
             tube_B_2_o_in_axes2_zy*tube_Sigma_2_in_axes2_yy +
@@ -3435,7 +3435,7 @@ def _run_dynamics(m, X, V):
             tube_d_alpha_1_in_axes2_xz*tube_h_3_in_spec2_y) -
             tube_J_group_2_in_axes2_yz*tube_d_alpha_1_t
         )
-        # (tube-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        # (tube-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         tube_N_2_o_in_axes2_y = tube_mu_2_o_in_axes2_y - tube_f_3_o_in_axes2_z*tube_q_3
         tube_N_2_o_in_axes2_z = tube_mu_2_o_in_axes2_z + tube_f_3_o_in_axes2_y*tube_q_3
         # (tube-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
@@ -3549,7 +3549,7 @@ def _run_dynamics(m, X, V):
         tube_d_G_in_axes2_yz = (
         tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y + tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_y
         )
-        # (tube-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (tube-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_G_o_t = inv_tube_w_1_t_13*tube_N_2_o_in_axes2_z
         tube_G_o_t_2 = inv_tube_w_1_t_33*tube_G_o_t*tube_w_1_t_17
         tube_G_o_t_3 = inv_tube_w_1_t_49*(tube_G_o_t*tube_w_1_t_21 - tube_G_o_t_2*tube_w_1_t_37)
@@ -3587,7 +3587,7 @@ def _run_dynamics(m, X, V):
         tube_d_G_m1_in_axes2_z = (
         tube_d_Gamma_1_in_axes2_z*tube_m1_w_1 + tube_d_N_2_in_axes2_zz*tube_m1_w_2
         )
-        # (tube-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
+        # (tube-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m1_o_t = (
         tube_G_o_t*tube_w_1_t_15 + tube_G_o_t_2*tube_w_1_t_35 + tube_G_o_t_3*tube_w_1_t_51 +
             tube_G_o_t_4*tube_w_1_t_66 - tube_G_o_t_5*tube_m1_w_1_t
@@ -3611,7 +3611,7 @@ def _run_dynamics(m, X, V):
         tube_d_G_m2_in_axes2_z = (
         tube_d_Gamma_1_in_axes2_z*tube_m2_w_1 + tube_d_N_2_in_axes2_zz*tube_m2_w_2
         )
-        # (tube-G_m2_o) remainder without the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
+        # (tube-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m2_o_t = tube_G_o_t_4*tube_w_1_t_67 + tube_G_o_t_5*tube_m2_w_1_t
         tube_G_m2_o = 1.35*tube_G_m2_o_t
         # (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
@@ -3632,7 +3632,7 @@ def _run_dynamics(m, X, V):
         tube_d_G_m3_in_axes2_z = (
         tube_d_Gamma_1_in_axes2_z*tube_m3_w_1 + tube_d_N_2_in_axes2_zz*tube_m3_w_2
         )
-        # (tube-G_m3_o) remainder without the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
+        # (tube-G_m3_o) remainder of: moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m3_o_t = (
         tube_G_o_t*tube_w_1_t_16 + tube_G_o_t_2*tube_w_1_t_36 + tube_G_o_t_3*tube_w_1_t_52 +
             tube_G_o_t_4*tube_w_1_t_68 - tube_G_o_t_5*tube_m3_w_1_t
@@ -3709,7 +3709,7 @@ def _run_dynamics(m, X, V):
         tube_d_G_m_in_axes2_zz = (
         tube_d_G_m1_in_axes2_z*tube_n_m1_in_axes2_z + tube_d_G_m3_in_axes2_z*tube_n_m3_in_axes2_z
         )
-        # (tube-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (tube-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m_o_in_axes2_x = (
         -tube_G_m2_o*tube_end_p2_in_axes2_y - tube_G_m3_o*tube_end_p3_in_axes2_z
         )
@@ -5654,14 +5654,14 @@ def _run_Z(m, X, V):
         # (ups-bias) acceleration of the connection point at zero joint accelerations
         ups_bias_t = 2.0*ups_S_dot_in_axes2_x
         ups_bias_in_axes2_z = 2.0*ups_W_2_in_axes2_xz*ups_q_3 - ups_bias_t*ups_omega_1_in_axes2_y
-        # (ups-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (ups-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         ups_rel_o_in_axes2_z = ups_u_1_in_axes2_z - ups_bias_in_axes2_z
-        # (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (ups-qdd_1_o) remainder of: acceleration of joint 1
         ups_qdd_1_o = inv_ups_root_1*ups_rel_o_in_axes2_z
-        # (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        # (ups-alpha_1_o) remainder of: angular acceleration of link 1
         ups_alpha_1_o_in_axes2_x = ups_e_1_in_axes2_x*ups_qdd_1_o
         ups_alpha_1_o_in_axes2_y = -ups_c_2*ups_qdd_1_o
-        # (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (ups-alpha_2_o) remainder of: angular acceleration of link 2
         ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x
         ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz
         # (ups-B_2_o) remainder of the acceleration tensor of link 2
@@ -5674,7 +5674,7 @@ def _run_Z(m, X, V):
         ups_B_2_o_in_axes2_xy = 2.0*ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx
         ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y
         ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x
-        # (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        # (ups-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         ups_acc_3_o_t = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
         ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
         ups_g_in_axes2_x = ups_acc_3_o_t*ups_c_2 + ups_acc_3_t_3*ups_e_1_in_axes2_x
@@ -5685,14 +5685,14 @@ def _run_Z(m, X, V):
         )
         ups_acc_3_o_in_axes2_y = ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 - ups_g_in_axes2_y
         ups_acc_3_o_in_axes2_z = ups_u_1_in_axes2_z - ups_g_in_axes2_z
-        # (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
+        # (ups-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
         ups_phi_3_o_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
         ups_phi_3_o_t_2 = ups_qd_2*ups_qd_2
         ups_phi_3_o_in_axes2_x = (
         ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y + ups_h_3_in_spec2_x*(-ups_phi_3_o_t -
             ups_phi_3_o_t_2) - ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z
         )
-        # (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (ups-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         ups_mu_2_o_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
         ups_mu_2_o_in_axes2_x = (
         ups_B_2_o_in_axes2_yx*ups_J_group_2_in_axes2_xz +
@@ -5720,7 +5720,7 @@ def _run_Z(m, X, V):
             - ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z
             - ups_g_in_axes2_y*ups_h_2_in_spec2_x
         )
-        # (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (ups-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         ups_c_o_in_axes2_y = (
         ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_q_3*ups_mu_2_o_in_axes2_z -
             ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x - ups_h_3_in_spec2_z*(ups_mu_2_o_t +
@@ -6142,7 +6142,7 @@ def _run_Z(m, X, V):
         tube_bias_t_5 = tube_bias_t_3*tube_omega_1_in_axes2_y
         tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2
         tube_bias_in_axes2_z = 2.0*tube_bias_t - tube_bias_t_5
-        # (tube-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (tube-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         tube_rel_o_in_axes2_y = (
         axis_y_tube_axes2_x*tube_u_1_x + axis_y_tube_axes2_y*tube_u_1_y +
             axis_y_tube_axes2_z*tube_u_1_z - tube_bias_in_axes2_y
@@ -6211,7 +6211,7 @@ def _run_Z(m, X, V):
             tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3
         )
         tube_nu_3 = tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z - tube_nu_3_t
-        # (tube-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (tube-qdd_1_o) remainder of: acceleration of joint 1
         tube_qdd_1_o_t = 1.35*tube_nu_1
         tube_qdd_1_o_t_2 = 1.35*tube_nu_2
         tube_qdd_1_o_t_3 = 1.35*tube_nu_3
@@ -6220,7 +6220,7 @@ def _run_Z(m, X, V):
             + tube_qd_1_t_3*tube_qdd_1_o_t + tube_qd_1_t_5*tube_qdd_1_o_t_3 -
             tube_qd_1_t_4*tube_qdd_1_o_t_2)
         )
-        # (tube-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        # (tube-qdd_2_o) remainder of: acceleration of joint 2
         tube_qdd_2_o_t = (
         inv_tube_w_1_t_63*(tube_qdd_1_o_t*tube_w_1_t_66 + tube_qdd_1_o_t_2*tube_w_1_t_67 +
             tube_qdd_1_o_t_3*tube_w_1_t_68 + tube_rel_o_in_axes2_y*tube_w_1_t_64 +
@@ -6241,10 +6241,10 @@ def _run_Z(m, X, V):
             tube_qdd_2_o_t*tube_w_1_t_25
         )
         tube_qdd_2_o = inv_tube_w_1_t_13*tube_qdd_2_o_t_3
-        # (tube-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        # (tube-alpha_1_o) remainder of: angular acceleration of link 1
         tube_alpha_1_o_in_axes2_x = tube_e_1_in_axes2_x*tube_qdd_1_o
         tube_alpha_1_o_in_axes2_y = -tube_c_2*tube_qdd_1_o
-        # (tube-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (tube-alpha_2_o) remainder of: angular acceleration of link 2
         tube_alpha_2_o_in_axes2_x = tube_W_2_in_axes2_yz + tube_alpha_1_o_in_axes2_x
         tube_alpha_2_o_in_axes2_y = tube_alpha_1_o_in_axes2_y - tube_W_2_in_axes2_xz
         # (tube-B_2_o) remainder of the acceleration tensor of link 2
@@ -6252,7 +6252,7 @@ def _run_Z(m, X, V):
         tube_B_2_o_in_axes2_yx = tube_W_2_in_axes2_xy + tube_qdd_2_o
         tube_B_2_o_in_axes2_zx = tube_W_2_in_axes2_xz - tube_alpha_2_o_in_axes2_y
         tube_B_2_o_in_axes2_zy = tube_W_2_in_axes2_yz + tube_alpha_2_o_in_axes2_x
-        # (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        # (tube-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         tube_acc_3_o_t = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1
         tube_g_in_axes2_z = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1
         tube_g_in_axes2_x = tube_acc_3_o_t*tube_c_2 + tube_acc_3_t_3*tube_e_1_in_axes2_x
@@ -6267,7 +6267,7 @@ def _run_Z(m, X, V):
         tube_acc_3_o_in_axes2_z = (
         tube_bias_t - tube_bias_t_5 - tube_g_in_axes2_z - tube_alpha_2_o_in_axes2_y*tube_q_3
         )
-        # (tube-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight
+        # (tube-f_3_o) remainder of: inertia force of link 3 less its weight
         tube_f_3_o_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x
         tube_f_3_o_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y
         tube_f_3_o_t_3 = tube_qd_2*tube_qd_2
@@ -6286,7 +6286,7 @@ def _run_Z(m, X, V):
             tube_B_2_o_in_axes2_zy*tube_h_3_in_spec2_z - tube_h_3_in_spec2_y*(tube_f_3_o_t +
             tube_f_3_o_t_2)
         )
-        # (tube-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (tube-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         tube_mu_2_o_in_axes2_x = (
         tube_B_2_o_in_axes2_yx*tube_J_group_2_in_axes2_xz +
             tube_B_2_o_in_axes2_zy*tube_Sigma_2_in_axes2_yy +
@@ -6315,10 +6315,10 @@ def _run_Z(m, X, V):
             tube_B_2_o_in_axes2_xy*tube_Sigma_2_in_axes2_yy -
             tube_g_in_axes2_x*tube_h_2_in_spec2_z - tube_g_in_axes2_y*tube_h_2_in_spec2_x
         )
-        # (tube-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        # (tube-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         tube_N_2_o_in_axes2_y = tube_mu_2_o_in_axes2_y - tube_f_3_o_in_axes2_z*tube_q_3
         tube_N_2_o_in_axes2_z = tube_mu_2_o_in_axes2_z + tube_f_3_o_in_axes2_y*tube_q_3
-        # (tube-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (tube-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_G_o_t = inv_tube_w_1_t_13*tube_N_2_o_in_axes2_z
         tube_G_o_t_2 = inv_tube_w_1_t_33*tube_G_o_t*tube_w_1_t_17
         tube_G_o_t_3 = inv_tube_w_1_t_49*(tube_G_o_t*tube_w_1_t_21 - tube_G_o_t_2*tube_w_1_t_37)
@@ -6338,22 +6338,22 @@ def _run_Z(m, X, V):
         tube_G_o_in_axes2_z = (
         inv_tube_w_1_t_49*tube_G_o_t_3 + tube_G_o_t_4*tube_w_1_t_65 - tube_G_o_t_5*tube_qd_1_t_2
         )
-        # (tube-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
+        # (tube-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m1_o_t = (
         tube_G_o_t*tube_w_1_t_15 + tube_G_o_t_2*tube_w_1_t_35 + tube_G_o_t_3*tube_w_1_t_51 +
             tube_G_o_t_4*tube_w_1_t_66 - tube_G_o_t_5*tube_qd_1_t_3
         )
         tube_G_m1_o = 1.35*tube_G_m1_o_t
-        # (tube-G_m2_o) remainder without the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
+        # (tube-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m2_o_t = tube_G_o_t_4*tube_w_1_t_67 + tube_G_o_t_5*tube_qd_1_t_4
         tube_G_m2_o = 1.35*tube_G_m2_o_t
-        # (tube-G_m3_o) remainder without the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
+        # (tube-G_m3_o) remainder of: moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m3_o_t = (
         tube_G_o_t*tube_w_1_t_16 + tube_G_o_t_2*tube_w_1_t_36 + tube_G_o_t_3*tube_w_1_t_52 +
             tube_G_o_t_4*tube_w_1_t_68 - tube_G_o_t_5*tube_qd_1_t_5
         )
         tube_G_m3_o = 1.35*tube_G_m3_o_t
-        # (tube-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (tube-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m_o_in_axes2_x = (
         -tube_G_m2_o*tube_end_p2_in_axes2_y - tube_G_m3_o*tube_end_p3_in_axes2_z
         )
@@ -7264,7 +7264,7 @@ def _run_constraint_bias(m, X, V):
         tube_bias_in_axes2_z = (
         2.0*tube_W_2_in_axes2_xz*tube_q_3 - tube_bias_t*tube_omega_1_in_axes2_y
         )
-        # (tube-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (tube-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         tube_rel_o_in_axes2_y = (
         axis_y_tube_axes2_x*tube_u_1_x + axis_y_tube_axes2_y*tube_u_1_y +
             axis_y_tube_axes2_z*tube_u_1_z - tube_bias_in_axes2_y

@@ -1401,7 +1401,8 @@ static void nearest_within(size_t n, const real *a, const real *b, const real *c
     real start[2*BIG] = {0}, t[2*BIG] = {0};
     copy(n, a, start);
     const int known = all_finite(a, n) && all_finite(b, n*n) && all_finite(c, n) && all_finite(d, n);
-    doubt(known, known && nearest_point(n, start, b, c, d, t), unreachable, overflow);
+    const int found = known && nearest_point(n, start, b, c, d, t) && all_finite(t, n);
+    doubt(known, found, unreachable, overflow);
     copy(n, t, x);
 }
 
@@ -1806,8 +1807,7 @@ INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const r
         axis_x_ups_axes2_x*axis_z_ups_axes2_y;
     /* (ups-omega_1) angular velocity of link 1 */
     const real ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z;
-    /* (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-       link 3, less gravity */
+    /* (ups-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
     const real ups_acc_3_t = m->ups_acc_3_t[i];
     const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
     const real ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1;
@@ -1941,15 +1941,15 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real ups_u_1_z = omega_x*v->ups_S_dot_t_2 - omega_y*v->ups_S_dot_t;
     const real ups_u_1_in_axes2_z = v->axis_z_ups_axes2_x*ups_u_1_x +
         v->axis_z_ups_axes2_y*ups_u_1_y + v->axis_z_ups_axes2_z*ups_u_1_z;
-    /* (ups-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-       the joint accelerations */
+    /* (ups-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
     const real ups_rel_o_in_axes2_z = ups_u_1_in_axes2_z - v->ups_bias_in_axes2_z;
-    /* (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+    /* (ups-qdd_1_o) remainder of: acceleration of joint 1 */
     const real ups_qdd_1_o = v->inv_ups_root_1*ups_rel_o_in_axes2_z;
-    /* (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+    /* (ups-alpha_1_o) remainder of: angular acceleration of link 1 */
     const real ups_alpha_1_o_in_axes2_x = v->ups_e_1_in_axes2_x*ups_qdd_1_o;
     const real ups_alpha_1_o_in_axes2_y = -v->ups_c_2*ups_qdd_1_o;
-    /* (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+    /* (ups-alpha_2_o) remainder of: angular acceleration of link 2 */
     const real ups_alpha_2_o_in_axes2_x = v->ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x;
     const real ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - v->ups_W_2_in_axes2_xz;
     /* (ups-B_2_o) remainder of the acceleration tensor of link 2 */
@@ -1961,8 +1961,7 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real ups_B_2_o_in_axes2_xy = 2*v->ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx;
     const real ups_B_2_o_in_axes2_zx = v->ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y;
     const real ups_B_2_o_in_axes2_zy = v->ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x;
-    /* (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-       link 3, less gravity */
+    /* (ups-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
     const real ups_acc_3_t = m->ups_acc_3_t[i];
     const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
     const real ups_acc_3_o_t = ups_acc_3_t*v->ups_c_1 + ups_acc_3_t_2*v->ups_s_1;
@@ -1976,8 +1975,8 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real ups_acc_3_o_in_axes2_y = ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 -
         ups_g_in_axes2_y;
     const real ups_acc_3_o_in_axes2_z = ups_u_1_in_axes2_z - v->ups_g_in_axes2_z;
-    /* (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
-       about its reference point */
+    /* (ups-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
+       */
     const real ups_phi_3_o_t = v->ups_omega_1_in_axes2_y*v->ups_omega_1_in_axes2_y;
     const real ups_phi_3_o_t_2 = v->ups_qd_2*v->ups_qd_2;
     const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
@@ -1986,8 +1985,8 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real ups_phi_3_o_in_axes2_x = ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y +
         ups_h_3_in_spec2_x*(-ups_phi_3_o_t - ups_phi_3_o_t_2) -
         ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z;
-    /* (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-       link 2, about their reference points */
+    /* (ups-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
     const real ups_mu_2_o_t = v->ups_omega_1_in_axes2_x*v->ups_omega_1_in_axes2_x;
     const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
     const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
@@ -2019,8 +2018,8 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
         ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_x
         - ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z
         - ups_g_in_axes2_y*ups_h_2_in_spec2_x;
-    /* (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation
-       and without the mass at the connection point */
+    /* (ups-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
     const real ups_c_o_in_axes2_y = ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y -
         v->inv_ups_q_3*ups_mu_2_o_in_axes2_z - ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x -
         ups_h_3_in_spec2_z*(ups_mu_2_o_t + ups_phi_3_o_t_2);

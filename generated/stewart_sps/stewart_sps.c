@@ -1723,8 +1723,7 @@ INLINE void stage_sps_X(const prepared *m, size_t w, size_t i, size_t j, const r
         axis_y_sps_axes3_x*sps_w_4_z;
     const real axis_x_sps_axes3_z = axis_y_sps_axes3_x*sps_w_4_y -
         axis_y_sps_axes3_y*sps_w_4_x;
-    /* (sps-acc_4_o) remainder without the acceleration in: acceleration of the reference point of
-       link 4, less gravity */
+    /* (sps-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity */
     const real gravity_x = m->gravity_x;
     const real gravity_y = m->gravity_y;
     const real gravity_z = m->gravity_z;
@@ -2000,21 +1999,21 @@ INLINE void stage_sps_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
         v->axis_x_sps_axes3_y*sps_u_1_y + v->axis_x_sps_axes3_z*sps_u_1_z;
     const real sps_u_1_in_axes3_y = v->axis_y_sps_axes3_x*sps_u_1_x +
         v->axis_y_sps_axes3_y*sps_u_1_y + v->axis_y_sps_axes3_z*sps_u_1_z;
-    /* (sps-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-       the joint accelerations */
+    /* (sps-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
     const real sps_rel_o_in_axes3_x = sps_u_1_in_axes3_x - v->sps_bias_in_axes3_x;
     const real sps_rel_o_in_axes3_y = sps_u_1_in_axes3_y - v->sps_bias_in_axes3_y;
-    /* (sps-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+    /* (sps-qdd_1_o) remainder of: acceleration of joint 1 */
     const real sps_qdd_1_o = v->inv_sps_w_1_t*(sps_rel_o_in_axes3_x*v->sps_v_2_t +
         sps_rel_o_in_axes3_y*v->sps_v_2_in_axes3_x);
-    /* (sps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+    /* (sps-qdd_2_o) remainder of: acceleration of joint 2 */
     const real sps_qdd_2_o_t = v->inv_sps_w_1_t*(sps_rel_o_in_axes3_y*v->sps_v_1_in_axes3_x -
         sps_rel_o_in_axes3_x*v->sps_v_1_in_axes3_y);
-    /* (sps-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+    /* (sps-alpha_2_o) remainder of: angular acceleration of link 2 */
     const real sps_alpha_2_o_in_axes2_x = v->sps_c_2*sps_qdd_1_o - v->sps_zeta_2_t;
     const real sps_alpha_2_o_in_axes2_y = v->sps_e_1_in_axes2_y*sps_qdd_1_o +
         v->sps_omega_1_in_axes2_x*v->sps_qd_2_t;
-    /* (sps-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
+    /* (sps-alpha_3_o) remainder of: angular acceleration of link 3 */
     const real sps_alpha_3_o_in_axes3_x = v->sps_zeta_3_in_axes3_x +
         sps_alpha_2_o_in_axes2_x*v->sps_s_3 - v->sps_c_3*sps_qdd_2_o_t;
     const real sps_alpha_3_o_in_axes3_y = v->sps_zeta_3_in_axes3_y +
@@ -2026,14 +2025,13 @@ INLINE void stage_sps_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real sps_B_3_o_in_axes3_yz = v->sps_W_3_in_axes3_yz - sps_alpha_3_o_in_axes3_x;
     const real sps_B_3_o_in_axes3_zx = v->sps_W_3_in_axes3_xz - sps_alpha_3_o_in_axes3_y;
     const real sps_B_3_o_in_axes3_zy = v->sps_W_3_in_axes3_yz + sps_alpha_3_o_in_axes3_x;
-    /* (sps-acc_4_o) remainder without the acceleration in: acceleration of the reference point of
-       link 4, less gravity */
+    /* (sps-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity */
     const real sps_acc_4_o_in_axes3_x = sps_u_1_in_axes3_x - v->sps_g_in_axes3_x;
     const real sps_acc_4_o_in_axes3_y = sps_u_1_in_axes3_y - v->sps_g_in_axes3_y;
     const real sps_acc_4_o_in_axes3_z = sps_u_1_x*v->sps_w_4_x + sps_u_1_y*v->sps_w_4_y +
         sps_u_1_z*v->sps_w_4_z - v->sps_g_in_axes3_z;
-    /* (sps-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning
-       about its reference point */
+    /* (sps-phi_4_o) remainder of: inertia force of link 4 from its turning about its reference point
+       */
     const real sps_phi_4_o_t = v->sps_omega_2_in_axes3_x*v->sps_omega_2_in_axes3_x;
     const real sps_phi_4_o_t_2 = v->sps_omega_2_in_axes3_y*v->sps_omega_2_in_axes3_y;
     const real sps_h_4_in_spec3_x = m->sps_h_4_in_spec3_x[i];
@@ -2042,8 +2040,8 @@ INLINE void stage_sps_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real sps_phi_4_o_in_axes3_z = sps_B_3_o_in_axes3_zx*sps_h_4_in_spec3_y +
         sps_B_3_o_in_axes3_zy*sps_h_4_in_spec3_z - sps_h_4_in_spec3_x*(sps_phi_4_o_t +
         sps_phi_4_o_t_2);
-    /* (sps-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
-       link 3, about their reference points */
+    /* (sps-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+       reference points */
     const real sps_mu_3_o_t = v->sps_omega_3_in_axes3_z*v->sps_omega_3_in_axes3_z;
     const real sps_J_group_3_in_axes3_xy = m->sps_J_group_3_in_axes3_xy[i];
     const real sps_J_group_3_in_axes3_xz = m->sps_J_group_3_in_axes3_xz[i];
@@ -2077,13 +2075,12 @@ INLINE void stage_sps_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
         sps_acc_4_o_in_axes3_x*sps_h_4_in_spec3_z - v->sps_g_in_axes3_y*sps_h_3_in_spec3_y;
     const real sps_mu_3_o_in_axes2_z = v->sps_c_3*sps_mu_3_o_in_axes3_x -
         sps_mu_3_o_in_axes3_y*v->sps_s_3;
-    /* (sps-Gamma_1_o) remainder without the acceleration in: moment about axis 1 of the distal links'
-       inertia and weight */
+    /* (sps-Gamma_1_o) remainder of: moment about axis 1 of the distal links' inertia and weight */
     const real sps_Gamma_1_o = v->sps_e_1_in_axes2_y*sps_mu_3_o_in_axes3_z +
         v->sps_e_1_in_axes3_x*sps_mu_3_o_in_axes3_x +
         v->sps_e_1_in_axes3_y*sps_mu_3_o_in_axes3_y;
-    /* (sps-c_o) remainder without the acceleration in: leg force on the platform without actuation
-       and without the mass at the connection point */
+    /* (sps-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
     const real sps_c_o_in_axes3_x = sps_h_4_in_spec3_y*(sps_mu_3_o_t + sps_phi_4_o_t_2) -
         v->inv_sps_w_1_t*(sps_Gamma_1_o*v->sps_v_2_t +
         sps_mu_3_o_in_axes2_z*v->sps_v_1_in_axes3_y) -
@@ -2370,8 +2367,8 @@ INLINE void dynamics_legs_sps(const prepared *m, size_t w, size_t leg, size_t le
         gather(&terms[24*count + k], add, v.sps_Z_a_t);  /* Z_a_x_of_legs */
         gather(&terms[25*count + k], add, v.sps_Z_a_t_2);  /* Z_a_y_of_legs */
         gather(&terms[26*count + k], add, v.sps_Z_a_t_3);  /* Z_a_z_of_legs */
-        /* (sps-P_3_o) remainder without the acceleration in: inertia and weight of the leg along the
-           extra degree of freedom of joint 3 */
+        /* (sps-P_3_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
+           joint 3 */
         o[0*count + k] = v.sps_mu_3_o_in_axes3_z;
         /* (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra
            degree of freedom of joint 3 */
@@ -2966,8 +2963,8 @@ INLINE void Z_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, con
         gather(&terms[3*count + k], add, v.sps_Z_a_t);  /* Z_a_x_of_legs */
         gather(&terms[4*count + k], add, v.sps_Z_a_t_2);  /* Z_a_y_of_legs */
         gather(&terms[5*count + k], add, v.sps_Z_a_t_3);  /* Z_a_z_of_legs */
-        /* (sps-P_3_o) remainder without the acceleration in: inertia and weight of the leg along the
-           extra degree of freedom of joint 3 */
+        /* (sps-P_3_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
+           joint 3 */
         o[0*count + k] = v.sps_mu_3_o_in_axes3_z;
         o[2*count + k] = v.sps_mu_3_o_in_axes3_z;
         o[1*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +

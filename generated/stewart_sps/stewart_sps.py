@@ -911,10 +911,10 @@ class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
     sqrt = staticmethod(math.sqrt)
-    sin = staticmethod(lambda x: float(np.sin(x)))
-    cos = staticmethod(lambda x: float(np.cos(x)))
+    sin = staticmethod(lambda x: float(np.sin(x)) if math.isfinite(x) else math.nan)
+    cos = staticmethod(lambda x: float(np.cos(x)) if math.isfinite(x) else math.nan)
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
-    least = staticmethod(lambda x, y: float(np.minimum(x, y)))
+    least = staticmethod(lambda x, y: y if y < x or y != y else x)
 
     def __init__(self, p, states, kept=None):
         self.p, self.states = p, states
@@ -1067,7 +1067,7 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
     Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
     where a single state needs no arrays.
     """
-    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    p, read = _given(p), [a[4:] != ("unused",) for a in arguments]
     lists = plain and _lists(arguments)
     if lists:
         found = _state(_Single(p, 1), steps, lists, read)
@@ -1092,7 +1092,7 @@ def _lists(arguments):
     for row in arguments:
         value, shape = row[1:3]
         if type(value) is np.ndarray:
-            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+            if value.shape != shape or value.dtype is not _REAL or row[4:] == ("positive",):
                 return None
             found.append(_Vector(value.tolist()))
         elif value is None and len(row) > 3 and row[3] is not None:
@@ -2036,14 +2036,14 @@ def _run_dynamics(m, X, V):
         sps_root_2*(sps_W_3_in_axes3_yz - sps_beta_3_in_axes3_x) -
             sps_bias_t*sps_omega_2_in_axes3_x
         )
-        # (sps-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (sps-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         sps_rel_o_in_axes3_x = sps_u_1_in_axes3_x - sps_bias_in_axes3_x
         sps_rel_o_in_axes3_y = sps_u_1_in_axes3_y - sps_bias_in_axes3_y
-        # (sps-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (sps-qdd_1_o) remainder of: acceleration of joint 1
         sps_qdd_1_o = (
         inv_sps_w_1_t*(sps_rel_o_in_axes3_x*sps_v_2_t + sps_rel_o_in_axes3_y*sps_v_2_in_axes3_x)
         )
-        # (sps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        # (sps-qdd_2_o) remainder of: acceleration of joint 2
         sps_qdd_2_o_t = (
         inv_sps_w_1_t*(sps_rel_o_in_axes3_y*sps_v_1_in_axes3_x -
             sps_rel_o_in_axes3_x*sps_v_1_in_axes3_y)
@@ -2060,12 +2060,12 @@ def _run_dynamics(m, X, V):
         sps_e_1_in_axes3_y*sps_w_1_in_axes3_x - sps_s_3*sps_w_2_in_axes3_x
         )
         sps_d_alpha_2_in_axes3_yy = sps_e_1_in_axes3_y*sps_w_1_in_axes3_y + sps_s_3*sps_w_2_t
-        # (sps-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (sps-alpha_2_o) remainder of: angular acceleration of link 2
         sps_alpha_2_o_in_axes2_x = sps_c_2*sps_qdd_1_o - sps_zeta_2_t
         sps_alpha_2_o_in_axes2_y = (
         sps_e_1_in_axes2_y*sps_qdd_1_o + sps_omega_1_in_axes2_x*sps_qd_2_t
         )
-        # (sps-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        # (sps-alpha_3_o) remainder of: angular acceleration of link 3
         sps_alpha_3_o_in_axes3_x = (
         sps_zeta_3_in_axes3_x + sps_alpha_2_o_in_axes2_x*sps_s_3 - sps_c_3*sps_qdd_2_o_t
         )
@@ -2079,7 +2079,7 @@ def _run_dynamics(m, X, V):
         sps_B_3_o_in_axes3_yz = sps_W_3_in_axes3_yz - sps_alpha_3_o_in_axes3_x
         sps_B_3_o_in_axes3_zx = sps_W_3_in_axes3_xz - sps_alpha_3_o_in_axes3_y
         sps_B_3_o_in_axes3_zy = sps_W_3_in_axes3_yz + sps_alpha_3_o_in_axes3_x
-        # (sps-acc_4_o) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+        # (sps-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity
         sps_g_in_axes3_x = (
         axis_x_sps_axes3_x*gravity_x + axis_x_sps_axes3_y*gravity_y + axis_x_sps_axes3_z*gravity_z
         )
@@ -2092,7 +2092,7 @@ def _run_dynamics(m, X, V):
         sps_acc_4_o_in_axes3_z = (
         sps_u_1_x*sps_w_4_x + sps_u_1_y*sps_w_4_y + sps_u_1_z*sps_w_4_z - sps_g_in_axes3_z
         )
-        # (sps-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning about its reference point
+        # (sps-phi_4_o) remainder of: inertia force of link 4 from its turning about its reference point
         sps_phi_4_o_t = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_x
         sps_phi_4_o_t_2 = sps_omega_2_in_axes3_y*sps_omega_2_in_axes3_y
         sps_phi_4_o_in_axes3_z = (
@@ -2130,7 +2130,7 @@ def _run_dynamics(m, X, V):
             sps_J_group_3_in_axes3_yz*sps_d_alpha_2_in_axes3_yy +
             sps_J_group_3_in_axes3_zz*sps_d_alpha_1_in_axes3_zy
         )
-        # (sps-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        # (sps-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
         sps_mu_3_o_t = sps_omega_3_in_axes3_z*sps_omega_3_in_axes3_z
         sps_mu_3_o_in_axes3_x = (
         sps_B_3_o_in_axes3_yx*sps_J_group_3_in_axes3_xz +
@@ -2171,7 +2171,7 @@ def _run_dynamics(m, X, V):
         sps_d_Gamma_1_in_axes3_z = (
         sps_e_1_in_axes3_x*sps_h_4_in_spec3_z - sps_e_1_in_axes3_y*sps_h_4_in_spec3_y
         )
-        # (sps-Gamma_1_o) remainder without the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        # (sps-Gamma_1_o) remainder of: moment about axis 1 of the distal links' inertia and weight
         sps_Gamma_1_o = (
         sps_e_1_in_axes2_y*sps_mu_3_o_in_axes3_z + sps_e_1_in_axes3_x*sps_mu_3_o_in_axes3_x +
             sps_e_1_in_axes3_y*sps_mu_3_o_in_axes3_y
@@ -2201,7 +2201,7 @@ def _run_dynamics(m, X, V):
             sps_d_Gamma_1_in_axes3_y*sps_w_1_in_axes3_y -
             sps_d_alpha_1_in_axes3_zy*sps_h_4_in_spec3_y
         )
-        # (sps-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (sps-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         sps_c_o_in_axes3_x = (
         sps_h_4_in_spec3_y*(sps_mu_3_o_t + sps_phi_4_o_t_2) -
             inv_sps_w_1_t*(sps_Gamma_1_o*sps_v_2_t + sps_mu_3_o_in_axes2_z*sps_v_1_in_axes3_y) -
@@ -2340,7 +2340,7 @@ def _run_dynamics(m, X, V):
         Z_a_sps_x += sps_Z_a_t
         Z_a_sps_y += sps_Z_a_t_2
         Z_a_sps_z += sps_Z_a_t_3
-        # (sps-P_3_o) remainder without the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 3
+        # (sps-P_3_o) remainder of: inertia and weight of the leg along the extra degree of freedom of joint 3
         out_Z[_Z_sps[0][leg]] = sps_mu_3_o_in_axes3_z
         # (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 3
         out_M[_M_sps[0][leg]] = sps_d_P_3_x
@@ -3122,24 +3122,24 @@ def _run_Z(m, X, V):
         sps_root_2*(sps_W_3_in_axes3_yz - sps_beta_3_in_axes3_x) -
             sps_bias_t*sps_omega_2_in_axes3_x
         )
-        # (sps-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (sps-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         sps_rel_o_in_axes3_x = sps_u_1_in_axes3_x - sps_bias_in_axes3_x
         sps_rel_o_in_axes3_y = sps_u_1_in_axes3_y - sps_bias_in_axes3_y
-        # (sps-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (sps-qdd_1_o) remainder of: acceleration of joint 1
         sps_qdd_1_o = (
         inv_sps_w_1_t*(sps_rel_o_in_axes3_x*sps_v_2_t + sps_rel_o_in_axes3_y*sps_v_2_in_axes3_x)
         )
-        # (sps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        # (sps-qdd_2_o) remainder of: acceleration of joint 2
         sps_qdd_2_o_t = (
         inv_sps_w_1_t*(sps_rel_o_in_axes3_y*sps_v_1_in_axes3_x -
             sps_rel_o_in_axes3_x*sps_v_1_in_axes3_y)
         )
-        # (sps-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (sps-alpha_2_o) remainder of: angular acceleration of link 2
         sps_alpha_2_o_in_axes2_x = sps_c_2*sps_qdd_1_o - sps_zeta_2_t
         sps_alpha_2_o_in_axes2_y = (
         sps_e_1_in_axes2_y*sps_qdd_1_o + sps_omega_1_in_axes2_x*sps_qd_2_t
         )
-        # (sps-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        # (sps-alpha_3_o) remainder of: angular acceleration of link 3
         sps_alpha_3_o_in_axes3_x = (
         sps_zeta_3_in_axes3_x + sps_alpha_2_o_in_axes2_x*sps_s_3 - sps_c_3*sps_qdd_2_o_t
         )
@@ -3153,7 +3153,7 @@ def _run_Z(m, X, V):
         sps_B_3_o_in_axes3_yz = sps_W_3_in_axes3_yz - sps_alpha_3_o_in_axes3_x
         sps_B_3_o_in_axes3_zx = sps_W_3_in_axes3_xz - sps_alpha_3_o_in_axes3_y
         sps_B_3_o_in_axes3_zy = sps_W_3_in_axes3_yz + sps_alpha_3_o_in_axes3_x
-        # (sps-acc_4_o) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+        # (sps-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity
         sps_g_in_axes3_x = (
         axis_x_sps_axes3_x*gravity_x + axis_x_sps_axes3_y*gravity_y + axis_x_sps_axes3_z*gravity_z
         )
@@ -3166,14 +3166,14 @@ def _run_Z(m, X, V):
         sps_acc_4_o_in_axes3_z = (
         sps_u_1_x*sps_w_4_x + sps_u_1_y*sps_w_4_y + sps_u_1_z*sps_w_4_z - sps_g_in_axes3_z
         )
-        # (sps-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning about its reference point
+        # (sps-phi_4_o) remainder of: inertia force of link 4 from its turning about its reference point
         sps_phi_4_o_t = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_x
         sps_phi_4_o_t_2 = sps_omega_2_in_axes3_y*sps_omega_2_in_axes3_y
         sps_phi_4_o_in_axes3_z = (
         sps_B_3_o_in_axes3_zx*sps_h_4_in_spec3_y + sps_B_3_o_in_axes3_zy*sps_h_4_in_spec3_z -
             sps_h_4_in_spec3_x*(sps_phi_4_o_t + sps_phi_4_o_t_2)
         )
-        # (sps-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        # (sps-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
         sps_mu_3_o_t = sps_omega_3_in_axes3_z*sps_omega_3_in_axes3_z
         sps_mu_3_o_in_axes3_x = (
         sps_B_3_o_in_axes3_yx*sps_J_group_3_in_axes3_xz +
@@ -3203,12 +3203,12 @@ def _run_Z(m, X, V):
             sps_acc_4_o_in_axes3_x*sps_h_4_in_spec3_z - sps_g_in_axes3_y*sps_h_3_in_spec3_y
         )
         sps_mu_3_o_in_axes2_z = sps_c_3*sps_mu_3_o_in_axes3_x - sps_mu_3_o_in_axes3_y*sps_s_3
-        # (sps-Gamma_1_o) remainder without the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        # (sps-Gamma_1_o) remainder of: moment about axis 1 of the distal links' inertia and weight
         sps_Gamma_1_o = (
         sps_e_1_in_axes2_y*sps_mu_3_o_in_axes3_z + sps_e_1_in_axes3_x*sps_mu_3_o_in_axes3_x +
             sps_e_1_in_axes3_y*sps_mu_3_o_in_axes3_y
         )
-        # (sps-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (sps-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         sps_c_o_in_axes3_x = (
         sps_h_4_in_spec3_y*(sps_mu_3_o_t + sps_phi_4_o_t_2) -
             inv_sps_w_1_t*(sps_Gamma_1_o*sps_v_2_t + sps_mu_3_o_in_axes2_z*sps_v_1_in_axes3_y) -
@@ -3249,7 +3249,7 @@ def _run_Z(m, X, V):
         Z_a_sps_x += sps_Z_a_t
         Z_a_sps_y += sps_Z_a_t_2
         Z_a_sps_z += sps_Z_a_t_3
-        # (sps-P_3_o) remainder without the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 3
+        # (sps-P_3_o) remainder of: inertia and weight of the leg along the extra degree of freedom of joint 3
         out_Z[_Z_sps[0][leg]] = sps_mu_3_o_in_axes3_z
     # (Z_t) translational part of Z
     Z_t_x = Z_p_x + Z_t_sps_x

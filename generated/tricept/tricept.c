@@ -2193,8 +2193,7 @@ INLINE void stage_tube_X(const prepared *m, size_t w, size_t i, size_t j, const 
     /* (tube-nd_m3) rate of moment direction 3 */
     const real tube_end_p3_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m3_t_4 -
         tube_c_2*tube_n_m3_t_3;
-    /* (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-       link 3, less gravity */
+    /* (tube-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
     const real tube_acc_3_t = m->tube_acc_3_t[i];
     const real tube_acc_3_t_2 = m->tube_acc_3_t_2[i];
     const real tube_g_in_axes2_z = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1;
@@ -2455,8 +2454,7 @@ INLINE void stage_tube_A_V_X(size_t w, size_t j, const real *V, values_tube *v)
 
 INLINE void stage_tube_Z_dynamics(const prepared *m, size_t i, values_tube *v)
 {
-    /* (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-       link 3, less gravity */
+    /* (tube-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
     const real tube_acc_3_t = m->tube_acc_3_t[i];
     const real tube_acc_3_t_2 = m->tube_acc_3_t_2[i];
     const real tube_acc_3_o_t = tube_acc_3_t*v->tube_c_1 + tube_acc_3_t_2*v->tube_s_1;
@@ -3063,8 +3061,7 @@ INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const r
         axis_x_ups_axes2_x*axis_z_ups_axes2_y;
     /* (ups-omega_1) angular velocity of link 1 */
     const real ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z;
-    /* (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-       link 3, less gravity */
+    /* (ups-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
     const real ups_acc_3_t = m->ups_acc_3_t[i];
     const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
     const real ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1;
@@ -3198,15 +3195,15 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real ups_u_1_z = omega_x*v->ups_S_dot_t_2 - omega_y*v->ups_S_dot_t;
     const real ups_u_1_in_axes2_z = v->axis_z_ups_axes2_x*ups_u_1_x +
         v->axis_z_ups_axes2_y*ups_u_1_y + v->axis_z_ups_axes2_z*ups_u_1_z;
-    /* (ups-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-       the joint accelerations */
+    /* (ups-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
     const real ups_rel_o_in_axes2_z = ups_u_1_in_axes2_z - v->ups_bias_in_axes2_z;
-    /* (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+    /* (ups-qdd_1_o) remainder of: acceleration of joint 1 */
     const real ups_qdd_1_o = v->inv_ups_root_1*ups_rel_o_in_axes2_z;
-    /* (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+    /* (ups-alpha_1_o) remainder of: angular acceleration of link 1 */
     const real ups_alpha_1_o_in_axes2_x = v->ups_e_1_in_axes2_x*ups_qdd_1_o;
     const real ups_alpha_1_o_in_axes2_y = -v->ups_c_2*ups_qdd_1_o;
-    /* (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+    /* (ups-alpha_2_o) remainder of: angular acceleration of link 2 */
     const real ups_alpha_2_o_in_axes2_x = v->ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x;
     const real ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - v->ups_W_2_in_axes2_xz;
     /* (ups-B_2_o) remainder of the acceleration tensor of link 2 */
@@ -3218,8 +3215,7 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real ups_B_2_o_in_axes2_xy = 2*v->ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx;
     const real ups_B_2_o_in_axes2_zx = v->ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y;
     const real ups_B_2_o_in_axes2_zy = v->ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x;
-    /* (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-       link 3, less gravity */
+    /* (ups-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
     const real ups_acc_3_t = m->ups_acc_3_t[i];
     const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
     const real ups_acc_3_o_t = ups_acc_3_t*v->ups_c_1 + ups_acc_3_t_2*v->ups_s_1;
@@ -3233,8 +3229,8 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real ups_acc_3_o_in_axes2_y = ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 -
         ups_g_in_axes2_y;
     const real ups_acc_3_o_in_axes2_z = ups_u_1_in_axes2_z - v->ups_g_in_axes2_z;
-    /* (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
-       about its reference point */
+    /* (ups-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
+       */
     const real ups_phi_3_o_t = v->ups_omega_1_in_axes2_y*v->ups_omega_1_in_axes2_y;
     const real ups_phi_3_o_t_2 = v->ups_qd_2*v->ups_qd_2;
     const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
@@ -3243,8 +3239,8 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real ups_phi_3_o_in_axes2_x = ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y +
         ups_h_3_in_spec2_x*(-ups_phi_3_o_t - ups_phi_3_o_t_2) -
         ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z;
-    /* (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-       link 2, about their reference points */
+    /* (ups-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
     const real ups_mu_2_o_t = v->ups_omega_1_in_axes2_x*v->ups_omega_1_in_axes2_x;
     const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
     const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
@@ -3276,8 +3272,8 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
         ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_x
         - ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z
         - ups_g_in_axes2_y*ups_h_2_in_spec2_x;
-    /* (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation
-       and without the mass at the connection point */
+    /* (ups-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
     const real ups_c_o_in_axes2_y = ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y -
         v->inv_ups_q_3*ups_mu_2_o_in_axes2_z - ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x -
         ups_h_3_in_spec2_z*(ups_mu_2_o_t + ups_phi_3_o_t_2);
@@ -3728,8 +3724,8 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_bias_t_5 = v.tube_bias_t_3*tube_omega_1_in_axes2_y;
         const real tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2;
         const real tube_bias_in_axes2_z = 2*tube_bias_t - tube_bias_t_5;
-        /* (tube-rel_o) remainder without the acceleration in: acceleration of the connection point left
-           to the joint accelerations */
+        /* (tube-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real tube_rel_o_in_axes2_y = v.axis_y_tube_axes2_x*v.tube_u_1_x +
             v.axis_y_tube_axes2_y*v.tube_u_1_y + v.axis_y_tube_axes2_z*v.tube_u_1_z -
             tube_bias_in_axes2_y;
@@ -3777,14 +3773,14 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
             tube_nu_1_t_2*(v.tube_end_p3_in_axes2_z*tube_qd_2 +
             v.tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
         const real tube_nu_3 = tube_W_2_in_axes2_yz*v.tube_end_p3_in_axes2_z - tube_nu_3_t;
-        /* (tube-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        /* (tube-qdd_1_o) remainder of: acceleration of joint 1 */
         const real tube_qdd_1_o_t = R(1.35)*tube_nu_1;
         const real tube_qdd_1_o_t_2 = R(1.35)*tube_nu_2;
         const real tube_qdd_1_o_t_3 = R(1.35)*tube_nu_3;
         const real tube_qdd_1_o = v.inv_tube_w_1_t_75*(tube_m1_w_1_t*tube_qdd_1_o_t +
             tube_m3_w_1_t*tube_qdd_1_o_t_3 + tube_rel_o_in_axes2_y*tube_w_1_t_76 +
             tube_rel_o_in_axes2_z*tube_w_1_t_77 - tube_m2_w_1_t*tube_qdd_1_o_t_2);
-        /* (tube-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        /* (tube-qdd_2_o) remainder of: acceleration of joint 2 */
         const real tube_qdd_2_o_t = v.inv_tube_w_1_t_63*(tube_qdd_1_o_t*v.tube_w_1_t_66 +
             tube_qdd_1_o_t_2*v.tube_w_1_t_67 + tube_qdd_1_o_t_3*v.tube_w_1_t_68 +
             tube_rel_o_in_axes2_y*v.tube_w_1_t_64 + tube_rel_o_in_axes2_z*v.tube_w_1_t_65 -
@@ -3813,10 +3809,10 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         /* (tube-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
         const real tube_d_alpha_1_in_axes2_xz = v.tube_e_1_in_axes2_x*tube_w_1_in_axes2_z;
         const real tube_d_alpha_1_t = v.tube_c_2*tube_w_1_in_axes2_z;
-        /* (tube-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+        /* (tube-alpha_1_o) remainder of: angular acceleration of link 1 */
         const real tube_alpha_1_o_in_axes2_x = v.tube_e_1_in_axes2_x*tube_qdd_1_o;
         const real tube_alpha_1_o_in_axes2_y = -v.tube_c_2*tube_qdd_1_o;
-        /* (tube-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (tube-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real tube_alpha_2_o_in_axes2_x = tube_W_2_in_axes2_yz + tube_alpha_1_o_in_axes2_x;
         const real tube_alpha_2_o_in_axes2_y = tube_alpha_1_o_in_axes2_y - tube_W_2_in_axes2_xz;
         /* (tube-B_2_o) remainder of the acceleration tensor of link 2 */
@@ -3838,13 +3834,12 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_d_acc_3_in_axes2_yz = v.tube_q_3*tube_w_2_in_axes2_z;
         const real tube_d_acc_3_in_axes2_zy = v.tube_q_3*tube_w_1_t_78;
         const real tube_d_acc_3_in_axes2_zz = tube_d_alpha_1_t*v.tube_q_3;
-        /* (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
+        /* (tube-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
         const real tube_acc_3_o_in_axes2_y = tube_bias_t_4 + v.tube_q_3*tube_qdd_2_o -
             tube_bias_t_2 - v.tube_g_in_axes2_y;
         const real tube_acc_3_o_in_axes2_z = tube_bias_t - tube_bias_t_5 - v.tube_g_in_axes2_z -
             tube_alpha_2_o_in_axes2_y*v.tube_q_3;
-        /* (tube-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight */
+        /* (tube-f_3_o) remainder of: inertia force of link 3 less its weight */
         const real tube_f_3_o_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x;
         const real tube_f_3_o_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y;
         const real tube_f_3_o_t_3 = tube_qd_2*tube_qd_2;
@@ -3862,8 +3857,8 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_f_3_o_in_axes2_z = tube_B_2_o_in_axes2_zx*tube_h_3_in_spec2_x +
             tube_acc_3_o_in_axes2_z*tube_link3_mass - tube_B_2_o_in_axes2_zy*tube_h_3_in_spec2_z -
             tube_h_3_in_spec2_y*(tube_f_3_o_t + tube_f_3_o_t_2);
-        /* (tube-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
+        /* (tube-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real tube_J_group_2_in_axes2_xy = m->tube_J_group_2_in_axes2_xy[i];
         const real tube_J_group_2_in_axes2_xz = m->tube_J_group_2_in_axes2_xz[i];
         const real tube_J_group_2_in_axes2_yz = m->tube_J_group_2_in_axes2_yz[i];
@@ -3939,8 +3934,8 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
             tube_h_3_in_spec2_x*tube_w_2_in_axes2_z -
             tube_d_alpha_1_in_axes2_xz*tube_h_3_in_spec2_y) -
             tube_J_group_2_in_axes2_yz*tube_d_alpha_1_t;
-        /* (tube-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
+        /* (tube-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+           connection point left out */
         const real tube_N_2_o_in_axes2_y = tube_mu_2_o_in_axes2_y -
             tube_f_3_o_in_axes2_z*v.tube_q_3;
         const real tube_N_2_o_in_axes2_z = tube_mu_2_o_in_axes2_z +
@@ -4038,8 +4033,8 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
            leg's inertia and weight along all degrees of freedom */
         const real tube_d_G_in_axes2_yz = tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y +
             tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_y;
-        /* (tube-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (tube-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real tube_G_o_t = v.inv_tube_w_1_t_13*tube_N_2_o_in_axes2_z;
         const real tube_G_o_t_2 = v.inv_tube_w_1_t_33*tube_G_o_t*v.tube_w_1_t_17;
         const real tube_G_o_t_3 = v.inv_tube_w_1_t_49*(tube_G_o_t*v.tube_w_1_t_21 -
@@ -4071,8 +4066,8 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
             tube_d_N_2_in_axes2_zy*tube_m1_w_2;
         const real tube_d_G_m1_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m1_w_1 +
             tube_d_N_2_in_axes2_zz*tube_m1_w_2;
-        /* (tube-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that
-           balances the leg's inertia and weight along all degrees of freedom */
+        /* (tube-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real tube_G_m1_o_t = tube_G_o_t*v.tube_w_1_t_15 + tube_G_o_t_2*v.tube_w_1_t_35 +
             tube_G_o_t_3*v.tube_w_1_t_51 + tube_G_o_t_4*v.tube_w_1_t_66 -
             tube_G_o_t_5*tube_m1_w_1_t;
@@ -4093,8 +4088,8 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
             tube_d_N_2_in_axes2_zy*tube_m2_w_2;
         const real tube_d_G_m2_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m2_w_1 +
             tube_d_N_2_in_axes2_zz*tube_m2_w_2;
-        /* (tube-G_m2_o) remainder without the acceleration in: moment along moment direction 2 that
-           balances the leg's inertia and weight along all degrees of freedom */
+        /* (tube-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real tube_G_m2_o_t = tube_G_o_t_4*v.tube_w_1_t_67 + tube_G_o_t_5*tube_m2_w_1_t;
         const real tube_G_m2_o = R(1.35)*tube_G_m2_o_t;
         /* (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that
@@ -4113,8 +4108,8 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
             tube_d_N_2_in_axes2_zy*tube_m3_w_2;
         const real tube_d_G_m3_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m3_w_1 +
             tube_d_N_2_in_axes2_zz*tube_m3_w_2;
-        /* (tube-G_m3_o) remainder without the acceleration in: moment along moment direction 3 that
-           balances the leg's inertia and weight along all degrees of freedom */
+        /* (tube-G_m3_o) remainder of: moment along moment direction 3 that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real tube_G_m3_o_t = tube_G_o_t*v.tube_w_1_t_16 + tube_G_o_t_2*v.tube_w_1_t_36 +
             tube_G_o_t_3*v.tube_w_1_t_52 + tube_G_o_t_4*v.tube_w_1_t_68 -
             tube_G_o_t_5*tube_m3_w_1_t;
@@ -4168,8 +4163,8 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
             tube_d_G_m3_in_axes2_y*v.tube_n_m3_in_axes2_z;
         const real tube_d_G_m_in_axes2_zz = tube_d_G_m1_in_axes2_z*v.tube_n_m1_in_axes2_z +
             tube_d_G_m3_in_axes2_z*v.tube_n_m3_in_axes2_z;
-        /* (tube-G_m_o) remainder without the acceleration in: moment at the connection point that
-           balances the leg's inertia and weight along all degrees of freedom */
+        /* (tube-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real tube_G_m_o_in_axes2_x = -tube_G_m2_o*v.tube_end_p2_in_axes2_y -
             tube_G_m3_o*v.tube_end_p3_in_axes2_z;
         const real tube_G_m_o_in_axes2_y = tube_G_m2_o*v.tube_n_m2_in_axes2_y -
@@ -5734,22 +5729,22 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_bias_t_5 = v.tube_bias_t_3*v.tube_omega_1_in_axes2_y;
         const real tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2;
         const real tube_bias_in_axes2_z = 2*tube_bias_t - tube_bias_t_5;
-        /* (tube-rel_o) remainder without the acceleration in: acceleration of the connection point left
-           to the joint accelerations */
+        /* (tube-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real tube_rel_o_in_axes2_y = v.axis_y_tube_axes2_x*v.tube_u_1_x +
             v.axis_y_tube_axes2_y*v.tube_u_1_y + v.axis_y_tube_axes2_z*v.tube_u_1_z -
             tube_bias_in_axes2_y;
         const real tube_rel_o_in_axes2_z = v.axis_z_tube_axes2_x*v.tube_u_1_x +
             v.axis_z_tube_axes2_y*v.tube_u_1_y + v.axis_z_tube_axes2_z*v.tube_u_1_z -
             tube_bias_in_axes2_z;
-        /* (tube-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        /* (tube-qdd_1_o) remainder of: acceleration of joint 1 */
         const real tube_qdd_1_o_t = R(1.35)*v.tube_nu_1;
         const real tube_qdd_1_o_t_2 = R(1.35)*v.tube_nu_2;
         const real tube_qdd_1_o_t_3 = R(1.35)*v.tube_nu_3;
         const real tube_qdd_1_o = v.inv_tube_w_1_t_75*(v.tube_qd_1_t*tube_rel_o_in_axes2_y +
             v.tube_qd_1_t_2*tube_rel_o_in_axes2_z + v.tube_qd_1_t_3*tube_qdd_1_o_t +
             v.tube_qd_1_t_5*tube_qdd_1_o_t_3 - v.tube_qd_1_t_4*tube_qdd_1_o_t_2);
-        /* (tube-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        /* (tube-qdd_2_o) remainder of: acceleration of joint 2 */
         const real tube_qdd_2_o_t = v.inv_tube_w_1_t_63*(tube_qdd_1_o_t*v.tube_w_1_t_66 +
             tube_qdd_1_o_t_2*v.tube_w_1_t_67 + tube_qdd_1_o_t_3*v.tube_w_1_t_68 +
             tube_rel_o_in_axes2_y*v.tube_w_1_t_64 + tube_rel_o_in_axes2_z*v.tube_w_1_t_65 -
@@ -5768,10 +5763,10 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
             tube_qdd_2_o_t_2*v.tube_w_1_t_37) - tube_qdd_1_o*v.tube_w_1_t_29 -
             tube_qdd_2_o_t*v.tube_w_1_t_25;
         const real tube_qdd_2_o = v.inv_tube_w_1_t_13*tube_qdd_2_o_t_3;
-        /* (tube-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+        /* (tube-alpha_1_o) remainder of: angular acceleration of link 1 */
         const real tube_alpha_1_o_in_axes2_x = v.tube_e_1_in_axes2_x*tube_qdd_1_o;
         const real tube_alpha_1_o_in_axes2_y = -v.tube_c_2*tube_qdd_1_o;
-        /* (tube-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (tube-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real tube_alpha_2_o_in_axes2_x = v.tube_W_2_in_axes2_yz + tube_alpha_1_o_in_axes2_x;
         const real tube_alpha_2_o_in_axes2_y = tube_alpha_1_o_in_axes2_y - v.tube_W_2_in_axes2_xz;
         /* (tube-B_2_o) remainder of the acceleration tensor of link 2 */
@@ -5779,13 +5774,12 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_B_2_o_in_axes2_yx = tube_W_2_in_axes2_xy + tube_qdd_2_o;
         const real tube_B_2_o_in_axes2_zx = v.tube_W_2_in_axes2_xz - tube_alpha_2_o_in_axes2_y;
         const real tube_B_2_o_in_axes2_zy = v.tube_W_2_in_axes2_yz + tube_alpha_2_o_in_axes2_x;
-        /* (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
+        /* (tube-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
         const real tube_acc_3_o_in_axes2_y = tube_bias_t_4 + v.tube_q_3*tube_qdd_2_o -
             tube_bias_t_2 - v.tube_g_in_axes2_y;
         const real tube_acc_3_o_in_axes2_z = tube_bias_t - tube_bias_t_5 - v.tube_g_in_axes2_z -
             tube_alpha_2_o_in_axes2_y*v.tube_q_3;
-        /* (tube-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight */
+        /* (tube-f_3_o) remainder of: inertia force of link 3 less its weight */
         const real tube_f_3_o_t = v.tube_omega_1_in_axes2_x*v.tube_omega_1_in_axes2_x;
         const real tube_f_3_o_t_2 = v.tube_omega_1_in_axes2_y*v.tube_omega_1_in_axes2_y;
         const real tube_f_3_o_t_3 = v.tube_qd_2*v.tube_qd_2;
@@ -5803,8 +5797,8 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_f_3_o_in_axes2_z = tube_B_2_o_in_axes2_zx*tube_h_3_in_spec2_x +
             tube_acc_3_o_in_axes2_z*tube_link3_mass - tube_B_2_o_in_axes2_zy*tube_h_3_in_spec2_z -
             tube_h_3_in_spec2_y*(tube_f_3_o_t + tube_f_3_o_t_2);
-        /* (tube-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
+        /* (tube-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real tube_J_group_2_in_axes2_xy = m->tube_J_group_2_in_axes2_xy[i];
         const real tube_J_group_2_in_axes2_xz = m->tube_J_group_2_in_axes2_xz[i];
         const real tube_J_group_2_in_axes2_yz = m->tube_J_group_2_in_axes2_yz[i];
@@ -5838,14 +5832,14 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
             tube_acc_3_o_in_axes2_y*tube_h_3_in_spec2_x -
             tube_B_2_o_in_axes2_xy*tube_Sigma_2_in_axes2_yy -
             v.tube_g_in_axes2_x*tube_h_2_in_spec2_z - v.tube_g_in_axes2_y*tube_h_2_in_spec2_x;
-        /* (tube-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
+        /* (tube-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+           connection point left out */
         const real tube_N_2_o_in_axes2_y = tube_mu_2_o_in_axes2_y -
             tube_f_3_o_in_axes2_z*v.tube_q_3;
         const real tube_N_2_o_in_axes2_z = tube_mu_2_o_in_axes2_z +
             tube_f_3_o_in_axes2_y*v.tube_q_3;
-        /* (tube-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (tube-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real tube_G_o_t = v.inv_tube_w_1_t_13*tube_N_2_o_in_axes2_z;
         const real tube_G_o_t_2 = v.inv_tube_w_1_t_33*tube_G_o_t*v.tube_w_1_t_17;
         const real tube_G_o_t_3 = v.inv_tube_w_1_t_49*(tube_G_o_t*v.tube_w_1_t_21 -
@@ -5861,24 +5855,24 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
             tube_G_o_t_5*v.tube_qd_1_t;
         const real tube_G_o_in_axes2_z = v.inv_tube_w_1_t_49*tube_G_o_t_3 +
             tube_G_o_t_4*v.tube_w_1_t_65 - tube_G_o_t_5*v.tube_qd_1_t_2;
-        /* (tube-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that
-           balances the leg's inertia and weight along all degrees of freedom */
+        /* (tube-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real tube_G_m1_o_t = tube_G_o_t*v.tube_w_1_t_15 + tube_G_o_t_2*v.tube_w_1_t_35 +
             tube_G_o_t_3*v.tube_w_1_t_51 + tube_G_o_t_4*v.tube_w_1_t_66 -
             tube_G_o_t_5*v.tube_qd_1_t_3;
         const real tube_G_m1_o = R(1.35)*tube_G_m1_o_t;
-        /* (tube-G_m2_o) remainder without the acceleration in: moment along moment direction 2 that
-           balances the leg's inertia and weight along all degrees of freedom */
+        /* (tube-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real tube_G_m2_o_t = tube_G_o_t_4*v.tube_w_1_t_67 + tube_G_o_t_5*v.tube_qd_1_t_4;
         const real tube_G_m2_o = R(1.35)*tube_G_m2_o_t;
-        /* (tube-G_m3_o) remainder without the acceleration in: moment along moment direction 3 that
-           balances the leg's inertia and weight along all degrees of freedom */
+        /* (tube-G_m3_o) remainder of: moment along moment direction 3 that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real tube_G_m3_o_t = tube_G_o_t*v.tube_w_1_t_16 + tube_G_o_t_2*v.tube_w_1_t_36 +
             tube_G_o_t_3*v.tube_w_1_t_52 + tube_G_o_t_4*v.tube_w_1_t_68 -
             tube_G_o_t_5*v.tube_qd_1_t_5;
         const real tube_G_m3_o = R(1.35)*tube_G_m3_o_t;
-        /* (tube-G_m_o) remainder without the acceleration in: moment at the connection point that
-           balances the leg's inertia and weight along all degrees of freedom */
+        /* (tube-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real tube_G_m_o_in_axes2_x = -tube_G_m2_o*v.tube_end_p2_in_axes2_y -
             tube_G_m3_o*v.tube_end_p3_in_axes2_z;
         const real tube_G_m_o_in_axes2_y = tube_G_m2_o*v.tube_n_m2_in_axes2_y -
@@ -6373,8 +6367,8 @@ INLINE void constraint_bias_legs_tube(const prepared *m, size_t w, size_t leg, s
             tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y*v.tube_q_3;
         const real tube_bias_in_axes2_z = 2*tube_W_2_in_axes2_xz*v.tube_q_3 -
             tube_bias_t*tube_omega_1_in_axes2_y;
-        /* (tube-rel_o) remainder without the acceleration in: acceleration of the connection point left
-           to the joint accelerations */
+        /* (tube-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real tube_rel_o_in_axes2_y = v.axis_y_tube_axes2_x*v.tube_u_1_x +
             v.axis_y_tube_axes2_y*v.tube_u_1_y + v.axis_y_tube_axes2_z*v.tube_u_1_z -
             tube_bias_in_axes2_y;

@@ -2059,29 +2059,27 @@ INLINE void dynamics_legs_prs(const prepared *m, size_t w, size_t leg, size_t le
         const real prs_base_frame_zz = m->prs_base_frame_zz[i];
         const real prs_u_1_in_axes2_z = prs_base_frame_xz*v.prs_u_1_x +
             prs_base_frame_yz*v.prs_u_1_y + prs_base_frame_zz*v.prs_u_1_z;
-        /* (prs-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
+        /* (prs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
         const real prs_rel_o_in_axes2_x = v.axis_x_prs_axes2_x*v.prs_u_1_x +
             v.axis_x_prs_axes2_y*v.prs_u_1_y + v.axis_x_prs_axes2_z*v.prs_u_1_z +
             prs_platform_joint_offset_x*v.prs_qd_2_t*v.prs_qd_2_t;
-        /* (prs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        /* (prs-qdd_1_o) remainder of: acceleration of joint 1 */
         const real prs_qdd_1_o_t = v.prs_w_1_t*(v.prs_c_2*v.prs_u_1_in_axes2_y +
             prs_rel_o_in_axes2_x*v.prs_s_2);
         const real prs_qdd_1_o = v.prs_c_2*prs_rel_o_in_axes2_x +
             prs_qdd_1_o_t*v.prs_v_2_in_axes0_x - v.prs_s_2*v.prs_u_1_in_axes2_y;
-        /* (prs-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
-           link 1, less gravity */
+        /* (prs-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
         const real prs_g_in_axes0_x = m->prs_g_in_axes0_x[i];
         const real prs_acc_1_o_in_axes0_x = prs_qdd_1_o - prs_g_in_axes0_x;
-        /* (prs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
+        /* (prs-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
         const real prs_g_in_axes0_y = m->prs_g_in_axes0_y[i];
         const real prs_acc_2_o_in_axes2_x = v.prs_c_2*prs_qdd_1_o - v.prs_c_2*prs_g_in_axes0_x -
             prs_g_in_axes0_y*v.prs_s_2;
         const real prs_acc_2_o_in_axes2_y = prs_g_in_axes0_x*v.prs_s_2 -
             v.prs_c_2*prs_g_in_axes0_y - prs_qdd_1_o*v.prs_s_2;
-        /* (prs-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
+        /* (prs-f_2_o) remainder of: inertia force of link 2 less its weight */
         const real prs_h_2_in_spec2_x = m->prs_h_2_in_spec2_x[i];
         const real prs_h_2_in_spec2_y = m->prs_h_2_in_spec2_y[i];
         const real prs_link2_mass = m->prs_link2_mass[i];
@@ -2089,18 +2087,17 @@ INLINE void dynamics_legs_prs(const prepared *m, size_t w, size_t leg, size_t le
             prs_h_2_in_spec2_y*prs_qdd_1_o_t - v.prs_W_2_t*prs_h_2_in_spec2_x;
         const real prs_f_2_o_in_axes2_y = prs_acc_2_o_in_axes2_y*prs_link2_mass -
             v.prs_W_2_t*prs_h_2_in_spec2_y - prs_h_2_in_spec2_x*prs_qdd_1_o_t;
-        /* (prs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
+        /* (prs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real prs_J_2_in_spec2_zz = m->prs_J_2_in_spec2_zz[i];
         const real prs_mu_2_o_in_axes2_z = prs_acc_2_o_in_axes2_y*prs_h_2_in_spec2_x -
             prs_J_2_in_spec2_zz*prs_qdd_1_o_t - prs_acc_2_o_in_axes2_x*prs_h_2_in_spec2_y;
-        /* (prs-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards,
-           the last link left out */
+        /* (prs-T_1_o) remainder of: inertia force of the links from 1 outwards, the last link left out */
         const real prs_link1_mass = m->prs_link1_mass[i];
         const real prs_T_1_o_in_axes0_x = prs_acc_1_o_in_axes0_x*prs_link1_mass +
             v.prs_c_2*prs_f_2_o_in_axes2_x - prs_f_2_o_in_axes2_y*v.prs_s_2;
-        /* (prs-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (prs-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real prs_G_o_t = v.prs_w_1_t*(prs_mu_2_o_in_axes2_z -
             prs_T_1_o_in_axes0_x*v.prs_v_2_in_axes0_x);
         const real prs_G_o_in_axes2_x = prs_T_1_o_in_axes0_x*v.prs_c_2 - prs_G_o_t*v.prs_s_2;
@@ -2614,29 +2611,27 @@ INLINE void Z_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, con
             v.prs_S_dot_y*prs_base_frame_yy + v.prs_S_dot_z*prs_base_frame_zy);
         /* (prs-W_2) centripetal tensor of link 2 */
         const real prs_W_2_t = prs_qd_2_t_2*prs_qd_2_t_2;
-        /* (prs-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
+        /* (prs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
         const real prs_rel_o_in_axes2_x = v.axis_x_prs_axes2_x*v.prs_u_1_x +
             v.axis_x_prs_axes2_y*v.prs_u_1_y + v.axis_x_prs_axes2_z*v.prs_u_1_z +
             prs_platform_joint_offset_x*prs_qd_2_t_2*prs_qd_2_t_2;
-        /* (prs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        /* (prs-qdd_1_o) remainder of: acceleration of joint 1 */
         const real prs_qdd_1_o_t = prs_qd_2_t*(v.prs_c_2*v.prs_u_1_in_axes2_y +
             prs_rel_o_in_axes2_x*v.prs_s_2);
         const real prs_qdd_1_o = v.prs_c_2*prs_rel_o_in_axes2_x +
             prs_qdd_1_o_t*v.prs_v_2_in_axes0_x - v.prs_s_2*v.prs_u_1_in_axes2_y;
-        /* (prs-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
-           link 1, less gravity */
+        /* (prs-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
         const real prs_g_in_axes0_x = m->prs_g_in_axes0_x[i];
         const real prs_acc_1_o_in_axes0_x = prs_qdd_1_o - prs_g_in_axes0_x;
-        /* (prs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
+        /* (prs-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
         const real prs_g_in_axes0_y = m->prs_g_in_axes0_y[i];
         const real prs_acc_2_o_in_axes2_x = v.prs_c_2*prs_qdd_1_o - v.prs_c_2*prs_g_in_axes0_x -
             prs_g_in_axes0_y*v.prs_s_2;
         const real prs_acc_2_o_in_axes2_y = prs_g_in_axes0_x*v.prs_s_2 -
             v.prs_c_2*prs_g_in_axes0_y - prs_qdd_1_o*v.prs_s_2;
-        /* (prs-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
+        /* (prs-f_2_o) remainder of: inertia force of link 2 less its weight */
         const real prs_h_2_in_spec2_x = m->prs_h_2_in_spec2_x[i];
         const real prs_h_2_in_spec2_y = m->prs_h_2_in_spec2_y[i];
         const real prs_link2_mass = m->prs_link2_mass[i];
@@ -2644,18 +2639,17 @@ INLINE void Z_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, con
             prs_h_2_in_spec2_y*prs_qdd_1_o_t - prs_W_2_t*prs_h_2_in_spec2_x;
         const real prs_f_2_o_in_axes2_y = prs_acc_2_o_in_axes2_y*prs_link2_mass -
             prs_W_2_t*prs_h_2_in_spec2_y - prs_h_2_in_spec2_x*prs_qdd_1_o_t;
-        /* (prs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
+        /* (prs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real prs_J_2_in_spec2_zz = m->prs_J_2_in_spec2_zz[i];
         const real prs_mu_2_o_in_axes2_z = prs_acc_2_o_in_axes2_y*prs_h_2_in_spec2_x -
             prs_J_2_in_spec2_zz*prs_qdd_1_o_t - prs_acc_2_o_in_axes2_x*prs_h_2_in_spec2_y;
-        /* (prs-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards,
-           the last link left out */
+        /* (prs-T_1_o) remainder of: inertia force of the links from 1 outwards, the last link left out */
         const real prs_link1_mass = m->prs_link1_mass[i];
         const real prs_T_1_o_in_axes0_x = prs_acc_1_o_in_axes0_x*prs_link1_mass +
             v.prs_c_2*prs_f_2_o_in_axes2_x - prs_f_2_o_in_axes2_y*v.prs_s_2;
-        /* (prs-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (prs-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real prs_G_o_t = prs_qd_2_t*(prs_mu_2_o_in_axes2_z -
             prs_T_1_o_in_axes0_x*v.prs_v_2_in_axes0_x);
         const real prs_G_o_in_axes2_x = prs_T_1_o_in_axes0_x*v.prs_c_2 - prs_G_o_t*v.prs_s_2;

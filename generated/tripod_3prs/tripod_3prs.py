@@ -854,10 +854,10 @@ class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
     sqrt = staticmethod(math.sqrt)
-    sin = staticmethod(lambda x: float(np.sin(x)))
-    cos = staticmethod(lambda x: float(np.cos(x)))
+    sin = staticmethod(lambda x: float(np.sin(x)) if math.isfinite(x) else math.nan)
+    cos = staticmethod(lambda x: float(np.cos(x)) if math.isfinite(x) else math.nan)
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
-    least = staticmethod(lambda x, y: float(np.minimum(x, y)))
+    least = staticmethod(lambda x, y: y if y < x or y != y else x)
 
     def __init__(self, p, states, kept=None):
         self.p, self.states = p, states
@@ -1010,7 +1010,7 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
     Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
     where a single state needs no arrays.
     """
-    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    p, read = _given(p), [a[4:] != ("unused",) for a in arguments]
     lists = plain and _lists(arguments)
     if lists:
         found = _state(_Single(p, 1), steps, lists, read)
@@ -1035,7 +1035,7 @@ def _lists(arguments):
     for row in arguments:
         value, shape = row[1:3]
         if type(value) is np.ndarray:
-            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+            if value.shape != shape or value.dtype is not _REAL or row[4:] == ("positive",):
                 return None
             found.append(_Vector(value.tolist()))
         elif value is None and len(row) > 3 and row[3] is not None:
@@ -1895,27 +1895,27 @@ def _run_dynamics(m, X, V):
         prs_u_1_in_axes2_z = (
         prs_base_frame_xz*prs_u_1_x + prs_base_frame_yz*prs_u_1_y + prs_base_frame_zz*prs_u_1_z
         )
-        # (prs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (prs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         prs_rel_o_in_axes2_x = (
         axis_x_prs_axes2_x*prs_u_1_x + axis_x_prs_axes2_y*prs_u_1_y + axis_x_prs_axes2_z*prs_u_1_z
             + prs_platform_joint_offset_x*prs_qd_2_t*prs_qd_2_t
         )
-        # (prs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (prs-qdd_1_o) remainder of: acceleration of joint 1
         prs_qdd_1_o_t = prs_w_1_t*(prs_c_2*prs_u_1_in_axes2_y + prs_rel_o_in_axes2_x*prs_s_2)
         prs_qdd_1_o = (
         prs_c_2*prs_rel_o_in_axes2_x + prs_qdd_1_o_t*prs_v_2_in_axes0_x -
             prs_s_2*prs_u_1_in_axes2_y
         )
-        # (prs-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+        # (prs-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity
         prs_acc_1_o_in_axes0_x = prs_qdd_1_o - prs_g_in_axes0_x
-        # (prs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        # (prs-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
         prs_acc_2_o_in_axes2_x = (
         prs_c_2*prs_qdd_1_o - prs_c_2*prs_g_in_axes0_x - prs_g_in_axes0_y*prs_s_2
         )
         prs_acc_2_o_in_axes2_y = (
         prs_g_in_axes0_x*prs_s_2 - prs_c_2*prs_g_in_axes0_y - prs_qdd_1_o*prs_s_2
         )
-        # (prs-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight
+        # (prs-f_2_o) remainder of: inertia force of link 2 less its weight
         prs_f_2_o_in_axes2_x = (
         prs_acc_2_o_in_axes2_x*prs_link2_mass + prs_h_2_in_spec2_y*prs_qdd_1_o_t -
             prs_W_2_t*prs_h_2_in_spec2_x
@@ -1926,7 +1926,7 @@ def _run_dynamics(m, X, V):
         )
         # (prs-P_c_2) force that accelerates joint 2, per unit
         prs_P_c_2_in_axes0_x = -prs_c_2*prs_h_2_in_spec2_y - prs_h_2_in_spec2_x*prs_s_2
-        # (prs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (prs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         prs_mu_2_o_in_axes2_z = (
         prs_acc_2_o_in_axes2_y*prs_h_2_in_spec2_x - prs_J_2_in_spec2_zz*prs_qdd_1_o_t -
             prs_acc_2_o_in_axes2_x*prs_h_2_in_spec2_y
@@ -1937,7 +1937,7 @@ def _run_dynamics(m, X, V):
         )
         prs_d_Gamma_2_in_axes2_x = prs_P_c_2_in_axes0_x*prs_c_2 - prs_d_Gamma_2_t*prs_s_2
         prs_d_Gamma_2_in_axes2_y = -prs_P_c_2_in_axes0_x*prs_s_2 - prs_c_2*prs_d_Gamma_2_t
-        # (prs-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
+        # (prs-T_1_o) remainder of: inertia force of the links from 1 outwards, the last link left out
         prs_T_1_o_in_axes0_x = (
         prs_acc_1_o_in_axes0_x*prs_link1_mass + prs_c_2*prs_f_2_o_in_axes2_x -
             prs_f_2_o_in_axes2_y*prs_s_2
@@ -1961,7 +1961,7 @@ def _run_dynamics(m, X, V):
         prs_d_G_in_axes2_yy = (
         prs_d_Gamma_1_in_axes2_y*prs_w_1_in_axes2_y + prs_d_Gamma_2_in_axes2_y*prs_w_2_in_axes2_y
         )
-        # (prs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (prs-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         prs_G_o_t = prs_w_1_t*(prs_mu_2_o_in_axes2_z - prs_T_1_o_in_axes0_x*prs_v_2_in_axes0_x)
         prs_G_o_in_axes2_x = prs_T_1_o_in_axes0_x*prs_c_2 - prs_G_o_t*prs_s_2
         prs_G_o_in_axes2_y = -prs_G_o_t*prs_c_2 - prs_T_1_o_in_axes0_x*prs_s_2
@@ -2624,7 +2624,7 @@ def _run_Z(m, X, V):
         prs_u_1_in_axes2_y = (
         axis_y_prs_axes2_x*prs_u_1_x + axis_y_prs_axes2_y*prs_u_1_y + axis_y_prs_axes2_z*prs_u_1_z
         )
-        # (prs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (prs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         axis_x_prs_axes2_x = prs_base_frame_xx*prs_c_2 + prs_base_frame_xy*prs_s_2
         axis_x_prs_axes2_y = prs_base_frame_yx*prs_c_2 + prs_base_frame_yy*prs_s_2
         axis_x_prs_axes2_z = prs_base_frame_zx*prs_c_2 + prs_base_frame_zy*prs_s_2
@@ -2632,22 +2632,22 @@ def _run_Z(m, X, V):
         axis_x_prs_axes2_x*prs_u_1_x + axis_x_prs_axes2_y*prs_u_1_y + axis_x_prs_axes2_z*prs_u_1_z
             + prs_platform_joint_offset_x*prs_qd_2_t_2*prs_qd_2_t_2
         )
-        # (prs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (prs-qdd_1_o) remainder of: acceleration of joint 1
         prs_qdd_1_o_t = prs_qd_2_t*(prs_c_2*prs_u_1_in_axes2_y + prs_rel_o_in_axes2_x*prs_s_2)
         prs_qdd_1_o = (
         prs_c_2*prs_rel_o_in_axes2_x + prs_qdd_1_o_t*prs_v_2_in_axes0_x -
             prs_s_2*prs_u_1_in_axes2_y
         )
-        # (prs-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+        # (prs-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity
         prs_acc_1_o_in_axes0_x = prs_qdd_1_o - prs_g_in_axes0_x
-        # (prs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        # (prs-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
         prs_acc_2_o_in_axes2_x = (
         prs_c_2*prs_qdd_1_o - prs_c_2*prs_g_in_axes0_x - prs_g_in_axes0_y*prs_s_2
         )
         prs_acc_2_o_in_axes2_y = (
         prs_g_in_axes0_x*prs_s_2 - prs_c_2*prs_g_in_axes0_y - prs_qdd_1_o*prs_s_2
         )
-        # (prs-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight
+        # (prs-f_2_o) remainder of: inertia force of link 2 less its weight
         prs_f_2_o_in_axes2_x = (
         prs_acc_2_o_in_axes2_x*prs_link2_mass + prs_h_2_in_spec2_y*prs_qdd_1_o_t -
             prs_W_2_t*prs_h_2_in_spec2_x
@@ -2656,17 +2656,17 @@ def _run_Z(m, X, V):
         prs_acc_2_o_in_axes2_y*prs_link2_mass - prs_W_2_t*prs_h_2_in_spec2_y -
             prs_h_2_in_spec2_x*prs_qdd_1_o_t
         )
-        # (prs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (prs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         prs_mu_2_o_in_axes2_z = (
         prs_acc_2_o_in_axes2_y*prs_h_2_in_spec2_x - prs_J_2_in_spec2_zz*prs_qdd_1_o_t -
             prs_acc_2_o_in_axes2_x*prs_h_2_in_spec2_y
         )
-        # (prs-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
+        # (prs-T_1_o) remainder of: inertia force of the links from 1 outwards, the last link left out
         prs_T_1_o_in_axes0_x = (
         prs_acc_1_o_in_axes0_x*prs_link1_mass + prs_c_2*prs_f_2_o_in_axes2_x -
             prs_f_2_o_in_axes2_y*prs_s_2
         )
-        # (prs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (prs-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         prs_G_o_t = prs_qd_2_t*(prs_mu_2_o_in_axes2_z - prs_T_1_o_in_axes0_x*prs_v_2_in_axes0_x)
         prs_G_o_in_axes2_x = prs_T_1_o_in_axes0_x*prs_c_2 - prs_G_o_t*prs_s_2
         prs_G_o_in_axes2_y = -prs_G_o_t*prs_c_2 - prs_T_1_o_in_axes0_x*prs_s_2

@@ -1608,8 +1608,7 @@ INLINE void stage_rps_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real axis_y_rps_axes1_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1;
     const real axis_y_rps_axes1_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1;
     const real axis_y_rps_axes1_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1;
-    /* (rps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-       link 2, less gravity */
+    /* (rps-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
     const real rps_acc_2_t = m->rps_acc_2_t[i];
     const real rps_acc_2_t_2 = m->rps_acc_2_t_2[i];
     const real rps_g_in_axes1_x = rps_acc_2_t*rps_c_1 + rps_acc_2_t_2*rps_s_1;
@@ -1725,19 +1724,18 @@ INLINE void stage_rps_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real rps_u_1_z = omega_x*v->rps_S_dot_t_2 - omega_y*v->rps_S_dot_t;
     const real rps_u_1_in_axes1_y = v->axis_y_rps_axes1_x*rps_u_1_x +
         v->axis_y_rps_axes1_y*rps_u_1_y + v->axis_y_rps_axes1_z*rps_u_1_z;
-    /* (rps-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-       the joint accelerations */
+    /* (rps-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
     const real rps_rel_o_in_axes1_y = rps_u_1_in_axes1_y -
         2*v->rps_S_dot_in_axes1_x*v->rps_qd_1;
-    /* (rps-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+    /* (rps-qdd_1_o) remainder of: acceleration of joint 1 */
     const real rps_qdd_1_o = v->inv_rps_q_2*rps_rel_o_in_axes1_y;
-    /* (rps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-       link 2, less gravity */
+    /* (rps-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
     const real rps_acc_2_o_in_axes1_x = v->axis_x_rps_axes1_x*rps_u_1_x +
         v->axis_x_rps_axes1_y*rps_u_1_y + v->axis_x_rps_axes1_z*rps_u_1_z -
         v->rps_g_in_axes1_x;
     const real rps_acc_2_o_in_axes1_y = rps_u_1_in_axes1_y - v->rps_g_in_axes1_y;
-    /* (rps-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
+    /* (rps-f_2_o) remainder of: inertia force of link 2 less its weight */
     const real rps_h_2_in_spec1_x = m->rps_h_2_in_spec1_x[i];
     const real rps_h_2_in_spec1_y = m->rps_h_2_in_spec1_y[i];
     const real rps_link2_mass = m->rps_link2_mass[i];
@@ -1745,16 +1743,16 @@ INLINE void stage_rps_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
         v->rps_W_1_t*rps_h_2_in_spec1_x - rps_h_2_in_spec1_y*rps_qdd_1_o;
     const real rps_f_2_o_in_axes1_y = rps_acc_2_o_in_axes1_y*rps_link2_mass +
         rps_h_2_in_spec1_x*rps_qdd_1_o - v->rps_W_1_t*rps_h_2_in_spec1_y;
-    /* (rps-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
-       link 1, about their reference points */
+    /* (rps-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
     const real rps_J_group_1_in_axes1_zz = m->rps_J_group_1_in_axes1_zz[i];
     const real rps_h_1_in_spec1_x = m->rps_h_1_in_spec1_x[i];
     const real rps_h_1_in_spec1_y = m->rps_h_1_in_spec1_y[i];
     const real rps_mu_1_o_in_axes1_z = rps_J_group_1_in_axes1_zz*rps_qdd_1_o +
         rps_acc_2_o_in_axes1_y*rps_h_2_in_spec1_x + v->rps_g_in_axes1_x*rps_h_1_in_spec1_y -
         rps_acc_2_o_in_axes1_x*rps_h_2_in_spec1_y - v->rps_g_in_axes1_y*rps_h_1_in_spec1_x;
-    /* (rps-G_o) remainder without the acceleration in: force at the connection point that balances
-       the leg's inertia and weight along all degrees of freedom */
+    /* (rps-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
     const real rps_G_o_in_axes1_y = rps_f_2_o_in_axes1_y +
         v->inv_rps_q_2*rps_mu_1_o_in_axes1_z;
     /* (rps-U) velocity and gravity terms of the leg force */

@@ -822,10 +822,10 @@ class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
     sqrt = staticmethod(math.sqrt)
-    sin = staticmethod(lambda x: float(np.sin(x)))
-    cos = staticmethod(lambda x: float(np.cos(x)))
+    sin = staticmethod(lambda x: float(np.sin(x)) if math.isfinite(x) else math.nan)
+    cos = staticmethod(lambda x: float(np.cos(x)) if math.isfinite(x) else math.nan)
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
-    least = staticmethod(lambda x, y: float(np.minimum(x, y)))
+    least = staticmethod(lambda x, y: y if y < x or y != y else x)
 
     def __init__(self, p, states, kept=None):
         self.p, self.states = p, states
@@ -978,7 +978,7 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
     Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
     where a single state needs no arrays.
     """
-    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    p, read = _given(p), [a[4:] != ("unused",) for a in arguments]
     lists = plain and _lists(arguments)
     if lists:
         found = _state(_Single(p, 1), steps, lists, read)
@@ -1003,7 +1003,7 @@ def _lists(arguments):
     for row in arguments:
         value, shape = row[1:3]
         if type(value) is np.ndarray:
-            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+            if value.shape != shape or value.dtype is not _REAL or row[4:] == ("positive",):
                 return None
             found.append(_Vector(value.tolist()))
         elif value is None and len(row) > 3 and row[3] is not None:
@@ -1844,11 +1844,11 @@ def _run_dynamics(m, X, V):
         rps_u_1_in_axes1_z = (
         rps_base_frame_xz*rps_u_1_x + rps_base_frame_yz*rps_u_1_y + rps_base_frame_zz*rps_u_1_z
         )
-        # (rps-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (rps-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rps_rel_o_in_axes1_y = rps_u_1_in_axes1_y - 2.0*rps_S_dot_in_axes1_x*rps_qd_1
-        # (rps-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (rps-qdd_1_o) remainder of: acceleration of joint 1
         rps_qdd_1_o = inv_rps_q_2*rps_rel_o_in_axes1_y
-        # (rps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        # (rps-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
         rps_g_in_axes1_x = rps_acc_2_t*rps_c_1 + rps_acc_2_t_2*rps_s_1
         rps_g_in_axes1_y = rps_acc_2_t_2*rps_c_1 - rps_acc_2_t*rps_s_1
         rps_acc_2_o_in_axes1_x = (
@@ -1856,7 +1856,7 @@ def _run_dynamics(m, X, V):
             - rps_g_in_axes1_x
         )
         rps_acc_2_o_in_axes1_y = rps_u_1_in_axes1_y - rps_g_in_axes1_y
-        # (rps-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight
+        # (rps-f_2_o) remainder of: inertia force of link 2 less its weight
         rps_f_2_o_in_axes1_x = (
         rps_acc_2_o_in_axes1_x*rps_link2_mass - rps_W_1_t*rps_h_2_in_spec1_x -
             rps_h_2_in_spec1_y*rps_qdd_1_o
@@ -1865,7 +1865,7 @@ def _run_dynamics(m, X, V):
         rps_acc_2_o_in_axes1_y*rps_link2_mass + rps_h_2_in_spec1_x*rps_qdd_1_o -
             rps_W_1_t*rps_h_2_in_spec1_y
         )
-        # (rps-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        # (rps-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rps_mu_1_o_in_axes1_z = (
         rps_J_group_1_in_axes1_zz*rps_qdd_1_o + rps_acc_2_o_in_axes1_y*rps_h_2_in_spec1_x +
             rps_g_in_axes1_x*rps_h_1_in_spec1_y - rps_acc_2_o_in_axes1_x*rps_h_2_in_spec1_y -
@@ -1876,7 +1876,7 @@ def _run_dynamics(m, X, V):
         inv_rps_q_2*(rps_h_2_in_spec1_x + inv_rps_q_2*rps_J_group_1_in_axes1_zz +
             rps_q_2*(rps_link2_mass + inv_rps_q_2*rps_h_2_in_spec1_x))
         )
-        # (rps-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (rps-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rps_G_o_in_axes1_y = rps_f_2_o_in_axes1_y + inv_rps_q_2*rps_mu_1_o_in_axes1_z
         # (rps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rps_d_c_in_axes1_xy = inv_rps_q_2*rps_h_2_in_spec1_y
@@ -2478,11 +2478,11 @@ def _run_Z(m, X, V):
         rps_u_1_in_axes1_y = (
         axis_y_rps_axes1_x*rps_u_1_x + axis_y_rps_axes1_y*rps_u_1_y + axis_y_rps_axes1_z*rps_u_1_z
         )
-        # (rps-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (rps-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rps_rel_o_in_axes1_y = rps_u_1_in_axes1_y - 2.0*rps_S_dot_in_axes1_x*rps_qd_1
-        # (rps-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (rps-qdd_1_o) remainder of: acceleration of joint 1
         rps_qdd_1_o = inv_rps_q_2*rps_rel_o_in_axes1_y
-        # (rps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        # (rps-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
         rps_g_in_axes1_x = rps_acc_2_t*rps_c_1 + rps_acc_2_t_2*rps_s_1
         rps_g_in_axes1_y = rps_acc_2_t_2*rps_c_1 - rps_acc_2_t*rps_s_1
         rps_acc_2_o_in_axes1_x = (
@@ -2490,7 +2490,7 @@ def _run_Z(m, X, V):
             - rps_g_in_axes1_x
         )
         rps_acc_2_o_in_axes1_y = rps_u_1_in_axes1_y - rps_g_in_axes1_y
-        # (rps-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight
+        # (rps-f_2_o) remainder of: inertia force of link 2 less its weight
         rps_f_2_o_in_axes1_x = (
         rps_acc_2_o_in_axes1_x*rps_link2_mass - rps_W_1_t*rps_h_2_in_spec1_x -
             rps_h_2_in_spec1_y*rps_qdd_1_o
@@ -2499,13 +2499,13 @@ def _run_Z(m, X, V):
         rps_acc_2_o_in_axes1_y*rps_link2_mass + rps_h_2_in_spec1_x*rps_qdd_1_o -
             rps_W_1_t*rps_h_2_in_spec1_y
         )
-        # (rps-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        # (rps-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rps_mu_1_o_in_axes1_z = (
         rps_J_group_1_in_axes1_zz*rps_qdd_1_o + rps_acc_2_o_in_axes1_y*rps_h_2_in_spec1_x +
             rps_g_in_axes1_x*rps_h_1_in_spec1_y - rps_acc_2_o_in_axes1_x*rps_h_2_in_spec1_y -
             rps_g_in_axes1_y*rps_h_1_in_spec1_x
         )
-        # (rps-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (rps-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rps_G_o_in_axes1_y = rps_f_2_o_in_axes1_y + inv_rps_q_2*rps_mu_1_o_in_axes1_z
         # (rps-U) velocity and gravity terms of the leg force
         rps_U_x = axis_x_rps_axes1_x*rps_f_2_o_in_axes1_x + axis_y_rps_axes1_x*rps_G_o_in_axes1_y

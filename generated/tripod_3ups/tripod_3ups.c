@@ -1155,8 +1155,8 @@ INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const r
         axis_x_ups_axes2_x*axis_z_ups_axes2_y;
     /* (ups-omega_1) angular velocity of link 1 */
     const real ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z;
-    /* (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-       link 2, about their reference points */
+    /* (ups-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
     const real ups_acc_3_t = m->ups_acc_3_t[i];
     const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
     const real ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1;
@@ -1234,12 +1234,12 @@ INLINE void stage_ups_V_X(size_t w, size_t j, const real *V, values_ups *v)
 
 INLINE void stage_ups_Z_dynamics(const prepared *m, size_t i, values_ups *v)
 {
-    /* (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+    /* (ups-qdd_1_o) remainder of: acceleration of joint 1 */
     const real ups_qdd_1_o_t = v->inv_ups_root_1*v->ups_bias_in_axes2_z;
-    /* (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+    /* (ups-alpha_1_o) remainder of: angular acceleration of link 1 */
     const real ups_alpha_1_o_t = v->ups_e_1_in_axes2_x*ups_qdd_1_o_t;
     const real ups_alpha_1_o_in_axes2_y = v->ups_c_2*ups_qdd_1_o_t;
-    /* (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+    /* (ups-alpha_2_o) remainder of: angular acceleration of link 2 */
     const real ups_alpha_2_o_in_axes2_x = v->ups_W_2_in_axes2_yz - ups_alpha_1_o_t;
     const real ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - v->ups_W_2_in_axes2_xz;
     /* (ups-B_2_o) remainder of the acceleration tensor of link 2 */
@@ -1247,8 +1247,8 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t i, values_ups *v)
     const real ups_B_2_o_in_axes2_xy = ups_B_2_o_t + 2*v->ups_W_2_in_axes2_xy;
     const real ups_B_2_o_in_axes2_zx = v->ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y;
     const real ups_B_2_o_in_axes2_zy = v->ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x;
-    /* (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
-       about its reference point */
+    /* (ups-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
+       */
     const real ups_phi_3_o_t = v->ups_omega_1_in_axes2_y*v->ups_omega_1_in_axes2_y;
     const real ups_phi_3_o_t_2 = v->ups_qd_2*v->ups_qd_2;
     const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
@@ -1257,8 +1257,8 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t i, values_ups *v)
     const real ups_phi_3_o_in_axes2_x = ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y +
         ups_h_3_in_spec2_x*(-ups_phi_3_o_t - ups_phi_3_o_t_2) -
         ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z;
-    /* (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-       link 2, about their reference points */
+    /* (ups-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
     const real ups_mu_2_o_t = v->ups_omega_1_in_axes2_x*v->ups_omega_1_in_axes2_x;
     const real ups_acc_3_t = m->ups_acc_3_t[i];
     const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
@@ -1295,8 +1295,8 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t i, values_ups *v)
         ups_g_in_axes2_x*ups_h_group_2_in_axes2_y -
         ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_B_2_o_t*ups_Sigma_2_in_axes2_xx -
         ups_J_group_2_in_axes2_xz*ups_alpha_1_o_t - ups_g_in_axes2_y*ups_h_group_2_in_axes2_x;
-    /* (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation
-       and without the mass at the connection point */
+    /* (ups-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
     const real ups_c_o_in_axes2_y = ups_B_2_o_t*ups_h_3_in_spec2_x -
         v->inv_ups_q_3*ups_mu_2_o_in_axes2_z - ups_alpha_1_o_t*ups_h_3_in_spec2_y -
         ups_h_3_in_spec2_z*(ups_mu_2_o_t + ups_phi_3_o_t_2);

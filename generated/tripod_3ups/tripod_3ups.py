@@ -800,10 +800,10 @@ class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
     sqrt = staticmethod(math.sqrt)
-    sin = staticmethod(lambda x: float(np.sin(x)))
-    cos = staticmethod(lambda x: float(np.cos(x)))
+    sin = staticmethod(lambda x: float(np.sin(x)) if math.isfinite(x) else math.nan)
+    cos = staticmethod(lambda x: float(np.cos(x)) if math.isfinite(x) else math.nan)
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
-    least = staticmethod(lambda x, y: float(np.minimum(x, y)))
+    least = staticmethod(lambda x, y: y if y < x or y != y else x)
 
     def __init__(self, p, states, kept=None):
         self.p, self.states = p, states
@@ -956,7 +956,7 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
     Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
     where a single state needs no arrays.
     """
-    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    p, read = _given(p), [a[4:] != ("unused",) for a in arguments]
     lists = plain and _lists(arguments)
     if lists:
         found = _state(_Single(p, 1), steps, lists, read)
@@ -981,7 +981,7 @@ def _lists(arguments):
     for row in arguments:
         value, shape = row[1:3]
         if type(value) is np.ndarray:
-            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+            if value.shape != shape or value.dtype is not _REAL or row[4:] == ("positive",):
                 return None
             found.append(_Vector(value.tolist()))
         elif value is None and len(row) > 3 and row[3] is not None:
@@ -1630,14 +1630,14 @@ def _run_dynamics(m, X, V):
         # (ups-bias) acceleration of the connection point at zero joint accelerations
         ups_bias_t = 2.0*ups_S_dot_in_axes2_x
         ups_bias_in_axes2_z = 2.0*ups_W_2_in_axes2_xz*ups_q_3 - ups_bias_t*ups_omega_1_in_axes2_y
-        # (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (ups-qdd_1_o) remainder of: acceleration of joint 1
         ups_qdd_1_o_t = inv_ups_root_1*ups_bias_in_axes2_z
         # (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
         ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_e_1_in_axes2_x
-        # (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        # (ups-alpha_1_o) remainder of: angular acceleration of link 1
         ups_alpha_1_o_t = ups_e_1_in_axes2_x*ups_qdd_1_o_t
         ups_alpha_1_o_in_axes2_y = ups_c_2*ups_qdd_1_o_t
-        # (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (ups-alpha_2_o) remainder of: angular acceleration of link 2
         ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz - ups_alpha_1_o_t
         ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz
         # (ups-B_2_o) remainder of the acceleration tensor of link 2
@@ -1648,14 +1648,14 @@ def _run_dynamics(m, X, V):
         # (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
         ups_d_phi_3_in_axes2_xy = inv_ups_q_3*ups_h_3_in_spec2_z
         ups_d_phi_3_in_axes2_yy = inv_ups_q_3*ups_h_3_in_spec2_x
-        # (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
+        # (ups-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
         ups_phi_3_o_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
         ups_phi_3_o_t_2 = ups_qd_2*ups_qd_2
         ups_phi_3_o_in_axes2_x = (
         ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y + ups_h_3_in_spec2_x*(-ups_phi_3_o_t -
             ups_phi_3_o_t_2) - ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z
         )
-        # (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (ups-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         ups_mu_2_o_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
         ups_mu_2_o_t_2 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
         ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
@@ -1702,7 +1702,7 @@ def _run_dynamics(m, X, V):
             ups_c_2*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz - ups_h_3_in_spec2_x -
             inv_ups_q_3*ups_J_group_2_in_axes2_yy))
         )
-        # (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (ups-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         ups_c_o_in_axes2_y = (
         ups_B_2_o_t*ups_h_3_in_spec2_x - inv_ups_q_3*ups_mu_2_o_in_axes2_z -
             ups_alpha_1_o_t*ups_h_3_in_spec2_y - ups_h_3_in_spec2_z*(ups_mu_2_o_t +
@@ -2058,12 +2058,12 @@ def _run_Z(m, X, V):
         # (ups-bias) acceleration of the connection point at zero joint accelerations
         ups_bias_t = 2.0*ups_S_dot_in_axes2_x
         ups_bias_in_axes2_z = 2.0*ups_W_2_in_axes2_xz*ups_q_3 - ups_bias_t*ups_omega_1_in_axes2_y
-        # (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (ups-qdd_1_o) remainder of: acceleration of joint 1
         ups_qdd_1_o_t = inv_ups_root_1*ups_bias_in_axes2_z
-        # (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        # (ups-alpha_1_o) remainder of: angular acceleration of link 1
         ups_alpha_1_o_t = ups_e_1_in_axes2_x*ups_qdd_1_o_t
         ups_alpha_1_o_in_axes2_y = ups_c_2*ups_qdd_1_o_t
-        # (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (ups-alpha_2_o) remainder of: angular acceleration of link 2
         ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz - ups_alpha_1_o_t
         ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz
         # (ups-B_2_o) remainder of the acceleration tensor of link 2
@@ -2071,14 +2071,14 @@ def _run_Z(m, X, V):
         ups_B_2_o_in_axes2_xy = ups_B_2_o_t + 2.0*ups_W_2_in_axes2_xy
         ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y
         ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x
-        # (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
+        # (ups-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
         ups_phi_3_o_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
         ups_phi_3_o_t_2 = ups_qd_2*ups_qd_2
         ups_phi_3_o_in_axes2_x = (
         ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y + ups_h_3_in_spec2_x*(-ups_phi_3_o_t -
             ups_phi_3_o_t_2) - ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z
         )
-        # (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (ups-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         ups_mu_2_o_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
         ups_mu_2_o_t_2 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
         ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
@@ -2107,7 +2107,7 @@ def _run_Z(m, X, V):
             ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_B_2_o_t*ups_Sigma_2_in_axes2_xx -
             ups_J_group_2_in_axes2_xz*ups_alpha_1_o_t - ups_g_in_axes2_y*ups_h_group_2_in_axes2_x
         )
-        # (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (ups-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         ups_c_o_in_axes2_y = (
         ups_B_2_o_t*ups_h_3_in_spec2_x - inv_ups_q_3*ups_mu_2_o_in_axes2_z -
             ups_alpha_1_o_t*ups_h_3_in_spec2_y - ups_h_3_in_spec2_z*(ups_mu_2_o_t +

@@ -1749,8 +1749,7 @@ INLINE void stage_upu_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real upu_w_1_in_axes2_z = 1/upu_w_1_t;
     /* (upu-nd_m1) rate of moment direction 1 */
     const real upu_end_p1_in_axes2_z = upu_c_1*upu_n_m1_t_2 - upu_n_m1_t*upu_s_1;
-    /* (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-       link 3, less gravity */
+    /* (upu-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
     const real upu_acc_3_t = m->upu_acc_3_t[i];
     const real upu_acc_3_t_2 = m->upu_acc_3_t_2[i];
     const real upu_g_in_axes2_z = upu_acc_3_t_2*upu_c_1 - upu_acc_3_t*upu_s_1;
@@ -2083,8 +2082,7 @@ INLINE void stage_upu_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real upu_B_2_o_t_2 = v->axis_y_upu_axes2_x*upu_u_1_x +
         v->axis_y_upu_axes2_y*upu_u_1_y + v->axis_y_upu_axes2_z*upu_u_1_z - upu_B_2_o_t;
     const real upu_B_2_o_in_axes2_yx = v->inv_upu_q_3*upu_B_2_o_t_2;
-    /* (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-       link 3, less gravity */
+    /* (upu-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
     const real upu_acc_3_t = m->upu_acc_3_t[i];
     const real upu_acc_3_t_2 = m->upu_acc_3_t_2[i];
     const real upu_acc_3_o_t = upu_acc_3_t*v->upu_c_1 + upu_acc_3_t_2*v->upu_s_1;
@@ -2096,7 +2094,7 @@ INLINE void stage_upu_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real upu_acc_3_o_in_axes2_x = v->axis_x_upu_axes2_x*upu_u_1_x +
         v->axis_x_upu_axes2_y*upu_u_1_y + v->axis_x_upu_axes2_z*upu_u_1_z - upu_g_in_axes2_x;
     const real upu_acc_3_o_in_axes2_y = upu_B_2_o_t + upu_B_2_o_t_2 - upu_g_in_axes2_y;
-    /* (upu-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight */
+    /* (upu-f_3_o) remainder of: inertia force of link 3 less its weight */
     const real upu_f_3_o_t_3 = v->upu_qd_2*v->upu_qd_2;
     v->upu_u_1_x = upu_u_1_x;
     v->upu_u_1_y = upu_u_1_y;
@@ -2315,8 +2313,8 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t w, size_t leg, size_t le
         /* (upu-bias) acceleration of the connection point at zero joint accelerations */
         const real upu_bias_t_2 = v.upu_bias_t*upu_omega_1_in_axes2_y;
         const real upu_bias_in_axes2_z = 2*upu_W_2_in_axes2_xz*v.upu_q_3 - upu_bias_t_2;
-        /* (upu-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
+        /* (upu-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real upu_rel_o_in_axes2_z = v.axis_z_upu_axes2_x*v.upu_u_1_x +
             v.axis_z_upu_axes2_y*v.upu_u_1_y + v.axis_z_upu_axes2_z*v.upu_u_1_z -
             upu_bias_in_axes2_z;
@@ -2336,24 +2334,23 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t w, size_t leg, size_t le
             v.upu_qd_2)*(-v.upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
             v.upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x);
         const real upu_nu_1 = upu_nu_1_t + upu_nu_1_t_2;
-        /* (upu-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        /* (upu-qdd_1_o) remainder of: acceleration of joint 1 */
         const real upu_qdd_1_o_t = v.upu_w_1_in_axes2_z*(v.upu_n_c_in_axes2_z*upu_nu_1 -
             upu_rel_o_in_axes2_z);
-        /* (upu-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+        /* (upu-alpha_1_o) remainder of: angular acceleration of link 1 */
         const real upu_alpha_1_o_t = v.upu_e_1_in_axes2_x*upu_qdd_1_o_t;
         const real upu_alpha_1_o_in_axes2_y = v.upu_c_2*upu_qdd_1_o_t;
-        /* (upu-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (upu-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real upu_alpha_2_o_in_axes2_x = upu_W_2_in_axes2_yz - upu_alpha_1_o_t;
         const real upu_alpha_2_o_in_axes2_y = upu_alpha_1_o_in_axes2_y - upu_W_2_in_axes2_xz;
         /* (upu-B_2_o) remainder of the acceleration tensor of link 2 */
         const real upu_B_2_o_in_axes2_xy = 2*upu_W_2_in_axes2_xy - v.upu_B_2_o_in_axes2_yx;
         const real upu_B_2_o_in_axes2_zx = upu_W_2_in_axes2_xz - upu_alpha_2_o_in_axes2_y;
         const real upu_B_2_o_in_axes2_zy = upu_W_2_in_axes2_yz + upu_alpha_2_o_in_axes2_x;
-        /* (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
+        /* (upu-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
         const real upu_acc_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*v.upu_q_3 - upu_bias_t_2 -
             v.upu_g_in_axes2_z;
-        /* (upu-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight */
+        /* (upu-f_3_o) remainder of: inertia force of link 3 less its weight */
         const real upu_f_3_o_t = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x;
         const real upu_f_3_o_t_2 = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y;
         const real upu_h_3_in_spec2_x = m->upu_h_3_in_spec2_x[i];
@@ -2369,8 +2366,8 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t w, size_t leg, size_t le
         const real upu_f_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*upu_h_3_in_spec2_x +
             upu_acc_3_o_in_axes2_z*upu_link3_mass - upu_B_2_o_in_axes2_zy*upu_h_3_in_spec2_z -
             upu_h_3_in_spec2_y*(upu_f_3_o_t + upu_f_3_o_t_2);
-        /* (upu-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
+        /* (upu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real upu_J_group_2_in_axes2_xy = m->upu_J_group_2_in_axes2_xy[i];
         const real upu_J_group_2_in_axes2_xz = m->upu_J_group_2_in_axes2_xz[i];
         const real upu_J_group_2_in_axes2_yz = m->upu_J_group_2_in_axes2_yz[i];
@@ -2402,13 +2399,13 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t w, size_t leg, size_t le
             upu_B_2_o_in_axes2_xy*upu_Sigma_2_in_axes2_yy -
             upu_J_group_2_in_axes2_xz*upu_alpha_1_o_t - v.upu_g_in_axes2_x*upu_h_2_in_spec2_z -
             v.upu_g_in_axes2_y*upu_h_2_in_spec2_x;
-        /* (upu-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
+        /* (upu-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+           connection point left out */
         const real upu_N_2_o_in_axes2_y = upu_mu_2_o_in_axes2_y - upu_f_3_o_in_axes2_z*v.upu_q_3;
         const real upu_N_2_o_t = upu_N_2_o_in_axes2_y*v.upu_c_2 -
             v.upu_e_1_in_axes2_x*upu_mu_2_o_in_axes2_x;
-        /* (upu-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (upu-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real upu_G_o_in_axes2_y = upu_f_3_o_in_axes2_y +
             v.inv_upu_q_3*upu_mu_2_o_in_axes2_z;
         /* (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
@@ -2425,8 +2422,8 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t w, size_t leg, size_t le
             v.axis_y_upu_axes2_y*v.upu_d_G_m1_t - v.axis_z_upu_axes2_y*v.upu_d_G_m1_t_2;
         const real upu_d_G_m1_z = v.axis_x_upu_axes2_z*v.upu_d_G_m1_in_axes2_x -
             v.axis_y_upu_axes2_z*v.upu_d_G_m1_t - v.axis_z_upu_axes2_z*v.upu_d_G_m1_t_2;
-        /* (upu-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that
-           balances the leg's inertia and weight along all degrees of freedom */
+        /* (upu-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real upu_G_m1_o = upu_N_2_o_t*v.upu_n_c_in_axes2_z*v.upu_w_1_in_axes2_z;
         /* (upu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
            the leg's inertia and weight along all degrees of freedom */
@@ -2434,11 +2431,11 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t w, size_t leg, size_t le
         const real upu_d_G_m_xy = upu_d_G_m1_y*upu_n_m1_x;
         const real upu_d_G_m_xz = upu_d_G_m1_z*upu_n_m1_x;
         const real upu_d_G_m_yx = upu_d_G_m1_x*upu_n_m1_y;
-        /* (upu-G_m_o) remainder without the acceleration in: moment at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (upu-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real upu_G_m_o_in_axes2_y = upu_G_m1_o*v.upu_n_m1_in_axes2_y;
-        /* (upu-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (upu-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+           connection point */
         const real upu_c_o_in_axes2_z = upu_N_2_o_t*v.upu_w_1_in_axes2_z;
         /* (upu-Q) inertia of the leg at the connection point, without the mass gathered there */
         const real upu_Q_t_5 = v.axis_x_upu_axes2_x*v.upu_d_phi_3_in_axes2_xy +
@@ -2465,8 +2462,7 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t w, size_t leg, size_t le
             v.axis_z_upu_axes2_y*upu_Q_t_10 + v.axis_z_upu_axes2_z*upu_Q_t_9;
         const real upu_Q_t_13 = v.axis_y_upu_axes2_z*upu_Q_t_7 + v.axis_z_upu_axes2_z*upu_Q_t_10;
         const real upu_Q_zz = 2*upu_Q_t_13 + upu_link3_mass;
-        /* (upu-c_m_o) remainder without the acceleration in: moment of the leg on the platform without
-           actuation */
+        /* (upu-c_m_o) remainder of: moment of the leg on the platform without actuation */
         const real upu_c_m_o_in_axes2_x = upu_G_m1_o*v.upu_end_p1_in_axes2_y;
         /* (upu-U) velocity and gravity terms of the leg force */
         const real upu_U_x = v.axis_x_upu_axes2_x*upu_f_3_o_in_axes2_x +
@@ -3188,8 +3184,8 @@ INLINE void Z_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (upu-bias) acceleration of the connection point at zero joint accelerations */
         const real upu_bias_t_2 = v.upu_bias_t*upu_omega_1_in_axes2_y;
         const real upu_bias_in_axes2_z = 2*upu_W_2_in_axes2_xz*v.upu_q_3 - upu_bias_t_2;
-        /* (upu-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
+        /* (upu-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real upu_rel_o_in_axes2_z = v.axis_z_upu_axes2_x*v.upu_u_1_x +
             v.axis_z_upu_axes2_y*v.upu_u_1_y + v.axis_z_upu_axes2_z*v.upu_u_1_z -
             upu_bias_in_axes2_z;
@@ -3209,24 +3205,23 @@ INLINE void Z_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, con
             v.upu_qd_2)*(-v.upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
             v.upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x);
         const real upu_nu_1 = upu_nu_1_t + upu_nu_1_t_2;
-        /* (upu-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        /* (upu-qdd_1_o) remainder of: acceleration of joint 1 */
         const real upu_qdd_1_o_t = v.upu_w_1_in_axes2_z*(v.upu_n_c_in_axes2_z*upu_nu_1 -
             upu_rel_o_in_axes2_z);
-        /* (upu-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+        /* (upu-alpha_1_o) remainder of: angular acceleration of link 1 */
         const real upu_alpha_1_o_t = v.upu_e_1_in_axes2_x*upu_qdd_1_o_t;
         const real upu_alpha_1_o_in_axes2_y = v.upu_c_2*upu_qdd_1_o_t;
-        /* (upu-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (upu-alpha_2_o) remainder of: angular acceleration of link 2 */
         const real upu_alpha_2_o_in_axes2_x = upu_W_2_in_axes2_yz - upu_alpha_1_o_t;
         const real upu_alpha_2_o_in_axes2_y = upu_alpha_1_o_in_axes2_y - upu_W_2_in_axes2_xz;
         /* (upu-B_2_o) remainder of the acceleration tensor of link 2 */
         const real upu_B_2_o_in_axes2_xy = 2*upu_W_2_in_axes2_xy - v.upu_B_2_o_in_axes2_yx;
         const real upu_B_2_o_in_axes2_zx = upu_W_2_in_axes2_xz - upu_alpha_2_o_in_axes2_y;
         const real upu_B_2_o_in_axes2_zy = upu_W_2_in_axes2_yz + upu_alpha_2_o_in_axes2_x;
-        /* (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
+        /* (upu-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
         const real upu_acc_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*v.upu_q_3 - upu_bias_t_2 -
             v.upu_g_in_axes2_z;
-        /* (upu-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight */
+        /* (upu-f_3_o) remainder of: inertia force of link 3 less its weight */
         const real upu_f_3_o_t = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x;
         const real upu_f_3_o_t_2 = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y;
         const real upu_h_3_in_spec2_x = m->upu_h_3_in_spec2_x[i];
@@ -3242,8 +3237,8 @@ INLINE void Z_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real upu_f_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*upu_h_3_in_spec2_x +
             upu_acc_3_o_in_axes2_z*upu_link3_mass - upu_B_2_o_in_axes2_zy*upu_h_3_in_spec2_z -
             upu_h_3_in_spec2_y*(upu_f_3_o_t + upu_f_3_o_t_2);
-        /* (upu-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
+        /* (upu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+           reference points */
         const real upu_J_group_2_in_axes2_xy = m->upu_J_group_2_in_axes2_xy[i];
         const real upu_J_group_2_in_axes2_xz = m->upu_J_group_2_in_axes2_xz[i];
         const real upu_J_group_2_in_axes2_yz = m->upu_J_group_2_in_axes2_yz[i];
@@ -3275,26 +3270,25 @@ INLINE void Z_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, con
             upu_B_2_o_in_axes2_xy*upu_Sigma_2_in_axes2_yy -
             upu_J_group_2_in_axes2_xz*upu_alpha_1_o_t - v.upu_g_in_axes2_x*upu_h_2_in_spec2_z -
             v.upu_g_in_axes2_y*upu_h_2_in_spec2_x;
-        /* (upu-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
+        /* (upu-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+           connection point left out */
         const real upu_N_2_o_in_axes2_y = upu_mu_2_o_in_axes2_y - upu_f_3_o_in_axes2_z*v.upu_q_3;
         const real upu_N_2_o_t = upu_N_2_o_in_axes2_y*v.upu_c_2 -
             v.upu_e_1_in_axes2_x*upu_mu_2_o_in_axes2_x;
-        /* (upu-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (upu-G_o) remainder of: force at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real upu_G_o_in_axes2_y = upu_f_3_o_in_axes2_y +
             v.inv_upu_q_3*upu_mu_2_o_in_axes2_z;
-        /* (upu-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that
-           balances the leg's inertia and weight along all degrees of freedom */
+        /* (upu-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real upu_G_m1_o = upu_N_2_o_t*v.upu_n_c_in_axes2_z*v.upu_w_1_in_axes2_z;
-        /* (upu-G_m_o) remainder without the acceleration in: moment at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
+        /* (upu-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
+           weight along all degrees of freedom */
         const real upu_G_m_o_in_axes2_y = upu_G_m1_o*v.upu_n_m1_in_axes2_y;
-        /* (upu-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
+        /* (upu-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+           connection point */
         const real upu_c_o_in_axes2_z = upu_N_2_o_t*v.upu_w_1_in_axes2_z;
-        /* (upu-c_m_o) remainder without the acceleration in: moment of the leg on the platform without
-           actuation */
+        /* (upu-c_m_o) remainder of: moment of the leg on the platform without actuation */
         const real upu_c_m_o_in_axes2_x = upu_G_m1_o*v.upu_end_p1_in_axes2_y;
         /* (upu-U) velocity and gravity terms of the leg force */
         const real upu_U_x = v.axis_x_upu_axes2_x*upu_f_3_o_in_axes2_x +
@@ -3639,8 +3633,8 @@ INLINE void constraint_bias_legs_upu(const prepared *m, size_t w, size_t leg, si
         /* (upu-bias) acceleration of the connection point at zero joint accelerations */
         const real upu_bias_in_axes2_z = 2*upu_W_2_in_axes2_xz*v.upu_q_3 -
             2*v.upu_S_dot_in_axes2_x*upu_omega_1_in_axes2_y;
-        /* (upu-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
+        /* (upu-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+           */
         const real upu_rel_o_in_axes2_z = v.axis_z_upu_axes2_x*(omega_y*v.upu_S_dot_t_5 -
             omega_z*v.upu_S_dot_t_4) + v.axis_z_upu_axes2_y*(omega_z*v.upu_S_dot_t_3 -
             omega_x*v.upu_S_dot_t_5) + v.axis_z_upu_axes2_z*(omega_x*v.upu_S_dot_t_4 -

@@ -923,10 +923,10 @@ class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
     sqrt = staticmethod(math.sqrt)
-    sin = staticmethod(lambda x: float(np.sin(x)))
-    cos = staticmethod(lambda x: float(np.cos(x)))
+    sin = staticmethod(lambda x: float(np.sin(x)) if math.isfinite(x) else math.nan)
+    cos = staticmethod(lambda x: float(np.cos(x)) if math.isfinite(x) else math.nan)
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
-    least = staticmethod(lambda x, y: float(np.minimum(x, y)))
+    least = staticmethod(lambda x, y: y if y < x or y != y else x)
 
     def __init__(self, p, states, kept=None):
         self.p, self.states = p, states
@@ -1079,7 +1079,7 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
     Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
     where a single state needs no arrays.
     """
-    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    p, read = _given(p), [a[4:] != ("unused",) for a in arguments]
     lists = plain and _lists(arguments)
     if lists:
         found = _state(_Single(p, 1), steps, lists, read)
@@ -1104,7 +1104,7 @@ def _lists(arguments):
     for row in arguments:
         value, shape = row[1:3]
         if type(value) is np.ndarray:
-            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+            if value.shape != shape or value.dtype is not _REAL or row[4:] == ("positive",):
                 return None
             found.append(_Vector(value.tolist()))
         elif value is None and len(row) > 3 and row[3] is not None:
@@ -2040,7 +2040,7 @@ def _run_dynamics(m, X, V):
         upu_bias_t = 2.0*upu_S_dot_in_axes2_x
         upu_bias_t_2 = upu_bias_t*upu_omega_1_in_axes2_y
         upu_bias_in_axes2_z = 2.0*upu_W_2_in_axes2_xz*upu_q_3 - upu_bias_t_2
-        # (upu-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (upu-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         upu_rel_o_in_axes2_z = (
         axis_z_upu_axes2_x*upu_u_1_x + axis_z_upu_axes2_y*upu_u_1_y + axis_z_upu_axes2_z*upu_u_1_z
             - upu_bias_in_axes2_z
@@ -2075,7 +2075,7 @@ def _run_dynamics(m, X, V):
             upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x)
         )
         upu_nu_1 = upu_nu_1_t + upu_nu_1_t_2
-        # (upu-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (upu-qdd_1_o) remainder of: acceleration of joint 1
         upu_qdd_1_o_t = upu_w_1_in_axes2_z*(upu_n_c_in_axes2_z*upu_nu_1 - upu_rel_o_in_axes2_z)
         # (upu-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
         upu_dalpha_alpha_1_in_axes2_xx = upu_e_1_in_axes2_x*upu_o_1_in_axes2_x
@@ -2085,10 +2085,10 @@ def _run_dynamics(m, X, V):
         # (upu-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
         upu_d_alpha_1_in_axes2_xz = upu_e_1_in_axes2_x*upu_w_1_in_axes2_z
         upu_d_alpha_1_t = upu_c_2*upu_w_1_in_axes2_z
-        # (upu-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        # (upu-alpha_1_o) remainder of: angular acceleration of link 1
         upu_alpha_1_o_t = upu_e_1_in_axes2_x*upu_qdd_1_o_t
         upu_alpha_1_o_in_axes2_y = upu_c_2*upu_qdd_1_o_t
-        # (upu-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (upu-alpha_2_o) remainder of: angular acceleration of link 2
         upu_alpha_2_o_in_axes2_x = upu_W_2_in_axes2_yz - upu_alpha_1_o_t
         upu_alpha_2_o_in_axes2_y = upu_alpha_1_o_in_axes2_y - upu_W_2_in_axes2_xz
         # (upu-B_2_o) remainder of the acceleration tensor of link 2
@@ -2106,7 +2106,7 @@ def _run_dynamics(m, X, V):
         upu_dalpha_acc_3_t = upu_dalpha_alpha_1_in_axes2_yy*upu_q_3
         # (upu-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
         upu_d_acc_3_in_axes2_zz = upu_d_alpha_1_t*upu_q_3
-        # (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        # (upu-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         upu_acc_3_o_t = upu_acc_3_t*upu_c_1 + upu_acc_3_t_2*upu_s_1
         upu_g_in_axes2_z = upu_acc_3_t_2*upu_c_1 - upu_acc_3_t*upu_s_1
         upu_g_in_axes2_x = upu_acc_3_o_t*upu_c_2 + upu_acc_3_t_3*upu_e_1_in_axes2_x
@@ -2121,7 +2121,7 @@ def _run_dynamics(m, X, V):
         upu_dalpha_phi_3_in_axes2_xy = upu_dalpha_alpha_1_in_axes2_yy*upu_h_3_in_spec2_y
         # (upu-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
         upu_d_phi_3_in_axes2_xy = inv_upu_q_3*upu_h_3_in_spec2_z
-        # (upu-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight
+        # (upu-f_3_o) remainder of: inertia force of link 3 less its weight
         upu_f_3_o_t = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x
         upu_f_3_o_t_2 = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y
         upu_f_3_o_t_3 = upu_qd_2*upu_qd_2
@@ -2139,7 +2139,7 @@ def _run_dynamics(m, X, V):
             upu_B_2_o_in_axes2_zy*upu_h_3_in_spec2_z - upu_h_3_in_spec2_y*(upu_f_3_o_t +
             upu_f_3_o_t_2)
         )
-        # (upu-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (upu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         upu_mu_2_o_in_axes2_x = (
         upu_B_2_o_in_axes2_yx*upu_J_group_2_in_axes2_xz +
             upu_B_2_o_in_axes2_zy*upu_Sigma_2_in_axes2_yy +
@@ -2166,7 +2166,7 @@ def _run_dynamics(m, X, V):
             upu_J_group_2_in_axes2_xz*upu_alpha_1_o_t - upu_g_in_axes2_x*upu_h_2_in_spec2_z -
             upu_g_in_axes2_y*upu_h_2_in_spec2_x
         )
-        # (upu-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        # (upu-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         upu_N_2_o_in_axes2_y = upu_mu_2_o_in_axes2_y - upu_f_3_o_in_axes2_z*upu_q_3
         upu_N_2_o_t = upu_N_2_o_in_axes2_y*upu_c_2 - upu_e_1_in_axes2_x*upu_mu_2_o_in_axes2_x
         # (upu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
@@ -2219,7 +2219,7 @@ def _run_dynamics(m, X, V):
             upu_J_group_2_in_axes2_yz*upu_d_alpha_1_t -
             upu_d_alpha_1_in_axes2_xz*upu_h_3_in_spec2_y*upu_q_3)
         )
-        # (upu-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (upu-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_G_o_in_axes2_y = upu_f_3_o_in_axes2_y + inv_upu_q_3*upu_mu_2_o_in_axes2_z
         # (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         upu_dalpha_G_m1_in_axes2_x = -upu_dalpha_Gamma_1_in_axes2_x*upu_m1_w_1_t
@@ -2251,20 +2251,20 @@ def _run_dynamics(m, X, V):
         axis_x_upu_axes2_z*upu_d_G_m1_in_axes2_x - axis_y_upu_axes2_z*upu_d_G_m1_t -
             axis_z_upu_axes2_z*upu_d_G_m1_t_2
         )
-        # (upu-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
+        # (upu-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         upu_G_m1_o = upu_N_2_o_t*upu_n_c_in_axes2_z*upu_w_1_in_axes2_z
         # (upu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_d_G_m_xx = upu_d_G_m1_x*upu_n_m1_x
         upu_d_G_m_xy = upu_d_G_m1_y*upu_n_m1_x
         upu_d_G_m_xz = upu_d_G_m1_z*upu_n_m1_x
         upu_d_G_m_yx = upu_d_G_m1_x*upu_n_m1_y
-        # (upu-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (upu-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_G_m_o_in_axes2_y = upu_G_m1_o*upu_n_m1_in_axes2_y
         # (upu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         upu_dalpha_c_in_axes2_xx = upu_dalpha_alpha_1_t_2*upu_h_3_in_spec2_y
         # (upu-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         upu_d_c_in_axes2_xz = upu_d_alpha_1_t*upu_h_3_in_spec2_y
-        # (upu-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (upu-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         upu_c_o_in_axes2_z = upu_N_2_o_t*upu_w_1_in_axes2_z
         # (upu-Q) inertia of the leg at the connection point, without the mass gathered there
         upu_Q_t = (
@@ -2307,7 +2307,7 @@ def _run_dynamics(m, X, V):
         )
         upu_Q_t_13 = axis_y_upu_axes2_z*upu_Q_t_7 + axis_z_upu_axes2_z*upu_Q_t_10
         upu_Q_zz = 2.0*upu_Q_t_13 + upu_link3_mass
-        # (upu-c_m_o) remainder without the acceleration in: moment of the leg on the platform without actuation
+        # (upu-c_m_o) remainder of: moment of the leg on the platform without actuation
         upu_c_m_o_in_axes2_x = upu_G_m1_o*upu_end_p1_in_axes2_y
         # (upu-U) velocity and gravity terms of the leg force
         upu_U_x = (
@@ -3354,7 +3354,7 @@ def _run_Z(m, X, V):
         upu_bias_t = 2.0*upu_S_dot_in_axes2_x
         upu_bias_t_2 = upu_bias_t*upu_omega_1_in_axes2_y
         upu_bias_in_axes2_z = 2.0*upu_W_2_in_axes2_xz*upu_q_3 - upu_bias_t_2
-        # (upu-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (upu-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         upu_rel_o_in_axes2_z = (
         axis_z_upu_axes2_x*upu_u_1_x + axis_z_upu_axes2_y*upu_u_1_y + axis_z_upu_axes2_z*upu_u_1_z
             - upu_bias_in_axes2_z
@@ -3389,12 +3389,12 @@ def _run_Z(m, X, V):
             upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x)
         )
         upu_nu_1 = upu_nu_1_t + upu_nu_1_t_2
-        # (upu-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        # (upu-qdd_1_o) remainder of: acceleration of joint 1
         upu_qdd_1_o_t = upu_w_1_in_axes2_z*(upu_n_c_in_axes2_z*upu_nu_1 - upu_rel_o_in_axes2_z)
-        # (upu-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
+        # (upu-alpha_1_o) remainder of: angular acceleration of link 1
         upu_alpha_1_o_t = upu_e_1_in_axes2_x*upu_qdd_1_o_t
         upu_alpha_1_o_in_axes2_y = upu_c_2*upu_qdd_1_o_t
-        # (upu-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        # (upu-alpha_2_o) remainder of: angular acceleration of link 2
         upu_alpha_2_o_in_axes2_x = upu_W_2_in_axes2_yz - upu_alpha_1_o_t
         upu_alpha_2_o_in_axes2_y = upu_alpha_1_o_in_axes2_y - upu_W_2_in_axes2_xz
         # (upu-B_2_o) remainder of the acceleration tensor of link 2
@@ -3407,7 +3407,7 @@ def _run_Z(m, X, V):
         upu_B_2_o_in_axes2_xy = 2.0*upu_W_2_in_axes2_xy - upu_B_2_o_in_axes2_yx
         upu_B_2_o_in_axes2_zx = upu_W_2_in_axes2_xz - upu_alpha_2_o_in_axes2_y
         upu_B_2_o_in_axes2_zy = upu_W_2_in_axes2_yz + upu_alpha_2_o_in_axes2_x
-        # (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        # (upu-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         upu_acc_3_o_t = upu_acc_3_t*upu_c_1 + upu_acc_3_t_2*upu_s_1
         upu_g_in_axes2_z = upu_acc_3_t_2*upu_c_1 - upu_acc_3_t*upu_s_1
         upu_g_in_axes2_x = upu_acc_3_o_t*upu_c_2 + upu_acc_3_t_3*upu_e_1_in_axes2_x
@@ -3418,7 +3418,7 @@ def _run_Z(m, X, V):
         )
         upu_acc_3_o_in_axes2_y = upu_B_2_o_t + upu_B_2_o_t_2 - upu_g_in_axes2_y
         upu_acc_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*upu_q_3 - upu_bias_t_2 - upu_g_in_axes2_z
-        # (upu-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight
+        # (upu-f_3_o) remainder of: inertia force of link 3 less its weight
         upu_f_3_o_t = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x
         upu_f_3_o_t_2 = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y
         upu_f_3_o_t_3 = upu_qd_2*upu_qd_2
@@ -3436,7 +3436,7 @@ def _run_Z(m, X, V):
             upu_B_2_o_in_axes2_zy*upu_h_3_in_spec2_z - upu_h_3_in_spec2_y*(upu_f_3_o_t +
             upu_f_3_o_t_2)
         )
-        # (upu-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        # (upu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         upu_mu_2_o_in_axes2_x = (
         upu_B_2_o_in_axes2_yx*upu_J_group_2_in_axes2_xz +
             upu_B_2_o_in_axes2_zy*upu_Sigma_2_in_axes2_yy +
@@ -3463,18 +3463,18 @@ def _run_Z(m, X, V):
             upu_J_group_2_in_axes2_xz*upu_alpha_1_o_t - upu_g_in_axes2_x*upu_h_2_in_spec2_z -
             upu_g_in_axes2_y*upu_h_2_in_spec2_x
         )
-        # (upu-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        # (upu-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         upu_N_2_o_in_axes2_y = upu_mu_2_o_in_axes2_y - upu_f_3_o_in_axes2_z*upu_q_3
         upu_N_2_o_t = upu_N_2_o_in_axes2_y*upu_c_2 - upu_e_1_in_axes2_x*upu_mu_2_o_in_axes2_x
-        # (upu-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (upu-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_G_o_in_axes2_y = upu_f_3_o_in_axes2_y + inv_upu_q_3*upu_mu_2_o_in_axes2_z
-        # (upu-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
+        # (upu-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         upu_G_m1_o = upu_N_2_o_t*upu_n_c_in_axes2_z*upu_w_1_in_axes2_z
-        # (upu-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        # (upu-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_G_m_o_in_axes2_y = upu_G_m1_o*upu_n_m1_in_axes2_y
-        # (upu-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        # (upu-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         upu_c_o_in_axes2_z = upu_N_2_o_t*upu_w_1_in_axes2_z
-        # (upu-c_m_o) remainder without the acceleration in: moment of the leg on the platform without actuation
+        # (upu-c_m_o) remainder of: moment of the leg on the platform without actuation
         upu_c_m_o_in_axes2_x = upu_G_m1_o*upu_end_p1_in_axes2_y
         # (upu-U) velocity and gravity terms of the leg force
         upu_U_x = (
@@ -4025,7 +4025,7 @@ def _run_constraint_bias(m, X, V):
         upu_bias_in_axes2_z = (
         2.0*upu_W_2_in_axes2_xz*upu_q_3 - 2.0*upu_S_dot_in_axes2_x*upu_omega_1_in_axes2_y
         )
-        # (upu-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        # (upu-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         upu_rel_o_in_axes2_z = (
         axis_z_upu_axes2_x*(omega_y*upu_S_dot_t_5 - omega_z*upu_S_dot_t_4) +
             axis_z_upu_axes2_y*(omega_z*upu_S_dot_t_3 - omega_x*upu_S_dot_t_5) +
