@@ -14,6 +14,7 @@ import torch
 from pne_sym.program import linear
 from tests import models
 from tests.targets.modules import vectors, xp_module
+from tests.whole.test_complex import cases, moving
 
 jax.config.update("jax_enable_x64", True)
 
@@ -137,3 +138,11 @@ def test_a_pivot_near_the_threshold_counts_as_in_numpy() -> None:
     assert np.sum(near) < 10
     assert min(np.sum(wanted), np.sum(~wanted)) > 50
     np.testing.assert_array_equal(state.ok[~near], wanted[~near])
+
+
+def test_complex_numbers_are_refused() -> None:
+    for spec in (moving(), models.catalogue("tripod_3prs")):
+        for function, argument, values in cases(spec):
+            call = getattr(xp_module(spec), function.name)
+            with pytest.raises(ValueError, match=rf"^{argument.name} has type complex128"):
+                call(**{**values, argument.name: values[argument.name] + 0j})

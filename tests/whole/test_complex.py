@@ -1,4 +1,7 @@
-"""Every argument of every public function refuses complex numbers, in all targets that take any."""
+"""Every argument of every public function refuses complex numbers, in all targets that take any.
+
+Array-API modules: tests/targets/test_xp.py.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,7 @@ from pne_sym.program.public import Argument, PublicFunction
 from tests.backends.ext_module import ext_module
 from tests.models import bundle, catalogue, module
 from tests.octave.conformance import octave, run, write
-from tests.targets.modules import vectors, xp_module
+from tests.targets.modules import vectors
 from tests.whole.test_bounds import limited
 
 
@@ -65,14 +68,6 @@ def test_of_modules(target: str) -> None:
                 told = rf"^{function.name}: {argument.name}: expected real numbers, got complex"
                 with pytest.raises(TypeError, match=told):
                     getattr(m, function.name)(**{**values, argument.name: unfit})
-
-
-def test_of_array_api_modules() -> None:
-    for spec in (moving(), catalogue("tripod_3prs")):
-        for function, argument, values in cases(spec):
-            call = getattr(xp_module(spec), function.name)
-            with pytest.raises(ValueError, match=rf"^{argument.name} has type complex128"):
-                call(**{**values, argument.name: values[argument.name] + 0j})
 
 
 @pytest.mark.skipif(octave() is None, reason="octave-cli is not installed")
