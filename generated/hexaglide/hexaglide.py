@@ -1570,7 +1570,7 @@ def _straight(m, a, b, order):
         except ZeroDivisionError:
             sure = False
         return _Vector(x) if sure else _solve(a, b)
-    sure, x = m.solved(order, a.reshape(-1, m.states), b)
+    sure, x = m.solved(order, a.reshape(a.shape[0] * a.shape[1], m.states), b)
     at = np.flatnonzero(np.logical_not(sure))
     if at.size:
         x[:, at] = _solve(a[..., at], b[:, at])

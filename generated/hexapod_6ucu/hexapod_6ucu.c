@@ -250,13 +250,14 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE void judge(const verdict *t, int *code)
+INLINE int judge(const verdict *t, int *code)
 {
     *code = t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
         : t->unreachable[0] > 0 ? UNREACHABLE
         : t->singular[0] > 0 ? SINGULAR
         : t->overflow[0] > 0 ? INVALID : OK;
+    return *code;
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
@@ -4730,8 +4731,7 @@ INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    judge(&why, code);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV*NV, M_out);
     }
 }
@@ -4760,8 +4760,7 @@ INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, 
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    judge(&why, code);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, Z_out);
     }
 }
@@ -4787,8 +4786,7 @@ INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    judge(&why, code);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV*NU, H_out);
     }
 }
@@ -4813,8 +4811,7 @@ INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    judge(&why, code);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NJ, q_out);
     }
 }
@@ -4844,8 +4841,7 @@ INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, rea
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    judge(&why, code);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NJ, qd_out);
     }
 }
@@ -4878,8 +4874,7 @@ INLINE void joint_accelerations_one(const prepared *m, const real *X, const real
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    judge(&why, code);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NJ, qdd_out);
     }
 }
@@ -4914,8 +4909,7 @@ INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    judge(&why, code);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV*NV, M_out);
         refuse(NV, Z_out);
         refuse(NV*NU, H_out);
@@ -5107,11 +5101,12 @@ INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real
     }
 }
 
+static const size_t order_tau[] = {0, 2, 1, 3, 4, 5};
+static const real sizes_tau[] = {0.25, 1.0, 0.25, 0.25, 0.25, 0.25};
+
 INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    static const size_t order_tau[] = {0, 2, 1, 3, 4, 5};
-    static const real sizes_tau[] = {0.25, 1.0, 0.25, 0.25, 0.25, 0.25};
     real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     verdict why;
@@ -5124,9 +5119,8 @@ INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V
     }
     wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     required_run(m, X, V, A, required, H, &why);
-    const real *const extend_1 = wrench;
     for (size_t i = 0; i < NV; ++i) {
-        subtract_1[i] = required[i] - extend_1[i];
+        subtract_1[i] = required[i] - wrench[i];
     }
     eliminate_6(1, NV, order_tau, sizes_tau, H, subtract_1, tau_out, unsure_tau, why.total);
     if (unsure_tau[0] > 0) {
@@ -5137,8 +5131,7 @@ INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    judge(&why, code);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NU, tau_out);
     }
 }
@@ -5146,8 +5139,6 @@ INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    static const size_t order_tau[] = {0, 2, 1, 3, 4, 5};
-    static const real sizes_tau[] = {0.25, 1.0, 0.25, 0.25, 0.25, 0.25};
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
         H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
     verdict why;
@@ -5157,20 +5148,20 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
     A = side_by_side(NV, A, A_in, why.total);
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     required_run_lanes(m, X, V, A, required, H, &why);
-    const real *const extend_1 = wrench;
     for (size_t i = 0; i < NV*LANES; ++i) {
-        subtract_1[i] = required[i] - extend_1[i];
+        subtract_1[i] = required[i] - wrench[i];
     }
     eliminate_6(LANES, NV, order_tau, sizes_tau, H, subtract_1, tau, why.singular, why.total);
     suspect(&why, code);
     deliver(NU, tau, tau_out);
 }
 
+static const size_t order_A[] = {0, 1, 2, 3, 4, 5};
+static const real sizes_A[] = {16.0, 16.0, 16.0, 1.0, 1.0, 1.0};
+
 INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
     const real *wrench, real *A_out, int *code)
 {
-    static const size_t order_A[] = {0, 1, 2, 3, 4, 5};
-    static const real sizes_A[] = {16.0, 16.0, 16.0, 1.0, 1.0, 1.0};
     real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] =
         {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
@@ -5184,9 +5175,8 @@ INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V
     wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
-    const real *const extend_1 = wrench;
     for (size_t i = 0; i < NV; ++i) {
-        add_1[i] = times_1[i] + extend_1[i];
+        add_1[i] = times_1[i] + wrench[i];
     }
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = add_1[i] - Z[i];
@@ -5200,8 +5190,7 @@ INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    judge(&why, code);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, A_out);
     }
 }
@@ -5209,8 +5198,6 @@ INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, int *code)
 {
-    static const size_t order_A[] = {0, 1, 2, 3, 4, 5};
-    static const real sizes_A[] = {16.0, 16.0, 16.0, 1.0, 1.0, 1.0};
     real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
         Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES],
         A[NV*LANES];
@@ -5222,9 +5209,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, LANES, H, tau, times_1);
-    const real *const extend_1 = wrench;
     for (size_t i = 0; i < NV*LANES; ++i) {
-        add_1[i] = times_1[i] + extend_1[i];
+        add_1[i] = times_1[i] + wrench[i];
     }
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = add_1[i] - Z[i];
@@ -5241,9 +5227,8 @@ INLINE void complete_acceleration_one(const real *A, real *completed_out, int *c
     check(NV, 1, A, why.invalid);
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
-    judge(&why, code);
     copy(NV, completed, completed_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, completed_out);
     }
 }
@@ -5251,8 +5236,6 @@ INLINE void complete_acceleration_one(const real *A, real *completed_out, int *c
 INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out, int *code)
 {
-    static const size_t order_solve_1[] = {0, 2, 1, 3, 4, 5};
-    static const real sizes_solve_1[] = {0.25, 1.0, 0.25, 0.25, 0.25, 0.25};
     static const size_t places_forces[] = {0, 1, 2, 3, 4, 5};
     real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
         unsure_solve_1[1] = {0}, leg_force[6*NL] = {0}, actuator[36] = {0}, forces[NL*NL] = {0},
@@ -5267,11 +5250,10 @@ INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, c
     }
     wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     required_run(m, X, V, A, required, H, &why);
-    const real *const extend_1 = wrench;
     for (size_t i = 0; i < NV; ++i) {
-        subtract_1[i] = required[i] - extend_1[i];
+        subtract_1[i] = required[i] - wrench[i];
     }
-    eliminate_6(1, NV, order_solve_1, sizes_solve_1, H, subtract_1, solve_1, unsure_solve_1, why.total);
+    eliminate_6(1, NV, order_tau, sizes_tau, H, subtract_1, solve_1, unsure_solve_1, why.total);
     if (unsure_solve_1[0] > 0) {
         set_matrix(NV, 1, H, work);
         solve_apart(NV, subtract_1, work, solve_1, why.singular);
@@ -5283,9 +5265,8 @@ INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, c
     }
     add_forces(NL, 6, 1, places_forces, solve_1, actuator, forces);
     check(NL*NL, 1, forces, why.overflow);
-    judge(&why, code);
     copy(NL*NL, forces, forces_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NL*NL, forces_out);
     }
 }
@@ -5307,10 +5288,9 @@ INLINE void energy_one(const prepared *m, const real *X, const real *V, real *ki
     const real *const potential = potential_of_potential;
     check(1, 1, kinetic, why.overflow);
     check(1, 1, potential, why.overflow);
-    judge(&why, code);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, kinetic_out);
         refuse(1, potential_out);
     }
@@ -5341,10 +5321,10 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
         check(NL, 1, legs, why.overflow);
     }
     check(NV, 1, sigma, why.overflow);
-    judge(&why, code);
+    check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, sigma_out);
         refuse(NL, legs_out);
     }
@@ -5377,10 +5357,11 @@ INLINE void manipulability_one(const prepared *m, const real *X, real *measure_o
     spread(NV, singular_values_1, measure, isotropy);
     check(1, 1, measure, why.overflow);
     check(1, 1, isotropy, why.overflow);
-    judge(&why, code);
+    check(NL, 1, pivots, why.overflow);
+    check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, measure_out);
         refuse(1, isotropy_out);
     }
@@ -5414,10 +5395,10 @@ INLINE void singularity_distance_one(const prepared *m, const real *X, real *act
     least_entry(NL, pivots, legs);
     check(1, 1, actuators, why.overflow);
     check(1, 1, legs, why.overflow);
-    judge(&why, code);
+    check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, actuators_out);
         refuse(1, legs_out);
     }
@@ -5440,9 +5421,8 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
         gap[i] = q_actuated[i] - q_of_inverse_kinematics_from_2[i];
     }
     check(NU, 1, gap, why.overflow);
-    judge(&why, code);
     copy(NU, gap, gap_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NU, gap_out);
     }
 }
@@ -5456,8 +5436,7 @@ static void slope_one(const prepared *m, const real *X, real *slope_out, int *co
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    judge(&why, code);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV*NU, slope_out);
     }
 }
@@ -5520,9 +5499,8 @@ INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, co
     }
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
-    judge(&why, code);
     copy(NQ, X, X_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_out);
     }
 }
@@ -5538,9 +5516,8 @@ INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
     }
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
-    judge(&why, code);
     copy(1, dissipation, dissipation_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, dissipation_out);
     }
 }
@@ -5559,9 +5536,8 @@ INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *
     M_run(m, X, M, &why);
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
-    judge(&why, code);
     copy(NV, momentum, momentum_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, momentum_out);
     }
 }
@@ -5594,9 +5570,8 @@ INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_ou
         margins[i] = q[i];
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
-    judge(&why, code);
     copy(NJ, margins, margins_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NJ, margins_out);
     }
 }
@@ -5630,9 +5605,8 @@ INLINE void within_limits_one(const prepared *m, const real *X, real *within_out
     }
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
-    judge(&why, code);
     copy(1, within, within_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, within_out);
     }
 }
@@ -5662,9 +5636,8 @@ INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
     take(NU, 1, hexapod_6ucu_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
-    judge(&why, code);
     copy(NU, q, q_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NU, q_out);
     }
 }
@@ -5696,9 +5669,8 @@ INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, 
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
     take(NU, 1, hexapod_6ucu_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
-    judge(&why, code);
     copy(NU, qd, qd_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NU, qd_out);
     }
 }
@@ -5733,9 +5705,8 @@ INLINE void actuator_accelerations_one(const prepared *m, const real *X, const r
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
     take(NU, 1, hexapod_6ucu_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
-    judge(&why, code);
     copy(NU, qdd, qdd_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NU, qdd_out);
     }
 }
@@ -5773,9 +5744,8 @@ INLINE void power_one(const prepared *m, const real *X, const real *V, const rea
     product(NV, NU, 1, 1, H, tau, times_1);
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
-    judge(&why, code);
     copy(1, power, power_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, power_out);
     }
 }
@@ -5807,9 +5777,8 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     const real *const X_from_3 = X + 3;
     rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
-    judge(&why, code);
     copy(9, R, R_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(9, R_out);
     }
 }
@@ -5828,9 +5797,8 @@ INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
     beside(1, 3, 4, t, quaternion_of_rotation_1, join_1);
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
-    judge(&why, code);
     copy(NQ, X, X_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_out);
     }
 }
@@ -5851,9 +5819,8 @@ INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
     const real *const V_from_0 = V;
     beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
-    judge(&why, code);
     copy(NQ, X_dot, X_dot_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_dot_out);
     }
 }
@@ -5872,9 +5839,8 @@ INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *
     beside(1, 3, 4, t, quaternion_of_rpy_1, join_1);
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
-    judge(&why, code);
     copy(NQ, X, X_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_out);
     }
 }
@@ -5899,9 +5865,8 @@ INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int 
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
-    judge(&why, code);
     copy(NQ, X_moved, X_moved_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_moved_out);
     }
 }
@@ -5926,9 +5891,8 @@ INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *
     }
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
-    judge(&why, code);
     copy(NV, step, step_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, step_out);
     }
 }
@@ -5967,9 +5931,8 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
-    judge(&why, code);
     copy(NQ, X, X_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_out);
     }
 }
@@ -6231,10 +6194,7 @@ int hexapod_6ucu_complete_acceleration(const prepared *model, const real *X, con
     real *A, const real *wrench, real *completed)
 {
     int code;
-    (void)model;
-    (void)X;
-    (void)V;
-    (void)wrench;
+    (void)model, (void)X, (void)V, (void)wrench;
     complete_acceleration_one(A, completed, &code);
     return code;
 }
@@ -6369,8 +6329,7 @@ int hexapod_6ucu_dissipation(const prepared *model, const real *X, const real *V
     *dissipation)
 {
     int code;
-    (void)model;
-    (void)X;
+    (void)model, (void)X;
     dissipation_one(V, dissipation, &code);
     return code;
 }

@@ -245,13 +245,14 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE void judge(const verdict *t, int *code)
+INLINE int judge(const verdict *t, int *code)
 {
     *code = t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
         : t->unreachable[0] > 0 ? UNREACHABLE
         : t->singular[0] > 0 ? SINGULAR
         : t->overflow[0] > 0 ? INVALID : OK;
+    return *code;
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
@@ -3813,8 +3814,7 @@ static int close_six_r(const prepared *m, const real *X, real *q)
         closure_six_r_run(m, X, q, gap, jacobian, t);
         check(GAPS, 1, gap, t->overflow);
         check(SLOPES, 1, jacobian, t->overflow);
-        judge(t, &code);
-        if (code != OK) {
+        if (judge(t, &code) != OK) {
             return 0;
         }
         size = newton_step(LEGS, ROWS, N, gap, jacobian, step);
@@ -8819,9 +8819,8 @@ INLINE void M_one(const prepared *m, const real *X, const real *q0, real *M_out,
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M, why.overflow);
     }
-    judge(&why, code);
     copy(NV*NV, M, M_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV*NV, M_out);
     }
 }
@@ -8854,9 +8853,8 @@ INLINE void Z_one(const prepared *m, const real *X, const real *q0, const real *
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z, why.overflow);
     }
-    judge(&why, code);
     copy(NV, Z, Z_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, Z_out);
     }
 }
@@ -8886,9 +8884,8 @@ INLINE void H_one(const prepared *m, const real *X, const real *q0, real *H_out,
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H, why.overflow);
     }
-    judge(&why, code);
     copy(NV*NU, H, H_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV*NU, H_out);
     }
 }
@@ -8917,9 +8914,8 @@ INLINE void inverse_kinematics_one(const prepared *m, const real *X, const real 
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q, why.overflow);
     }
-    judge(&why, code);
     copy(NJ, q, q_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NJ, q_out);
     }
 }
@@ -8953,9 +8949,8 @@ INLINE void joint_rates_one(const prepared *m, const real *X, const real *q0, co
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd, why.overflow);
     }
-    judge(&why, code);
     copy(NJ, qd, qd_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NJ, qd_out);
     }
 }
@@ -8991,9 +8986,8 @@ INLINE void joint_accelerations_one(const prepared *m, const real *X, const real
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd, why.overflow);
     }
-    judge(&why, code);
     copy(NJ, qdd, qdd_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NJ, qdd_out);
     }
 }
@@ -9031,11 +9025,10 @@ INLINE void dynamics_one(const prepared *m, const real *X, const real *q0, const
         check(NV, 1, Z, why.overflow);
         check(NV*NU, 1, H, why.overflow);
     }
-    judge(&why, code);
     copy(NV*NV, M, M_out);
     copy(NV, Z, Z_out);
     copy(NV*NU, H, H_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV*NV, M_out);
         refuse(NV, Z_out);
         refuse(NV*NU, H_out);
@@ -9229,11 +9222,12 @@ INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real
     }
 }
 
+static const size_t order_tau[] = {0, 5, 2, 3, 4, 1};
+static const real sizes_tau[] = {0.25, 0.015625, 4.0, 1.0, 1.0, 0.25};
+
 INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *q0, const real *V,
     const real *A, const real *wrench, real *tau_out, int *code)
 {
-    static const size_t order_tau[] = {0, 5, 2, 3, 4, 1};
-    static const real sizes_tau[] = {0.25, 0.015625, 4.0, 1.0, 1.0, 0.25};
     real wrench_in[NW], joints[NJ] = {0}, required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0},
         unsure_tau[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
@@ -9247,9 +9241,8 @@ INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *q
     wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     close_loops(m, 1, X, q0, joints, &why);
     required_run(m, X, V, A, joints, required, H, &why);
-    const real *const extend_1 = wrench;
     for (size_t i = 0; i < NV; ++i) {
-        subtract_1[i] = required[i] - extend_1[i];
+        subtract_1[i] = required[i] - wrench[i];
     }
     eliminate_6(1, NV, order_tau, sizes_tau, H, subtract_1, tau_out, unsure_tau, why.total);
     if (unsure_tau[0] > 0) {
@@ -9260,8 +9253,7 @@ INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *q
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    judge(&why, code);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NU, tau_out);
     }
 }
@@ -9269,8 +9261,6 @@ INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *q
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *q0, const real
     *V, const real *A, const real *wrench, real *tau_out, int *code)
 {
-    static const size_t order_tau[] = {0, 5, 2, 3, 4, 1};
-    static const real sizes_tau[] = {0.25, 0.015625, 4.0, 1.0, 1.0, 0.25};
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], joints[NJ*LANES],
         required[NV*LANES], H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
     verdict why;
@@ -9281,20 +9271,20 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     close_loops(m, LANES, X, q0, joints, &why);
     required_run_lanes(m, X, V, A, joints, required, H, &why);
-    const real *const extend_1 = wrench;
     for (size_t i = 0; i < NV*LANES; ++i) {
-        subtract_1[i] = required[i] - extend_1[i];
+        subtract_1[i] = required[i] - wrench[i];
     }
     eliminate_6(LANES, NV, order_tau, sizes_tau, H, subtract_1, tau, why.singular, why.total);
     suspect(&why, code);
     deliver(NU, tau, tau_out);
 }
 
+static const size_t order_A[] = {0, 1, 2, 3, 4, 5};
+static const real sizes_A[] = {16.0, 16.0, 16.0, 1.0, 1.0, 1.0};
+
 INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *q0, const real *V,
     const real *tau, const real *wrench, real *A_out, int *code)
 {
-    static const size_t order_A[] = {0, 1, 2, 3, 4, 5};
-    static const real sizes_A[] = {16.0, 16.0, 16.0, 1.0, 1.0, 1.0};
     real wrench_in[NW], joints[NJ] = {0}, M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] =
         {0}, add_1[NV] = {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
@@ -9309,9 +9299,8 @@ INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *q
     close_loops(m, 1, X, q0, joints, &why);
     dynamics_run(m, X, V, joints, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
-    const real *const extend_1 = wrench;
     for (size_t i = 0; i < NV; ++i) {
-        add_1[i] = times_1[i] + extend_1[i];
+        add_1[i] = times_1[i] + wrench[i];
     }
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = add_1[i] - Z[i];
@@ -9325,8 +9314,7 @@ INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *q
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    judge(&why, code);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, A_out);
     }
 }
@@ -9334,8 +9322,6 @@ INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *q
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *q0, const real
     *V, const real *tau, const real *wrench, real *A_out, int *code)
 {
-    static const size_t order_A[] = {0, 1, 2, 3, 4, 5};
-    static const real sizes_A[] = {16.0, 16.0, 16.0, 1.0, 1.0, 1.0};
     real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], joints[NJ*LANES],
         M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES],
         subtract_1[NV*LANES], A[NV*LANES];
@@ -9348,9 +9334,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     close_loops(m, LANES, X, q0, joints, &why);
     dynamics_run_lanes(m, X, V, joints, M, Z, H, &why);
     product(NV, NU, 1, LANES, H, tau, times_1);
-    const real *const extend_1 = wrench;
     for (size_t i = 0; i < NV*LANES; ++i) {
-        add_1[i] = times_1[i] + extend_1[i];
+        add_1[i] = times_1[i] + wrench[i];
     }
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = add_1[i] - Z[i];
@@ -9367,9 +9352,8 @@ INLINE void complete_acceleration_one(const real *A, real *completed_out, int *c
     check(NV, 1, A, why.invalid);
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
-    judge(&why, code);
     copy(NV, completed, completed_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, completed_out);
     }
 }
@@ -9377,8 +9361,6 @@ INLINE void complete_acceleration_one(const real *A, real *completed_out, int *c
 INLINE void leg_reactions_one(const prepared *m, const real *X, const real *q0, const real *V,
     const real *A, const real *wrench, real *forces_out, int *code)
 {
-    static const size_t order_solve_1[] = {0, 5, 2, 3, 4, 1};
-    static const real sizes_solve_1[] = {0.25, 0.015625, 4.0, 1.0, 1.0, 0.25};
     static const size_t places_forces[] = {0, 1, 2, 3, 4, 5};
     real wrench_in[NW], joints[NJ] = {0}, required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0},
         solve_1[NV] = {0}, unsure_solve_1[1] = {0}, leg_force[6*NL] = {0}, actuator[36] = {0},
@@ -9394,11 +9376,10 @@ INLINE void leg_reactions_one(const prepared *m, const real *X, const real *q0, 
     wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     close_loops(m, 1, X, q0, joints, &why);
     required_run(m, X, V, A, joints, required, H, &why);
-    const real *const extend_1 = wrench;
     for (size_t i = 0; i < NV; ++i) {
-        subtract_1[i] = required[i] - extend_1[i];
+        subtract_1[i] = required[i] - wrench[i];
     }
-    eliminate_6(1, NV, order_solve_1, sizes_solve_1, H, subtract_1, solve_1, unsure_solve_1, why.total);
+    eliminate_6(1, NV, order_tau, sizes_tau, H, subtract_1, solve_1, unsure_solve_1, why.total);
     if (unsure_solve_1[0] > 0) {
         set_matrix(NV, 1, H, work);
         solve_apart(NV, subtract_1, work, solve_1, why.singular);
@@ -9410,9 +9391,8 @@ INLINE void leg_reactions_one(const prepared *m, const real *X, const real *q0, 
     }
     add_forces(NL, 6, 1, places_forces, solve_1, actuator, forces);
     check(NL*NL, 1, forces, why.overflow);
-    judge(&why, code);
     copy(NL*NL, forces, forces_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NL*NL, forces_out);
     }
 }
@@ -9435,10 +9415,9 @@ INLINE void energy_one(const prepared *m, const real *X, const real *q0, const r
     const real *const potential = potential_of_potential;
     check(1, 1, kinetic, why.overflow);
     check(1, 1, potential, why.overflow);
-    judge(&why, code);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, kinetic_out);
         refuse(1, potential_out);
     }
@@ -9470,10 +9449,10 @@ INLINE void condition_one(const prepared *m, const real *X, const real *q0, cons
         check(NL, 1, legs, why.overflow);
     }
     check(NV, 1, sigma, why.overflow);
-    judge(&why, code);
+    check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, sigma_out);
         refuse(NL, legs_out);
     }
@@ -9507,10 +9486,11 @@ INLINE void manipulability_one(const prepared *m, const real *X, const real *q0,
     spread(NV, singular_values_1, measure, isotropy);
     check(1, 1, measure, why.overflow);
     check(1, 1, isotropy, why.overflow);
-    judge(&why, code);
+    check(NL, 1, pivots, why.overflow);
+    check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, measure_out);
         refuse(1, isotropy_out);
     }
@@ -9545,10 +9525,10 @@ INLINE void singularity_distance_one(const prepared *m, const real *X, const rea
     least_entry(NL, pivots, legs);
     check(1, 1, actuators, why.overflow);
     check(1, 1, legs, why.overflow);
-    judge(&why, code);
+    check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, actuators_out);
         refuse(1, legs_out);
     }
@@ -9578,9 +9558,8 @@ static void mismatch_one(const prepared *m, const real *X, const real *q0, const
     }
     wrap_turns(NU, 1, places_gap, gap);
     check(NU, 1, gap, why.overflow);
-    judge(&why, code);
     copy(NU, gap, gap_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NU, gap_out);
     }
 }
@@ -9597,9 +9576,8 @@ static void slope_one(const prepared *m, const real *X, const real *q0, real *sl
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope, why.overflow);
     }
-    judge(&why, code);
     copy(NV*NU, slope, slope_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV*NU, slope_out);
     }
 }
@@ -9662,9 +9640,8 @@ INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, co
     }
     blame(search_mismatch(m, q0, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
-    judge(&why, code);
     copy(NQ, X, X_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_out);
     }
 }
@@ -9680,9 +9657,8 @@ INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
     }
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
-    judge(&why, code);
     copy(1, dissipation, dissipation_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, dissipation_out);
     }
 }
@@ -9702,9 +9678,8 @@ INLINE void momentum_one(const prepared *m, const real *X, const real *q0, const
     M_run(m, X, joints, M, &why);
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
-    judge(&why, code);
     copy(NV, momentum, momentum_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, momentum_out);
     }
 }
@@ -9740,9 +9715,8 @@ INLINE void joint_margins_one(const prepared *m, const real *X, const real *q0, 
         margins[i] = q[i];
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
-    judge(&why, code);
     copy(NJ, margins, margins_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NJ, margins_out);
     }
 }
@@ -9780,9 +9754,8 @@ INLINE void within_limits_one(const prepared *m, const real *X, const real *q0, 
     }
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
-    judge(&why, code);
     copy(1, within, within_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, within_out);
     }
 }
@@ -9816,9 +9789,8 @@ INLINE void actuator_positions_one(const prepared *m, const real *X, const real 
     inverse_kinematics_run(joints, q_of_inverse_kinematics, &why);
     take(NU, 1, hexapod_6x6r_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
-    judge(&why, code);
     copy(NU, q, q_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NU, q_out);
     }
 }
@@ -9853,9 +9825,8 @@ INLINE void actuator_rates_one(const prepared *m, const real *X, const real *q0,
     joint_rates_run(m, X, V, joints, qd_of_joint_rates, &why);
     take(NU, 1, hexapod_6x6r_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
-    judge(&why, code);
     copy(NU, qd, qd_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NU, qd_out);
     }
 }
@@ -9893,9 +9864,8 @@ INLINE void actuator_accelerations_one(const prepared *m, const real *X, const r
     joint_accelerations_run(m, X, V, A, joints, qdd_of_joint_accelerations, &why);
     take(NU, 1, hexapod_6x6r_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
-    judge(&why, code);
     copy(NU, qdd, qdd_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NU, qdd_out);
     }
 }
@@ -9935,9 +9905,8 @@ INLINE void power_one(const prepared *m, const real *X, const real *q0, const re
     product(NV, NU, 1, 1, H, tau, times_1);
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
-    judge(&why, code);
     copy(1, power, power_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, power_out);
     }
 }
@@ -9970,9 +9939,8 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     const real *const X_from_3 = X + 3;
     rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
-    judge(&why, code);
     copy(9, R, R_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(9, R_out);
     }
 }
@@ -9991,9 +9959,8 @@ INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
     beside(1, 3, 4, t, quaternion_of_rotation_1, join_1);
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
-    judge(&why, code);
     copy(NQ, X, X_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_out);
     }
 }
@@ -10014,9 +9981,8 @@ INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
     const real *const V_from_0 = V;
     beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
-    judge(&why, code);
     copy(NQ, X_dot, X_dot_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_dot_out);
     }
 }
@@ -10035,9 +10001,8 @@ INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *
     beside(1, 3, 4, t, quaternion_of_rpy_1, join_1);
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
-    judge(&why, code);
     copy(NQ, X, X_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_out);
     }
 }
@@ -10062,9 +10027,8 @@ INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int 
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
-    judge(&why, code);
     copy(NQ, X_moved, X_moved_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_moved_out);
     }
 }
@@ -10089,9 +10053,8 @@ INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *
     }
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
-    judge(&why, code);
     copy(NV, step, step_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, step_out);
     }
 }
@@ -10130,9 +10093,8 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
-    judge(&why, code);
     copy(NQ, X, X_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_out);
     }
 }
@@ -10402,11 +10364,7 @@ int hexapod_6x6r_complete_acceleration(const prepared *model, const real *X, con
     real *V, const real *A, const real *wrench, real *completed)
 {
     int code;
-    (void)model;
-    (void)X;
-    (void)q0;
-    (void)V;
-    (void)wrench;
+    (void)model, (void)X, (void)q0, (void)V, (void)wrench;
     complete_acceleration_one(A, completed, &code);
     return code;
 }
@@ -10548,9 +10506,7 @@ int hexapod_6x6r_dissipation(const prepared *model, const real *X, const real *q
     real *dissipation)
 {
     int code;
-    (void)model;
-    (void)X;
-    (void)q0;
+    (void)model, (void)X, (void)q0;
     dissipation_one(V, dissipation, &code);
     return code;
 }

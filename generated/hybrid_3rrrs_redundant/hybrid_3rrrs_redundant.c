@@ -246,13 +246,14 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE void judge(const verdict *t, int *code)
+INLINE int judge(const verdict *t, int *code)
 {
     *code = t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
         : t->unreachable[0] > 0 ? UNREACHABLE
         : t->singular[0] > 0 ? SINGULAR
         : t->overflow[0] > 0 ? INVALID : OK;
+    return *code;
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
@@ -8651,9 +8652,8 @@ INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M, why.overflow);
     }
-    judge(&why, code);
     copy(NV*NV, M, M_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV*NV, M_out);
     }
 }
@@ -8683,9 +8683,8 @@ INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, 
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z, why.overflow);
     }
-    judge(&why, code);
     copy(NV, Z, Z_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, Z_out);
     }
 }
@@ -8712,9 +8711,8 @@ INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H, why.overflow);
     }
-    judge(&why, code);
     copy(NV*NU, H, H_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV*NU, H_out);
     }
 }
@@ -8740,9 +8738,8 @@ INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q, why.overflow);
     }
-    judge(&why, code);
     copy(NJ, q, q_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NJ, q_out);
     }
 }
@@ -8773,9 +8770,8 @@ INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, rea
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd, why.overflow);
     }
-    judge(&why, code);
     copy(NJ, qd, qd_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NJ, qd_out);
     }
 }
@@ -8809,9 +8805,8 @@ INLINE void joint_accelerations_one(const prepared *m, const real *X, const real
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd, why.overflow);
     }
-    judge(&why, code);
     copy(NJ, qdd, qdd_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NJ, qdd_out);
     }
 }
@@ -8847,11 +8842,10 @@ INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *
         check(NV, 1, Z, why.overflow);
         check(NV*NU, 1, H, why.overflow);
     }
-    judge(&why, code);
     copy(NV*NV, M, M_out);
     copy(NV, Z, Z_out);
     copy(NV*NU, H, H_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV*NV, M_out);
         refuse(NV, Z_out);
         refuse(NV*NU, H_out);
@@ -8897,8 +8891,7 @@ INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V
     set_matrix(NV, 1, H, work);
     solve_state(NV, subtract_1, work, tau_out, why.singular);
     check(NU, 1, tau_out, why.overflow);
-    judge(&why, code);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NU, tau_out);
     }
 }
@@ -8957,8 +8950,7 @@ INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V
     set_matrix(NV, 1, M, work);
     solve_state(NV, subtract_1, work, A_out, why.singular);
     check(NV, 1, A_out, why.overflow);
-    judge(&why, code);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, A_out);
     }
 }
@@ -9000,9 +8992,8 @@ INLINE void complete_acceleration_one(const real *A, real *completed_out, int *c
     check(NV, 1, A, why.invalid);
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
-    judge(&why, code);
     copy(NV, completed, completed_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, completed_out);
     }
 }
@@ -9038,9 +9029,8 @@ INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, c
     }
     add_forces(NV, 3, 1, places_forces, solve_1, actuator, forces);
     check(NL*NL, 1, forces, why.overflow);
-    judge(&why, code);
     copy(NL*NL, forces, forces_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NL*NL, forces_out);
     }
 }
@@ -9062,10 +9052,9 @@ INLINE void energy_one(const prepared *m, const real *X, const real *V, real *ki
     const real *const potential = potential_of_potential;
     check(1, 1, kinetic, why.overflow);
     check(1, 1, potential, why.overflow);
-    judge(&why, code);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, kinetic_out);
         refuse(1, potential_out);
     }
@@ -9096,10 +9085,10 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
         check(NL, 1, legs, why.overflow);
     }
     check(NV, 1, sigma, why.overflow);
-    judge(&why, code);
+    check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, sigma_out);
         refuse(NL, legs_out);
     }
@@ -9132,10 +9121,11 @@ INLINE void manipulability_one(const prepared *m, const real *X, real *measure_o
     spread(NV, singular_values_1, measure, isotropy);
     check(1, 1, measure, why.overflow);
     check(1, 1, isotropy, why.overflow);
-    judge(&why, code);
+    check(NL, 1, pivots, why.overflow);
+    check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, measure_out);
         refuse(1, isotropy_out);
     }
@@ -9169,10 +9159,10 @@ INLINE void singularity_distance_one(const prepared *m, const real *X, real *act
     least_entry(NL, pivots, legs);
     check(1, 1, actuators, why.overflow);
     check(1, 1, legs, why.overflow);
-    judge(&why, code);
+    check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, actuators_out);
         refuse(1, legs_out);
     }
@@ -9200,9 +9190,8 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
     }
     wrap_turns(NU, 1, places_gap, gap);
     check(NU, 1, gap, why.overflow);
-    judge(&why, code);
     copy(NU, gap, gap_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NU, gap_out);
     }
 }
@@ -9217,9 +9206,8 @@ static void slope_one(const prepared *m, const real *X, real *slope_out, int *co
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope, why.overflow);
     }
-    judge(&why, code);
     copy(NV*NU, slope, slope_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV*NU, slope_out);
     }
 }
@@ -9282,9 +9270,8 @@ INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, co
     }
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
-    judge(&why, code);
     copy(NQ, X, X_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_out);
     }
 }
@@ -9300,9 +9287,8 @@ INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
     }
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
-    judge(&why, code);
     copy(1, dissipation, dissipation_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, dissipation_out);
     }
 }
@@ -9321,9 +9307,8 @@ INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *
     M_run(m, X, M, &why);
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
-    judge(&why, code);
     copy(NV, momentum, momentum_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, momentum_out);
     }
 }
@@ -9355,9 +9340,8 @@ INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_ou
         margins[i] = q[i];
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
-    judge(&why, code);
     copy(NJ, margins, margins_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NJ, margins_out);
     }
 }
@@ -9390,9 +9374,8 @@ INLINE void within_limits_one(const prepared *m, const real *X, real *within_out
     }
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
-    judge(&why, code);
     copy(1, within, within_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, within_out);
     }
 }
@@ -9422,9 +9405,8 @@ INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
     take(NU, 1, hybrid_3rrrs_redundant_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
-    judge(&why, code);
     copy(NU, q, q_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NU, q_out);
     }
 }
@@ -9456,9 +9438,8 @@ INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, 
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
     take(NU, 1, hybrid_3rrrs_redundant_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
-    judge(&why, code);
     copy(NU, qd, qd_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NU, qd_out);
     }
 }
@@ -9493,9 +9474,8 @@ INLINE void actuator_accelerations_one(const prepared *m, const real *X, const r
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
     take(NU, 1, hybrid_3rrrs_redundant_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
-    judge(&why, code);
     copy(NU, qdd, qdd_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NU, qdd_out);
     }
 }
@@ -9533,9 +9513,8 @@ INLINE void power_one(const prepared *m, const real *X, const real *V, const rea
     product(NV, NU, 1, 1, H, tau, times_1);
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
-    judge(&why, code);
     copy(1, power, power_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, power_out);
     }
 }
@@ -9567,9 +9546,8 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     const real *const X_from_3 = X + 3;
     rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
-    judge(&why, code);
     copy(9, R, R_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(9, R_out);
     }
 }
@@ -9590,9 +9568,8 @@ INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
         X[i] = i < 7 ? join_1[i] : 0;
     }
     check(NQ, 1, X, why.overflow);
-    judge(&why, code);
     copy(NQ, X, X_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_out);
     }
 }
@@ -9615,9 +9592,8 @@ INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
     const real *const V_from_6 = V + 6;
     beside(1, 7, 1, join_1, V_from_6, X_dot);
     check(NQ, 1, X_dot, why.overflow);
-    judge(&why, code);
     copy(NQ, X_dot, X_dot_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_dot_out);
     }
 }
@@ -9638,9 +9614,8 @@ INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *
         X[i] = i < 7 ? join_1[i] : 0;
     }
     check(NQ, 1, X, why.overflow);
-    judge(&why, code);
     copy(NQ, X, X_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_out);
     }
 }
@@ -9672,9 +9647,8 @@ INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int 
     beside(1, 3, 4, add_1, turn_quaternion_1, join_1);
     beside(1, 7, 1, join_1, add_2, X_moved);
     check(NQ, 1, X_moved, why.overflow);
-    judge(&why, code);
     copy(NQ, X_moved, X_moved_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_moved_out);
     }
 }
@@ -9706,9 +9680,8 @@ INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *
     beside(1, 3, 3, subtract_1, turn_between_1, join_1);
     beside(1, 6, 1, join_1, subtract_2, step);
     check(NV, 1, step, why.overflow);
-    judge(&why, code);
     copy(NV, step, step_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, step_out);
     }
 }
@@ -9760,9 +9733,8 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
     beside(1, 3, 4, add_1, turn_quaternion_1, join_3);
     beside(1, 7, 1, join_3, add_2, X);
     check(NQ, 1, X, why.overflow);
-    judge(&why, code);
     copy(NQ, X, X_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_out);
     }
 }
@@ -10028,10 +10000,7 @@ int hybrid_3rrrs_redundant_complete_acceleration(const prepared *model, const re
     *V, const real *A, const real *wrench, real *completed)
 {
     int code;
-    (void)model;
-    (void)X;
-    (void)V;
-    (void)wrench;
+    (void)model, (void)X, (void)V, (void)wrench;
     complete_acceleration_one(A, completed, &code);
     return code;
 }
@@ -10171,8 +10140,7 @@ int hybrid_3rrrs_redundant_dissipation(const prepared *model, const real *X, con
     *dissipation)
 {
     int code;
-    (void)model;
-    (void)X;
+    (void)model, (void)X;
     dissipation_one(V, dissipation, &code);
     return code;
 }

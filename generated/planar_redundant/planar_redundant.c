@@ -246,13 +246,14 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE void judge(const verdict *t, int *code)
+INLINE int judge(const verdict *t, int *code)
 {
     *code = t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
         : t->unreachable[0] > 0 ? UNREACHABLE
         : t->singular[0] > 0 ? SINGULAR
         : t->overflow[0] > 0 ? INVALID : OK;
+    return *code;
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
@@ -4595,9 +4596,8 @@ INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M, why.overflow);
     }
-    judge(&why, code);
     copy(NV*NV, M, M_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV*NV, M_out);
     }
 }
@@ -4627,9 +4627,8 @@ INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, 
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z, why.overflow);
     }
-    judge(&why, code);
     copy(NV, Z, Z_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, Z_out);
     }
 }
@@ -4656,9 +4655,8 @@ INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H, why.overflow);
     }
-    judge(&why, code);
     copy(NV*NU, H, H_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV*NU, H_out);
     }
 }
@@ -4684,9 +4682,8 @@ INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q, why.overflow);
     }
-    judge(&why, code);
     copy(NJ, q, q_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NJ, q_out);
     }
 }
@@ -4717,9 +4714,8 @@ INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, rea
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd, why.overflow);
     }
-    judge(&why, code);
     copy(NJ, qd, qd_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NJ, qd_out);
     }
 }
@@ -4753,9 +4749,8 @@ INLINE void joint_accelerations_one(const prepared *m, const real *X, const real
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd, why.overflow);
     }
-    judge(&why, code);
     copy(NJ, qdd, qdd_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NJ, qdd_out);
     }
 }
@@ -4791,11 +4786,10 @@ INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *
         check(NV, 1, Z, why.overflow);
         check(NV*NU, 1, H, why.overflow);
     }
-    judge(&why, code);
     copy(NV*NV, M, M_out);
     copy(NV, Z, Z_out);
     copy(NV*NU, H, H_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV*NV, M_out);
         refuse(NV, Z_out);
         refuse(NV*NU, H_out);
@@ -4892,11 +4886,12 @@ INLINE void eliminate_4(size_t w, size_t stride, const size_t *order, const real
     }
 }
 
+static const size_t order_tau[] = {3, 1, 2, 0};
+static const real sizes_tau[] = {1.0, 4.0, 0.25, 4.0};
+
 INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    static const size_t order_tau[] = {3, 1, 2, 0};
-    static const real sizes_tau[] = {1.0, 4.0, 0.25, 4.0};
     real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, extend_1[4] = {0}, subtract_1[NV] = {0},
         unsure_tau[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
@@ -4924,8 +4919,7 @@ INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    judge(&why, code);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NU, tau_out);
     }
 }
@@ -4933,8 +4927,6 @@ INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    static const size_t order_tau[] = {3, 1, 2, 0};
-    static const real sizes_tau[] = {1.0, 4.0, 0.25, 4.0};
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
         H[NV*NU*LANES], extend_1[4*LANES], subtract_1[NV*LANES], tau[NU*LANES];
     verdict why;
@@ -4955,11 +4947,12 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
     deliver(NU, tau, tau_out);
 }
 
+static const size_t order_A[] = {0, 1, 2, 3};
+static const real sizes_A[] = {4.0, 4.0, 0.25, 4.0};
+
 INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
     const real *wrench, real *A_out, int *code)
 {
-    static const size_t order_A[] = {0, 1, 2, 3};
-    static const real sizes_A[] = {4.0, 4.0, 0.25, 4.0};
     real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, extend_1[4] =
         {0}, add_1[NV] = {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
@@ -4991,8 +4984,7 @@ INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    judge(&why, code);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, A_out);
     }
 }
@@ -5000,8 +4992,6 @@ INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, int *code)
 {
-    static const size_t order_A[] = {0, 1, 2, 3};
-    static const real sizes_A[] = {4.0, 4.0, 0.25, 4.0};
     real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
         Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, extend_1[4*LANES], add_1[NV*LANES],
         subtract_1[NV*LANES], A[NV*LANES];
@@ -5034,9 +5024,8 @@ INLINE void complete_acceleration_one(const real *A, real *completed_out, int *c
     check(NV, 1, A, why.invalid);
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
-    judge(&why, code);
     copy(NV, completed, completed_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, completed_out);
     }
 }
@@ -5044,8 +5033,6 @@ INLINE void complete_acceleration_one(const real *A, real *completed_out, int *c
 INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out, int *code)
 {
-    static const size_t order_solve_1[] = {3, 1, 2, 0};
-    static const real sizes_solve_1[] = {1.0, 4.0, 0.25, 4.0};
     static const size_t places_forces[] = {0, 0, 1, 2};
     real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, extend_1[4] = {0}, subtract_1[NV] = {0},
         solve_1[NV] = {0}, unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[12] = {0},
@@ -5066,7 +5053,7 @@ INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, c
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - extend_1[i];
     }
-    eliminate_4(1, NV, order_solve_1, sizes_solve_1, H, subtract_1, solve_1, unsure_solve_1, why.total);
+    eliminate_4(1, NV, order_tau, sizes_tau, H, subtract_1, solve_1, unsure_solve_1, why.total);
     if (unsure_solve_1[0] > 0) {
         set_matrix(NV, 1, H, work);
         solve_apart(NV, subtract_1, work, solve_1, why.singular);
@@ -5078,9 +5065,8 @@ INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, c
     }
     add_forces(NV, 3, 1, places_forces, solve_1, actuator, forces);
     check(NL*NL, 1, forces, why.overflow);
-    judge(&why, code);
     copy(NL*NL, forces, forces_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NL*NL, forces_out);
     }
 }
@@ -5102,10 +5088,9 @@ INLINE void energy_one(const prepared *m, const real *X, const real *V, real *ki
     const real *const potential = potential_of_potential;
     check(1, 1, kinetic, why.overflow);
     check(1, 1, potential, why.overflow);
-    judge(&why, code);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, kinetic_out);
         refuse(1, potential_out);
     }
@@ -5136,10 +5121,10 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
         check(NL, 1, legs, why.overflow);
     }
     check(NV, 1, sigma, why.overflow);
-    judge(&why, code);
+    check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, sigma_out);
         refuse(NL, legs_out);
     }
@@ -5172,10 +5157,11 @@ INLINE void manipulability_one(const prepared *m, const real *X, real *measure_o
     spread(NV, singular_values_1, measure, isotropy);
     check(1, 1, measure, why.overflow);
     check(1, 1, isotropy, why.overflow);
-    judge(&why, code);
+    check(NL, 1, pivots, why.overflow);
+    check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, measure_out);
         refuse(1, isotropy_out);
     }
@@ -5209,10 +5195,10 @@ INLINE void singularity_distance_one(const prepared *m, const real *X, real *act
     least_entry(NL, pivots, legs);
     check(1, 1, actuators, why.overflow);
     check(1, 1, legs, why.overflow);
-    judge(&why, code);
+    check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, actuators_out);
         refuse(1, legs_out);
     }
@@ -5240,9 +5226,8 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
     }
     wrap_turns(3, 1, places_gap, gap);
     check(NU, 1, gap, why.overflow);
-    judge(&why, code);
     copy(NU, gap, gap_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NU, gap_out);
     }
 }
@@ -5257,9 +5242,8 @@ static void slope_one(const prepared *m, const real *X, real *slope_out, int *co
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope, why.overflow);
     }
-    judge(&why, code);
     copy(NV*NU, slope, slope_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV*NU, slope_out);
     }
 }
@@ -5322,9 +5306,8 @@ INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, co
     }
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
-    judge(&why, code);
     copy(NQ, X, X_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_out);
     }
 }
@@ -5340,9 +5323,8 @@ INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
     }
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
-    judge(&why, code);
     copy(1, dissipation, dissipation_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, dissipation_out);
     }
 }
@@ -5361,9 +5343,8 @@ INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *
     M_run(m, X, M, &why);
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
-    judge(&why, code);
     copy(NV, momentum, momentum_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, momentum_out);
     }
 }
@@ -5395,9 +5376,8 @@ INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_ou
         margins[i] = q[i];
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
-    judge(&why, code);
     copy(NJ, margins, margins_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NJ, margins_out);
     }
 }
@@ -5430,9 +5410,8 @@ INLINE void within_limits_one(const prepared *m, const real *X, real *within_out
     }
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
-    judge(&why, code);
     copy(1, within, within_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, within_out);
     }
 }
@@ -5462,9 +5441,8 @@ INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
     take(NU, 1, planar_redundant_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
-    judge(&why, code);
     copy(NU, q, q_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NU, q_out);
     }
 }
@@ -5496,9 +5474,8 @@ INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, 
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
     take(NU, 1, planar_redundant_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
-    judge(&why, code);
     copy(NU, qd, qd_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NU, qd_out);
     }
 }
@@ -5533,9 +5510,8 @@ INLINE void actuator_accelerations_one(const prepared *m, const real *X, const r
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
     take(NU, 1, planar_redundant_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
-    judge(&why, code);
     copy(NU, qdd, qdd_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NU, qdd_out);
     }
 }
@@ -5573,9 +5549,8 @@ INLINE void power_one(const prepared *m, const real *X, const real *V, const rea
     product(NV, NU, 1, 1, H, tau, times_1);
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
-    judge(&why, code);
     copy(1, power, power_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, power_out);
     }
 }
@@ -5607,9 +5582,8 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     const real *const X_from_2 = X + 2;
     rotation_of_angle(X_from_2, R);
     check(4, 1, R, why.overflow);
-    judge(&why, code);
     copy(4, R, R_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(4, R_out);
     }
 }
@@ -5630,9 +5604,8 @@ INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
         X[i] = i < 3 ? join_1[i] : 0;
     }
     check(NQ, 1, X, why.overflow);
-    judge(&why, code);
     copy(NQ, X, X_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_out);
     }
 }
@@ -5648,9 +5621,8 @@ INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
     }
     const real *const X_dot = V;
     check(NQ, 1, X_dot, why.overflow);
-    judge(&why, code);
     copy(NQ, X_dot, X_dot_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_dot_out);
     }
 }
@@ -5669,9 +5641,8 @@ INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int 
         X_moved[i] = X[i] + step[i];
     }
     check(NQ, 1, X_moved, why.overflow);
-    judge(&why, code);
     copy(NQ, X_moved, X_moved_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_moved_out);
     }
 }
@@ -5695,9 +5666,8 @@ INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *
     }
     wrap_turns(1, 1, places_step, step);
     check(NV, 1, step, why.overflow);
-    judge(&why, code);
     copy(NV, step, step_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, step_out);
     }
 }
@@ -5728,9 +5698,8 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
         X[i] = X0[i] + scale_1[i];
     }
     check(NQ, 1, X, why.overflow);
-    judge(&why, code);
     copy(NQ, X, X_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_out);
     }
 }
@@ -5995,10 +5964,7 @@ int planar_redundant_complete_acceleration(const prepared *model, const real *X,
     const real *A, const real *wrench, real *completed)
 {
     int code;
-    (void)model;
-    (void)X;
-    (void)V;
-    (void)wrench;
+    (void)model, (void)X, (void)V, (void)wrench;
     complete_acceleration_one(A, completed, &code);
     return code;
 }
@@ -6134,8 +6100,7 @@ int planar_redundant_dissipation(const prepared *model, const real *X, const rea
     *dissipation)
 {
     int code;
-    (void)model;
-    (void)X;
+    (void)model, (void)X;
     dissipation_one(V, dissipation, &code);
     return code;
 }

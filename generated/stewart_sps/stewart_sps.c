@@ -248,13 +248,14 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE void judge(const verdict *t, int *code)
+INLINE int judge(const verdict *t, int *code)
 {
     *code = t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
         : t->unreachable[0] > 0 ? UNREACHABLE
         : t->singular[0] > 0 ? SINGULAR
         : t->overflow[0] > 0 ? INVALID : OK;
+    return *code;
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
@@ -4156,9 +4157,8 @@ INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M, why.overflow);
     }
-    judge(&why, code);
     copy(NV*NV, M, M_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV*NV, M_out);
     }
 }
@@ -4188,9 +4188,8 @@ INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, 
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z, why.overflow);
     }
-    judge(&why, code);
     copy(NV, Z, Z_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, Z_out);
     }
 }
@@ -4216,8 +4215,7 @@ INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    judge(&why, code);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV*NU, H_out);
     }
 }
@@ -4243,9 +4241,8 @@ INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q, why.overflow);
     }
-    judge(&why, code);
     copy(NJ, q, q_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NJ, q_out);
     }
 }
@@ -4276,9 +4273,8 @@ INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, rea
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd, why.overflow);
     }
-    judge(&why, code);
     copy(NJ, qd, qd_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NJ, qd_out);
     }
 }
@@ -4312,9 +4308,8 @@ INLINE void joint_accelerations_one(const prepared *m, const real *X, const real
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd, why.overflow);
     }
-    judge(&why, code);
     copy(NJ, qdd, qdd_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NJ, qdd_out);
     }
 }
@@ -4350,11 +4345,10 @@ INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *
         check(NV, 1, Z, why.overflow);
         check(NV*NU, 1, H, why.overflow);
     }
-    judge(&why, code);
     copy(NV*NV, M, M_out);
     copy(NV, Z, Z_out);
     copy(NV*NU, H, H_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV*NV, M_out);
         refuse(NV, Z_out);
         refuse(NV*NU, H_out);
@@ -4546,11 +4540,12 @@ INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real
     }
 }
 
+static const size_t order_tau[] = {0, 2, 1, 3, 4, 5};
+static const real sizes_tau[] = {0.25, 1.0, 0.25, 0.25, 0.25, 0.25};
+
 INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    static const size_t order_tau[] = {0, 2, 1, 3, 4, 5};
-    static const real sizes_tau[] = {0.25, 1.0, 0.25, 0.25, 0.25, 0.25};
     real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, extend_1[12] = {0}, subtract_1[NV] = {0},
         unsure_tau[1] = {0}, work[NU*PADDED(NU)];
     verdict why;
@@ -4580,8 +4575,7 @@ INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    judge(&why, code);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NU, tau_out);
     }
 }
@@ -4589,8 +4583,6 @@ INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    static const size_t order_tau[] = {0, 2, 1, 3, 4, 5};
-    static const real sizes_tau[] = {0.25, 1.0, 0.25, 0.25, 0.25, 0.25};
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
         H[NV*NU*LANES], extend_1[12*LANES], subtract_1[NV*LANES], tau[NU*LANES];
     verdict why;
@@ -4641,8 +4633,7 @@ INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V
     set_matrix(NV, 1, M, work);
     solve_state(NV, subtract_1, work, A_out, why.singular);
     check(NV, 1, A_out, why.overflow);
-    judge(&why, code);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, A_out);
     }
 }
@@ -4677,14 +4668,15 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     deliver(NV, A, A_out);
 }
 
+static const size_t order_solve_1[] = {0, 1, 2, 3, 4, 5};
+static const real sizes_solve_1[] = {0.0009765625, 0.0009765625, 0.0009765625, 0.0009765625,
+    0.0009765625, 0.0009765625};
+
 INLINE void complete_acceleration_one(const prepared *m, const real *X, const real *V, const real
     *A, const real *wrench, real *completed_out, int *code)
 {
     static const size_t places_clear_at_1[] = {6, 7, 8, 9, 10, 11};
     static const size_t places_take_columns_1[] = {6, 7, 8, 9, 10, 11};
-    static const size_t order_solve_1[] = {0, 1, 2, 3, 4, 5};
-    static const real sizes_solve_1[] = {0.0009765625, 0.0009765625, 0.0009765625, 0.0009765625,
-        0.0009765625, 0.0009765625};
     static const size_t places_completed[] = {6, 7, 8, 9, 10, 11};
     real wrench_in[NW], clear_at_1[NV] = {0}, M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV]
         = {0}, add_1[NV] = {0}, extend_1[12] = {0}, subtract_1[NV] = {0}, take_columns_1[6*NV] = {0},
@@ -4731,9 +4723,9 @@ INLINE void complete_acceleration_one(const prepared *m, const real *X, const re
     }
     add_at(6, 1, places_completed, solve_1, completed);
     check(NV, 1, completed, why.overflow);
-    judge(&why, code);
+    check(NV*NU, 1, H, why.overflow);
     copy(NV, completed, completed_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, completed_out);
     }
 }
@@ -4743,9 +4735,6 @@ INLINE void complete_acceleration_lanes(const prepared *m, const real *X, const 
 {
     static const size_t places_clear_at_1[] = {6, 7, 8, 9, 10, 11};
     static const size_t places_take_columns_1[] = {6, 7, 8, 9, 10, 11};
-    static const size_t order_solve_1[] = {0, 1, 2, 3, 4, 5};
-    static const real sizes_solve_1[] = {0.0009765625, 0.0009765625, 0.0009765625, 0.0009765625,
-        0.0009765625, 0.0009765625};
     static const size_t places_completed[] = {6, 7, 8, 9, 10, 11};
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], clear_at_1[NV*LANES],
         M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES],
@@ -4784,6 +4773,7 @@ INLINE void complete_acceleration_lanes(const prepared *m, const real *X, const 
     }
     add_at(6, LANES, places_completed, solve_1, completed);
     add_up(NV, completed, why.total);
+    add_up(NV*NU, H, why.total);
     suspect(&why, code);
     deliver(NV, completed, completed_out);
 }
@@ -4791,8 +4781,6 @@ INLINE void complete_acceleration_lanes(const prepared *m, const real *X, const 
 INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out, int *code)
 {
-    static const size_t order_solve_1[] = {0, 2, 1, 3, 4, 5};
-    static const real sizes_solve_1[] = {0.25, 1.0, 0.25, 0.25, 0.25, 0.25};
     static const size_t places_forces[] = {0, 1, 2, 3, 4, 5};
     real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, extend_1[12] = {0}, subtract_1[NV] = {0},
         solve_1[NU] = {0}, unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[18] = {0},
@@ -4815,7 +4803,7 @@ INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, c
     }
     const real *const take_1 = H;
     const real *const subtract_1_from_0 = subtract_1;
-    eliminate_6(1, NU, order_solve_1, sizes_solve_1, take_1, subtract_1_from_0, solve_1, unsure_solve_1, why.total);
+    eliminate_6(1, NU, order_tau, sizes_tau, take_1, subtract_1_from_0, solve_1, unsure_solve_1, why.total);
     if (unsure_solve_1[0] > 0) {
         set_matrix(NU, 1, take_1, work);
         solve_apart(NU, subtract_1_from_0, work, solve_1, why.singular);
@@ -4827,9 +4815,8 @@ INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, c
     }
     add_forces(NL, 3, 1, places_forces, solve_1, actuator, forces);
     check(3*NL, 1, forces, why.overflow);
-    judge(&why, code);
     copy(3*NL, forces, forces_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(3*NL, forces_out);
     }
 }
@@ -4851,10 +4838,9 @@ INLINE void energy_one(const prepared *m, const real *X, const real *V, real *ki
     const real *const potential = potential_of_potential;
     check(1, 1, kinetic, why.overflow);
     check(1, 1, potential, why.overflow);
-    judge(&why, code);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, kinetic_out);
         refuse(1, potential_out);
     }
@@ -4885,10 +4871,10 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
         check(NL, 1, legs, why.overflow);
     }
     check(NU, 1, sigma, why.overflow);
-    judge(&why, code);
+    check(NL, 1, reach, why.overflow);
     copy(NU, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NU, sigma_out);
         refuse(NL, legs_out);
     }
@@ -4921,10 +4907,11 @@ INLINE void manipulability_one(const prepared *m, const real *X, real *measure_o
     spread(NU, singular_values_1, measure, isotropy);
     check(1, 1, measure, why.overflow);
     check(1, 1, isotropy, why.overflow);
-    judge(&why, code);
+    check(NL, 1, pivots, why.overflow);
+    check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, measure_out);
         refuse(1, isotropy_out);
     }
@@ -4958,10 +4945,10 @@ INLINE void singularity_distance_one(const prepared *m, const real *X, real *act
     least_entry(NL, pivots, legs);
     check(1, 1, actuators, why.overflow);
     check(1, 1, legs, why.overflow);
-    judge(&why, code);
+    check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, actuators_out);
         refuse(1, legs_out);
     }
@@ -4984,9 +4971,8 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
         gap[i] = q_actuated[i] - q_of_inverse_kinematics_from_3[i];
     }
     check(NU, 1, gap, why.overflow);
-    judge(&why, code);
     copy(NU, gap, gap_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NU, gap_out);
     }
 }
@@ -5000,8 +4986,7 @@ static void slope_one(const prepared *m, const real *X, real *slope_out, int *co
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    judge(&why, code);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV*NU, slope_out);
     }
 }
@@ -5064,9 +5049,8 @@ INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, co
     }
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
-    judge(&why, code);
     copy(NQ, X, X_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_out);
     }
 }
@@ -5082,9 +5066,8 @@ INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
     }
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
-    judge(&why, code);
     copy(1, dissipation, dissipation_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, dissipation_out);
     }
 }
@@ -5103,9 +5086,8 @@ INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *
     M_run(m, X, M, &why);
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
-    judge(&why, code);
     copy(NV, momentum, momentum_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, momentum_out);
     }
 }
@@ -5138,9 +5120,8 @@ INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_ou
         margins[i] = q[i];
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
-    judge(&why, code);
     copy(NJ, margins, margins_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NJ, margins_out);
     }
 }
@@ -5174,9 +5155,8 @@ INLINE void within_limits_one(const prepared *m, const real *X, real *within_out
     }
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
-    judge(&why, code);
     copy(1, within, within_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, within_out);
     }
 }
@@ -5206,9 +5186,8 @@ INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
     take(NU, 1, stewart_sps_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
-    judge(&why, code);
     copy(NU, q, q_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NU, q_out);
     }
 }
@@ -5240,9 +5219,8 @@ INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, 
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
     take(NU, 1, stewart_sps_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
-    judge(&why, code);
     copy(NU, qd, qd_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NU, qd_out);
     }
 }
@@ -5277,9 +5255,8 @@ INLINE void actuator_accelerations_one(const prepared *m, const real *X, const r
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
     take(NU, 1, stewart_sps_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
-    judge(&why, code);
     copy(NU, qdd, qdd_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NU, qdd_out);
     }
 }
@@ -5317,9 +5294,8 @@ INLINE void power_one(const prepared *m, const real *X, const real *V, const rea
     product(NV, NU, 1, 1, H, tau, times_1);
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
-    judge(&why, code);
     copy(1, power, power_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, power_out);
     }
 }
@@ -5351,9 +5327,8 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     const real *const X_from_3 = X + 3;
     rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
-    judge(&why, code);
     copy(9, R, R_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(9, R_out);
     }
 }
@@ -5374,9 +5349,8 @@ INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
         X[i] = i < 7 ? join_1[i] : 0;
     }
     check(NQ, 1, X, why.overflow);
-    judge(&why, code);
     copy(NQ, X, X_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_out);
     }
 }
@@ -5399,9 +5373,8 @@ INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
     const real *const V_from_6 = V + 6;
     beside(1, 7, 6, join_1, V_from_6, X_dot);
     check(NQ, 1, X_dot, why.overflow);
-    judge(&why, code);
     copy(NQ, X_dot, X_dot_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_dot_out);
     }
 }
@@ -5422,9 +5395,8 @@ INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *
         X[i] = i < 7 ? join_1[i] : 0;
     }
     check(NQ, 1, X, why.overflow);
-    judge(&why, code);
     copy(NQ, X, X_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_out);
     }
 }
@@ -5456,9 +5428,8 @@ INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int 
     beside(1, 3, 4, add_1, turn_quaternion_1, join_1);
     beside(1, 7, 6, join_1, add_2, X_moved);
     check(NQ, 1, X_moved, why.overflow);
-    judge(&why, code);
     copy(NQ, X_moved, X_moved_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_moved_out);
     }
 }
@@ -5490,9 +5461,8 @@ INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *
     beside(1, 3, 3, subtract_1, turn_between_1, join_1);
     beside(1, 6, 6, join_1, subtract_2, step);
     check(NV, 1, step, why.overflow);
-    judge(&why, code);
     copy(NV, step, step_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, step_out);
     }
 }
@@ -5544,9 +5514,8 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
     beside(1, 3, 4, add_1, turn_quaternion_1, join_3);
     beside(1, 7, 6, join_3, add_2, X);
     check(NQ, 1, X, why.overflow);
-    judge(&why, code);
     copy(NQ, X, X_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_out);
     }
 }
@@ -5952,8 +5921,7 @@ int stewart_sps_dissipation(const prepared *model, const real *X, const real *V,
     *dissipation)
 {
     int code;
-    (void)model;
-    (void)X;
+    (void)model, (void)X;
     dissipation_one(V, dissipation, &code);
     return code;
 }

@@ -252,13 +252,14 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE void judge(const verdict *t, int *code)
+INLINE int judge(const verdict *t, int *code)
 {
     *code = t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
         : t->unreachable[0] > 0 ? UNREACHABLE
         : t->singular[0] > 0 ? SINGULAR
         : t->overflow[0] > 0 ? INVALID : OK;
+    return *code;
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
@@ -8674,8 +8675,7 @@ INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    judge(&why, code);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV*NV, M_out);
     }
 }
@@ -8704,8 +8704,7 @@ INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, 
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    judge(&why, code);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, Z_out);
     }
 }
@@ -8731,8 +8730,7 @@ INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    judge(&why, code);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV*NU, H_out);
     }
 }
@@ -8757,8 +8755,7 @@ INLINE void Hk_one(const prepared *m, const real *X, real *Hk_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NC, 1, Hk_out, why.overflow);
     }
-    judge(&why, code);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV*NC, Hk_out);
     }
 }
@@ -8783,8 +8780,7 @@ INLINE void constraints_one(const prepared *m, const real *X, real *constraints_
     if (!is_finite(why.total[0])) {
         check(3, 1, constraints_out, why.overflow);
     }
-    judge(&why, code);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(3, constraints_out);
     }
 }
@@ -8814,8 +8810,7 @@ INLINE void constraint_bias_one(const prepared *m, const real *X, const real *V,
     if (!is_finite(why.total[0])) {
         check(3, 1, constraint_bias_out, why.overflow);
     }
-    judge(&why, code);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(3, constraint_bias_out);
     }
 }
@@ -8842,8 +8837,7 @@ INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    judge(&why, code);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NJ, q_out);
     }
 }
@@ -8873,8 +8867,7 @@ INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, rea
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    judge(&why, code);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NJ, qd_out);
     }
 }
@@ -8907,8 +8900,7 @@ INLINE void joint_accelerations_one(const prepared *m, const real *X, const real
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    judge(&why, code);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NJ, qdd_out);
     }
 }
@@ -8944,8 +8936,9 @@ INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    judge(&why, code);
-    if (*code != OK) {
+    check(NV*NC, 1, Hk, why.overflow);
+    check(3, 1, constraint_bias, why.overflow);
+    if (judge(&why, code) != OK) {
         refuse(NV*NV, M_out);
         refuse(NV, Z_out);
         refuse(NV*NU, H_out);
@@ -8962,6 +8955,8 @@ INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, Hk, constraint_bias, &why);
+    add_up(NV*NC, Hk, why.total);
+    add_up(3, constraint_bias, why.total);
     suspect(&why, code);
     deliver(NV*NV, M, M_out);
     deliver(NV, Z, Z_out);
@@ -9138,11 +9133,12 @@ INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real
     }
 }
 
+static const size_t order_solve_1[] = {2, 0, 1, 4, 3, 5};
+static const real sizes_solve_1[] = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
+
 INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, real *lambda_out, int *code)
 {
-    static const size_t order_solve_1[] = {2, 0, 1, 4, 3, 5};
-    static const real sizes_solve_1[] = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
     real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0},
         beside_1[NV*NV] = {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
@@ -9155,9 +9151,8 @@ INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V
     }
     wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     required_run(m, X, V, A, required, H, Hk, &why);
-    const real *const extend_1 = wrench;
     for (size_t i = 0; i < NV; ++i) {
-        subtract_1[i] = required[i] - extend_1[i];
+        subtract_1[i] = required[i] - wrench[i];
     }
     beside(NV, NU, NC, H, Hk, beside_1);
     eliminate_6(1, NV, order_solve_1, sizes_solve_1, beside_1, subtract_1, solve_1, unsure_solve_1, why.total);
@@ -9170,10 +9165,9 @@ INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V
     const real *const lambda_ = solve_1 + NU;
     check(NU, 1, tau, why.overflow);
     check(NC, 1, lambda_, why.overflow);
-    judge(&why, code);
     copy(NU, tau, tau_out);
     copy(NC, lambda_, lambda_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NU, tau_out);
         refuse(NC, lambda_out);
     }
@@ -9182,8 +9176,6 @@ INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, real *lambda_out, int *code)
 {
-    static const size_t order_solve_1[] = {2, 0, 1, 4, 3, 5};
-    static const real sizes_solve_1[] = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
     real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
         H[NV*NU*LANES], Hk[NV*NC*LANES], subtract_1[NV*LANES], beside_1[NV*NV*LANES] = {0},
         solve_1[NV*LANES];
@@ -9194,9 +9186,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
     A = side_by_side(NV, A, A_in, why.total);
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     required_run_lanes(m, X, V, A, required, H, Hk, &why);
-    const real *const extend_1 = wrench;
     for (size_t i = 0; i < NV*LANES; ++i) {
-        subtract_1[i] = required[i] - extend_1[i];
+        subtract_1[i] = required[i] - wrench[i];
     }
     beside(NV, NU*LANES, NC*LANES, H, Hk, beside_1);
     eliminate_6(LANES, NV, order_solve_1, sizes_solve_1, beside_1, subtract_1, solve_1, why.singular, why.total);
@@ -9227,9 +9218,8 @@ INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V
     wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     dynamics_run(m, X, V, M, Z, H, Hk, constraint_bias, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
-    const real *const extend_1 = wrench;
     for (size_t i = 0; i < NV; ++i) {
-        add_1[i] = times_1[i] + extend_1[i];
+        add_1[i] = times_1[i] + wrench[i];
     }
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = add_1[i] - Z[i];
@@ -9244,10 +9234,9 @@ INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V
     const real *const lambda_ = solve_1 + NV;
     check(NV, 1, A, why.overflow);
     check(NC, 1, lambda_, why.overflow);
-    judge(&why, code);
     copy(NV, A, A_out);
     copy(NC, lambda_, lambda_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, A_out);
         refuse(NC, lambda_out);
     }
@@ -9268,9 +9257,8 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, Hk, constraint_bias, &why);
     product(NV, NU, 1, LANES, H, tau, times_1);
-    const real *const extend_1 = wrench;
     for (size_t i = 0; i < NV*LANES; ++i) {
-        add_1[i] = times_1[i] + extend_1[i];
+        add_1[i] = times_1[i] + wrench[i];
     }
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = add_1[i] - Z[i];
@@ -9297,9 +9285,8 @@ INLINE void complete_acceleration_one(const real *A, real *completed_out, int *c
     check(NV, 1, A, why.invalid);
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
-    judge(&why, code);
     copy(NV, completed, completed_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, completed_out);
     }
 }
@@ -9307,8 +9294,6 @@ INLINE void complete_acceleration_one(const real *A, real *completed_out, int *c
 INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out, int *code)
 {
-    static const size_t order_solve_1[] = {2, 0, 1, 4, 3, 5};
-    static const real sizes_solve_1[] = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
     static const size_t places_add_forces_1[] = {0, 1, 2};
     static const size_t places_forces[] = {3, 3, 3};
     real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0},
@@ -9325,9 +9310,8 @@ INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, c
     }
     wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     required_run(m, X, V, A, required, H, Hk, &why);
-    const real *const extend_1 = wrench;
     for (size_t i = 0; i < NV; ++i) {
-        subtract_1[i] = required[i] - extend_1[i];
+        subtract_1[i] = required[i] - wrench[i];
     }
     beside(NV, NU, NC, H, Hk, beside_1);
     eliminate_6(1, NV, order_solve_1, sizes_solve_1, beside_1, subtract_1, solve_1, unsure_solve_1, why.total);
@@ -9348,9 +9332,8 @@ INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, c
     }
     add_forces(NC, 6, 1, places_forces, split_2, constraint_direction, forces);
     check(6*NL, 1, forces, why.overflow);
-    judge(&why, code);
     copy(6*NL, forces, forces_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(6*NL, forces_out);
     }
 }
@@ -9372,10 +9355,9 @@ INLINE void energy_one(const prepared *m, const real *X, const real *V, real *ki
     const real *const potential = potential_of_potential;
     check(1, 1, kinetic, why.overflow);
     check(1, 1, potential, why.overflow);
-    judge(&why, code);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, kinetic_out);
         refuse(1, potential_out);
     }
@@ -9406,10 +9388,11 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
         check(NL, 1, legs, why.overflow);
     }
     check(NU, 1, sigma, why.overflow);
-    judge(&why, code);
+    check(NV*NC, 1, Hk, why.overflow);
+    check(NL, 1, reach, why.overflow);
     copy(NU, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NU, sigma_out);
         refuse(NL, legs_out);
     }
@@ -9442,10 +9425,10 @@ INLINE void condition_constrained_one(const prepared *m, const real *X, const re
         check(NL, 1, legs, why.overflow);
     }
     check(NV, 1, sigma, why.overflow);
-    judge(&why, code);
+    check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, sigma_out);
         refuse(NL, legs_out);
     }
@@ -9497,10 +9480,11 @@ INLINE void manipulability_one(const prepared *m, const real *X, real *measure_o
     spread(NC, singular_values_1, measure, isotropy);
     check(1, 1, measure, why.overflow);
     check(1, 1, isotropy, why.overflow);
-    judge(&why, code);
+    check(NL, 1, pivots, why.overflow);
+    check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, measure_out);
         refuse(1, isotropy_out);
     }
@@ -9535,10 +9519,10 @@ INLINE void singularity_distance_one(const prepared *m, const real *X, real *act
     least_entry(NL, pivots, legs);
     check(1, 1, actuators, why.overflow);
     check(1, 1, legs, why.overflow);
-    judge(&why, code);
+    check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, actuators_out);
         refuse(1, legs_out);
     }
@@ -9567,9 +9551,8 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
     }
     beside(1, NU, 3, subtract_1, negative_1, gap);
     check(6, 1, gap, why.overflow);
-    judge(&why, code);
     copy(6, gap, gap_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(6, gap_out);
     }
 }
@@ -9584,9 +9567,8 @@ static void slope_one(const prepared *m, const real *X, real *slope_out, int *co
     Hk_run(m, X, Hk, &why);
     beside(NV, NU, NC, H, Hk, slope);
     check(NV*NV, 1, slope, why.overflow);
-    judge(&why, code);
     copy(NV*NV, slope, slope_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV*NV, slope_out);
     }
 }
@@ -9649,9 +9631,8 @@ INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, co
     }
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
-    judge(&why, code);
     copy(NQ, X, X_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_out);
     }
 }
@@ -9667,9 +9648,8 @@ static void constraint_gap_one(const prepared *m, const real *X, real *gap_out, 
         gap[i] = -constraints[i];
     }
     check(NC, 1, gap, why.overflow);
-    judge(&why, code);
     copy(NC, gap, gap_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NC, gap_out);
     }
 }
@@ -9683,8 +9663,7 @@ static void constraint_slope_one(const prepared *m, const real *X, real *slope_o
     if (!is_finite(why.total[0])) {
         check(NV*NC, 1, slope_out, why.overflow);
     }
-    judge(&why, code);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV*NC, slope_out);
     }
 }
@@ -9742,9 +9721,8 @@ INLINE void project_one(const prepared *m, const real *X, real *projected_out, i
     check(NQ, 1, X, why.invalid);
     blame(search_constraint_gap(m, X, projected), &why);
     check(NQ, 1, projected, why.overflow);
-    judge(&why, code);
     copy(NQ, projected, projected_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, projected_out);
     }
 }
@@ -9760,9 +9738,8 @@ INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
     }
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
-    judge(&why, code);
     copy(1, dissipation, dissipation_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, dissipation_out);
     }
 }
@@ -9781,9 +9758,8 @@ INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *
     M_run(m, X, M, &why);
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
-    judge(&why, code);
     copy(NV, momentum, momentum_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, momentum_out);
     }
 }
@@ -9815,9 +9791,8 @@ INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_ou
         margins[i] = q[i];
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
-    judge(&why, code);
     copy(NJ, margins, margins_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NJ, margins_out);
     }
 }
@@ -9850,9 +9825,8 @@ INLINE void within_limits_one(const prepared *m, const real *X, real *within_out
     }
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
-    judge(&why, code);
     copy(1, within, within_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, within_out);
     }
 }
@@ -9882,9 +9856,8 @@ INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
     take(NU, 1, tricept_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
-    judge(&why, code);
     copy(NU, q, q_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NU, q_out);
     }
 }
@@ -9916,9 +9889,8 @@ INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, 
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
     take(NU, 1, tricept_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
-    judge(&why, code);
     copy(NU, qd, qd_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NU, qd_out);
     }
 }
@@ -9953,9 +9925,8 @@ INLINE void actuator_accelerations_one(const prepared *m, const real *X, const r
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
     take(NU, 1, tricept_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
-    judge(&why, code);
     copy(NU, qdd, qdd_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NU, qdd_out);
     }
 }
@@ -9993,9 +9964,8 @@ INLINE void power_one(const prepared *m, const real *X, const real *V, const rea
     product(NV, NU, 1, 1, H, tau, times_1);
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
-    judge(&why, code);
     copy(1, power, power_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(1, power_out);
     }
 }
@@ -10027,9 +9997,8 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     const real *const X_from_3 = X + 3;
     rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
-    judge(&why, code);
     copy(9, R, R_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(9, R_out);
     }
 }
@@ -10048,9 +10017,8 @@ INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
     beside(1, 3, 4, t, quaternion_of_rotation_1, join_1);
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
-    judge(&why, code);
     copy(NQ, X, X_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_out);
     }
 }
@@ -10071,9 +10039,8 @@ INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
     const real *const V_from_0 = V;
     beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
-    judge(&why, code);
     copy(NQ, X_dot, X_dot_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_dot_out);
     }
 }
@@ -10092,9 +10059,8 @@ INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *
     beside(1, 3, 4, t, quaternion_of_rpy_1, join_1);
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
-    judge(&why, code);
     copy(NQ, X, X_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_out);
     }
 }
@@ -10119,9 +10085,8 @@ INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int 
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
-    judge(&why, code);
     copy(NQ, X_moved, X_moved_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_moved_out);
     }
 }
@@ -10146,9 +10111,8 @@ INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *
     }
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
-    judge(&why, code);
     copy(NV, step, step_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NV, step_out);
     }
 }
@@ -10187,9 +10151,8 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
-    judge(&why, code);
     copy(NQ, X, X_out);
-    if (*code != OK) {
+    if (judge(&why, code) != OK) {
         refuse(NQ, X_out);
     }
 }
@@ -10531,10 +10494,7 @@ int tricept_complete_acceleration(const prepared *model, const real *X, const re
     *A, const real *wrench, real *completed)
 {
     int code;
-    (void)model;
-    (void)X;
-    (void)V;
-    (void)wrench;
+    (void)model, (void)X, (void)V, (void)wrench;
     complete_acceleration_one(A, completed, &code);
     return code;
 }
@@ -10703,8 +10663,7 @@ size_t tricept_project_batch(const prepared *model, size_t n, const real *X, rea
 int tricept_dissipation(const prepared *model, const real *X, const real *V, real *dissipation)
 {
     int code;
-    (void)model;
-    (void)X;
+    (void)model, (void)X;
     dissipation_one(V, dissipation, &code);
     return code;
 }

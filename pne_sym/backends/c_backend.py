@@ -16,6 +16,7 @@ from pne_sym.backends.c_model import (
 from pne_sym.backends.c_parts import least_values, stage_texts
 from pne_sym.backends.c_public import Caller, c_functions
 from pne_sym.backends.c_sizes import count_of, sizes_of
+from pne_sym.backends.c_solve import Eliminations
 from pne_sym.backends.c_stages import Stages
 from pne_sym.backends.c_steps import OPERATIONS, Steps, biggest, results_of, runs_in_lanes
 from pne_sym.backends.c_sums import with_common_sums
@@ -216,7 +217,7 @@ def _steps(
     """Texts of the public functions' steps, and the routines that run them: one state, lanes."""
     texts: list[str] = []
     routines: dict[str, tuple[Routine, Routine | None]] = {}
-    eliminations: dict[int, Routine] = {}
+    eliminations = Eliminations()
     for function in bundle.program.public:
         if not any(o.value.size for o in function.outputs):
             continue
@@ -226,6 +227,6 @@ def _steps(
             parts = {name: one for name, (one, _) in routines.items()}
             steps = Steps(bundle, function, runs, parts, eliminations, lanes=lanes)
             found.append(steps.routine())
-            texts += [*steps.before, "\n".join(found[-1].definition())]
+            texts += [*eliminations.taken(), *steps.before, "\n".join(found[-1].definition())]
         routines[function.name] = (found[0], found[1] if len(found) > 1 else None)
     return texts, routines

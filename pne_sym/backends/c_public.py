@@ -170,7 +170,7 @@ class Caller:
             *self._head("", batch=False),
             "{",
             "    int code;",
-            *(f"    (void){name};" for name in unread),
+            *([f"    {', '.join(f'(void){name}' for name in unread)};"] if unread else []),
             *indented(self._call(self.one, "", "&code")),
             "    return code;",
             "}",

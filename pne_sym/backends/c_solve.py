@@ -15,6 +15,39 @@ def tables(order: Order, name: str) -> list[str]:
     ]
 
 
+class Eliminations:
+    """Routines that solve small systems, and tables of their orders, each written once.
+
+    Attributes:
+        before: texts that the next function needs before it; taken by whoever prints it.
+    """
+
+    def __init__(self) -> None:
+        self.before: list[str] = []
+        self._routines: dict[int, Routine] = {}
+        self._orders: dict[Order, str] = {}
+
+    def routine(self, n: int) -> Routine:
+        """Of n equations."""
+        if n not in self._routines:
+            self._routines[n] = elimination(n)
+            self.before.append("\n".join(self._routines[n].definition()))
+        return self._routines[n]
+
+    def order(self, order: Order, solved: str, function: str) -> str:
+        """Name of the tables of an order: what is solved first with it, in full if need be."""
+        if order not in self._orders:
+            name = f"{function}_{solved}" if solved in self._orders.values() else solved
+            self._orders[order] = name
+            self.before.append("\n".join(tables(order, name)))
+        return self._orders[order]
+
+    def taken(self) -> list[str]:
+        """The texts, which are no longer needed before the function after that."""
+        texts, self.before = self.before, []
+        return texts
+
+
 def elimination(n: int) -> Routine:
     """A routine that solves n equations a x = b in w states side by side, and tells where in doubt.
 

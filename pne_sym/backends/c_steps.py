@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_sizes import Sizes, times
-from pne_sym.backends.c_solve import elimination, tables
+from pne_sym.backends.c_solve import Eliminations
 from pne_sym.backends.c_text import WIDTH, Routine, indented, listing, statement
 from pne_sym.backends.orders import order_at_home
 from pne_sym.backends.scalar import wrap
@@ -128,7 +128,7 @@ class Steps:
         function: what is printed.
         runs: routines that run the functions of the program, by name.
         parts: routines of the functions that it searches with, by name.
-        eliminations: routines that solve small systems, by size; new ones are added.
+        eliminations: routines and tables that solve small systems; new ones are added.
         lanes: for states side by side.
     """
 
@@ -138,7 +138,7 @@ class Steps:
         function: PublicFunction,
         runs: Mapping[str, Routine],
         parts: Mapping[str, Routine],
-        eliminations: dict[int, Routine],
+        eliminations: Eliminations,
         *,
         lanes: bool,
     ) -> None:
@@ -150,7 +150,8 @@ class Steps:
         self.read = interpret.inputs_read(bundle.program, function)
         applied = [step for step in function.steps if isinstance(step, Apply)]
         self.used = {o.name for step in applied for o in step.operands}
-        self.used |= {o.name for o in function.outputs}
+        self.given = {o.name for o in function.outputs}
+        self.used |= self.given
         self.at = {a.name: a.name for a in function.inputs}
         self.buffers: list[str] = []
         self.tables: list[str] = []
@@ -185,6 +186,7 @@ class Steps:
         outputs = [o for o in self.f.outputs if o.value.size]
         wanted = {o.name: f"{o.label}_out" for o in outputs}
         judged = [] if self.f.unbounded else outputs
+        unused = [] if self.f.unbounded else self._unused()
         apart = [o for o in judged if o.name not in self.summed]
         moved = [o for o in outputs if self.at[o.name] != wanted[o.name]]
         move = "deliver" if self.lanes else "copy"
@@ -192,18 +194,27 @@ class Steps:
             f"{move}({self._size(o.value)}, {self.at[o.name]}, {wanted[o.name]});" for o in moved
         ]
         if self.lanes:
-            sums = [f"add_up({self._size(o.value)}, {self.at[o.name]}, why.total);" for o in apart]
+            sums = [
+                f"add_up({self._size(value)}, {self.at[value.name]}, why.total);"
+                for value in (*(o.value for o in apart), *unused)
+            ]
             return [*sums, "suspect(&why, code);", *moves]
         checks = {
             o.name: f"check({self._size(o.value)}, 1, {self.at[o.name]}, why.overflow);"
             for o in judged
         }
         summed = [checks.pop(name) for name in [*checks] if name in self.summed]
-        lines = [*checks.values(), "judge(&why, code);", *moves]
+        more = [f"check({self._size(v)}, 1, {self.at[v.name]}, why.overflow);" for v in unused]
+        lines = [*checks.values(), *more, *moves]
         if summed:
             lines[:0] = ["if (!is_finite(why.total[0])) {", *indented(summed), "}"]
         refused = [f"refuse({self._size(o.value)}, {wanted[o.name]});" for o in outputs]
-        return [*lines, "if (*code != OK) {", *indented(refused), "}"]
+        return [*lines, "if (judge(&why, code) != OK) {", *indented(refused), "}"]
+
+    def _unused(self) -> list[Value]:
+        """Arrays that runs give and nothing uses: where they overflow the state is none either."""
+        runs = (step for step in self.f.steps if isinstance(step, Run))
+        return [t for run in runs for t in run.targets if t.size and t.name not in self.used]
 
     # ---- arrays ------------------------------------------------------------------------------
 
@@ -279,7 +290,8 @@ class Steps:
             return self._run(step)
         if isinstance(step, Search):
             return self._search(step)
-        return self._part(step) or self._applied(step)
+        lines = self._part(step)
+        return self._applied(step) if lines is None else lines
 
     def _run(self, step: Run) -> list[str]:
         function, lines = self.bundle.program.functions[step.function], []
@@ -294,10 +306,10 @@ class Steps:
         call = self.runs[step.function].call_with({"t": "&why", **arrays})
         return [*lines, *wrap(call, WIDTH - 4, "    ")]
 
-    def _part(self, step: Apply) -> list[str]:
-        """Results as parts of the operand, where they are."""
+    def _part(self, step: Apply) -> list[str] | None:
+        """Results as parts of the operand; None where they are none."""
         if step.operation not in _PARTS:
-            return []
+            return None
         (value,), numbers, first = step.operands, step.numbers, (*step.numbers, 0)[0]
         whole = step.targets[0].shape == value.shape
         row = times(*self.sizes.names(value)[1:])
@@ -308,10 +320,13 @@ class Steps:
         elif step.operation == "take" and numbers == (*range(first, first + len(numbers)),) != ():
             places = [first]
         else:
-            return []
+            return None
         lines = []
         for target, place in zip(step.targets, places, strict=True):
             if target.name not in self.used:
+                continue
+            if step.operation == "extend" and target.name not in self.given:  # by nothing
+                self.at[target.name] = self.at[value.name]
                 continue
             self.at[target.name] = target.name
             at = self.sizes.name(place, (*step.targets, value))
@@ -373,14 +388,10 @@ class Steps:
         if order is None:
             self._needs_work(step)
             return careful
-        straight = self.eliminations.get(len(order.rows)) or elimination(len(order.rows))
-        if len(order.rows) not in self.eliminations:
-            self.eliminations[len(order.rows)] = straight
-            self.before.append("\n".join(straight.definition()))
-        solved = step.targets[0].name
-        self.tables += tables(order, solved)
+        straight, solved = self.eliminations.routine(len(order.rows)), step.targets[0].name
+        known = self.eliminations.order(order, solved, self.f.name)
         names = {v: str(fields[v]) for v in "abx"}
-        names |= {"order": f"order_{solved}", "sizes": f"sizes_{solved}"}
+        names |= {"order": f"order_{known}", "sizes": f"sizes_{known}"}
         stride = f"stride_of({fields['m']}, {self.w})" if filled else str(fields["m"])
         names |= {"w": self.w, "stride": stride, "unsure": "why.singular", "total": "why.total"}
         self.summed.add(step.targets[0].name)

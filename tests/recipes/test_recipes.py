@@ -166,7 +166,7 @@ def test_a_back_end(copy: Path) -> None:
     run(copy, *PNE_GEN, *generate)
     assert (copy / "out/planar_3rpr/listing/planar_3rpr.txt").is_file()
     assert "up to date" in run(copy, *PNE_GEN, *check)
-    assert "root_1 =" in run(copy, *PNE_GEN, *explain)
+    assert "c_1 =" in run(copy, *PNE_GEN, *explain)
     run(copy, *PNE_GEN, "planar_3rpr", "--out", "out/")
     assert not (copy / "out/planar_3rpr/listing").exists(), "stale"
 
