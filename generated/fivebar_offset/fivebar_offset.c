@@ -2159,7 +2159,9 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
         dynamics_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
-        sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
+        for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+            sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
+        }
     }
     dynamics_after(m, 1, s, sums, M, Z, t);
 }
@@ -2343,7 +2345,9 @@ INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
         M_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
     }
     for (size_t n = 0; n < 6; ++n) {
-        sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
+        for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+            sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
+        }
     }
     M_after(m, 1, s, sums, M, t);
 }
@@ -2595,7 +2599,9 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
         Z_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
     }
     for (size_t n = 0; n < 3; ++n) {
-        sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
+        for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+            sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
+        }
     }
     Z_after(1, s, sums, Z, t);
 }
@@ -3065,7 +3071,9 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
         required_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, t);
     }
     for (size_t n = 0; n < 5; ++n) {
-        sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
+        for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+            sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
+        }
     }
     required_after(1, s, sums, required);
 }
@@ -3909,7 +3917,9 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
         potential_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
     }
     for (size_t n = 0; n < 2; ++n) {
-        sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
+        for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+            sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
+        }
     }
     potential_after(1, s, sums, potential);
 }
@@ -4082,7 +4092,9 @@ INLINE void condition_run(const prepared *m, const real *X, real *H, real *Hk, r
         condition_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, pivots, reach, t);
     }
     for (size_t n = 0; n < 2; ++n) {
-        sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
+        for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+            sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
+        }
     }
     condition_after(1, sums, lengths, t);
 }

@@ -1292,11 +1292,17 @@ INLINE void quaternion_rate(const real *p, const real *b, real *x)
     x[3] = -(p[0]*b[0] + p[1]*b[1] + p[2]*b[2])/2;
 }
 
+/* Length of v[3]; a magnitude tells analysers that squares have no negative sum. */
+INLINE real length_of(const real *v)
+{
+    return root(magnitude(v[0]*v[0] + v[1]*v[1] + v[2]*v[2]));
+}
+
 /* The quaternion p turned by the rotation vector v, made of length 1. */
 INLINE void turn_quaternion(const real *p, const real *v, real *to)
 {
-    const real half = root(v[0]*v[0] + v[1]*v[1] + v[2]*v[2])/2;
-    const real c = cosine(half), f = magnitude(half) > 0 ? sine(half)/half/2 : R(0.5);
+    const real half = length_of(v)/2;
+    const real c = cosine(half), f = half > ROUNDING ? sine(half)/half/2 : R(0.5);
     const real a[3] = {f*v[0], f*v[1], f*v[2]};
     real b[4];
     unit(p, b);
@@ -1316,8 +1322,8 @@ INLINE void turn_between(const real *a, const real *b, real *v)
     v[1] = p[3]*q[1] - q[3]*p[1] - (q[2]*p[0] - q[0]*p[2]);
     v[2] = p[3]*q[2] - q[3]*p[2] - (q[0]*p[1] - q[1]*p[0]);
     const real c = p[0]*q[0] + p[1]*q[1] + p[2]*q[2] + p[3]*q[3];
-    const real s = root(v[0]*v[0] + v[1]*v[1] + v[2]*v[2]);
-    const real factor = (c < 0 ? -2 : 2)*(s > 0 ? angle(s, magnitude(c))/s : R(1));
+    const real s = length_of(v);
+    const real factor = (c < 0 ? -2 : 2)*(s > ROUNDING ? angle(s, magnitude(c))/s : R(1));
     for (size_t i = 0; i < 3; ++i) {
         v[i] *= factor;
     }

@@ -1919,11 +1919,17 @@ INLINE void quaternion_rate(const real *p, const real *b, real *x)
     x[3] = -(p[0]*b[0] + p[1]*b[1] + p[2]*b[2])/2;
 }
 
+/* Length of v[3]; a magnitude tells analysers that squares have no negative sum. */
+INLINE real length_of(const real *v)
+{
+    return root(magnitude(v[0]*v[0] + v[1]*v[1] + v[2]*v[2]));
+}
+
 /* The quaternion p turned by the rotation vector v, made of length 1. */
 INLINE void turn_quaternion(const real *p, const real *v, real *to)
 {
-    const real half = root(v[0]*v[0] + v[1]*v[1] + v[2]*v[2])/2;
-    const real c = cosine(half), f = magnitude(half) > 0 ? sine(half)/half/2 : R(0.5);
+    const real half = length_of(v)/2;
+    const real c = cosine(half), f = half > ROUNDING ? sine(half)/half/2 : R(0.5);
     const real a[3] = {f*v[0], f*v[1], f*v[2]};
     real b[4];
     unit(p, b);
@@ -1943,8 +1949,8 @@ INLINE void turn_between(const real *a, const real *b, real *v)
     v[1] = p[3]*q[1] - q[3]*p[1] - (q[2]*p[0] - q[0]*p[2]);
     v[2] = p[3]*q[2] - q[3]*p[2] - (q[0]*p[1] - q[1]*p[0]);
     const real c = p[0]*q[0] + p[1]*q[1] + p[2]*q[2] + p[3]*q[3];
-    const real s = root(v[0]*v[0] + v[1]*v[1] + v[2]*v[2]);
-    const real factor = (c < 0 ? -2 : 2)*(s > 0 ? angle(s, magnitude(c))/s : R(1));
+    const real s = length_of(v);
+    const real factor = (c < 0 ? -2 : 2)*(s > ROUNDING ? angle(s, magnitude(c))/s : R(1));
     for (size_t i = 0; i < 3; ++i) {
         v[i] *= factor;
     }
@@ -5080,7 +5086,9 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
         dynamics_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, leg, H, t);
     }
     for (size_t n = 0; n < 29; ++n) {
-        sums[n] += total(terms_rrrs + n*LEGS(LEGS_OF_rrrs), LEGS_OF_rrrs);
+        for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
+            sums[n] += terms_rrrs[n*LEGS(LEGS_OF_rrrs) + leg];
+        }
     }
     dynamics_after(m, 1, s, sums, M, Z, t);
 }
@@ -5610,7 +5618,9 @@ INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
         M_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, t);
     }
     for (size_t n = 0; n < 23; ++n) {
-        sums[n] += total(terms_rrrs + n*LEGS(LEGS_OF_rrrs), LEGS_OF_rrrs);
+        for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
+            sums[n] += terms_rrrs[n*LEGS(LEGS_OF_rrrs) + leg];
+        }
     }
     M_after(m, 1, s, sums, M, t);
 }
@@ -6389,7 +6399,9 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
         Z_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, t);
     }
     for (size_t n = 0; n < 6; ++n) {
-        sums[n] += total(terms_rrrs + n*LEGS(LEGS_OF_rrrs), LEGS_OF_rrrs);
+        for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
+            sums[n] += terms_rrrs[n*LEGS(LEGS_OF_rrrs) + leg];
+        }
     }
     Z_after(1, s, sums, Z, t);
 }
@@ -7007,7 +7019,9 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
         required_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, leg, H, t);
     }
     for (size_t n = 0; n < 6; ++n) {
-        sums[n] += total(terms_rrrs + n*LEGS(LEGS_OF_rrrs), LEGS_OF_rrrs);
+        for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
+            sums[n] += terms_rrrs[n*LEGS(LEGS_OF_rrrs) + leg];
+        }
     }
     required_after(1, s, sums, required);
 }
@@ -8376,7 +8390,9 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
         potential_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, t);
     }
     for (size_t n = 0; n < 2; ++n) {
-        sums[n] += total(terms_rrrs + n*LEGS(LEGS_OF_rrrs), LEGS_OF_rrrs);
+        for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
+            sums[n] += terms_rrrs[n*LEGS(LEGS_OF_rrrs) + leg];
+        }
     }
     potential_after(1, s, sums, potential);
 }
@@ -8635,7 +8651,9 @@ INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengt
         condition_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, leg, H, pivots, reach, t);
     }
     for (size_t n = 0; n < 2; ++n) {
-        sums[n] += total(terms_rrrs + n*LEGS(LEGS_OF_rrrs), LEGS_OF_rrrs);
+        for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
+            sums[n] += terms_rrrs[n*LEGS(LEGS_OF_rrrs) + leg];
+        }
     }
     condition_after(1, sums, lengths, t);
 }

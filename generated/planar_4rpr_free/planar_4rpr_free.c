@@ -1904,7 +1904,9 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
         dynamics_place_rpr_leg4(1, LEGS(LEGS_OF_rpr_leg4), o_rpr_leg4, leg, t);
     }
     for (size_t n = 0; n < 9; ++n) {
-        sums[n] += total(terms_rpr_leg4 + n*LEGS(LEGS_OF_rpr_leg4), LEGS_OF_rpr_leg4);
+        for (size_t leg = 0; leg < LEGS_OF_rpr_leg4; ++leg) {
+            sums[n] += terms_rpr_leg4[n*LEGS(LEGS_OF_rpr_leg4) + leg];
+        }
     }
     dynamics_after(m, 1, s, sums, M, Z, t);
 }
@@ -2106,7 +2108,9 @@ INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
         M_place_rpr_leg4(1, LEGS(LEGS_OF_rpr_leg4), o_rpr_leg4, leg, t);
     }
     for (size_t n = 0; n < 6; ++n) {
-        sums[n] += total(terms_rpr_leg4 + n*LEGS(LEGS_OF_rpr_leg4), LEGS_OF_rpr_leg4);
+        for (size_t leg = 0; leg < LEGS_OF_rpr_leg4; ++leg) {
+            sums[n] += terms_rpr_leg4[n*LEGS(LEGS_OF_rpr_leg4) + leg];
+        }
     }
     M_after(m, 1, s, sums, M, t);
 }
@@ -2248,7 +2252,9 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
         Z_place_rpr_leg4(1, LEGS(LEGS_OF_rpr_leg4), o_rpr_leg4, leg, t);
     }
     for (size_t n = 0; n < 3; ++n) {
-        sums[n] += total(terms_rpr_leg4 + n*LEGS(LEGS_OF_rpr_leg4), LEGS_OF_rpr_leg4);
+        for (size_t leg = 0; leg < LEGS_OF_rpr_leg4; ++leg) {
+            sums[n] += terms_rpr_leg4[n*LEGS(LEGS_OF_rpr_leg4) + leg];
+        }
     }
     Z_after(1, s, sums, Z, t);
 }
@@ -2507,7 +2513,9 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
         required_place_rpr_leg4(1, LEGS(LEGS_OF_rpr_leg4), o_rpr_leg4, leg, t);
     }
     for (size_t n = 0; n < 3; ++n) {
-        sums[n] += total(terms_rpr_leg4 + n*LEGS(LEGS_OF_rpr_leg4), LEGS_OF_rpr_leg4);
+        for (size_t leg = 0; leg < LEGS_OF_rpr_leg4; ++leg) {
+            sums[n] += terms_rpr_leg4[n*LEGS(LEGS_OF_rpr_leg4) + leg];
+        }
     }
     required_after(1, s, sums, required);
 }
@@ -3198,7 +3206,9 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
         potential_place_rpr_leg4(1, LEGS(LEGS_OF_rpr_leg4), o_rpr_leg4, leg, t);
     }
     for (size_t n = 0; n < 2; ++n) {
-        sums[n] += total(terms_rpr_leg4 + n*LEGS(LEGS_OF_rpr_leg4), LEGS_OF_rpr_leg4);
+        for (size_t leg = 0; leg < LEGS_OF_rpr_leg4; ++leg) {
+            sums[n] += terms_rpr_leg4[n*LEGS(LEGS_OF_rpr_leg4) + leg];
+        }
     }
     potential_after(1, s, sums, potential);
 }
@@ -3370,7 +3380,9 @@ INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengt
         condition_place_rpr_leg4(1, LEGS(LEGS_OF_rpr_leg4), o_rpr_leg4, leg, pivots, t);
     }
     for (size_t n = 0; n < 2; ++n) {
-        sums[n] += total(terms_rpr_leg4 + n*LEGS(LEGS_OF_rpr_leg4), LEGS_OF_rpr_leg4);
+        for (size_t leg = 0; leg < LEGS_OF_rpr_leg4; ++leg) {
+            sums[n] += terms_rpr_leg4[n*LEGS(LEGS_OF_rpr_leg4) + leg];
+        }
     }
     condition_after(1, sums, lengths, t);
 }

@@ -2703,13 +2703,17 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
         dynamics_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
-        sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
+        for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+            sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
+        }
     }
     for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
         dynamics_place_prr(1, LEGS(LEGS_OF_prr), o_prr, leg, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
-        sums[n] += total(terms_prr + n*LEGS(LEGS_OF_prr), LEGS_OF_prr);
+        for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
+            sums[n] += terms_prr[n*LEGS(LEGS_OF_prr) + leg];
+        }
     }
     dynamics_after(m, 1, s, sums, M, Z, t);
 }
@@ -2971,13 +2975,17 @@ INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
         M_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
     }
     for (size_t n = 0; n < 6; ++n) {
-        sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
+        for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+            sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
+        }
     }
     for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
         M_place_prr(1, LEGS(LEGS_OF_prr), o_prr, leg, t);
     }
     for (size_t n = 0; n < 6; ++n) {
-        sums[n] += total(terms_prr + n*LEGS(LEGS_OF_prr), LEGS_OF_prr);
+        for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
+            sums[n] += terms_prr[n*LEGS(LEGS_OF_prr) + leg];
+        }
     }
     M_after(m, 1, s, sums, M, t);
 }
@@ -3291,13 +3299,17 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
         Z_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
     }
     for (size_t n = 0; n < 3; ++n) {
-        sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
+        for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+            sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
+        }
     }
     for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
         Z_place_prr(1, LEGS(LEGS_OF_prr), o_prr, leg, t);
     }
     for (size_t n = 0; n < 3; ++n) {
-        sums[n] += total(terms_prr + n*LEGS(LEGS_OF_prr), LEGS_OF_prr);
+        for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
+            sums[n] += terms_prr[n*LEGS(LEGS_OF_prr) + leg];
+        }
     }
     Z_after(1, s, sums, Z, t);
 }
@@ -3710,13 +3722,17 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
         required_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, t);
     }
     for (size_t n = 0; n < 3; ++n) {
-        sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
+        for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+            sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
+        }
     }
     for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
         required_place_prr(1, LEGS(LEGS_OF_prr), o_prr, leg, H, t);
     }
     for (size_t n = 0; n < 3; ++n) {
-        sums[n] += total(terms_prr + n*LEGS(LEGS_OF_prr), LEGS_OF_prr);
+        for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
+            sums[n] += terms_prr[n*LEGS(LEGS_OF_prr) + leg];
+        }
     }
     required_after(1, s, sums, required);
 }
@@ -4702,13 +4718,17 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
         potential_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
     }
     for (size_t n = 0; n < 3; ++n) {
-        sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
+        for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+            sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
+        }
     }
     for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
         potential_place_prr(1, LEGS(LEGS_OF_prr), o_prr, leg, t);
     }
     for (size_t n = 0; n < 3; ++n) {
-        sums[n] += total(terms_prr + n*LEGS(LEGS_OF_prr), LEGS_OF_prr);
+        for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
+            sums[n] += terms_prr[n*LEGS(LEGS_OF_prr) + leg];
+        }
     }
     potential_after(1, s, sums, potential);
 }
@@ -4936,13 +4956,17 @@ INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengt
         condition_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, pivots, reach, t);
     }
     for (size_t n = 0; n < 3; ++n) {
-        sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
+        for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+            sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
+        }
     }
     for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
         condition_place_prr(1, LEGS(LEGS_OF_prr), o_prr, leg, H, pivots, reach, t);
     }
     for (size_t n = 0; n < 3; ++n) {
-        sums[n] += total(terms_prr + n*LEGS(LEGS_OF_prr), LEGS_OF_prr);
+        for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
+            sums[n] += terms_prr[n*LEGS(LEGS_OF_prr) + leg];
+        }
     }
     condition_after(1, sums, lengths, t);
 }

@@ -1814,11 +1814,17 @@ INLINE void quaternion_rate(const real *p, const real *b, real *x)
     x[3] = -(p[0]*b[0] + p[1]*b[1] + p[2]*b[2])/2;
 }
 
+/* Length of v[3]; a magnitude tells analysers that squares have no negative sum. */
+INLINE real length_of(const real *v)
+{
+    return root(magnitude(v[0]*v[0] + v[1]*v[1] + v[2]*v[2]));
+}
+
 /* The quaternion p turned by the rotation vector v, made of length 1. */
 INLINE void turn_quaternion(const real *p, const real *v, real *to)
 {
-    const real half = root(v[0]*v[0] + v[1]*v[1] + v[2]*v[2])/2;
-    const real c = cosine(half), f = magnitude(half) > 0 ? sine(half)/half/2 : R(0.5);
+    const real half = length_of(v)/2;
+    const real c = cosine(half), f = half > ROUNDING ? sine(half)/half/2 : R(0.5);
     const real a[3] = {f*v[0], f*v[1], f*v[2]};
     real b[4];
     unit(p, b);
@@ -1838,8 +1844,8 @@ INLINE void turn_between(const real *a, const real *b, real *v)
     v[1] = p[3]*q[1] - q[3]*p[1] - (q[2]*p[0] - q[0]*p[2]);
     v[2] = p[3]*q[2] - q[3]*p[2] - (q[0]*p[1] - q[1]*p[0]);
     const real c = p[0]*q[0] + p[1]*q[1] + p[2]*q[2] + p[3]*q[3];
-    const real s = root(v[0]*v[0] + v[1]*v[1] + v[2]*v[2]);
-    const real factor = (c < 0 ? -2 : 2)*(s > 0 ? angle(s, magnitude(c))/s : R(1));
+    const real s = length_of(v);
+    const real factor = (c < 0 ? -2 : 2)*(s > ROUNDING ? angle(s, magnitude(c))/s : R(1));
     for (size_t i = 0; i < 3; ++i) {
         v[i] *= factor;
     }
@@ -4851,7 +4857,9 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
         dynamics_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, Hk, constraint_bias, t);
     }
     for (size_t n = 0; n < 27; ++n) {
-        sums[n] += total(terms_tube + n*LEGS(LEGS_OF_tube), LEGS_OF_tube);
+        for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
+            sums[n] += terms_tube[n*LEGS(LEGS_OF_tube) + leg];
+        }
     }
     dynamics_after(m, 1, s, sums, M, Z, t);
 }
@@ -5820,7 +5828,9 @@ INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
         M_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, t);
     }
     for (size_t n = 0; n < 21; ++n) {
-        sums[n] += total(terms_tube + n*LEGS(LEGS_OF_tube), LEGS_OF_tube);
+        for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
+            sums[n] += terms_tube[n*LEGS(LEGS_OF_tube) + leg];
+        }
     }
     M_after(m, 1, s, sums, M, t);
 }
@@ -6169,7 +6179,9 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
         Z_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, t);
     }
     for (size_t n = 0; n < 6; ++n) {
-        sums[n] += total(terms_tube + n*LEGS(LEGS_OF_tube), LEGS_OF_tube);
+        for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
+            sums[n] += terms_tube[n*LEGS(LEGS_OF_tube) + leg];
+        }
     }
     Z_after(1, s, sums, Z, t);
 }
@@ -7029,7 +7041,9 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
         required_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, Hk, t);
     }
     for (size_t n = 0; n < 6; ++n) {
-        sums[n] += total(terms_tube + n*LEGS(LEGS_OF_tube), LEGS_OF_tube);
+        for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
+            sums[n] += terms_tube[n*LEGS(LEGS_OF_tube) + leg];
+        }
     }
     required_after(1, s, sums, required);
 }
@@ -8397,7 +8411,9 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
         potential_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, t);
     }
     for (size_t n = 0; n < 1; ++n) {
-        sums[n] += total(terms_tube + n*LEGS(LEGS_OF_tube), LEGS_OF_tube);
+        for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
+            sums[n] += terms_tube[n*LEGS(LEGS_OF_tube) + leg];
+        }
     }
     potential_after(1, s, sums, potential);
 }
@@ -8831,7 +8847,9 @@ INLINE void condition_run(const prepared *m, const real *X, real *H, real *Hk, r
         condition_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, Hk, pivots, t);
     }
     for (size_t n = 0; n < 2; ++n) {
-        sums[n] += total(terms_tube + n*LEGS(LEGS_OF_tube), LEGS_OF_tube);
+        for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
+            sums[n] += terms_tube[n*LEGS(LEGS_OF_tube) + leg];
+        }
     }
     condition_after(1, sums, lengths, t);
 }

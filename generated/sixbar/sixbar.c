@@ -2442,7 +2442,9 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
         dynamics_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
-        sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
+        for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+            sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
+        }
     }
     dynamics_after(m, 1, s, sums, M, Z, t);
 }
@@ -2666,7 +2668,9 @@ INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
         M_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
     }
     for (size_t n = 0; n < 6; ++n) {
-        sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
+        for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+            sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
+        }
     }
     M_after(m, 1, s, sums, M, t);
 }
@@ -2999,7 +3003,9 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
         Z_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
     }
     for (size_t n = 0; n < 3; ++n) {
-        sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
+        for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+            sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
+        }
     }
     Z_after(1, s, sums, Z, t);
 }
@@ -3334,7 +3340,9 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
         required_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, t);
     }
     for (size_t n = 0; n < 3; ++n) {
-        sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
+        for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+            sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
+        }
     }
     required_after(1, s, sums, required);
 }
@@ -4140,7 +4148,9 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
         potential_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
     }
     for (size_t n = 0; n < 2; ++n) {
-        sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
+        for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+            sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
+        }
     }
     potential_after(1, s, sums, potential);
 }
@@ -4326,7 +4336,9 @@ INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengt
         condition_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, pivots, reach, t);
     }
     for (size_t n = 0; n < 2; ++n) {
-        sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
+        for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+            sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
+        }
     }
     condition_after(1, sums, lengths, t);
 }

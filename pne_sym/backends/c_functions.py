@@ -8,7 +8,7 @@ from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_parts import Parts, vector_name
 from pne_sym.backends.c_sizes import array_names, count_of, times
 from pne_sym.backends.c_stages import Stages
-from pne_sym.backends.c_text import Routine, comment, listing
+from pne_sym.backends.c_text import Routine, comment, indented, listing
 from pne_sym.program.ir import Block, Function
 
 LANES = 8
@@ -122,13 +122,23 @@ class _FunctionWriter:
                 call = place.call_with({**given, "first": "leg"})
                 ends += [f"for (size_t leg = 0; leg < {legs}; ++leg) {{", f"    {call}", "}"]
             if block.sums:
-                terms, more = f"terms_{block.leg_type}", "" if block is self.adding[0] else "+"
-                ends += [
-                    f"for (size_t n = 0; n < {len(self.parts.sums)}; ++n) {{",
-                    f"    sums[n] {more}= total({terms} + n*LEGS({legs}), {legs});",
-                    "}",
-                ]
+                ends += self._added(f"terms_{block.leg_type}", legs, block is self.adding[0])
         return lines + ends
+
+    def _added(self, terms: str, legs: str, first: bool) -> list[str]:
+        """What legs add to the sums, one after another over all types, as for states in lanes."""
+        place = f"n*LEGS({legs})"
+        line = f"sums[n] = total({terms} + {place}, {legs});"
+        one_by_one = [
+            f"for (size_t leg = 0; leg < {legs}; ++leg) {{",
+            f"    sums[n] += {terms}[{place} + leg];",
+            "}",
+        ]
+        return [
+            f"for (size_t n = 0; n < {len(self.parts.sums)}; ++n) {{",
+            *indented([line] if first else one_by_one),
+            "}",
+        ]
 
     def _in_turn(self) -> list[str]:
         """One leg after another, the states side by side."""

@@ -60,3 +60,19 @@ def test_around_the_threshold(name: str, tmp_path: Path) -> None:
     failed = np.isnan(tau).any(axis=1)
     # rounding moves a pivot by some epsilon, which is 1e-4 of the threshold
     assert np.sum(failed != (found.single != OK)) < 0.02 * COUNT
+
+
+def test_sums_over_all_types_of_legs_are_taken_in_one_order(tmp_path: Path) -> None:
+    """So that without fused operations single states and batches have the same bits."""
+    made, m = bundle(catalogue("planar_redundant")), module(catalogue("planar_redundant"))
+    assert len(made.derivation.leg_types) > 1
+    library = CLibrary(made, tmp_path, flags=("-O1", "-ffp-contract=off"))
+    rng = np.random.default_rng(2)
+    X = m.HOME_X + rng.uniform(-0.02, 0.02, (64, m.NQ))
+    V = rng.uniform(-1.0, 1.0, (64, m.NV))
+    batch, status = library.batch("dynamics", X, V)
+    assert (status == OK).all()
+    for k in range(64):
+        alone, _ = library.single("dynamics", X[k], V[k])
+        for one, all_of_it in zip(alone, batch, strict=True):
+            np.testing.assert_array_equal(one.reshape(-1), all_of_it[k].reshape(-1))
