@@ -1170,19 +1170,21 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
 
 INLINE void least_entry(size_t n, const real *a, real *x)
 {
-    *x = a[0];
+    real least = a[0];
     for (size_t e = 1; e < n; ++e) {
-        *x = lesser(*x, a[e]);
+        least = lesser(least, a[e]);
     }
+    *x = least;
 }
 
 /* Of the first n entries the product, and the last over the first, 0 where that is 0. */
 INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
 {
-    *product_of = 1;
+    real all = 1;
     for (size_t e = 0; e < n; ++e) {
-        *product_of *= a[e];
+        all *= a[e];
     }
+    *product_of = all;
     *ratio = magnitude(a[0]) > 0 ? a[n - 1]/a[0] : a[0];
 }
 
