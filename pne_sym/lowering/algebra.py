@@ -75,7 +75,7 @@ def replaced(expr: Any, changes: Mapping[Any, Any]) -> Any:
     """The expression with others in place of symbols."""
     if expr.is_Symbol:
         return changes.get(expr, expr)
-    if symbols(expr).isdisjoint(changes):
+    if changes.keys().isdisjoint(symbols(expr)):  # goes through the shorter
         return expr
     args = [replaced(arg, changes) for arg in expr.args]
     if expr.is_Add:
