@@ -61,7 +61,7 @@ _LANES = {
 _SINGLE = {
     "solve": "solve_state({m}, {b}, work, {x}, why.singular);",
     "least_norm": "least_norm({m}, {n}, {a}, {b}, {x}, why.singular);",
-    "resolve": "resolve({m}, {n}, {first}, {a}, {x}, {y}, why.singular);",
+    "resolve": "resolve({m}, {n}, {p}, {first}, {a}, {b}, {x}, {y}, why.singular);",
     "null_basis": "null_basis({m}, {n}, {first}, {a}, {x});",
     "singular_values": "singular_values({m}, {n}, {a}, {x});",
     "least_entry": "least_entry({m}, {a}, {x});",

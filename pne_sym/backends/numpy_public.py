@@ -46,7 +46,7 @@ _EXPRESSIONS = {
     "solve": "_solve({0}, {1})",
     "saddle": "_saddle({0}, {1})",
     "least_norm": "_least_norm({0}, {1})",
-    "resolve": "_resolve({0}, {n})",
+    "resolve": "_resolve({0}, {1}, {n})",
     "null_basis": "_null_basis({0}, {n})",
     "singular_values": "_singular_values({0})",
     "least_entry": "_least_entry({0})",

@@ -229,7 +229,7 @@ class Writer:
             return self._unique(a, H, Hk, f)
         left = across = None
         if Hk is not None:
-            left, across = a.apply_all("resolve", Hk, numbers=[self.independent])
+            left, across = self._resolved(a, H, Hk)
         tau, matrix = self._least(a, H, f, across, weighted=weighted)
         tau = choose(tau, matrix) if choose else tau
         if Hk is None or left is None:
@@ -246,8 +246,13 @@ class Writer:
         H, Hk, f = self._solved(a, required, actuators)
         if self._is_square(H):
             return self._unique(a, H, Hk, f)[0], H
-        across = a.apply_all("resolve", Hk, numbers=[self.independent])[1] if Hk else None
+        across = self._resolved(a, H, Hk)[1] if Hk else None
         return self._least(a, H, f, across, weighted=False)
+
+    def _resolved(self, a: Algorithm, H: Value, Hk: Value) -> tuple[Value, ...]:
+        """Combinations of equations that resolve constraint forces, and that know none of them."""
+        both = a.apply("beside", H, Hk) if self.n["NU"] else Hk
+        return a.apply_all("resolve", Hk, both, numbers=[self.independent])
 
     def _solved(
         self, a: Algorithm, f: Value, actuators: list[Value]
@@ -289,7 +294,7 @@ class Writer:
         """Combinations of rows that resolve the actuators, and the force nearest to their range."""
         facts = self.c.actuation
         actuators = a.apply("beside", H, Hk) if Hk else H
-        rows, idle = a.apply_all("resolve", actuators, numbers=[facts.rank])
+        rows, idle = a.apply_all("resolve", actuators, actuators, numbers=[facts.rank])
         gap = a.apply("negative", a.apply("times", idle, f))
         effect = a.apply("take_columns", idle, numbers=facts.passive)
         change = a.apply("least_norm", effect, gap)
@@ -328,15 +333,17 @@ class Writer:
         return self.made(value, "lambda", meaning, "NC")
 
     def _least_held(
-        self, a: Algorithm, M: Value, force: Value, Hk: Value, bias: Value
+        self, a: Algorithm, M: Value, force: Value, H: Value, constraint: list[Value]
     ) -> tuple[Value, Value]:
         """Acceleration under constraints of which some follow from others, and the least lambda."""
-        some, _ = a.apply_all("resolve", a.apply("transposed", Hk), numbers=[self.independent])
-        own = a.apply("transposed", a.apply("product", some, a.apply("transposed", Hk)))
+        Hk, bias = constraint
+        rows = a.apply("transposed", Hk)
+        some, _ = a.apply_all("resolve", rows, rows, numbers=[self.independent])
+        own = a.apply("transposed", a.apply("product", some, rows))
         right = a.apply("join", force, a.apply("negative", a.apply("times", some, bias)))
         both = a.apply("solve", a.apply("saddle", M, own), right)
         A, amounts = a.apply_all("split", both, numbers=[self.n["NV"]])
-        left, _ = a.apply_all("resolve", Hk, numbers=[self.independent])
+        left, _ = self._resolved(a, H, Hk)
         wanted = a.apply("times", left, a.apply("times", own, amounts))
         return A, a.apply("least_norm", a.apply("product", left, Hk), wanted)
 
@@ -347,7 +354,7 @@ class Writer:
         force = a.apply("times", H, self.given("tau").value)
         force = a.apply("subtract", a.apply("add", force, self.external(a)), Z)
         if constraint and self.c.overconstrained:
-            A, lam = self._least_held(a, M, force, *constraint)
+            A, lam = self._least_held(a, M, force, H, constraint)
             outputs = [self._multipliers(lam)]
         elif constraint:
             Hk, bias = constraint
@@ -397,7 +404,7 @@ class Writer:
         own = a.apply("take", columns, numbers=facts.passive)
         if facts.is_coupled:
             system = a.apply("beside", *actuators) if self.constrained else actuators[0]
-            _, idle = a.apply_all("resolve", system, numbers=[facts.rank])
+            _, idle = a.apply_all("resolve", system, system, numbers=[facts.rank])
             effect, gap = a.apply("product", idle, columns), a.apply("times", idle, needed)
         else:
             effect, gap = own, a.apply("take", needed, numbers=facts.passive)

@@ -314,19 +314,20 @@ def least_norm(a: Array, b: Array) -> tuple[Array, ...]:
 
 
 @_operation(Status.SINGULAR)
-def resolve(a: Array, *, numbers: tuple[int, ...]) -> tuple[Array, ...]:
+def resolve(a: Array, b: Array, *, numbers: tuple[int, ...]) -> tuple[Array, ...]:
     """Combinations of rows of a: n that resolve it, and the others, which vanish on it.
 
-    SINGULAR where the rank of a, rows scaled to one, is less than n.  A row of nothing but
-    rounding, beside the largest, counts as zero: scaled to one it would be a direction.
+    The rows of b, of which a is a part, are scaled to one, and those of a with them: a row of
+    equations keeps its weight where few of its entries are in a.  SINGULAR where the rank of a is
+    then less than n.  A row of nothing but rounding, beside the largest, counts as zero: scaled to
+    one it would be a direction.
     """
     rank = numbers[0]
-    bad = ~finite(a)
-    a = _blanked(a, bad)
-    size = _row_sizes(a)
-    most = np.max(np.abs(a), axis=(-2, -1), keepdims=True, initial=0.0)
-    noise = np.max(np.abs(a), axis=-1, keepdims=True, initial=0.0) <= linear.PIVOT * most
-    size = np.where(noise & (most > 0.0), most, size)
+    bad = ~(finite(a) & finite(b))
+    a, b = _blanked(a, bad), _blanked(b, bad)
+    size = np.max(np.abs(b), axis=-1, keepdims=True, initial=0.0)
+    most = np.max(size, axis=-2, keepdims=True)
+    size = np.where(size > linear.PIVOT * most, size, np.where(most > 0.0, most, 1.0))
     u, s, _ = np.linalg.svd(a / size)
     rows = np.swapaxes(u / size, -1, -2)
     rows[bad | ~(s[:, rank - 1] > linear.PIVOT * s[:, 0])] = np.nan

@@ -55,7 +55,7 @@ CASES: dict[str, list[tuple[tuple[Shape, ...], tuple[int, ...]]]] = {
     "solve": [(((n, n), (n,)), ()) for n in (1, 2, 6)],
     "saddle": [(((4, 4), (4, 2)), ())],
     "least_norm": [(((3, 5), (3,)), ()), (((3, 3), (3,)), ())],
-    "resolve": [(((4, 6),), (4,)), (((4, 2),), (2,))],
+    "resolve": [(((4, 6), (4, 7)), (4,)), (((4, 2), (4, 3)), (2,))],
     "singular_values": [(((4, 6),), ()), (((6, 4),), ())],
     "null_basis": [(((3, 5),), (3,)), (((4, 4),), (4,))],
     "rotation_of_quaternion": [(((4,),), ())],
@@ -158,8 +158,8 @@ def test_rows_of_rounding_are_no_directions() -> None:
     k[0, 2] = 0.0
     k[1] = k[0]
     k[1, 2] = 1e-17 * np.arange(1.0, 4.0)
-    _, idle = printed("resolve", ((6, 3),), (3,), [k])
-    _, wanted = OPERATIONS["resolve"]((k,), (3,))
+    _, idle = printed("resolve", ((6, 3), (6, 3)), (3,), [k, k])
+    _, wanted = OPERATIONS["resolve"]((k, k), (3,))
     for rows in (idle, wanted):
         assert np.abs(rows @ k).max() < 1e-14
     np.testing.assert_allclose(*(np.swapaxes(v, 1, 2) @ v for v in (idle, wanted)), atol=1e-12)

@@ -172,3 +172,22 @@ def test_an_elbow_driven_too(seed: int) -> None:
     lower, upper = leg.joints[1].offset[0], leg.platform_joint.offset[0]
     expected = -S / (lower * upper * np.sin(q[1]))
     assert np.allclose(c.model.H(c.state.X, c.p)[:, 1], expected, rtol=1e-10)
+
+
+def test_what_a_guide_bears_is_exact_where_its_force_along_an_axis_is_small() -> None:
+    """All forces at once, and of these the least tau: next to home, where a force across the guide
+    has hardly a component along z, on which all actuators act.
+    """
+    m = module(catalogue("quadrupod"))
+    rng = np.random.default_rng(4)
+    X = m.project(m.HOME_X + 1e-5 * rng.normal(size=(20, m.NQ)))
+    wrench = rng.normal(size=(20, m.NW))
+    rest = np.zeros((20, m.NV))
+    found = np.concatenate(m.inverse_dynamics(X, rest, rest, wrench=wrench), axis=1)
+    needed = m.Z(X, rest) - wrench
+    for x, force, both in zip(X, needed, found, strict=True):
+        system = np.concatenate((m.H(x), m.Hk(x)), axis=1)
+        some, idle = np.linalg.lstsq(system, force)[0], np.linalg.svd(system)[2][-1]
+        tau = slice(0, m.NU)
+        some = some - idle * (idle[tau] @ some[tau]) / (idle[tau] @ idle[tau])
+        assert np.abs(both - some).max() < 1e-12 * np.abs(some).max()

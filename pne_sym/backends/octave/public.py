@@ -39,7 +39,8 @@ EXPRESSIONS = {
     "singular_values": "{f}decomposed({0})",
     "impossible": "NaN({n}, n)",
     "split": "deal({0}(1:{n}, :, :), {0}({n} + 1:end, :, :))",
-    **{name: f"{{f}}{name}({{0}}, {{n}})" for name in ("resolve", "null_basis", "spread")},
+    "resolve": "{f}resolve({0}, {1}, {n})",
+    **{name: f"{{f}}{name}({{0}}, {{n}})" for name in ("null_basis", "spread")},
 }
 """Operations that are more than a call of a function in templates/octave."""
 
