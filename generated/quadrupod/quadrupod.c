@@ -1334,16 +1334,17 @@ static real rotate(size_t rows, size_t stride, size_t n, size_t rank, real *a)
     return last/first;
 }
 
-/* Combinations of the rows of a[m][n], scaled to one: `rank` that resolve it, x[rank][m], and the
-   others, y[m - rank][m], which vanish on it.  A row of rounding alone, beside the largest, counts
-   as zero: scaled to one it would be a direction. */
-static void resolve(size_t m, size_t n, size_t rank, const real *a, real *x, real *y,
-        real *singular)
+/* Combinations of the rows of a[m][n]: `rank` that resolve it, x[rank][m], and the others,
+   y[m - rank][m], which vanish on it.  Rows are scaled as those of b[m][k], of which a is a part, to
+   one.  A row of rounding alone, beside the largest, counts as zero: scaled to one it would be a
+   direction. */
+static void resolve(size_t m, size_t n, size_t k, size_t rank, const real *a, const real *b,
+        real *x, real *y, real *singular)
 {
     real t[2*BIG*BIG] = {0};
-    const real most = largest(a, m*n);
+    const real most = largest(b, m*k);
     for (size_t i = 0; i < m; ++i) {
-        const real size = largest(a + i*n, n);
+        const real size = largest(b + i*k, k);
         const real scale = size > PIVOT*most ? 1/size : most > 0 ? 1/most : 1;
         for (size_t j = 0; j < n; ++j) {
             t[i*(n + m) + j] = a[i*n + j]*scale;
@@ -9209,10 +9210,10 @@ static void inverse_dynamics_one(const prepared *m, const real *X, const real *V
     const real *wrench, const real *weights, real *tau_out, real *lambda_out, int *code)
 {
     real wrench_in[NW], weights_in[NU], required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0},
-        subtract_1[NV] = {0}, resolve_1[NC*NV] = {0}, resolve_2[NC*NV] = {0}, inverse_root_1[NU] =
-        {0}, scale_columns_1[NV*NU] = {0}, product_1[NC*NU] = {0}, times_1[NC] = {0}, least_norm_1[NU]
-        = {0}, tau[NU] = {0}, times_2[NV] = {0}, subtract_2[NV] = {0}, product_2[NC*NC] = {0},
-        times_3[NC] = {0}, unsure_lambda_[1] = {0}, work[NC*PADDED(NC)];
+        subtract_1[NV] = {0}, beside_1[NV*(NU + NC)] = {0}, resolve_1[NC*NV] = {0}, resolve_2[NC*NV] =
+        {0}, inverse_root_1[NU] = {0}, scale_columns_1[NV*NU] = {0}, product_1[NC*NU] = {0},
+        times_1[NC] = {0}, least_norm_1[NU] = {0}, tau[NU] = {0}, times_2[NV] = {0}, subtract_2[NV] =
+        {0}, product_2[NC*NC] = {0}, times_3[NC] = {0}, unsure_lambda_[1] = {0}, work[NC*PADDED(NC)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
@@ -9228,7 +9229,8 @@ static void inverse_dynamics_one(const prepared *m, const real *X, const real *V
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
     }
-    resolve(NV, NC, NC, Hk, resolve_1, resolve_2, why.singular);
+    beside(NV, NU, NC, H, Hk, beside_1);
+    resolve(NV, NC, NU + NC, NC, Hk, beside_1, resolve_1, resolve_2, why.singular);
     for (size_t i = 0; i < NU; ++i) {
         inverse_root_1[i] = 1/root(weights[i]);
     }
@@ -9361,11 +9363,11 @@ INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, c
     static const size_t places_add_forces_1[] = {0, 1, 2, 3};
     static const size_t places_forces[] = {4, 4, 4};
     real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0},
-        resolve_1[NC*NV] = {0}, resolve_2[NC*NV] = {0}, product_1[NC*NU] = {0}, times_1[NC] = {0},
-        least_norm_1[NU] = {0}, times_2[NV] = {0}, subtract_2[NV] = {0}, product_2[NC*NC] = {0},
-        times_3[NC] = {0}, solve_1[NC] = {0}, unsure_solve_1[1] = {0}, leg_force[6*NL] = {0},
-        actuator[24] = {0}, constraint_direction[6*NC] = {0}, add_forces_1[6*NL] = {0}, forces[6*NL] =
-        {0}, work[NC*PADDED(NC)];
+        beside_1[NV*(NU + NC)] = {0}, resolve_1[NC*NV] = {0}, resolve_2[NC*NV] = {0}, product_1[NC*NU]
+        = {0}, times_1[NC] = {0}, least_norm_1[NU] = {0}, times_2[NV] = {0}, subtract_2[NV] = {0},
+        product_2[NC*NC] = {0}, times_3[NC] = {0}, solve_1[NC] = {0}, unsure_solve_1[1] = {0},
+        leg_force[6*NL] = {0}, actuator[24] = {0}, constraint_direction[6*NC] = {0},
+        add_forces_1[6*NL] = {0}, forces[6*NL] = {0}, work[NC*PADDED(NC)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
@@ -9379,7 +9381,8 @@ INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, c
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
     }
-    resolve(NV, NC, NC, Hk, resolve_1, resolve_2, why.singular);
+    beside(NV, NU, NC, H, Hk, beside_1);
+    resolve(NV, NC, NU + NC, NC, Hk, beside_1, resolve_1, resolve_2, why.singular);
     product(NC, NV, NU, 1, resolve_2, H, product_1);
     product(NC, NV, 1, 1, resolve_2, subtract_1, times_1);
     least_norm(NC, NU, product_1, times_1, least_norm_1, why.singular);
@@ -9607,10 +9610,11 @@ INLINE void force_distribution_one(const prepared *m, const real *X, const real 
     *tau_out, real *lambda_out, int *code)
 {
     real wrench_in[NW], reference_in[NU], required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0},
-        subtract_1[NV] = {0}, resolve_1[NC*NV] = {0}, resolve_2[NC*NV] = {0}, product_1[NC*NU] = {0},
-        times_1[NC] = {0}, least_norm_1[NU] = {0}, null_basis_1[NU] = {0}, transposed_1[NU] = {0},
-        product_2[NU*NU] = {0}, times_2[NU] = {0}, add_1[NU] = {0}, tau[NU] = {0}, times_3[NV] = {0},
-        subtract_2[NV] = {0}, product_3[NC*NC] = {0}, times_4[NC] = {0}, work[NC*PADDED(NC)];
+        subtract_1[NV] = {0}, beside_1[NV*(NU + NC)] = {0}, resolve_1[NC*NV] = {0}, resolve_2[NC*NV] =
+        {0}, product_1[NC*NU] = {0}, times_1[NC] = {0}, least_norm_1[NU] = {0}, null_basis_1[NU] =
+        {0}, transposed_1[NU] = {0}, product_2[NU*NU] = {0}, times_2[NU] = {0}, add_1[NU] = {0},
+        tau[NU] = {0}, times_3[NV] = {0}, subtract_2[NV] = {0}, product_3[NC*NC] = {0}, times_4[NC] =
+        {0}, work[NC*PADDED(NC)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(A, NV) + total(tau_min, NU) +
@@ -9628,7 +9632,8 @@ INLINE void force_distribution_one(const prepared *m, const real *X, const real 
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
     }
-    resolve(NV, NC, NC, Hk, resolve_1, resolve_2, why.singular);
+    beside(NV, NU, NC, H, Hk, beside_1);
+    resolve(NV, NC, NU + NC, NC, Hk, beside_1, resolve_1, resolve_2, why.singular);
     product(NC, NV, NU, 1, resolve_2, H, product_1);
     product(NC, NV, 1, 1, resolve_2, subtract_1, times_1);
     least_norm(NC, NU, product_1, times_1, least_norm_1, why.singular);

@@ -2041,14 +2041,16 @@ def _least_norm(a, b):
     return x
 
 
-def _resolve(a, rank):
+def _resolve(a, b, rank):
     """Combinations of rows of a: so many that resolve it, and the others, which vanish on it.
 
-    NaN where its rank is lower.  A row of nothing but rounding, beside the largest, counts as
-    zero: scaled to one it would be a direction.
+    Rows are scaled as those of b, of which a is a part, to one; NaN where the rank of a is then
+    lower.  A row of nothing but rounding, beside the largest, counts as zero: scaled to one it
+    would be a direction.
     """
-    a, bad = _matrices(a)
-    largest = np.max(np.abs(a), axis=-1, keepdims=True, initial=0.0)
+    (a, bad), (b, unknown) = _matrices(a), _matrices(b)
+    bad |= unknown
+    largest = np.max(np.abs(b), axis=-1, keepdims=True, initial=0.0)
     most = np.max(largest, axis=-2, keepdims=True)
     size = np.where(largest > _PIVOT * most, largest, np.where(most > 0.0, most, 1.0))
     u, s, _ = np.linalg.svd(a / size)
@@ -11940,7 +11942,8 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
     required, H, Hk = m.run(_run_required, ("required", "H", "Hk"), X, V, A)
     extend_1 = wrench
     subtract_1 = required - extend_1
-    resolve_1, resolve_2 = _resolve(Hk, 3)
+    beside_1 = np.concatenate((H, Hk), axis=1)
+    resolve_1, resolve_2 = _resolve(Hk, beside_1, 3)
     inverse_root_1 = 1.0 / np.sqrt(weights)
     scale_columns_1 = H * inverse_root_1
     product_1 = np.einsum("iks,kjs->ijs", resolve_2, scale_columns_1)
@@ -11980,7 +11983,8 @@ def _steps_leg_reactions(m, X, V, A, wrench):
     required, H, Hk = m.run(_run_required, ("required", "H", "Hk"), X, V, A)
     extend_1 = wrench
     subtract_1 = required - extend_1
-    resolve_1, resolve_2 = _resolve(Hk, 3)
+    beside_1 = np.concatenate((H, Hk), axis=1)
+    resolve_1, resolve_2 = _resolve(Hk, beside_1, 3)
     product_1 = np.einsum("iks,kjs->ijs", resolve_2, H)
     times_1 = _times(resolve_2, subtract_1)
     least_norm_1 = _least_norm(product_1, times_1)
@@ -12072,7 +12076,8 @@ def _steps_force_distribution(m, X, V, A, tau_min, tau_max, wrench, reference):
     required, H, Hk = m.run(_run_required, ("required", "H", "Hk"), X, V, A)
     extend_1 = wrench
     subtract_1 = required - extend_1
-    resolve_1, resolve_2 = _resolve(Hk, 3)
+    beside_1 = np.concatenate((H, Hk), axis=1)
+    resolve_1, resolve_2 = _resolve(Hk, beside_1, 3)
     product_1 = np.einsum("iks,kjs->ijs", resolve_2, H)
     times_1 = _times(resolve_2, subtract_1)
     least_norm_1 = _least_norm(product_1, times_1)
