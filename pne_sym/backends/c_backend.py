@@ -13,12 +13,14 @@ from pne_sym.backends.c_model import (
     parameter_fields,
     prepare_body,
 )
-from pne_sym.backends.c_parts import least_values, stage_texts
+from pne_sym.backends.c_operations import OPERATIONS, biggest, results_of, runs_in_lanes
+from pne_sym.backends.c_parts import least_values
 from pne_sym.backends.c_public import Caller, c_functions
 from pne_sym.backends.c_sizes import count_of, sizes_of
 from pne_sym.backends.c_solve import Eliminations
+from pne_sym.backends.c_stage_texts import stage_texts
 from pne_sym.backends.c_stages import Stages
-from pne_sym.backends.c_steps import OPERATIONS, Steps, biggest, results_of, runs_in_lanes
+from pne_sym.backends.c_steps import Steps
 from pne_sym.backends.c_sums import with_common_sums
 from pne_sym.backends.c_support import needed
 from pne_sym.backends.c_text import Routine, wrapped

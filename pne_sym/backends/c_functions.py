@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.c_parts import Parts, vector_name
+from pne_sym.backends.c_parts import Parts
 from pne_sym.backends.c_sizes import array_names, count_of, times
 from pne_sym.backends.c_stages import Stages
+from pne_sym.backends.c_statements import vector_name
 from pne_sym.backends.c_text import Routine, comment, indented, listing
 from pne_sym.program.ir import Block, Function
 

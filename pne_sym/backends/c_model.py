@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.c_parts import capacity, statements
 from pne_sym.backends.c_sizes import count_of, times
 from pne_sym.backends.c_stages import Shared
+from pne_sym.backends.c_statements import capacity, statements
 from pne_sym.backends.c_sums import common_sums
 from pne_sym.backends.c_text import (
     c_name,

@@ -10,83 +10,36 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from typing import Any
 
 import sympy as sp
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_sizes import array_names, times
-from pne_sym.backends.c_stages import Shared, Stage, Stages, aliases
+from pne_sym.backends.c_stage_texts import stage_routine
+from pne_sym.backends.c_stages import Shared, Stage, Stages
+from pne_sym.backends.c_statements import (
+    entries,
+    factor,
+    headed,
+    leg_input,
+    loaded,
+    loop,
+    place_text,
+    statements,
+    vector_name,
+)
 from pne_sym.backends.c_text import (
-    WIDTH,
     Routine,
     c_name,
-    comment,
     in_pairs,
-    indented,
-    listing,
     statement,
-    table,
     words_of,
 )
 from pne_sym.backends.describe import equation_titles
-from pne_sym.backends.scalar import wrap
-from pne_sym.program.ir import Assignment, Block, Check, Function, LegInput, Store
-from pne_sym.program.slices import is_full, places_of, read_in, slices, symbols
+from pne_sym.program.ir import Block, Check, Function, Store
+from pne_sym.program.slices import is_full, places_of, slices, symbols
 
 _TROUBLES = ("unreachable", "singular")
-_WORTH = 3
-
-
-def vector_name(vector: str) -> str:
-    """Argument of an input vector; the displacements are told from the output q by their name."""
-    return "joints" if vector == "q" else vector
-
-
-def statements(
-    assignments: Iterable[Assignment],
-    titles: dict[str, str],
-    printer: Shared,
-    loads: dict[str, str] | None = None,
-) -> list[str]:
-    """Assignments, headed by the equations they belong to; what they read is loaded before them.
-
-    Args:
-        assignments: in order.
-        titles: of the equations.
-        printer: of expressions.
-        loads: where the names stand that are not yet at hand; those that are read are taken out.
-    """
-    waiting = {} if loads is None else loads
-    rows = (
-        (
-            a.equation,
-            [
-                *loaded(waiting, a.expr),
-                *statement(f"const real {c_name(a.target.name)} = {printer.text(a.expr)}"),
-            ],
-        )
-        for a in assignments
-    )
-    return headed(rows, titles)
-
-
-def headed(rows: Iterable[tuple[str, list[str]]], titles: dict[str, str]) -> list[str]:
-    """Lines with the equations they belong to, under these."""
-    lines: list[str] = []
-    known = ""
-    for equation, own in rows:
-        if equation != known:
-            known, title = equation, titles.get(equation, "")
-            lines += comment(f"({equation}) {title}" if title else f"{equation}: named entries")
-        lines += own
-    return lines
-
-
-def loaded(loads: dict[str, str], *expressions: Any) -> list[str]:
-    """Loads of what expressions read and is not yet at hand."""
-    read = loads.keys() & set[str]().union(*(read_in(sp.sympify(e)) for e in expressions))
-    return [f"const real {c_name(n)} = {loads.pop(n)};" for n in sorted(read)]
 
 
 class Parts:
@@ -112,8 +65,8 @@ class Parts:
         """Where an entry stands in its array: the row by the length of rows, and the column."""
         names = array_names(self.bundle, store.array)
         rows, across = zip(*places_of(store, legs), strict=True)
-        column = _place_text(across, index, f"{name}_column", tables)
-        row = _place_text(rows, index, name, tables)
+        column = place_text(across, index, f"{name}_column", tables)
+        row = place_text(rows, index, name, tables)
         if len(names) < 2:
             return row
         start = times(row, names[1])
@@ -168,7 +121,7 @@ class Parts:
             *(f"real *{a}" for a in self.f.arrays),
             "verdict *t",
         ]
-        return Routine.of(f"{self.name}_{part}", parameters, _loop("w", lines))
+        return Routine.of(f"{self.name}_{part}", parameters, loop("w", lines))
 
     def _passed(self, index: str) -> dict[str, str]:
         return {n: f"s[{at}*w + {index}]" for at, n in enumerate(self.passed)}
@@ -185,7 +138,7 @@ class Parts:
         for store in block.stores if block else ():
             place = self._place(store, "", "", [])
             value = shared.text(store.value)
-            text = statement(f"{store.array}[{_by(place)}*w + k] = {value}")
+            text = statement(f"{store.array}[{factor(place)}*w + k] = {value}")
             rows.append((store.equation, [*loaded(loads, store.value), *text]))
         lines = headed(rows, self.titles)
         if self.summed and block and block.stores:
@@ -235,7 +188,7 @@ class Parts:
             "real *terms",
             "real *o",
         ]
-        return Routine.of(f"{self.name}_legs_{leg}", parameters, [*tables, *_loop("count", lines)])
+        return Routine.of(f"{self.name}_legs_{leg}", parameters, [*tables, *loop("count", lines)])
 
     def _of_leg(
         self, block: Block, loads: dict[str, str], shared: Shared
@@ -256,7 +209,7 @@ class Parts:
         tables: list[str] = []
         for n, store in enumerate(block.stores):
             legs = self.bundle.leg_counts[leg]
-            place = _by(self._place(store, "leg", f"place_{n}", tables, legs))
+            place = factor(self._place(store, "leg", f"place_{n}", tables, legs))
             lines.append(f"{store.array}[{place}*w + k] = o[{n}*count + first + k];")
         for flag, n in self.flag_rows(block).items():
             lines.append(f"t->{flag}[k] += o[{n}*count + first + k];")
@@ -269,7 +222,7 @@ class Parts:
             *(f"real *{a}" for a in self.f.arrays),
             "verdict *t",
         ]
-        return Routine.of(f"{self.name}_place_{leg}", parameters, [*tables, *_loop("w", lines)])
+        return Routine.of(f"{self.name}_place_{leg}", parameters, [*tables, *loop("w", lines)])
 
     def flag_rows(self, block: Block) -> dict[str, int]:
         """Where the flags of a leg, and the sum of its entries, stand behind these."""
@@ -321,97 +274,3 @@ def least_values(bundle: Bundle) -> dict[str, str]:
     fixed = [c for c in checks if c.trouble == "singular" and sp.sympify(c.scale).is_Number]
     texts = dict.fromkeys(_least(check, Shared()) for check in fixed)
     return {text: f"LEAST_{k}" for k, text in enumerate(texts, 1)}
-
-
-def leg_input(bundle: Bundle, item: LegInput, leg: str, tables: list[str]) -> str:
-    """An entry of a vector that belongs to a leg."""
-    places = item.indices
-    if len(set(places)) > 1:
-        copies = capacity(bundle.leg_counts[leg]) - len(places)
-        places = (*places, *places[:1] * copies)
-    place = _place_text(places, "i", f"place_{item.symbol.name}", tables)
-    return f"{vector_name(item.vector)}[{_by(place)}*w + j]"
-
-
-def entries(bundle: Bundle, function: Function, index: str) -> dict[str, str]:
-    """Where entries of the input vectors stand, by name, and names that are entries."""
-    found = {
-        f"{vector}_{e}": f"{vector_name(vector)}[{e}*w + {index}]"
-        for vector in function.inputs
-        for e in range(bundle.coordinates.lengths[vector])
-    }
-    return found | {n: found[e] for n, e in aliases(function).items()}
-
-
-def stage_routine(bundle: Bundle, stages: Stages, stage: Stage) -> Routine:
-    """A stage as a routine, which leaves in v what others read."""
-    tables: list[str] = []
-    program, part = bundle.program, stage.part
-    at = "j" if part else "k"
-    own = stages.assignments(stage)
-    made = {a.target.name for a in own}
-    loads = {n: f"s[{k}*w + j]" for k, n in enumerate(stages.layout) if part}
-    users = [p.function for p in stages.parts.values()]
-    for function in users:
-        loads = entries(bundle, function, at) | loads
-        for item in function.leg_inputs.get(part, ()):
-            name = item.symbol.name
-            if name not in loads and any(item.symbol in a.expr.free_symbols for a in own):
-                loads[name] = leg_input(bundle, item, part, tables)
-    loads |= {
-        n: f"m->{c_name(n)}{'[i]' * bool(of)}" for n, of in program.prepared if of in ("", part)
-    }
-    known = {n for other in stages.stages for n in other.exported if other.part == part} - made
-    loads = {n: text for n, text in loads.items() if n not in made | known}
-    titles = equation_titles(bundle.derivation)
-    lines = statements(own, titles, Shared(known, "v->"), loads)
-    lines += [f"v->{c_name(n)} = {c_name(n)};" for n in stage.exported]
-    vectors = dict.fromkeys(v for f in users for v in f.inputs)
-    parameters = [
-        "const prepared *m",
-        *(f"size_t {n}" for n in ("w", "i", at)),
-        "const real *s",
-        *(f"const real *{vector_name(v)}" for v in vectors),
-        f"values{'_' * bool(part)}{part} *v",
-    ]
-    return Routine.of(stage.name, parameters, [*tables, *lines])
-
-
-def stage_texts(bundle: Bundle, stages: Stages) -> list[str]:
-    """The structures of shared values, and the routines of the stages."""
-    texts = []
-    for part in dict.fromkeys(s.part for s in stages.stages):
-        own = [s for s in stages.stages if s.part == part]
-        members = dict.fromkeys(c_name(n) for s in own for n in s.exported)
-        lines = listing("real ", list(members), ";", "    ")
-        name = f"values{'_' * bool(part)}{part};"
-        texts.append("\n".join(["typedef struct {", *indented(lines), f"}} {name}"]))
-        texts += ["\n".join(stage_routine(bundle, stages, s).definition()) for s in own]
-    return texts
-
-
-def capacity(legs: int) -> int:
-    """Length of the model's arrays over legs: vectors of four entries, where these are worth it."""
-    return legs if legs < _WORTH else -(-legs // 4) * 4
-
-
-def _by(place: str) -> str:
-    """A place as a factor."""
-    return f"({place})" if " " in place else place
-
-
-def _loop(count: str, lines: list[str]) -> list[str]:
-    """The lines for every k."""
-    if not lines:
-        return []
-    return [f"for (size_t k = 0; k < {count}; ++k) {{", *indented(lines), "}"]
-
-
-def _place_text(places: tuple[int, ...], index: str, name: str, tables: list[str]) -> str:
-    """Index text of the place of a leg; a table is declared where one is needed."""
-    even = table(places, index)
-    if even is not None:
-        return even
-    text = f"static const size_t {name}[] = {{{', '.join(map(str, places))}}};"
-    tables += wrap(text, WIDTH - 8, "    ")
-    return f"{name}[{index}]"

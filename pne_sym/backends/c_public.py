@@ -6,8 +6,8 @@ import re
 from dataclasses import dataclass, replace
 
 from pne_sym.backends.bundle import Bundle
+from pne_sym.backends.c_operations import c_order, runs_in_lanes
 from pne_sym.backends.c_sizes import extent, sizes_of, times
-from pne_sym.backends.c_steps import c_order, runs_in_lanes
 from pne_sym.backends.c_text import Routine, comment, indented, listing, parameter_name
 from pne_sym.model.values import ROUNDING
 from pne_sym.program.count import count_function

@@ -10,8 +10,10 @@ import pytest
 
 from pne_sym.backends.c_backend import CBackend, support
 from pne_sym.backends.c_functions import LANES
-from pne_sym.backends.c_steps import OPERATIONS as PRINTED
-from pne_sym.backends.c_steps import Steps, lanes_of
+from pne_sym.backends.c_operations import OPERATIONS as PRINTED
+from pne_sym.backends.c_operations import lanes_of
+from pne_sym.backends.c_solve import Eliminations
+from pne_sym.backends.c_steps import Steps
 from pne_sym.backends.c_support import needed
 from pne_sym.backends.c_text import Routine, parameter_name
 from pne_sym.program.evaluate import Status
@@ -56,7 +58,7 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
     lines = []
     for number, case in enumerate(LISTED):
         for lanes in [False, True] if lanes_of(case[0]) else [False]:
-            routine = Steps(bundle, function(*case), {}, {}, {}, lanes=lanes).routine()
+            routine = Steps(bundle, function(*case), {}, {}, Eliminations(), lanes=lanes).routine()
             name = f"of_{number}{'_lanes' if lanes else ''}"
             routine = Routine(name, routine.parameters, routine.body, routine.kind)
             lines += exported(number, routine, lanes=lanes)
