@@ -156,9 +156,9 @@ def _change(key: str, old: Any, new: Any, *, several: bool) -> str:
         if key in of:
             return f"{name} {told(old, new)}{', others alike' if several else ''}"
     if key == "symbols":
-        of = list(dict.fromkeys((*(old or ()), *(new or ()))))
-        more = f" and {len(of) - 3} more" if len(of) > 3 else ""
-        return f"symbols of {', '.join(of[:3])}{more} {_kind(old, new)}"
+        known = list(dict.fromkeys((*(old or ()), *(new or ()))))
+        more = f" and {len(known) - 3} more" if len(known) > 3 else ""
+        return f"symbols of {', '.join(known[:3])}{more} {_kind(old, new)}"
     if key == "actuated joint":
         return f"actuated joint moved from joint {_count(old)} to joint {_count(new)}"
     if key in ("actuated", "extra") and not isinstance(old or new, list):
