@@ -18,6 +18,7 @@ from pne_sym.review.difference import (
     Gap,
     Verdict,
 )
+from pne_sym.review.edit_words import FOLLOWING
 from pne_sym.review.effect_text import effect_lines
 from pne_sym.review.interface_text import interface_lines, listed, shortened
 
@@ -93,9 +94,8 @@ def verdict(found: Comparison) -> str:
 
 def _cause(found: Comparison) -> str:
     if found.specification:
-        first, *others = [e.words for e in found.specification if e.path[:4] != "home"] or [
-            e.words for e in found.specification
-        ]
+        own = [e.words for e in found.specification if not e.path.startswith(FOLLOWING)]
+        first, *others = own or [e.words for e in found.specification]
         return first + (
             f", and {len(others)} other edit{'s' * (len(others) > 1)}" if others else ""
         )

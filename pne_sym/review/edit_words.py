@@ -21,14 +21,15 @@ _RANKS = (
     ("offset", "pitch"), ("base_point", "platform_point", "base_frame", "rotation"),
     ("mass", "centre_of_mass", "inertia", "inertia_about", "link", "payload"),
 )  # fmt: skip
-_LAST = ("home", "symbols")
+FOLLOWING = ("home", "symbols")
+"""Fields that follow from other edits: they come last, and no headline counts them."""
 
 
 def rank(path: str, told: str) -> tuple[int, str]:
     """What changes structure comes first; home, which follows, and notation last."""
     keys = [part.split("[")[0] for part in path.split(".")]
-    if keys[0] in _LAST:
-        return (20 + _LAST.index(keys[0]), "")
+    if keys[0] in FOLLOWING:
+        return (20 + FOLLOWING.index(keys[0]), "")
     if keys[0] == "leg_types" and len(keys) == 2:
         return (3, "")
     if keys[0] == "legs" and keys[-1] == "type":
@@ -154,6 +155,10 @@ def _change(key: str, old: Any, new: Any, *, several: bool) -> str:
     ):  # fmt: skip
         if key in of:
             return f"{name} {told(old, new)}{', others alike' if several else ''}"
+    if key == "symbols":
+        known = list(dict.fromkeys((*(old or ()), *(new or ()))))
+        more = f" and {len(known) - 3} more" if len(known) > 3 else ""
+        return f"symbols of {', '.join(known[:3])}{more} {_kind(old, new)}"
     if key == "actuated joint":
         return f"actuated joint moved from joint {_count(old)} to joint {_count(new)}"
     if key in ("actuated", "extra") and not isinstance(old or new, list):

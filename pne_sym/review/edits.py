@@ -70,8 +70,12 @@ def best_edits(
 def _differences(
     path: tuple[Key, ...], old: Any, new: Any, joint: Mapping[str, Any] | None
 ) -> Iterator[Raw]:
-    """The innermost tables and lists that differ."""
-    if isinstance(old, Mapping) and isinstance(new, Mapping):
+    """The innermost tables and lists that differ; of symbols all together."""
+    if path == ("symbols",) and old != new:
+        both = [table or {} for table in (old, new)]
+        own = [{k: v for k, v in a.items() if b.get(k) != v} for a, b in (both, both[::-1])]
+        yield Raw(path, own[0] or None, own[1] or None)
+    elif isinstance(old, Mapping) and isinstance(new, Mapping):
         for key in dict.fromkeys((*old, *new)):
             if (*path, key) not in {(name,) for name in _LABELS}:
                 yield from _differences((*path, key), old.get(key), new.get(key), joint)

@@ -34,7 +34,7 @@ def _near(path: str, value: Array, of: tuple[bool, float], rng: np.random.Genera
         return _turn(rng.normal(0.0, 0.05, 3) * ((0, 0, 1) if planar else 1)) @ value
     if "axis" in path.rpartition(".")[2] or path.endswith("rotation"):
         return value
-    if path.endswith("inertia"):  # congruent, so that no moment of inertia becomes negative
+    if path.endswith("inertia") and value.ndim:  # congruent: no moment becomes negative
         skewed = np.eye(3) + rng.normal(0.0, 0.03, (3, 3))
         moved = rng.uniform(0.8, 1.25) * (skewed @ value @ skewed.T)
         if not value.any():

@@ -106,7 +106,7 @@ def test_a_changed_report_computes_otherwise() -> None:
     text = ReportBackend().emit(bundle)["planar_3rpr.md"]
     numbers = numbers_of(bundle, models.state_at(manipulator, 0))
     right = Interpreter(text, numbers).array("M")
-    turned = text.replace(r"+ \sin(q_1)\,", r"- \sin(q_1)\,")
+    turned = text.replace(r"+ \sin(\theta)\,", r"- \sin(\theta)\,")
     assert turned != text
     with pytest.raises(AssertionError, match="Not equal"):
         close(Interpreter(turned, numbers).array("M"), right, "M")

@@ -158,6 +158,16 @@ CASES: list[tuple[dict[str, Any], dict[str, Any], list[tuple[str, str]]]] = [
             ("home: q changed", "home.q"),
         ],
     ),
+    (
+        {"symbols": {f"q_{k}": "L" for k in range(5)}},
+        {"symbols": {f"q_{k}": "D" for k in range(5)}},
+        [("symbols of q_0, q_1, q_2 and 2 more changed", "symbols")],
+    ),
+    (
+        {"home": {"X": [1]}},
+        {"home": {"X": [2]}, "symbols": {"e_2": "s"}},
+        [("home: X changed", "home.X"), ("symbols of e_2 added", "symbols")],
+    ),
 ]
 
 
