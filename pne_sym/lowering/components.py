@@ -16,9 +16,10 @@ import sympy as sp
 
 from pne_sym.derivation import Derivation, Equation, ReciprocalBasis, leg_sums, names_in
 from pne_sym.lowering.bases import Bases
-from pne_sym.lowering.builder import Atom, Builder
+from pne_sym.lowering.builder import Builder
 from pne_sym.lowering.frames import Frames, Triple
 from pne_sym.lowering.rotation import XYZ, Rotation, Tensor9, cross, symmetrised
+from pne_sym.lowering.statements import Atom
 from pne_sym.lowering.trials import NotYetError, Trials, atoms
 from pne_sym.program.ir import Component
 from pne_sym.vector import nodes as n

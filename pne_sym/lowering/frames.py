@@ -14,7 +14,8 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.derivation import Derivation, Frame
-from pne_sym.lowering.builder import Atom, Builder
+from pne_sym.lowering.builder import Builder
+from pne_sym.lowering.statements import Atom
 
 Triple = tuple[Atom, Atom, Atom]
 Matrix = tuple[Triple, Triple, Triple]

@@ -9,7 +9,8 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.derivation import Derivation
-from pne_sym.lowering.builder import Atom, Builder, Guard
+from pne_sym.lowering.builder import Builder
+from pne_sym.lowering.statements import Atom, Guard
 from pne_sym.program.ir import Kind, Stage, Store
 
 _NOTHING_TESTED = sp.S.One

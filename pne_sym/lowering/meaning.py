@@ -15,9 +15,9 @@ import sympy as sp
 
 from pne_sym.derivation import Derivation
 from pne_sym.lowering import algebra
-from pne_sym.lowering.builder import Statement, of_leg
 from pne_sym.lowering.components import Lowering
 from pne_sym.lowering.margins import OWN_NAMES
+from pne_sym.lowering.statements import Statement, of_leg
 from pne_sym.program.ir import Component
 
 Signed = tuple[int, Component]
@@ -106,7 +106,7 @@ class Meaning:
             stem = statement.hint
         elif expr.is_Pow and expr.exp == -1 and expr.base.is_Symbol:
             stem = f"inv_{names.get(expr.base, expr.base).name}"
-        return of_leg(stem, statement.stage)
+        return of_leg(stem, statement.stage.leg_type)
 
     def by_name(
         self, statements: Iterable[Statement], names: Mapping[Any, Any]

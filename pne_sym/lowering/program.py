@@ -11,7 +11,7 @@ import sympy as sp
 
 from pne_sym.derivation import Derivation, Output
 from pne_sym.lowering.algebra import replaced, symbols
-from pne_sym.lowering.builder import Atom, Builder, Guard, Statement
+from pne_sym.lowering.builder import Builder
 from pne_sym.lowering.closures import closures, given_displacements
 from pne_sym.lowering.components import Lowering
 from pne_sym.lowering.coupling import with_coupling
@@ -21,6 +21,7 @@ from pne_sym.lowering.meaning import Meaning
 from pne_sym.lowering.public import public_functions
 from pne_sym.lowering.signs import settle
 from pne_sym.lowering.simplify import inline_single_use, numbered, renamed
+from pne_sym.lowering.statements import Atom, Guard, Statement
 from pne_sym.program.ir import (
     VECTORS,
     Assignment,
@@ -107,7 +108,7 @@ def _add_margins(derivation: Derivation, builder: Builder, slices: dict[str, _Sl
     guards: list[Guard] = []
     for name in ("dynamics", "required"):
         known = {g.equation for g in guards}  # of the same values, lowered for other functions
-        guards += [g for g in slices[name].statements(builder)[1] if g.equation not in known]
+        guards += [g for g in slices[name].roots(builder)[1] if g.equation not in known]
     margins = Margins(derivation, builder, guards)
     made = slices["condition"]
     made.arrays = ("H", *(("Hk",) if "Hk" in slices else ()), *made.arrays, "pivots", "reach")
@@ -137,12 +138,12 @@ def _cheapest_stores(
         return {}, Lowering(derivation, builder)
 
     def run(*, columns: bool) -> tuple[int, tuple[_Stored, Lowering]]:
-        builder.live = set()
+        builder.keep_nothing()
         lowering = Lowering(derivation, builder)
         if columns:
             lowering.form_tip_axes()
         stores = {output: _stores(lowering, output) for output in outputs}
-        builder.live = set()
+        builder.keep_nothing()
         cost = builder.cost([s.value for found in stores.values() for _, s in found])
         return cost, (stores, lowering)
 
@@ -159,8 +160,7 @@ def _cheapest_stores(
 
 def _settle_signs(builder: Builder, meaning: Meaning, slices: list[_Slice]) -> None:
     """Values that are components get their signs, where that costs nothing."""
-    needed = {s.target for part in slices for s in part.statements(builder)[0]}
-    used = [s for s in builder.statements if s.target in needed]
+    used = builder.needed(set().union(*(part.roots(builder)[0] for part in slices)))
     stores = dict.fromkeys(store for part in slices for store in part.stores)
     printed = inline_single_use(used, list(stores), builder.guards)
     turned = settle(builder, meaning, printed, [store.value for _, store in stores])
@@ -272,36 +272,16 @@ class _Slice:
         self.stores = stores
         self.guards: list[Guard] | None = None  # None: those of the equations that are needed
 
-    def statements(self, builder: Builder) -> tuple[list[Statement], list[Any]]:
-        """Needed statements in order, and the guards that concern them."""
-        wanted = {s for _, store in self.stores for s in symbols(sp.sympify(store.value))}
-        needed = _closure(builder, wanted)
-        equations = {
-            s.equation
-            for s in builder.statements
-            if s.target in needed and s.stage.depends_on_state
-        }
+    def roots(self, builder: Builder) -> tuple[set[Any], list[Guard]]:
+        """Symbols whose values are wanted, and the guards that concern these and what they need."""
+        wanted = set().union(*(symbols(sp.sympify(store.value)) for _, store in self.stores))
+        made = builder.needed(wanted)
+        needed = wanted.union(*(symbols(s.expr) for s in made))
+        equations = {s.equation for s in made if s.stage.depends_on_state}
         guards = self.guards or [
-            g
-            for g in builder.guards
-            if g.equation in equations and symbols(g.value) <= needed | wanted
+            g for g in builder.guards if g.equation in equations and symbols(g.value) <= needed
         ]
-        extra = {s for g in guards for s in symbols(g.scale)}
-        needed |= _closure(builder, extra) | extra
-        return [s for s in builder.statements if s.target in needed], guards
-
-
-def _closure(builder: Builder, wanted: set[Any]) -> set[Any]:
-    needed: set[Any] = set()
-    stack = list(wanted)
-    while stack:
-        symbol = stack.pop()
-        if symbol in needed:
-            continue
-        needed.add(symbol)
-        if symbol in builder.of:
-            stack.extend(symbols(builder.of[symbol].expr))
-    return needed
+        return wanted.union(*(symbols(g.scale) for g in guards)), guards
 
 
 @dataclass
@@ -331,8 +311,7 @@ def _program(
     stores = [
         (builder.stage_of(s), Store(s.name, s, 0)) for s in sorted(constants, key=lambda s: s.name)
     ]
-    chain = _closure(builder, constants)
-    statements = inline_single_use([s for s in builder.statements if s.target in chain], stores, [])
+    statements = inline_single_use(builder.needed(constants), stores, [])
     outside = set(builder.given_names())
     statements = meaning.told(statements, [use for s in sliced for use in s.uses])
     ids = {s.target: s.equation for s in statements}
@@ -363,8 +342,8 @@ def _program(
 
 
 def _sliced(builder: Builder, part: _Slice, meaning: Meaning) -> _Sliced:
-    statements, guards = part.statements(builder)
-    run = [s for s in statements if s.stage.depends_on_state]
+    wanted, guards = part.roots(builder)
+    run = [s for s in builder.needed(wanted) if s.stage.depends_on_state]
     run = inline_single_use(run, part.stores, guards)
     uses = [(store.value, store.equation) for _, store in part.stores]
     run = meaning.told(run, uses + [(e, g.equation) for g in guards for e in (g.value, g.scale)])
@@ -405,11 +384,11 @@ def _function(
     per_leg: dict[str, list[LegInput]] = {}
     for symbol in sorted(sliced.used, key=lambda s: s.name):
         stage = builder.stage_of(symbol)
-        if stage.kind is Kind.STATE_LEG and symbol not in builder.of:
+        if stage.kind is Kind.STATE_LEG and builder.maker(symbol) is None:
             vector, indices = leg_inputs(derivation, symbol.name)
             per_leg.setdefault(stage.leg_type, []).append(LegInput(symbol, vector, indices))
             inputs.append(vector)
-    given = {s.name for s in sliced.used if s not in builder.of} | {
+    given = {s.name for s in sliced.used if builder.maker(s) is None} | {
         a.target.name for a in assignments
     }
     own = numbered(

@@ -11,8 +11,9 @@ from functools import partial
 import sympy as sp
 
 from pne_sym.derivation import Equation
-from pne_sym.lowering.builder import Atom, Builder
+from pne_sym.lowering.builder import Builder
 from pne_sym.lowering.frames import ConstantStep, Frames, Triple
+from pne_sym.lowering.statements import Atom
 from pne_sym.lowering.trials import Trials
 from pne_sym.program.ir import Component
 from pne_sym.vector import nodes as n

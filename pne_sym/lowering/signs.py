@@ -11,8 +11,9 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.lowering import algebra
-from pne_sym.lowering.builder import Builder, Statement
+from pne_sym.lowering.builder import Builder
 from pne_sym.lowering.meaning import Meaning
+from pne_sym.lowering.statements import Statement
 
 
 def settle(

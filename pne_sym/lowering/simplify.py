@@ -11,7 +11,7 @@ import sympy as sp
 
 from pne_sym.lowering.algebra import operations, replaced, symbols
 from pne_sym.lowering.algebra import symbol as as_symbol
-from pne_sym.lowering.builder import Statement
+from pne_sym.lowering.statements import Statement
 from pne_sym.program.ir import Stage, Store
 
 _LONGEST = 14  # operations in one statement: beyond it lines get hard to read

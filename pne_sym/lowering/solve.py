@@ -15,7 +15,8 @@ from typing import Any
 
 import sympy as sp
 
-from pne_sym.lowering.builder import Atom, Builder
+from pne_sym.lowering.builder import Builder
+from pne_sym.lowering.statements import Atom
 
 Rows = list[list[Atom]]
 _LARGEST_BY_DETERMINANTS = 4

@@ -6,7 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from pne_sym.lowering.builder import Atom, Builder, Undone
+from pne_sym.lowering.builder import Builder
+from pne_sym.lowering.statements import Atom, Undone
 
 _T = TypeVar("_T")
 _MAX_DEPTH = 2

@@ -7,7 +7,8 @@ from typing import Any
 
 import sympy as sp
 
-from pne_sym.lowering.builder import Builder, Statement
+from pne_sym.lowering.builder import Builder
+from pne_sym.lowering.statements import Statement
 from pne_sym.program.ir import Kind, Stage
 
 STATE = Stage(Kind.STATE)

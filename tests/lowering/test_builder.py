@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from pne_sym.lowering.builder import Builder, operations
+from pne_sym.lowering.algebra import operations
+from pne_sym.lowering.builder import Builder
 from pne_sym.program.ir import Kind, Stage
 from tests.lowering.numbers import inputs, run, value
 
@@ -58,7 +59,7 @@ def _state(b: Builder) -> Any:
     return (
         list(b.statements),
         list(b.guards),
-        dict(b.of),
+        [(s, b.maker(s.target), b.stage_of(s.target)) for s in b.statements],
         set(b.given_names()),
         dict(b._value),
         {hint: last for hint, last in b._issued.items() if last},

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 import sympy as sp
 
-from pne_sym.lowering.builder import Guard, Statement
 from pne_sym.lowering.simplify import inline_single_use, numbered, renamed
+from pne_sym.lowering.statements import Guard, Statement
 from pne_sym.program.ir import Stage, Store
 from tests.lowering.numbers import STATE, run
 
