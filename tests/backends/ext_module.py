@@ -31,20 +31,20 @@ def text(manipulator: Manipulator) -> str:
     return found
 
 
-def placed(folder: Path, name: str) -> Path:
-    """NAME_ext.py of a catalogue entry in a folder."""
-    path = folder / f"{name}_ext.py"
-    path.write_text(text(models.catalogue(name)), encoding="utf-8")
+def placed(folder: Path, manipulator: Manipulator) -> Path:
+    """NAME_ext.py in a folder."""
+    path = folder / f"{manipulator.name}_ext.py"
+    path.write_text(text(manipulator), encoding="utf-8")
     return path
 
 
 @cache
-def ext_module(name: str) -> Any:
-    """NAME_ext.py of a catalogue entry, compiled quickly."""
+def ext_module(manipulator: Manipulator) -> Any:
+    """NAME_ext.py, compiled quickly."""
     folder = CACHE.with_name("ext-modules")
     for each in (CACHE, folder):
         each.mkdir(mode=0o700, parents=True, exist_ok=True)
-    path = placed(folder, name)
+    path = placed(folder, manipulator)
     spec = importlib.util.spec_from_file_location(path.stem, path)
     assert spec is not None
     assert spec.loader is not None
@@ -57,9 +57,10 @@ def ext_module(name: str) -> Any:
     return made
 
 
-def pair(name: str) -> tuple[Any, Any]:
-    """Extension and NumPy module of a catalogue entry."""
-    return ext_module(name), models.module(models.catalogue(name))
+def pair(of: str | Manipulator) -> tuple[Any, Any]:
+    """Extension and NumPy module of a manipulator, or of a catalogue entry."""
+    manipulator = models.catalogue(of) if isinstance(of, str) else of
+    return ext_module(manipulator), models.module(manipulator)
 
 
 def run(path: Path, *arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
@@ -74,9 +75,9 @@ def run(path: Path, *arguments: str, **environment: str) -> subprocess.Completed
     )
 
 
-def assert_alike(name: str, function: str, given: dict[str, Any]) -> None:
+def assert_alike(of: str | Manipulator, function: str, given: dict[str, Any]) -> None:
     """The results of both modules at the arguments that a function takes."""
-    e, m = pair(name)
+    e, m = pair(of)
     found, wanted = call(e, function, given), call(m, function, given)
     assert len(found) == len(wanted), function
     at = np.atleast_2d(given["X"])
@@ -94,12 +95,12 @@ def assert_alike(name: str, function: str, given: dict[str, Any]) -> None:
         assert error <= 1e-13 * condition(m, function, {"X": at}) * scale, function
 
 
-def assert_all_alike(name: str) -> None:
+def assert_all_alike(of: str | Manipulator) -> None:
     """Every function: one state, a few, one state of some arguments for several of others."""
-    e, m = pair(name)
+    e, m = pair(of)
     states = vectors(m)
     one = {n: v if n == "weights" else v[0] for n, v in states.items()}
     mixed = {n: v[0] if n in ("X", "X0", "t") else v for n, v in states.items()}
     for function in functions(e):
         for given in (states, one, mixed):
-            assert_alike(name, function, given)
+            assert_alike(of, function, given)

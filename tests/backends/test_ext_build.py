@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from tests import models
 from tests.backends.c_library import quick_compiler
 from tests.backends.ext_module import placed, run
 
@@ -34,7 +35,7 @@ def used(tmp_path: Path) -> Path:
     """A script that uses the module beside it, which stands alone in its folder."""
     folder = tmp_path / "mine"
     folder.mkdir()
-    placed(folder, NAME)
+    placed(folder, models.catalogue(NAME))
     script = folder / "use.py"
     script.write_text(USE)
     return script

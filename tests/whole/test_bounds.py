@@ -37,13 +37,20 @@ REDUNDANT = ("planar_4rpr", "fivebar_redundant", "quadrupod", "stewart_7ups", "p
 @cache
 def limited(name: str, every: int = 1, effort: float = 60.0) -> Manipulator:
     """An entry of the catalogue with limits of effort at one of so many actuators."""
-    spec, seen, legs = catalogue(name), 0, []
+    return with_efforts(catalogue(name), every, effort)
+
+
+def with_efforts(spec: Manipulator, every: int = 1, effort: float = 60.0) -> Manipulator:
+    """The manipulator with limits of effort beside its others."""
+    seen, legs = 0, []
     for leg in spec.legs:
         joints = []
         for joint in leg.joints:
             seen += joint.actuated
-            bounded = joint.actuated and seen % every == 0
-            joints.append(replace(joint, limits=Limits(effort=effort + seen) if bounded else None))
+            limits = joint.limits
+            if joint.actuated and seen % every == 0:
+                limits = replace(limits or Limits(), effort=effort + seen)
+            joints.append(replace(joint, limits=limits))
         legs.append(replace(leg, joints=tuple(joints)))
     return checked(replace(spec, legs=tuple(legs)))
 
