@@ -280,6 +280,8 @@ class _SameText:
         self.before, self.after = before.bundle, after.bundle
         ours = self.before is not None and self.after is not None
         self.whole = not ours and before.python == after.python
+        if before.bundle is not None and after.bundle is not None:
+            self.whole = before.bundle.program == after.bundle.program
 
     def __call__(self, name: str) -> bool:
         if self.whole or self.before is None or self.after is None:

@@ -88,6 +88,8 @@ def verdict(found: Comparison) -> str:
     if found.equal:
         verdicts = {b.verdict for b in found.blocks} | {e.verdict for e in found.equations}
         same = verdicts <= {Verdict.IDENTICAL} and not found.files
+        if found.specification:
+            return f"equal: {_cause(found)}; the same values"
         return "equal: identical text" if same else "equal: different text, the same values"
     return f"different: {_cause(found)}"
 

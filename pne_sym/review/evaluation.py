@@ -39,6 +39,7 @@ class Structure:
         self.legs = {t.name: t.indices for t in derivation.leg_types}
         self.type_of_leg = {leg: t.name for t in derivation.leg_types for leg in t.indices}
         self.leg_type = self._leg_types()
+        self._made_of: dict[Any, tuple[list[Given] | None, list[str]]] = {}
 
     def _leg_types(self) -> dict[str, str]:
         """Name -> leg type, for quantities of which every leg of the type has its own."""
@@ -55,6 +56,31 @@ class Structure:
                 if chapter.leg_type or owners:
                     found[equation.name] = chapter.leg_type or owners[0]
         return found
+
+    def made_of(self, expr: Any) -> tuple[list[Given] | None, list[str]]:
+        """The given vectors that an expression is made of, and the definitions on the way.
+
+        None where it is not made of such alone.
+        """
+        if expr not in self._made_of:
+            self._made_of[expr] = self._down_to_givens(expr)
+        return self._made_of[expr]
+
+    def _down_to_givens(self, expr: Any) -> tuple[list[Given] | None, list[str]]:
+        found: dict[str, Given] = {}
+        names: list[str] = []
+        stack = sorted(names_in(expr))
+        while stack:
+            name = stack.pop(0)
+            given, equation = self.givens.get(name), self.equations.get(name)
+            if given is not None and len(given.components) > 1:
+                found[name] = given
+            elif equation is None or names_in(equation.rhs) != names_outside_sums(equation.rhs):
+                return None, []
+            elif name not in names:
+                names.append(name)
+                stack += sorted(names_in(equation.rhs))
+        return list(found.values()) or None, names
 
     def legs_of(self, name: str) -> tuple[int | None, ...]:
         """The legs that have a value of this name; (None,) where there is one in all."""
@@ -161,7 +187,7 @@ class State:
             frame = self.structure.frames[name]
             assert frame.parent is not None
             if frame.axes is not None:
-                step = self.rotation(frame.parent, leg).T @ self.rotation(name, leg)
+                step = self._axes(frame, leg)
                 value = step @ value if value.ndim == 1 else step @ value @ step.T
             elif value.ndim == 2:
                 step = self._step(frame, leg)
@@ -170,6 +196,19 @@ class State:
                 value = self._step(frame, leg) @ value
             name = frame.parent
         return value
+
+    def _axes(self, frame: Frame, leg: int | None) -> Any:
+        """parent_R_frame of a frame that is given by its axes."""
+        assert frame.axes is not None
+        assert frame.parent is not None
+        made_of = [self._fixed(axis, leg) for axis in frame.axes]
+        if all(g and all(frame.parent in self._ancestors(x.frame) for x in g) for g in made_of):
+            columns = [
+                self._product(g or [], axis, frame.parent, leg)
+                for g, axis in zip(made_of, frame.axes, strict=True)
+            ]
+            return np.column_stack(columns)
+        return self.rotation(frame.parent, leg).T @ self.rotation(frame.name, leg)
 
     def _in_frame(self, expr: Any, frame: str, leg: int | None) -> Any:
         """Value of a vector that is known in a frame, components in that frame."""
@@ -213,8 +252,8 @@ class State:
     def _reduced(self, expr: Any, leg: int | None) -> Any:
         """The expression with sums over legs, and products of given vectors, as symbols.
 
-        A product of vectors given in links is formed in their common frame: it may be
-        needed to find the angle by which they are turned.
+        A product of vectors given in links, and of what is made of such, is formed in their
+        common frame: it may be needed to find the angle by which they are turned.
         """
         if isinstance(expr, _SUMS):
             value, leg_type = expr.args
@@ -224,21 +263,36 @@ class State:
         if hasattr(expr, "name") or not args:
             return expr
         if isinstance(expr, Dot):
-            givens = [self.structure.givens.get(name) for name in sorted(names_in(expr))]
-            if all(given is not None and len(given.components) > 1 for given in givens):
-                return self._named(expr, self._product([g for g in givens if g], expr, leg))
+            givens = self._fixed(expr, leg)
+            if givens is not None:
+                return self._named(expr, self._product(givens, expr, self._common(givens), leg))
         reduced = tuple(self._reduced(arg, leg) for arg in args)
         return expr if reduced == args else expr.func(*reduced)
 
-    def _product(self, givens: list[Given], expr: Any, leg: int | None) -> Any:
-        """A product of given vectors, components in the frame that they have in common."""
+    def _fixed(self, expr: Any, leg: int | None) -> list[Given] | None:
+        """The given vectors that an expression is made of; None where it is not of these alone."""
+        givens, names = self.structure.made_of(expr)
+        lent = self.borrow is not None and any(self.borrow(n, leg) is not None for n in names)
+        return None if lent else givens
+
+    def _common(self, givens: list[Given]) -> str:
+        """The frame that given vectors have in common."""
         chains = [self._ancestors(given.frame) for given in givens]
-        common = next(f for f in chains[0] if all(f in chain for chain in chains))
+        return next(f for f in chains[0] if all(f in chain for chain in chains))
+
+    def _product(self, givens: list[Given], expr: Any, frame: str, leg: int | None) -> Any:
+        """A product of such vectors, components in a frame above all of theirs."""
         values = {
-            str(g.symbol.name): self._raised(self._components(g, leg), g.frame, common, leg)
+            str(g.symbol.name): self._raised(self._components(g, leg), g.frame, frame, leg)
             for g in givens
         }
-        return evaluate(expr, values)
+
+        def look(name: str) -> Any:
+            if name not in values:
+                values[name] = evaluate(self.structure.equations[name].rhs, _Lookup(look))
+            return values[name]
+
+        return evaluate(expr, _Lookup(look))
 
     def _ancestors(self, frame: str | None) -> list[str]:
         chain = []

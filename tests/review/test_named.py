@@ -16,6 +16,7 @@ from pne_sym.program.ir import Block, Program
 from pne_sym.review.evaluation import Structure
 from pne_sym.review.named import Statement, first_contradiction, statements
 from tests.models import bundle, catalogue
+from tests.random.drawing import draw
 from tests.review.situations import situation
 from tests.sampling import sampled
 
@@ -35,6 +36,13 @@ def test_every_name_tells_what_the_value_is(name: str) -> None:
     wrong = [s for s in found if not s.is_right]
     assert not wrong, wrong[:5]
     assert len({(s.function, s.name) for s in found}) > 100
+
+
+@pytest.mark.only_in_all
+def test_directions_are_known_before_the_angles_that_they_are_needed_for() -> None:
+    """A leg RRPR whose second joint is an extra coordinate, its axes along none of the link's."""
+    found = said(bundle(draw(1)))
+    assert all(s.is_right for s in found)
 
 
 @pytest.mark.parametrize("name", sampled(manipulators.names(), 99, keep=CHEAP[:2]))

@@ -320,6 +320,12 @@ def test_any_two_models_can_be_compared() -> None:
     assert len(shown) <= 200
 
 
+def test_another_symbol_is_no_other_model() -> None:
+    found = compared(('q_2 = "L"', 'q_2 = "D"'))
+    assert verdict(found) == "equal: symbols of q_2 changed; the same values"
+    assert {b.verdict for b in found.blocks} == {Verdict.IDENTICAL}
+
+
 def test_motors_are_coupled() -> None:
     """Rotor inertias are numbers, not tensors; another coupling takes no values away."""
     alone, together = both(MODEL)
