@@ -5,6 +5,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -95,6 +96,7 @@ class NumpyBackend:
         )
 
 
+@cache
 def support() -> str:
     """All that a module may need of written-out Python."""
     numbers = {name.upper(): number for name, number in FIXED.items()}

@@ -3,9 +3,20 @@
 from __future__ import annotations
 
 import ast
+import symtable
 from collections.abc import Iterable
+from functools import cache
+from typing import NamedTuple
 
 from pne_sym.backends.templating import reached
+
+
+class _Part(NamedTuple):
+    """A function, a class or a constant: its source, and the names that occur in it."""
+
+    text: str
+    is_constant: bool
+    names: frozenset[str]
 
 
 def needed(support: str, texts: Iterable[str]) -> str:
@@ -15,18 +26,26 @@ def needed(support: str, texts: Iterable[str]) -> str:
         support: Python source of functions, classes and constants, in the order of the result.
         texts: Python source that uses some of them.
     """
-    lines = support.split("\n")
-    parts = {name: node for node in ast.parse(support).body for name in _made(node)}
-    found = reached(map(ast.parse, texts), parts, _named)
-    kept = dict.fromkeys(parts[name] for name in found)
-    text, before = "", ""
-    for node in kept:
-        assert node.end_lineno is not None
-        kind = "constant" if isinstance(node, ast.Assign) else "function"
-        gap = "\n" if kind == before == "constant" else "\n\n\n" if before else ""
-        text += gap + "\n".join(lines[node.lineno - 1 : node.end_lineno])
-        before = kind
+    parts = _parts(support)
+    uses = {name: part.names for name, part in parts.items()}
+    found = reached(map(_named, texts), uses, frozenset)
+    text, before = "", None
+    for part in dict.fromkeys(parts[name] for name in found):
+        gap = "\n" if part.is_constant and before else "\n\n\n" if text else ""
+        text, before = text + gap + part.text, part.is_constant
     return text
+
+
+@cache  # all models have the same
+def _parts(support: str) -> dict[str, _Part]:
+    """What source makes, by its names."""
+    lines, found = support.split("\n"), dict[str, _Part]()
+    for node in ast.parse(support).body:
+        assert node.end_lineno is not None
+        text = "\n".join(lines[node.lineno - 1 : node.end_lineno])
+        part = _Part(text, isinstance(node, ast.Assign), _named(text))
+        found |= dict.fromkeys(_made(node), part)
+    return found
 
 
 def _made(node: ast.stmt) -> list[str]:
@@ -37,6 +56,11 @@ def _made(node: ast.stmt) -> list[str]:
     return [n.id for target in node.targets for n in ast.walk(target) if isinstance(n, ast.Name)]
 
 
-def _named(node: ast.AST) -> list[str]:
-    """Names that occur in a tree, in order."""
-    return [n.id for n in ast.walk(node) if type(n) is ast.Name]
+def _named(text: str) -> frozenset[str]:
+    """Names that occur in source, those of attributes apart."""
+    tables, found = [symtable.symtable(text, "", "exec")], set[str]()
+    while tables:
+        table = tables.pop()
+        found.update(table.get_identifiers())
+        tables += table.get_children()
+    return frozenset(found)

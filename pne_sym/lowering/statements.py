@@ -163,12 +163,16 @@ class Statements:
         """The symbol of a new statement."""
         parts = self._parts(expr)
         stage = _joined(parts).after_sum() if total_of else _joined(parts)
-        hint = hint or f"{self.quantity_of.get(self.equation, 'v')}_t"
-        hint = of_leg(hint, stage.leg_type)
+        hint = self._stem(hint, stage)
         symbol = algebra.symbol(self._fresh(hint))
         made = Statement(symbol, expr, stage, self.equation, total_of, named, hint)
         self._place(self._of(symbol), made, tuple(part for part in parts if part.made))
         return symbol
+
+    def _stem(self, hint: str, stage: Stage) -> str:
+        """What a name begins with."""
+        hint = hint or f"{self.quantity_of.get(self.equation, 'v')}_t"
+        return of_leg(hint, stage.leg_type)
 
     def _fresh(self, hint: str) -> str:
         """A name that no other symbol has: the hint, or the hint and a number."""
@@ -295,7 +299,7 @@ class Statements:
 
 def _joined(parts: Sequence[_Known]) -> Stage:
     """The stage of what is made of these."""
-    stages = [part.stage for part in parts if part.stage]
-    if stages and all(stage is stages[0] for stage in stages):
-        return stages[0]
-    return algebra.joined(frozenset(stages))
+    stages = {id(part.stage): part.stage for part in parts if part.stage}
+    if len(stages) == 1:
+        return stages.popitem()[1]
+    return algebra.joined(frozenset(stages.values()))

@@ -78,8 +78,10 @@ class Trials:
         if len(makers) == 1:
             return makers[0]()
         if self._depth < _MAX_DEPTH:
-            trials = [self.attempt(make) for make in makers]
-            best = min(range(len(makers)), key=lambda k: trials[k].cost)
+            trials: list[Trial] = []
+            while len(trials) < len(makers) and all(trial.cost for trial in trials):
+                trials.append(self.attempt(makers[len(trials)]))  # none is cheaper than nothing
+            best = min(range(len(trials)), key=lambda k: trials[k].cost)
             if trials[best].is_final and trials[best].cost < float("inf"):
                 return self._adopt(trials[best])  # type: ignore[no-any-return]
             # Made anew: its own choices are then tried as deep as this one.
