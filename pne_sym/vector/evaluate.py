@@ -64,6 +64,12 @@ def _axial(t: Any) -> Any:
     return np.array([t[2, 1] - t[1, 2], t[0, 2] - t[2, 0], t[1, 0] - t[0, 1]])
 
 
+def _cross(a: Any, b: Any) -> Any:
+    """As `numpy.cross`, which takes five times as long for two vectors."""
+    (a_x, a_y, a_z), (b_x, b_y, b_z) = a, b
+    return np.array([a_y * b_z - a_z * b_y, a_z * b_x - a_x * b_z, a_x * b_y - a_y * b_x])
+
+
 def _power(base: Any, exponent: Any) -> Any:
     """As arrays do it: infinite for a division by zero, NaN for the root of a negative number."""
     with np.errstate(all="ignore"):
@@ -75,7 +81,7 @@ _OPERATIONS: dict[type, Any] = {
     n.TensorAdd: lambda *terms: sum(terms),
     n.VectorScale: lambda s, a: s * a,
     n.TensorScale: lambda s, a: s * a,
-    n.Cross: np.cross,
+    n.Cross: _cross,
     n.Dot: lambda a, b: float(np.dot(a, b)),
     n.Trace: lambda t: float(np.trace(t)),
     n.Apply: lambda t, a: t @ a,

@@ -19,7 +19,7 @@ from tests.mechanics.evaluation import Array, Names
 from tests.oracle.closure import leg_closure, perpendicular_pair
 from tests.oracle.coordinates import is_planar, joint_slices, pose_size, task_size
 from tests.oracle.effects import friction, margins, rotors, springs, stored, turning_friction
-from tests.oracle.jets import cross_matrix
+from tests.oracle.jets import cross, cross_matrix
 
 _SLIDE = JointKind.PRISMATIC
 
@@ -72,9 +72,7 @@ class Facts:
             return np.array(self.leg.base_point) + arm, np.zeros(3)
         w, a = self.motion.angular_velocity[i - 1], self.motion.angular_acceleration[i - 1]
         place = self.motion.origin[i - 1] + arm
-        return place, self.motion.acceleration[i - 1] + np.cross(a, arm) + np.cross(
-            w, np.cross(w, arm)
-        )
+        return place, self.motion.acceleration[i - 1] + cross(a, arm) + cross(w, cross(w, arm))
 
     def joint_point(self, j: int) -> tuple[Array, Array]:
         """Origin of joint j before its own displacement; j = m + 1: the tip."""
@@ -104,11 +102,11 @@ class Facts:
     @property
     def centripetal(self) -> Any:
         w = self.platform.angular_velocity
-        return np.cross(w, np.cross(w, self.arm))
+        return cross(w, cross(w, self.arm))
 
     @property
     def tangential(self) -> Any:
-        return self.platform.acceleration + np.cross(self.platform.angular_acceleration, self.arm)
+        return self.platform.acceleration + cross(self.platform.angular_acceleration, self.arm)
 
     def e(self, j: int) -> Any:
         return self.rotation(j) @ np.array(self.leg.joints[j - 1].axis)
@@ -144,7 +142,7 @@ class Facts:
             return np.eye(3)
         axis = self.platform.rotation @ np.array(joint.axis_platform)
         if joint.kind is PlatformJointKind.UNIVERSAL:
-            return np.cross(self.rotation(self.count) @ np.array(joint.axis_link), axis)[None]
+            return cross(self.rotation(self.count) @ np.array(joint.axis_link), axis)[None]
         return np.array(perpendicular_pair(axis))
 
     @cached_property
@@ -158,7 +156,7 @@ class Facts:
         axis = np.array(joint.axis_link)
         main = int(np.argmax(np.abs(axis)))
         assert abs(axis[main]) == 1.0, "axes in general position have no value here"
-        return [last @ np.cross(np.eye(3)[(main + k) % 3], axis) for k in (1, 2)]
+        return [last @ cross(np.eye(3)[(main + k) % 3], axis) for k in (1, 2)]
 
     def amounts(self, vector: Array) -> Any:
         """Components of a vector along those directions."""
@@ -223,10 +221,10 @@ class Facts:
     def moment(self, j: int) -> Any:
         """Euler: inertia moment of link j about its centre of mass."""
         w, tensor = self.omega(j), self.tensor(j)
-        return tensor @ self.alpha(j) + np.cross(w, tensor @ w)
+        return tensor @ self.alpha(j) + cross(w, tensor @ w)
 
     def moment_about(self, j: int, point: Array) -> Any:
-        return self.moment(j) + np.cross(self.motion.centre[j - 1] - point, self.force(j))
+        return self.moment(j) + cross(self.motion.centre[j - 1] - point, self.force(j))
 
     @property
     def tip_force(self) -> Any:
@@ -447,7 +445,7 @@ def _q(f: Facts, j: int) -> Any:
 
 @value_of("S_dot")
 def _s_dot(f: Facts, j: int) -> Any:
-    return f.platform.velocity + np.cross(f.platform.angular_velocity, f.arm)
+    return f.platform.velocity + cross(f.platform.angular_velocity, f.arm)
 
 
 @value_of("S_dot_rest")
@@ -583,7 +581,7 @@ def _mu(f: Facts, j: int) -> Any:
 def _n(f: Facts, j: int) -> Any:
     origin = f.joint_point(j)[0]
     total = sum(f.moment_about(k, origin) for k in f.groups_from(j))
-    return total - np.cross(f.tip - origin, f.tip_force)
+    return total - cross(f.tip - origin, f.tip_force)
 
 
 @value_of(r"T_(\d+)")
@@ -710,7 +708,7 @@ def _moves(f: Facts, k: int, point: Array) -> Any:
     if not f.turns(k):
         return f.e(k)
     pitch = f.leg.joints[k - 1].pitch
-    return np.cross(f.e(k), point - f.motion.origin[k - 1]) + pitch * f.e(k)
+    return cross(f.e(k), point - f.motion.origin[k - 1]) + pitch * f.e(k)
 
 
 def _effort(f: Facts, k: int, group: int) -> Any:
@@ -718,7 +716,7 @@ def _effort(f: Facts, k: int, group: int) -> Any:
     start = _start(f, group)
     total = sum(
         f.tensor(i) @ _axis(f, k)
-        + np.cross(f.motion.centre[i - 1] - start, f.mass(i) * _moves(f, k, f.motion.centre[i - 1]))
+        + cross(f.motion.centre[i - 1] - start, f.mass(i) * _moves(f, k, f.motion.centre[i - 1]))
         for i in _beyond(f, k)
     )
     return total + f.reference_tensor(f.tip_body) @ _axis(f, k) if f.tip_body else total
@@ -760,8 +758,8 @@ def _joint_inertia(f: Facts, j: int, k: int) -> Any:
     h = f.first_moment(f.tip_body)
     return full - (
         f.tip_mass * f.v(j) @ f.v(k)
-        + f.v(j) @ np.cross(_axis(f, k), h)
-        + f.v(k) @ np.cross(_axis(f, j), h)
+        + f.v(j) @ cross(_axis(f, k), h)
+        + f.v(k) @ cross(_axis(f, j), h)
     )
 
 
@@ -836,7 +834,7 @@ def _p(f: Facts, j: int) -> Any:
 
 @value_of(r"H_a_(\d+)")
 def _h_a(f: Facts, j: int) -> Any:
-    return np.cross(f.arm, f.w(j)) + f.o(j)
+    return cross(f.arm, f.w(j)) + f.o(j)
 
 
 # ---- the platform -------------------------------------------------------------------------------
@@ -878,7 +876,7 @@ class PlatformFacts:
         if payload:
             arm = self.motion.rotation @ np.array(payload.centre_of_mass)
             w, alpha = self.motion.angular_velocity, self.motion.angular_acceleration
-            moved = self.motion.acceleration + np.cross(alpha, arm) + np.cross(w, np.cross(w, arm))
+            moved = self.motion.acceleration + cross(alpha, arm) + cross(w, cross(w, arm))
             found.append((payload.mass, arm, self._tensor(payload), moved))
         return [(mass, arm, tensor, a - self.gravity) for mass, arm, tensor, a in found]
 
@@ -891,10 +889,10 @@ class PlatformFacts:
     def moment(self) -> Any:
         w, alpha = self.motion.angular_velocity, self.motion.angular_acceleration
         own = sum(
-            tensor @ alpha + np.cross(w, tensor @ w) + np.cross(arm, mass * a)
+            tensor @ alpha + cross(w, tensor @ w) + cross(arm, mass * a)
             for mass, arm, tensor, a in self.bodies
         )
-        return own + sum(np.cross(f.arm, f.tip_mass * _acceleration(f)) for f in self.legs)
+        return own + sum(cross(f.arm, f.tip_mass * _acceleration(f)) for f in self.legs)
 
     def block(self, matrix: Array, rows: list[int], columns: list[int]) -> Any:
         return matrix[np.ix_(rows, columns)]

@@ -34,12 +34,10 @@ class Base:
         """A pose relative to the base, in the space of which these are now the axes."""
         lead = pose.origin.value.shape[:-1]
         w = cross_matrix(self.spin)
-        turn = np.eye(3), w, cross_matrix(self.spin_rate) + w @ w
-        way = np.zeros(3), np.zeros(3), self.acceleration
-        rotation, origin = (
-            Jet(*(np.broadcast_to(part, (*lead, *part.shape)) for part in parts))
-            for parts in (turn, way)
-        )
+        turn = np.stack([np.eye(3), w, cross_matrix(self.spin_rate) + w @ w])
+        way = np.stack([np.zeros(3), np.zeros(3), self.acceleration])
+        ones = [1] * len(lead)
+        rotation, origin = Jet(turn.reshape(3, *ones, 3, 3)), Jet(way.reshape(3, *ones, 3))
         return Pose(origin + apply(rotation, pose.origin), compose(rotation, pose.rotation))
 
     @property

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from pne_sym.model.manipulator import Body
-from tests.oracle.chain import carried_point
 from tests.oracle.coordinates import Pose
-from tests.oracle.jets import Array, angular_acceleration, angular_velocity
+from tests.oracle.jets import Array, Jet, angular_acceleration, angular_velocity, cross
 
 
 @dataclass(frozen=True)
@@ -67,31 +66,48 @@ class Bodies:
 
 def bodies_of(bodies: list[Body], unit_motions: list[Pose]) -> Bodies:
     """Partial velocities from poses whose one leading axis (k,) holds one unit rate each."""
-    centres, angles, tensors = [], [], []
-    for body, pose in zip(bodies, unit_motions, strict=True):
-        rotation = pose.rotation.value[0]
-        centres.append(carried_point(pose, body.centre_of_mass).first.T)
-        angles.append(angular_velocity(pose.rotation).T)
-        tensors.append(rotation @ np.array(body.inertia, dtype=float) @ rotation.T)
+    origin, rotation = _together(unit_motions)
+    # (k, n, 3, 3) and (k, n, 3): one unit rate each, of all bodies.
+    spin, centre = angular_velocity(rotation), _centres(bodies, origin, rotation).first
+    own = np.array([body.inertia for body in bodies], dtype=float)
+    turned = rotation.value[0]
     mass = np.array([body.mass for body in bodies], dtype=float)
-    return Bodies(mass, np.array(tensors), np.array(centres), np.array(angles))
+    return Bodies(
+        mass,
+        turned @ own @ np.swapaxes(turned, -1, -2),
+        np.moveaxis(centre, 0, -1),
+        np.moveaxis(spin, 0, -1),
+    )
+
+
+def _together(poses: list[Pose]) -> tuple[Jet, Jet]:
+    """Origins (..., n, 3) and rotations (..., n, 3, 3) of n poses."""
+    return (
+        Jet(np.stack([pose.origin.terms for pose in poses], axis=-2)),
+        Jet(np.stack([pose.rotation.terms for pose in poses], axis=-3)),
+    )
+
+
+def _centres(bodies: list[Body], origin: Jet, rotation: Jet) -> Jet:
+    """Centres of mass (..., n, 3)."""
+    own = np.array([body.centre_of_mass for body in bodies], dtype=float)
+    return Jet(origin.terms + (rotation.terms @ own[..., None])[..., 0])
 
 
 def motion_of(bodies: list[Body], poses: list[Pose]) -> LinkMotion:
     """Motion of n bodies from their poses (without leading axes)."""
-    centres = [
-        carried_point(pose, body.centre_of_mass) for body, pose in zip(bodies, poses, strict=True)
-    ]
+    origin, rotation = _together(poses)
+    centre = _centres(bodies, origin, rotation)
     return LinkMotion(
-        origin=np.array([pose.origin.value for pose in poses]),
-        rotation=np.array([pose.rotation.value for pose in poses]),
-        velocity=np.array([pose.origin.first for pose in poses]),
-        angular_velocity=np.array([angular_velocity(pose.rotation) for pose in poses]),
-        acceleration=np.array([pose.origin.second for pose in poses]),
-        angular_acceleration=np.array([angular_acceleration(pose.rotation) for pose in poses]),
-        centre=np.array([centre.value for centre in centres]),
-        centre_velocity=np.array([centre.first for centre in centres]),
-        centre_acceleration=np.array([centre.second for centre in centres]),
+        origin=origin.value,
+        rotation=rotation.value,
+        velocity=origin.first,
+        angular_velocity=angular_velocity(rotation),
+        acceleration=origin.second,
+        angular_acceleration=angular_acceleration(rotation),
+        centre=centre.value,
+        centre_velocity=centre.first,
+        centre_acceleration=centre.second,
     )
 
 
@@ -104,19 +120,19 @@ def virtual_forces(bodies: Bodies, motion: LinkMotion, gravity: Array) -> Array:
     """d'Alembert's sums (k,) of inertia-minus-gravity loads over partial velocities."""
     force = bodies.mass[:, None] * (motion.centre_acceleration - gravity)
     spin = motion.angular_velocity
-    momentum = np.einsum("nij,nj->ni", bodies.inertia, spin)
-    moment = np.einsum("nij,nj->ni", bodies.inertia, motion.angular_acceleration)
-    moment += np.cross(spin, momentum)
-    linear: Array = np.einsum("nik,ni->k", bodies.centre_partials, force)
-    angular: Array = np.einsum("nik,ni->k", bodies.angle_partials, moment)
+    momentum = (bodies.inertia @ spin[..., None])[..., 0]
+    moment = (bodies.inertia @ motion.angular_acceleration[..., None])[..., 0]
+    moment += cross(spin, momentum)
+    linear: Array = np.tensordot(force, bodies.centre_partials)
+    angular: Array = np.tensordot(moment, bodies.angle_partials)
     return linear + angular
 
 
 def inertia_matrix(bodies: Bodies) -> Array:
     """Inertia matrix (k, k) of the bodies in their rates."""
     centres, angles = bodies.centre_partials, bodies.angle_partials
-    linear: Array = np.einsum("n,nik,nil->kl", bodies.mass, centres, centres)
-    angular: Array = np.einsum("nik,nij,njl->kl", angles, bodies.inertia, angles)
+    linear: Array = np.tensordot(bodies.mass[:, None, None] * centres, centres, ((0, 1), (0, 1)))
+    angular: Array = np.tensordot(angles, bodies.inertia @ angles, ((0, 1), (0, 1)))
     return linear + angular
 
 
@@ -124,7 +140,7 @@ def kinetic_energy(bodies: Bodies, motion: LinkMotion) -> float:
     """Kinetic energy, J."""
     linear = bodies.mass @ np.sum(motion.centre_velocity**2, axis=1)
     spin = motion.angular_velocity
-    return 0.5 * float(linear + np.einsum("ni,nij,nj->", spin, bodies.inertia, spin))
+    return 0.5 * float(linear + np.sum(spin * (bodies.inertia @ spin[..., None])[..., 0]))
 
 
 def potential_energy(bodies: Bodies, motion: LinkMotion, gravity: Array) -> float:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from pne_sym.model.manipulator import JointKind, Leg
+from pne_sym.model.manipulator import JointKind, Leg, Vector3
 from tests.oracle.coordinates import Pose
-from tests.oracle.jets import Array, Jet, apply, compose, constant, rotation_about
+from tests.oracle.jets import Array, Jet, compose, constant, rotation_about, scaled
 
 
 def chain_poses(leg: Leg, q: Jet) -> list[Pose]:
@@ -22,38 +22,32 @@ def chain_poses(leg: Leg, q: Jet) -> list[Pose]:
         m poses, base frame, with the leading axes of `q`.
     """
     shape = q.value.shape[:-1]
-    origin = constant(np.broadcast_to(np.array(leg.base_point, dtype=float), (*shape, 3)))
-    rotation = constant(np.broadcast_to(np.array(leg.base_frame, dtype=float), (*shape, 3, 3)))
+    origin = constant(np.array(leg.base_point, dtype=float), shape)
+    rotation = constant(np.array(leg.base_frame, dtype=float), shape)
     poses = []
     for index, joint in enumerate(leg.joints):
-        axis = np.array(joint.axis, dtype=float)
         displacement = q.component(index)
-        shift = constant(np.broadcast_to(np.array(joint.offset, dtype=float), (*shape, 3)))
+        origin = origin + carried(rotation, joint.offset)
         advance = 1.0 if joint.kind is JointKind.PRISMATIC else joint.pitch
         if joint.kind is not JointKind.REVOLUTE:
-            shift = shift + along(axis * advance, displacement)
-        origin = origin + apply(rotation, shift)
+            slide = carried(rotation, advance * np.array(joint.axis, dtype=float))
+            origin = origin + scaled(slide, displacement)
         if joint.kind is not JointKind.PRISMATIC:
-            rotation = compose(rotation, rotation_about(axis, displacement))
+            rotation = compose(rotation, rotation_about(joint.axis, displacement))
         poses.append(Pose(origin, rotation))
     return poses
 
 
-def along(direction: Array, amount: Jet) -> Jet:
-    """The vector (..., 3) `direction` (3,) times `amount` (...)."""
-    return amount.linear(lambda array: array[..., None] * direction)
+def carried(rotation: Jet, vector: Array | Vector3) -> Jet:
+    """Components (..., 3) in base axes of a vector fixed in axes that turn (..., 3, 3)."""
+    return Jet(rotation.terms @ np.asarray(vector, dtype=float))
 
 
-def carried_point(pose: Pose, point: tuple[float, float, float]) -> Jet:
+def carried_point(pose: Pose, point: Vector3) -> Jet:
     """Position (..., 3), base frame, of a point fixed in a moving frame."""
-    return pose.origin + apply(pose.rotation, fixed(pose, point))
+    return pose.origin + carried(pose.rotation, point)
 
 
-def carried_vector(pose: Pose, vector: Array | tuple[float, float, float]) -> Jet:
+def carried_vector(pose: Pose, vector: Array | Vector3) -> Jet:
     """Components (..., 3) in base axes of a vector fixed in a moving frame."""
-    return apply(pose.rotation, fixed(pose, vector))
-
-
-def fixed(pose: Pose, vector: Array | tuple[float, float, float]) -> Jet:
-    """A constant vector with the leading axes of `pose`."""
-    return constant(np.broadcast_to(np.array(vector, dtype=float), pose.origin.value.shape))
+    return carried(pose.rotation, vector)

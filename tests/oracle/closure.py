@@ -23,7 +23,7 @@ from tests.oracle.coordinates import (
     step_between,
     twist_basis,
 )
-from tests.oracle.jets import Array, Jet, compose, constant, cross_vector, dot
+from tests.oracle.jets import Array, Jet, compose, cross, cross_vector, dot, taylor
 
 CLOSURE_TOLERANCE = 1e-13
 """Largest closure residual of a solved loop (m, or sines of angles)."""
@@ -52,9 +52,9 @@ class LegClosure:
 def perpendicular_pair(axis: Array) -> tuple[Array, Array]:
     """Two unit vectors perpendicular to `axis` and to each other."""
     helper = np.eye(3)[int(np.argmin(np.abs(axis)))]
-    first = np.cross(axis, helper)
+    first = cross(axis, helper)
     first /= np.linalg.norm(first)
-    return first, np.cross(axis / np.linalg.norm(axis), first)
+    return first, cross(axis / np.linalg.norm(axis), first)
 
 
 def closure_residual(space: Space, leg: Leg, last_link: Pose, platform: Pose) -> Jet:
@@ -91,23 +91,19 @@ def _misalignment(leg: Leg, last_link: Pose, platform: Pose) -> Jet:
     held = leg.platform_joint.rotation
     if held is None:
         raise OracleError("a rigid platform joint needs its rotation")
-    grip = constant(np.broadcast_to(np.array(held, dtype=float), last_link.rotation.value.shape))
+    held_by_link = Jet(last_link.rotation.terms @ np.array(held, dtype=float))
     transposed = platform.rotation.linear(lambda array: np.swapaxes(array, -1, -2))
-    return compose(compose(last_link.rotation, grip), transposed).linear(cross_vector)
+    return compose(held_by_link, transposed).linear(cross_vector)
 
 
 def _stack(rows: list[Jet]) -> Jet:
-    return Jet(
-        np.stack([row.value for row in rows], axis=-1),
-        np.stack([row.first for row in rows], axis=-1),
-        np.stack([row.second for row in rows], axis=-1),
-    )
+    return Jet(np.stack([row.terms for row in rows], axis=-1))
 
 
 def leg_closure(manipulator: Manipulator, leg: Leg, X: Array, q: Array) -> LegClosure:
     """A leg's closure at pose X with displacements q (m,)."""
     m = len(leg.joints)
-    moves = Jet(np.broadcast_to(q, (m + 6, m)), np.eye(m + 6, m), np.zeros((m + 6, m)))
+    moves = taylor(q, np.eye(m + 6, m), np.zeros((m + 6, m)))
     twist = np.eye(m + 6, 6, k=-m)
     platform = platform_motion(manipulator, X, twist, np.zeros_like(twist))
     last_link = chain_poses(leg, moves)[-1]

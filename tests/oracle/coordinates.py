@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 
 from pne_sym.model.manipulator import Manipulator, Space
-from tests.oracle.jets import Array, Jet, cross_matrix, cross_vector
+from tests.oracle.jets import Array, Jet, cross, cross_matrix, cross_vector, taylor
 
 _TWIST_COMPONENTS: dict[Space, tuple[int, ...]] = {
     Space.POINT: (0, 1),
@@ -99,7 +99,7 @@ def rotation_from_quaternion(quaternion: Array) -> Array:
 
 def quaternion_product(left: Array, right: Array) -> Array:
     """Quaternion of the rotation `right` followed by `left`; x, y, z, w."""
-    vector = left[3] * right[:3] + right[3] * left[:3] + np.cross(left[:3], right[:3])
+    vector = left[3] * right[:3] + right[3] * left[:3] + cross(left[:3], right[:3])
     return np.array([*vector, left[3] * right[3] - left[:3] @ right[:3]])
 
 
@@ -153,19 +153,13 @@ def platform_motion(manipulator: Manipulator, X: Array, twist: Array, twist_rate
     Returns:
         Pose of the platform frame, with the leading axes of `twist`.
     """
-    shape = twist.shape[:-1]
-    origin = Jet(
-        np.broadcast_to(platform_position(manipulator, X), (*shape, 3)),
-        twist[..., :3],
-        twist_rate[..., :3],
-    )
     rotation = platform_rotation(manipulator, X)
     spin = cross_matrix(twist[..., 3:])
     # exp([omega t + alpha t^2 / 2]) R to second order in t.
     return Pose(
-        origin,
-        Jet(
-            np.broadcast_to(rotation, (*shape, 3, 3)),
+        taylor(platform_position(manipulator, X), twist[..., :3], twist_rate[..., :3]),
+        taylor(
+            rotation,
             spin @ rotation,
             (cross_matrix(twist_rate[..., 3:]) + spin @ spin) @ rotation,
         ),

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pne_sym.model.manipulator import Body, Leg, Manipulator
-from tests.oracle.base import Base, base_of
+from tests.oracle.base import REST, Base, base_of
 from tests.oracle.bodies import (
     Bodies,
     LinkMotion,
@@ -28,7 +28,7 @@ from tests.oracle.bodies import (
     virtual_forces,
 )
 from tests.oracle.chain import chain_poses
-from tests.oracle.closure import OracleError, closure_error, closure_residual, leg_closure
+from tests.oracle.closure import OracleError, closure_residual, leg_closure
 from tests.oracle.coordinates import (
     Pose,
     actuated_indices,
@@ -41,7 +41,7 @@ from tests.oracle.coordinates import (
 )
 from tests.oracle.effects import friction, rotor_matrix, springs, stored, turning_friction
 from tests.oracle.forces import RANK_TOLERANCE, completion, forces
-from tests.oracle.jets import Array, Jet
+from tests.oracle.jets import Array, cross_matrix, taylor
 
 
 @dataclass(frozen=True)
@@ -123,6 +123,7 @@ class Result:
 class _LegKinematics:
     """First-order kinematics of a leg with nc closure conditions; see `LegResult`.
 
+    `residual` (nc,): of the conditions.
     `demand` (nc, nv): rates of the conditions by V, joints without extra ones at rest.
     `wrench_map` (6, nc): from the conditions' multipliers to the wrench on the platform at
     the platform joint.  `multipliers` (nc, k): per unit lambda.
@@ -131,6 +132,7 @@ class _LegKinematics:
     leg: Leg
     q: Array
     free: list[int]
+    residual: Array
     jacobian: Array
     demand: Array
     rates: Array
@@ -197,7 +199,7 @@ def project(
     ]
     platform = _platform_bodies(manipulator, X, V.size)
     still = _evaluate(manipulator, legs, platform, X, V, np.zeros_like(V), base)
-    moving = _evaluate(manipulator, legs, platform, X, V, A, base)
+    moving = _evaluate(manipulator, legs, platform, X, V, A, base) if A.any() else still
     H = np.vstack([leg.rates for leg in legs]).T[:, actuated_indices(manipulator)]
     Hk = np.hstack([-leg.demand.T @ leg.multipliers for leg in legs])
     load = np.zeros_like(V)
@@ -225,7 +227,7 @@ def project(
         potential=moving.potential,
         dissipation=moving.dissipation,
         inertia_forces=moving.forces,
-        closure=closure_error(manipulator, X, q),
+        closure=max(float(np.abs(leg.residual).max()) for leg in legs),
         legs=_leg_results(manipulator, legs, moving, tau, lam),
         platform=moving.platform,
     )
@@ -300,11 +302,12 @@ def _leg_kinematics(manipulator: Manipulator, number: int, X: Array, q: Array) -
     rates[free] = -np.linalg.pinv(closure.joints[:, free]) @ demand
     wrench_map = -_at_joint(manipulator, leg, X) @ closure.platform.T
     null_space = left[:, len(free) :]
-    unit_rates = Jet(np.broadcast_to(q, (q.size, q.size)), np.eye(q.size), np.zeros((q.size,) * 2))
+    unit_rates = taylor(q, np.eye(q.size), np.zeros((q.size,) * 2))
     return _LegKinematics(
         leg=leg,
         q=q,
         free=free,
+        residual=closure.residual,
         jacobian=closure.joints,
         demand=demand,
         rates=rates,
@@ -332,7 +335,7 @@ def _at_joint(manipulator: Manipulator, leg: Leg, X: Array) -> Array:
     """(6, 6): wrench about the platform origin to wrench about the platform joint."""
     arm = platform_rotation(manipulator, X) @ np.array(leg.platform_point, dtype=float)
     shift = np.eye(6)
-    shift[3:, :3] = -np.cross(arm, np.eye(3), axisb=0).T
+    shift[3:, :3] = -cross_matrix(arm)
     return shift
 
 
@@ -382,11 +385,14 @@ def _evaluate(
     qd, qdd, links, remainders, carried_links = [], [], [], [], []
     for leg in legs:
         rate = leg.rates @ V
-        acceleration, remainder = _joint_acceleration(manipulator, leg, pose, rate, A)
-        poses = chain_poses(leg.leg, Jet(leg.q, rate, acceleration))
+        acceleration, remainder, poses = _joint_acceleration(manipulator, leg, pose, rate, A)
         bodies_of_leg = [joint.link for joint in leg.leg.joints]
         links.append(motion_of(bodies_of_leg, poses))
-        carried_links.append(motion_of(bodies_of_leg, [base.carries(each) for each in poses]))
+        carried_links.append(
+            links[-1]
+            if base is REST
+            else motion_of(bodies_of_leg, [base.carries(each) for each in poses])
+        )
         qd.append(rate)
         qdd.append(acceleration)
         remainders.append(remainder)
@@ -455,17 +461,17 @@ def _all_rates(legs: list[_LegKinematics]) -> Array:
 
 def _joint_acceleration(
     manipulator: Manipulator, leg: _LegKinematics, platform: Pose, rate: Array, A: Array
-) -> tuple[Array, Array]:
-    """Joint accelerations (m,), and the closure's second derivative that they leave (nc,)."""
+) -> tuple[Array, Array, list[Pose]]:
+    """Joint accelerations (m,), what they leave of the closure's second derivative, the links."""
     # Rows of `rates` that belong to extra joints only select their entry of A.
     acceleration = np.where([joint.extra for joint in leg.leg.joints], leg.rates @ A, 0.0)
 
-    def second_derivative() -> Array:
-        last_link = chain_poses(leg.leg, Jet(leg.q, rate, acceleration))[-1]
-        return closure_residual(manipulator.space, leg.leg, last_link, platform).second
+    def second_derivative() -> tuple[Array, list[Pose]]:
+        poses = chain_poses(leg.leg, taylor(leg.q, rate, acceleration))
+        return closure_residual(manipulator.space, leg.leg, poses[-1], platform).second, poses
 
-    acceleration[leg.free] -= np.linalg.pinv(leg.jacobian[:, leg.free]) @ second_derivative()
-    return acceleration, second_derivative()
+    acceleration[leg.free] -= np.linalg.pinv(leg.jacobian[:, leg.free]) @ second_derivative()[0]
+    return acceleration, *second_derivative()
 
 
 def _leg_results(
