@@ -180,6 +180,8 @@ class Lowering:
         if body is not None:
             return body
         frames = self._frames_of(forms[0])
+        if len(frames) == 1:
+            return frames[0]
         costs = [self.trials.attempt(partial(self._any, forms[0], f)).cost for f in frames]
         return frames[costs.index(min(costs))]
 
