@@ -10,6 +10,7 @@ from __future__ import annotations
 import enum
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Any
 
 import sympy as sp
@@ -490,14 +491,12 @@ class Derivation:
         raise KeyError(name)
 
 
-def names_in(expr: Any) -> set[str]:
+@lru_cache(1 << 16)  # of whole equations, again and again
+def names_in(expr: Any) -> frozenset[str]:
     """All names that occur in an expression."""
     if isinstance(expr, VectorSymbol | TensorSymbol | sp.Symbol):
-        return {str(expr.name)}
-    found: set[str] = set()
-    for arg in getattr(expr, "args", ()):
-        found |= names_in(arg)
-    return found
+        return frozenset((str(expr.name),))
+    return frozenset().union(*map(names_in, getattr(expr, "args", ())))
 
 
 def full_names(derivation: Derivation, name: str) -> list[str]:

@@ -8,7 +8,7 @@ of an equation the cheapest is taken.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence, Set
 from functools import partial
 from typing import Any
 
@@ -140,7 +140,7 @@ class Lowering:
                 condition.power,
             )
 
-    def _in_order(self, names: set[str]) -> list[str]:
+    def _in_order(self, names: Set[str]) -> list[str]:
         """Names in the order in which they are defined, whatever they are."""
         return sorted(names, key=lambda name: (self._place.get(name, -1), name))
 
@@ -180,6 +180,8 @@ class Lowering:
         if body is not None:
             return body
         frames = self._frames_of(forms[0])
+        if len(frames) == 1:
+            return frames[0]
         costs = [self.trials.attempt(partial(self._any, forms[0], f)).cost for f in frames]
         return frames[costs.index(min(costs))]
 

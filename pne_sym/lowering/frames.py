@@ -14,6 +14,7 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.derivation import Derivation, Frame
+from pne_sym.lowering.algebra import negative
 from pne_sym.lowering.builder import Builder
 from pne_sym.lowering.statements import Atom
 
@@ -139,10 +140,11 @@ class Frames:
         if isinstance(step, TurnStep):
             if x == 0 and y == 0:
                 return v
-            c, s = self._scalar(step.c), step.sign * self._scalar(step.s)
+            c, s = self._scalar(step.c), self._scalar(step.s)
+            s = s if step.sign == 1 else negative(s)
             return (
                 b.add((b.mul(c, x), b.mul(s, y)), f"{hint}_x"),
-                b.add((b.mul(c, y), -b.mul(s, x)), f"{hint}_y"),
+                b.add((b.mul(c, y), negative(b.mul(s, x))), f"{hint}_y"),
                 z,
             )
         return tuple(

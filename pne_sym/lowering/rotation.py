@@ -11,6 +11,7 @@ from functools import partial
 import sympy as sp
 
 from pne_sym.derivation import Equation
+from pne_sym.lowering.algebra import negative
 from pne_sym.lowering.builder import Builder
 from pne_sym.lowering.frames import ConstantStep, Frames, Triple
 from pne_sym.lowering.statements import Atom
@@ -214,7 +215,10 @@ def cross(b: Builder, v: Triple, w: Triple, hint: str = "") -> Triple:
     """Components of v x w."""
     return tuple(
         b.add(
-            (b.mul(v[(i + 1) % 3], w[(i + 2) % 3]), -b.mul(v[(i + 2) % 3], w[(i + 1) % 3])),
+            (
+                b.mul(v[(i + 1) % 3], w[(i + 2) % 3]),
+                negative(b.mul(v[(i + 2) % 3], w[(i + 1) % 3])),
+            ),
             f"{hint}_{XYZ[i]}" if hint else "",
         )
         for i in range(3)

@@ -123,7 +123,7 @@ class Statements:
 
     def declare(self, symbol: sp.Symbol, stage: Stage) -> sp.Symbol:
         """A symbol that is given from outside."""
-        self._of(symbol).stage = stage
+        self._of(symbol).stage = algebra.joined(frozenset((stage,)))  # equal ones are one
         self._names.add(symbol.name)
         return symbol
 

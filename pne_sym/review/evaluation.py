@@ -92,7 +92,7 @@ def names_outside_sums(expr: Any) -> set[str]:
     if isinstance(expr, _SUMS):
         return set()
     if hasattr(expr, "name") or not getattr(expr, "args", ()):
-        return names_in(expr)
+        return set(names_in(expr))
     return {name for arg in expr.args for name in names_outside_sums(arg)}
 
 

@@ -11,7 +11,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Set
 from dataclasses import dataclass
 
 from pne_sym.backends.bundle import Bundle
@@ -148,7 +148,7 @@ def explain(bundle: Bundle, wanted: str, *, transitively: bool = False) -> Expla
     )
 
 
-def _reach(graph: dict[str, set[str]], start: str, transitively: bool) -> set[str]:
+def _reach(graph: Mapping[str, Set[str]], start: str, transitively: bool) -> set[str]:
     found: set[str] = set()
     stack = list(graph.get(start, ()))
     while stack:
@@ -159,7 +159,7 @@ def _reach(graph: dict[str, set[str]], start: str, transitively: bool) -> set[st
     return found
 
 
-def _inverted(graph: dict[str, set[str]]) -> dict[str, set[str]]:
+def _inverted(graph: Mapping[str, Set[str]]) -> dict[str, set[str]]:
     users: dict[str, set[str]] = {}
     for name, used in graph.items():
         for each in used:

@@ -42,6 +42,9 @@ class ChapterWriter:
         self.bases = last_duals(self.derivation)
         self.given = GivenWriter(self.derivation, self.plain)
         self.rotations = rotations_by_place(self.derivation)
+        self.along: dict[str, Any] = {}  # reciprocal vectors that are axes of slides
+        for info in self.derivation.leg_types:
+            self.along |= unit_vectors(self.derivation, info.name)
 
     def chapters(self) -> tuple[ChapterView, ...]:
         """All chapters, each with what it has led to."""
@@ -174,13 +177,11 @@ class ChapterWriter:
                     t.signed(first=k == 0) for k, t in enumerate(terms)
                 )
                 yield f"Collected by Rules I and II: {inline(text)}."
-        for info in self.derivation.leg_types:
-            axis = unit_vectors(self.derivation, info.name).get(equation.name)
-            if axis is not None:
-                yield (
-                    f"It is {inline(printer.doprint(axis))} itself, the unit vector along the leg: "
-                    "joints that turn move the connection point across it."
-                )
+        if (axis := self.along.get(equation.name)) is not None:
+            yield (
+                f"It is {inline(printer.doprint(axis))} itself, the unit vector along the leg: "
+                "joints that turn move the connection point across it."
+            )
         if any(b.rows and b.duals[0] == equation.lhs for b in self.derivation.bases):
             yield SCREWS
         body = next((b for b in self.derivation.body_frames if b.equation is equation), None)

@@ -68,10 +68,9 @@ class GivenWriter:
 
     def fixed_in(self, body: BodyFrame) -> str:
         """The sentence that tells what is turned by a rotation."""
+        used = self._used(None)
         symbols = [
-            g.symbol
-            for g in self.d.givens
-            if self.axes.of(g)[0] is body and g.symbol.name in self._used(None)
+            g.symbol for g in self.d.givens if self.axes.of(g)[0] is body and g.symbol.name in used
         ]
         latex = {s: self.printer.doprint(s) for s in symbols}
         if not latex:

@@ -93,5 +93,5 @@ def names_outside_sums(expr: Any) -> set[str]:
         return set()
     args = getattr(expr, "args", ())
     if not args or hasattr(expr, "name"):
-        return names_in(expr)
+        return set(names_in(expr))
     return {name for arg in args for name in names_outside_sums(arg)}
