@@ -7,6 +7,7 @@ satisfy them all are its degrees of freedom; no count of joints (Gruebler) is tr
 from __future__ import annotations
 
 import warnings
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -147,8 +148,9 @@ def check_solvable(manipulator: Manipulator) -> None:
     """Refuse what has no determined dynamics, with the mechanical reason.
 
     Raises:
-        SpecError: no joint is actuated; nothing moves.
+        SpecError: no joint is actuated; nothing moves; an extra coordinate cannot.
     """
+    _check_extra(manipulator)
     found = mobility(manipulator)
     if not found.actuators:
         raise SpecError(
@@ -161,6 +163,29 @@ def check_solvable(manipulator: Manipulator) -> None:
             "the legs hold the platform: nothing moves at home",
             "at least one degree of freedom",
         )
+
+
+def _check_extra(manipulator: Manipulator) -> None:
+    """Refuse extra coordinates of a leg that the leg itself holds, however the platform moves.
+
+    A platform that is kept from turning, or from moving its centre, holds them with what does no
+    work on it.
+    """
+    for index, (_, own, extra, by_twist) in enumerate(_legs(manipulator)):
+        others = np.hstack([own, by_twist])
+        held = _rank(np.hstack([others, extra])) - _rank(others)
+        if held:
+            marked = [
+                f"joints[{j}]" for j, joint in enumerate(manipulator.legs[index].joints)
+                if joint.extra
+            ]  # fmt: skip
+            raise SpecError(
+                manipulator.name,
+                f"legs[{index}]",
+                f"of the joints marked extra, {held} cannot move: how the platform is guided holds "
+                "them",
+                f"extra = true for joints that are free to move ({', '.join(marked)} are marked)",
+            )
 
 
 def actuation_quality(manipulator: Manipulator) -> float:
@@ -196,24 +221,32 @@ def null_space(matrix: Array) -> Array:
 
 def _closure(manipulator: Manipulator) -> tuple[Array, tuple[int, ...], tuple[int, ...]]:
     """Closure conditions by the rates of platform and joints; constraints by leg; singular legs."""
-    m = manipulator
-    loops = Loops(m.space, m.legs, m.fixed_centre)
-    pose = pose_at(m.space, m.home.X, m.fixed_centre)
-    twist, q = TASK_SPACES[m.space].components, np.array(m.home.q)
-    rows, constraints, singular = [], [], []
-    for index, (leg, s) in enumerate(zip(m.legs, loops.slices(), strict=True)):
-        _, by_q, by_twist = leg_residual(leg, q[s], pose)
-        by_twist = by_twist[:, twist]
-        own = by_q[:, ~loops.extra[s]]
+    joints = sum(len(leg.joints) for leg in manipulator.legs)
+    rows, constraints, singular, start = [], [], [], 0
+    for index, (by_q, own, _, by_twist) in enumerate(_legs(manipulator)):
         rank = _rank(own)
         constraints.append(_rank(np.hstack([own, by_twist])) - rank)
         if rank < own.shape[1]:
             singular.append(index)
-        row = np.zeros((by_q.shape[0], len(twist) + len(q)))
-        row[:, : len(twist)] = by_twist
-        row[:, len(twist) + s.start : len(twist) + s.stop] = by_q
+        twist, end = by_twist.shape[1], start + by_q.shape[1]
+        row = np.zeros((by_q.shape[0], twist + joints))
+        row[:, :twist] = by_twist
+        row[:, twist + start : twist + end] = by_q
         rows.append(row)
+        start = end
     return np.vstack(rows), tuple(constraints), tuple(singular)
+
+
+def _legs(manipulator: Manipulator) -> Iterator[tuple[Array, Array, Array, Array]]:
+    """A leg's closure by rates of all its joints, of those not extra, of the extra ones, of X."""
+    m = manipulator
+    loops = Loops(m.space, m.legs, m.fixed_centre)
+    pose = pose_at(m.space, m.home.X, m.fixed_centre)
+    twist, q = TASK_SPACES[m.space].components, np.array(m.home.q)
+    for leg, s in zip(m.legs, loops.slices(), strict=True):
+        _, by_q, by_twist = leg_residual(leg, q[s], pose)
+        extra = loops.extra[s]
+        yield by_q, by_q[:, ~extra], by_q[:, extra], by_twist[:, twist]
 
 
 def _cases(

@@ -181,6 +181,21 @@ def test_two_crossed_guides_do_not_move() -> None:
         check_solvable(beside(spec, replace(spec.legs[0], joints=joints)))
 
 
+def test_an_extra_joint_that_a_guided_platform_holds_is_refused() -> None:
+    """The platform does not turn, so the leg's second hinge cannot either; unmarked, it is a
+    constraint on the leg, and the mechanism has its two degrees of freedom.
+    """
+    held = mechanism("translational", ["Rz*0 Pz*0 Rt+ Pt* | R"], np.random.default_rng(0))
+    with pytest.raises(SpecError, match=r"legs\[0\]: of the joints marked extra, 1 cannot move"):
+        derive(held)
+    ball = mechanism("translational", ["Rz*0 Pz*0 Rt+ Pt* | S"], np.random.default_rng(0))
+    check_solvable(ball)
+    assert mobility(ball).dofs == 4
+    own = mechanism("translational", ["Rz*0 Pz*0 Rt Pt* | R"], np.random.default_rng(0))
+    check_solvable(own)
+    assert (mobility(own).dofs, mobility(own).constraints) == (2, 1)
+
+
 @pytest.mark.parametrize("name", ["delta", "stewart"])
 def test_a_mechanism_without_drives_is_refused(name: str) -> None:
     with pytest.raises(SpecError, match="no joint is actuated; expected actuated = true"):

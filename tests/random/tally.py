@@ -35,6 +35,7 @@ MECHANICAL = (
     r"two solutions of the inverse kinematics meet at home",
     r"overconstrained: of the \d+ constraints",
     r"the legs hold the platform: nothing moves at home",
+    r"of the joints marked extra, \d+ cannot move: how the platform is guided holds them",
     r"no joint is actuated",
 )
 """Reasons for which a mechanism is outside the method."""
