@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 
 from pne_sym.backends.bundle import Bundle
@@ -205,10 +206,14 @@ def _texts(
 ) -> dict[str, FunctionText]:
     """Functions of the program; for states side by side where a public one wants it."""
     program = bundle.program
-    lanes = {name for f in program.public if runs_in_lanes(f) for name in f.functions}
+    printed = [f for f in program.public if any(o.value.size for o in f.outputs)]
+    single = Counter(name for f in printed for name in f.functions)
+    lanes = Counter(name for f in printed if runs_in_lanes(f) for name in f.functions)
     summed = {name for f in program.public for name in results_of(f).values()}
     return {
-        name: function_text(bundle, function, stages, lanes=name in lanes, summed=name in summed)
+        name: function_text(
+            bundle, function, stages, (single[name], lanes[name]), summed=name in summed
+        )
         for name, function in functions.items()
     }
 

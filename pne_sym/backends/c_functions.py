@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from pne_sym.backends.bundle import Bundle
@@ -37,7 +38,7 @@ class FunctionText:
 
 
 def function_text(
-    bundle: Bundle, function: Function, stages: Stages, *, lanes: bool, summed: bool
+    bundle: Bundle, function: Function, stages: Stages, users: tuple[int, int], *, summed: bool
 ) -> FunctionText:
     """A function of the program.
 
@@ -45,10 +46,11 @@ def function_text(
         bundle: of the model.
         function: the function, with common sums.
         stages: what it shares with others.
-        lanes: for states side by side too.
+        users: how many public functions run it for one state, and for states side by side.
         summed: with the sum of all that it gives, to tell whether that is finite.
     """
-    return _FunctionWriter(bundle, Parts(bundle, function, stages, summed=summed)).text(lanes=lanes)
+    parts = Parts(bundle, function, stages, summed=summed)
+    return _FunctionWriter(bundle, parts).text(*users)
 
 
 class _FunctionWriter:
@@ -60,33 +62,36 @@ class _FunctionWriter:
         self.adding = [b for b in self.parts.legs if b.sums]
         self.after = self.parts.after() if self.parts.last else None
 
-    def text(self, *, lanes: bool) -> FunctionText:
-        """All routines, each after what it calls."""
+    def text(self, single: int, many: int) -> FunctionText:
+        """All routines, each after what it calls; several users call the same, compiled once."""
         lines = comment(f"---- {self.name} ----")
         lines += [*self.before.definition(), ""]
         for _, over, place in self.legs:
             lines += [*over.definition(), "", *place.definition(), ""]
         if self.after:
             lines += [*self.after.definition(), ""]
-        one, many = self._run("1"), self._run("LANES") if lanes else None
+        one = self._run("1", _kind(single))
+        lanes = self._run("LANES", _kind(many)) if many else None
         lines += one.definition()
-        lines += ["", *many.definition()] if many else []
-        return FunctionText("\n".join(lines), one, many)
+        lines += ["", *lanes.definition()] if lanes else []
+        return FunctionText("\n".join(lines), one, lanes)
 
     # ---- what runs the parts -------------------------------------------------------------
 
-    def _run(self, w: str) -> Routine:
+    def _run(self, w: str, kind: str) -> Routine:
         """The parts one after another, for one state or for as many as there are lanes."""
         single = w == "1"
+        # results of one state may stand where inputs stood; those of lanes have buffers
+        pointer = "*" if single else "*restrict "
         body = [
             f"clear({a}, {times(*array_names(self.bundle, a), w)});"
             for a in self.f.arrays
             if not self.parts.is_full(a)
         ]
-        body.append(self.before.call_with({"w": w}))
+        body += _each(self.before, w, {"w": w})
         body += self._side_by_side() if single else self._in_turn()
         if self.after:
-            body.append(self.after.call_with({"w": w}))
+            body += _each(self.after, w, {"w": w})
         words = "\n".join(body)
         sizes = {"s": len(self.parts.passed), "sums": len(self.parts.sums)}
         names = [n for n, k in sizes.items() if k and f" {n}" in words]
@@ -104,12 +109,11 @@ class _FunctionWriter:
         parameters = [
             "const prepared *m",
             *(f"const real *{vector_name(v)}" for v in self.f.inputs),
-            *(f"real *{a}" for a in self.f.arrays),
-            "verdict *t",
+            *(f"real {pointer}{a}" for a in self.f.arrays),
+            f"verdict {pointer}t",
         ]
-        return Routine.of(
-            f"{self.name}_run{'' if single else '_lanes'}", parameters, [*head, *body]
-        )
+        name = f"{self.name}_run{'' if single else '_lanes'}"
+        return Routine.of(name, parameters, [*head, *body], kind)
 
     def _side_by_side(self) -> list[str]:
         """The legs of one state, side by side; results may stand where inputs stood."""
@@ -117,11 +121,10 @@ class _FunctionWriter:
         for block, over, place in self.legs:
             legs = count_of(block.leg_type)
             given = {"w": "1", "count": f"LEGS({legs})", **self._arrays(block, single=True)}
-            at = {"leg": "0", "legs": "1", "states": "0", "add": "0"}
-            lines.append(over.call_with(given | at))
+            lines += _each(over, given["count"], {**given, "i": "k", "j": "0", "add": "0"})
             if place.body:
-                call = place.call_with({**given, "first": "leg"})
-                ends += [f"for (size_t leg = 0; leg < {legs}; ++leg) {{", f"    {call}", "}"]
+                call = place.call_with({**given, "k": "0", "at": "i"})
+                ends += [f"for (size_t i = 0; i < {legs}; ++i) {{", f"    {call}", "}"]
             if block.sums:
                 ends += self._added(f"terms_{block.leg_type}", legs, block is self.adding[0])
         return lines + ends
@@ -146,11 +149,10 @@ class _FunctionWriter:
         lines = [f"clear(sums, {times(len(self.parts.sums), 'LANES')});"] if self.adding else []
         for block, over, place in self.legs:
             given = {"w": "LANES", "count": "LANES", **self._arrays(block, single=False)}
-            at = {"legs": "0", "states": "1", "add": "1"}
             lines += [
-                f"for (size_t leg = 0; leg < {count_of(block.leg_type)}; ++leg) {{",
-                f"    {over.call_with(given | at)}",
-                *([f"    {place.call_with({**given, 'first': '0'})}"] if place.body else []),
+                f"for (size_t i = 0; i < {count_of(block.leg_type)}; ++i) {{",
+                *indented(_each(over, "LANES", {**given, "j": "k", "add": "1"})),
+                *indented(_each(place, "LANES", {**given, "at": "k"}) if place.body else []),
                 "}",
             ]
         return lines
@@ -159,3 +161,17 @@ class _FunctionWriter:
         """Arrays of what the legs give; states side by side are added up in place."""
         leg = block.leg_type
         return {"terms": f"terms_{leg}" if single else "sums", "o": f"o_{leg}"}
+
+
+def _each(part: Routine, count: str, given: Mapping[str, str]) -> list[str]:
+    """Calls of a part for every k."""
+    if not part.body:
+        return []
+    if count == "1":
+        return [part.call_with({**given, "k": "0"})]
+    return [f"for (size_t k = 0; k < {count}; ++k) {{", f"    {part.call_with(given)}", "}"]
+
+
+def _kind(users: int) -> str:
+    """How the compiler is to treat what so many call."""
+    return "APART" if users > 1 else "INLINE"

@@ -75,6 +75,8 @@ _BOUNDED = ("nearest_within", "factors_of_some")
 PARTS = ("same", "entry", "split", "take", "extend")
 """Operations whose results may be parts of the operand."""
 OPERATIONS = frozenset((*ENTRIES, *LANES, *SINGLE, *PARTS, "search"))
+WITHOUT = ("weights", "length")
+"""Inputs that no C function takes; a function has a second form with weights that it reads."""
 FILL = {Default.ZEROS: "0", Default.ONES: "1"}
 
 
@@ -91,9 +93,15 @@ def results_of(function: PublicFunction) -> dict[str, str]:
 
 
 def runs_in_lanes(function: PublicFunction) -> bool:
-    """Whether a batch runs several states side by side: one run of the legs, and what can be."""
+    """Whether a batch runs several states side by side: one run of the legs, and what can be.
+
+    It is worth another body where the result is that of the run, or of a system solved with it;
+    what is made of these results otherwise takes one state after another.
+    """
     runs = [step for step in function.steps if isinstance(step, Run)]
-    return function.is_exported and len(runs) == 1 and all(map(lanes_of, function.operations))
+    worth = results_of(function) or "solve" in function.operations
+    possible = len(runs) == 1 and all(map(lanes_of, function.operations))
+    return bool(function.is_exported and worth and possible)
 
 
 def biggest(bundle: Bundle) -> int:

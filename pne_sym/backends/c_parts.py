@@ -1,8 +1,8 @@
 """The parts of a function of the program in C: before, over and after the legs.
 
-Every part is written once.  Before and after the legs it is a loop over `w` states that stand
-side by side; over the legs it is a loop over items: the legs of one state, or one leg of
-several states.  Arrays have their items side by side: what passes from part to part, s[n*w + k];
+Every part is written once.  Before and after the legs it is for state k of `w` states that stand
+side by side; over the legs it is for item k of `count`: of the legs of one state, or of several
+states of one leg.  Arrays have their items side by side: what passes from part to part, s[n*w + k];
 the sums over the legs, sums[n*w + k]; what a leg gives, terms[n*count + k] and o[n*count + k].
 """
 
@@ -23,7 +23,6 @@ from pne_sym.backends.c_statements import (
     headed,
     leg_input,
     loaded,
-    loop,
     place_text,
     statements,
     vector_name,
@@ -33,7 +32,6 @@ from pne_sym.backends.c_text import (
     c_name,
     in_pairs,
     statement,
-    words_of,
 )
 from pne_sym.backends.describe import equation_titles
 from pne_sym.program.ir import Block, Check, Function, Store
@@ -80,8 +78,8 @@ class Parts:
 
     def before(self) -> Routine:
         """Names the inputs, computes what the legs share."""
-        loads = entries(self.bundle, self.f, "k") | self._prepared(self.f.shared)
-        shared = Shared(self.stages.members(self.name, ""), "v.")
+        loads, members = entries(self.bundle, self.f, "k"), self.stages.members(self.name, "")
+        shared = Shared(members, "v.", self._prepared(self.f.shared))
         first = self.first.assignments if self.first else ()
         own = self.stages.own(self.name, (*self.f.unpack, *first))
         lines = self._run(self.stages.used(self.name, ""))
@@ -106,22 +104,23 @@ class Parts:
         """Computes what needs the sums over the legs."""
         assert self.last is not None
         loads = self._passed("k") | {n: f"sums[{at}*w + k]" for at, n in enumerate(self.sums)}
-        loads |= self._prepared(self.f.shared)
-        lines = statements(self.last.assignments, self.titles, Shared(), loads)
-        lines += self._ends(self.last, self.last.checks, loads, Shared())
+        shared = Shared(places=self._prepared(self.f.shared))
+        lines = statements(self.last.assignments, self.titles, shared, loads)
+        lines += self._ends(self.last, self.last.checks, loads, shared)
         return self._routine("after", ("const real *s", "const real *sums"), lines)
 
     def _routine(self, part: str, values: tuple[str, ...], lines: list[str]) -> Routine:
-        """A loop over the states around the lines."""
+        """The lines as a routine of state k."""
         parameters = [
             "const prepared *m",
             "size_t w",
+            "size_t k",
             *(f"const real *{vector_name(v)}" for v in self.f.inputs),
             *values,
             *(f"real *{a}" for a in self.f.arrays),
             "verdict *t",
         ]
-        return Routine.of(f"{self.name}_{part}", parameters, loop("w", lines))
+        return Routine.of(f"{self.name}_{part}", parameters, lines)
 
     def _passed(self, index: str) -> dict[str, str]:
         return {n: f"s[{at}*w + {index}]" for at, n in enumerate(self.passed)}
@@ -154,15 +153,15 @@ class Parts:
     # ---- over the legs -----------------------------------------------------------------------
 
     def over(self, block: Block) -> Routine:
-        """Computes one leg, for the legs of one state or for several states."""
+        """Computes leg i in state j: item k, of the legs of one state or of several states."""
         leg = block.leg_type
         tables: list[str] = []
-        shared = Shared(self.stages.members(self.name, leg), "v.")
+        prepared = self._prepared(self.f.per_leg.get(leg, ()), "[i]")
+        prepared |= self._prepared(self.f.shared)
+        shared = Shared(self.stages.members(self.name, leg), "v.", prepared)
         own = self.stages.own(self.name, block.assignments)
         reads = symbols(replace(block, assignments=tuple(own)))
         loads = self._passed("j") | entries(self.bundle, self.f, "j")
-        loads |= self._prepared(self.f.shared)
-        loads |= self._prepared(self.f.per_leg.get(leg, ()), "[i]")
         inputs = [i for i in self.f.leg_inputs.get(leg, ()) if i.symbol.name in reads]
         loads |= {i.symbol.name: leg_input(self.bundle, i, leg, tables) for i in inputs}
         lines = self._run(self.stages.used(self.name, leg))
@@ -172,23 +171,16 @@ class Parts:
         if "total" in rows:
             lines += statement(f"{rows['total']} {self._summed(block, shared)}")
         lines += self._flags(block.checks, rows, loads, shared)
-        words = words_of(lines)
-        indices = {"i": "const size_t i = leg + legs*k;", "j": "const size_t j = states*k;"}
-        lines = [line for n, line in indices.items() if n in words] + lines
         parameters = [
             "const prepared *m",
-            "size_t w",
-            "size_t leg",
-            "size_t legs",
-            "const real *s",
-            "size_t states",
-            "size_t count",
+            *(f"size_t {n}" for n in ("w", "i", "j", "k", "count")),
             "int add",
+            "const real *s",
             *(f"const real *{vector_name(v)}" for v in self.f.inputs),
             "real *terms",
             "real *o",
         ]
-        return Routine.of(f"{self.name}_legs_{leg}", parameters, [*tables, *loop("count", lines)])
+        return Routine.of(f"{self.name}_legs_{leg}", parameters, [*tables, *lines])
 
     def _of_leg(
         self, block: Block, loads: dict[str, str], shared: Shared
@@ -204,25 +196,22 @@ class Parts:
             yield store.equation, [*loaded(loads, store.value), *entry]
 
     def place(self, block: Block) -> Routine:
-        """Puts the entries of a leg where they belong in the output arrays."""
+        """Puts the entries of leg i in state k, which is item `at`, where they belong."""
         leg, lines = block.leg_type, []
         tables: list[str] = []
         for n, store in enumerate(block.stores):
             legs = self.bundle.leg_counts[leg]
-            place = factor(self._place(store, "leg", f"place_{n}", tables, legs))
-            lines.append(f"{store.array}[{place}*w + k] = o[{n}*count + first + k];")
+            place = factor(self._place(store, "i", f"place_{n}", tables, legs))
+            lines.append(f"{store.array}[{place}*w + k] = o[{n}*count + at];")
         for flag, n in self.flag_rows(block).items():
-            lines.append(f"t->{flag}[k] += o[{n}*count + first + k];")
+            lines.append(f"t->{flag}[k] += o[{n}*count + at];")
         parameters = [
-            "size_t w",
-            "size_t count",
+            *(f"size_t {n}" for n in ("w", "i", "k", "at", "count")),
             "const real *o",
-            "size_t leg",
-            "size_t first",
             *(f"real *{a}" for a in self.f.arrays),
             "verdict *t",
         ]
-        return Routine.of(f"{self.name}_place_{leg}", parameters, [*tables, *loop("w", lines)])
+        return Routine.of(f"{self.name}_place_{leg}", parameters, [*tables, *lines])
 
     def flag_rows(self, block: Block) -> dict[str, int]:
         """Where the flags of a leg, and the sum of its entries, stand behind these."""

@@ -6,16 +6,14 @@ import re
 from dataclasses import dataclass, replace
 
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.c_operations import c_order, runs_in_lanes
+from pne_sym.backends.c_operations import WITHOUT, c_order, runs_in_lanes
 from pne_sym.backends.c_sizes import extent, sizes_of, times
-from pne_sym.backends.c_text import Routine, comment, indented, listing, parameter_name
+from pne_sym.backends.c_text import Routine, comment, indented, listing
 from pne_sym.model.values import ROUNDING
 from pne_sym.program.count import count_function
 from pne_sym.program.interpret import inputs_read
 from pne_sym.program.public import Argument, Default, PublicFunction
 
-_WITHOUT = ("weights", "length")
-"""Inputs that no C function takes; a function has a second form with weights that it reads."""
 _OUTPUTS = {
     "constraints": "residual",
     "constraint_bias": "bias",
@@ -98,7 +96,7 @@ def c_functions(bundle: Bundle) -> tuple[CFunction, ...]:
 def _function(
     bundle: Bundle, f: PublicFunction, *, least: bool, weighted: bool = False
 ) -> CFunction:
-    given = {a.name: a for a in f.inputs if a.name not in _WITHOUT or weighted}
+    given = {a.name: a for a in f.inputs if a.name not in WITHOUT or weighted}
     sizes = sizes_of(bundle)
     inputs = tuple(_input(given[name], sizes) for name in c_order(list(given)))
     outputs = tuple(_array(_OUTPUTS.get(o.label, o.label), o, sizes) for o in f.outputs)
@@ -162,31 +160,25 @@ class Caller:
         return lines
 
     def definitions(self) -> list[str]:
-        """One state, and a batch."""
-        read = [parameter_name(p) for p in self.one.parameters]
-        unread = ["model"] * (self.f.has_model and "m" not in read)
-        unread += [i.name for i in self.f.inputs if i.name not in read]
-        return [
-            *self._head("", batch=False),
-            "{",
-            "    int code;",
-            *([f"    {', '.join(f'(void){name}' for name in unread)};"] if unread else []),
-            *indented(self._call(self.one, "", "&code")),
-            "    return code;",
-            "}",
-            "",
-            *self._head("", batch=True),
-            "{",
-            *indented(self._in_lanes(self.lanes) if self.lanes else self._in_turn()),
-            "    return failed;",
-            "}",
-        ]
+        """One state, where that is a call of what others call too, and a batch."""
+        arrays = [self._at(a, "j") for a in (*self.f.inputs, *self.f.outputs)]
+        own = f"{self.prefix}_{self.f.name}"
+        one = f"{own}({', '.join([*['m'] * self.f.has_model, *arrays])})"
+        if self.lanes:
+            body = listing("SIDE_BY_SIDE(", [self._call(self.lanes, "i"), one], ");")
+        else:
+            body = listing("ONE_BY_ONE(", [one], ");")
+        batch = [*self._head("", batch=True), "{", *indented(body), "}"]
+        if self.one.name == own:
+            return batch
+        call = listing("return ", [self._call(self.one, "")], ";")
+        return [*self._head("", batch=False), "{", *indented(call), "}", "", *batch]
 
     def _head(self, types: str, *, batch: bool) -> list[str]:
         """Return type, name, parameters; `types` is put before the names of types."""
         f, p = self.f, self.prefix
-        model = f"{types}model" if types else "prepared"
-        parameters = [f"const {model} *model"] * f.has_model + ["size_t n"] * batch
+        model = f"{types}model *model" if types else "prepared *m"
+        parameters = [f"const {model}"] * f.has_model + ["size_t n"] * batch
         parameters += [f"const {types}real *{i.name}" for i in f.inputs]
         parameters += [f"{types}real *{o.name}" for o in f.outputs]
         parameters += ["int *status"] * batch
@@ -198,7 +190,7 @@ class Caller:
         at = f"{argument.name} + {times(argument.extent, count)}" if count else argument.name
         return f"{argument.name} ? {at} : NULL" if argument.optional and count else at
 
-    def _call(self, steps: Routine, count: str, code: str) -> list[str]:
+    def _call(self, steps: Routine, count: str) -> str:
         """A call of the steps; NULL stands for what C has no argument for."""
         f = self.f
         given = dict.fromkeys((a.name for a in f.of.inputs), "NULL")
@@ -207,40 +199,4 @@ class Caller:
             f"{of.label}_out": self._at(o, count)
             for of, o in zip(f.of.outputs, f.outputs, strict=True)
         }
-        names = [parameter_name(p) for p in steps.parameters]
-        all_of = given | {"m": "model", "code": code}
-        return listing(f"{steps.name}(", [all_of[n] for n in names], ");")
-
-    def _single(self, target: str, count: str) -> list[str]:
-        arrays = [self._at(a, count) for a in (*self.f.inputs, *self.f.outputs)]
-        head = f"{target} = {self.prefix}_{self.f.name}("
-        return listing(head, ["model"] * self.f.has_model + arrays, ");")
-
-    def _in_turn(self) -> list[str]:
-        """One state after another."""
-        return [
-            "size_t failed = 0;",
-            "for (size_t i = 0; i < n; ++i) {",
-            *indented(self._single("const int code", "i")),
-            "    failed += record(&code, 1, status ? status + i : NULL);",
-            "}",
-        ]
-
-    def _in_lanes(self, steps: Routine) -> list[str]:
-        """As many states as there are lanes at a time; what fails, and what is left, one by one."""
-        return [
-            "size_t failed = 0, w;",
-            "for (size_t i = 0; i < n; i += w) {",
-            "    int codes[LANES] = {INVALID};",
-            "    w = LANES > 1 && i + LANES <= n ? LANES : 1;",
-            "    if (w > 1) {",
-            *indented(self._call(steps, "i", "codes"), 2),
-            "    }",
-            "    for (size_t k = 0; k < w; ++k) {",
-            "        if (codes[k] != OK) {",
-            *indented(self._single("codes[k]", "i + k"), 3),
-            "        }",
-            "    }",
-            "    failed += record(codes, w, status ? status + i : NULL);",
-            "}",
-        ]
+        return steps.call_with(given | {"code": "codes"}).rstrip(";")

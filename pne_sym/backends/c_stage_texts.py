@@ -24,13 +24,15 @@ def stage_routine(bundle: Bundle, stages: Stages, stage: Stage) -> Routine:
             name = item.symbol.name
             if name not in loads and any(item.symbol in a.expr.free_symbols for a in own):
                 loads[name] = leg_input(bundle, item, part, tables)
-    loads |= {
-        n: f"m->{c_name(n)}{'[i]' * bool(of)}" for n, of in program.prepared if of in ("", part)
+    prepared = {
+        n: f"m->{c_name(n)}{'[i]' * bool(of)}"
+        for n, of in program.prepared
+        if of in ("", part) and n not in made
     }
     known = {n for other in stages.stages for n in other.exported if other.part == part} - made
     loads = {n: text for n, text in loads.items() if n not in made | known}
     titles = equation_titles(bundle.derivation)
-    lines = statements(own, titles, Shared(known, "v->"), loads)
+    lines = statements(own, titles, Shared(known, "v->", prepared), loads)
     lines += [f"v->{c_name(n)} = {c_name(n)};" for n in stage.exported]
     vectors = dict.fromkeys(v for f in users for v in f.inputs)
     parameters = [

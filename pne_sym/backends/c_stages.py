@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -62,17 +62,23 @@ class Stage:
 
 
 class Shared:
-    """Prints expressions in which some names are members of a structure."""
+    """Prints expressions in which some names stand elsewhere.
 
-    def __init__(self, names: Collection[str] = (), prefix: str = "") -> None:
-        self.names, self.prefix = {c_name(n) for n in names}, prefix
+    Args:
+        names: members of a structure.
+        prefix: of these members.
+        places: other names, with the text of what they are.
+    """
+
+    def __init__(
+        self, names: Collection[str] = (), prefix: str = "", places: Mapping[str, str] | None = None
+    ) -> None:
+        self.texts = {c_name(n): text for n, text in (places or {}).items()}
+        self.texts |= {c_name(n): f"{prefix}{c_name(n)}" for n in names}
 
     def text(self, expr: Any) -> str:
         """An expression as text."""
-        return re.sub(r"[A-Za-z_]\w*", self._member, PRINTER.text(expr))
-
-    def _member(self, found: re.Match[str]) -> str:
-        return f"{self.prefix}{found[0]}" if found[0] in self.names else found[0]
+        return re.sub(r"[A-Za-z_]\w*", lambda n: self.texts.get(n[0], n[0]), PRINTER.text(expr))
 
 
 class Stages:

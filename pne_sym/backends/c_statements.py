@@ -9,7 +9,7 @@ import sympy as sp
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_stages import Shared, aliases
-from pne_sym.backends.c_text import WIDTH, c_name, comment, indented, statement, table
+from pne_sym.backends.c_text import WIDTH, c_name, comment, statement, table
 from pne_sym.backends.scalar import wrap
 from pne_sym.program.ir import Assignment, Function, LegInput
 from pne_sym.program.slices import read_in
@@ -51,13 +51,15 @@ def statements(
 
 
 def headed(rows: Iterable[tuple[str, list[str]]], titles: dict[str, str]) -> list[str]:
-    """Lines with the equations they belong to, under these."""
+    """Lines with the equations they belong to, under these; titles are told once and taken out."""
     lines: list[str] = []
     known = ""
     for equation, own in rows:
         if equation != known:
-            known, title = equation, titles.get(equation, "")
-            lines += comment(f"({equation}) {title}" if title else f"{equation}: named entries")
+            known, title = equation, titles.get(equation)
+            named = f"{equation}: named entries" if title is None else f"({equation}) {title}"
+            lines += comment(named.rstrip())
+            titles |= {equation: ""} if title else {}
         lines += own
     return lines
 
@@ -96,13 +98,6 @@ def capacity(legs: int) -> int:
 def factor(place: str) -> str:
     """A place as a factor."""
     return f"({place})" if " " in place else place
-
-
-def loop(count: str, lines: list[str]) -> list[str]:
-    """The lines for every k."""
-    if not lines:
-        return []
-    return [f"for (size_t k = 0; k < {count}; ++k) {{", *indented(lines), "}"]
 
 
 def place_text(places: tuple[int, ...], index: str, name: str, tables: list[str]) -> str:

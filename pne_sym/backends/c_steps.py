@@ -7,7 +7,8 @@ its results where the user wants them; states side by side give theirs in the en
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_operations import (
@@ -16,17 +17,35 @@ from pne_sym.backends.c_operations import (
     LANES,
     PARTS,
     SINGLE,
+    WITHOUT,
     c_order,
     results_of,
 )
 from pne_sym.backends.c_sizes import Sizes, times
 from pne_sym.backends.c_solve import Eliminations
-from pne_sym.backends.c_text import WIDTH, Routine, indented, listing, statement
+from pne_sym.backends.c_text import (
+    WIDTH,
+    Routine,
+    indented,
+    listing,
+    parameter_name,
+    statement,
+    words_of,
+)
 from pne_sym.backends.orders import order_at_home
 from pne_sym.backends.scalar import wrap
 from pne_sym.backends.templating import render
 from pne_sym.program import interpret
-from pne_sym.program.public import Apply, Default, PublicFunction, Run, Search, Step, Value
+from pne_sym.program.public import (
+    Apply,
+    Argument,
+    Default,
+    PublicFunction,
+    Run,
+    Search,
+    Step,
+    Value,
+)
 
 
 class Steps:
@@ -77,18 +96,33 @@ class Steps:
         if self.work[0]:
             self.buffers.append(self._buffer("work", self.work[1]))
         head = [*self.tables, *(listing("real ", self.buffers, ";") if self.buffers else [])]
-        parameters = [
-            "const prepared *m",
-            *(f"const real *{name}" for name in c_order([a.name for a in self.f.inputs])),
-            *(f"real *{o.label}_out" for o in self.f.outputs),
-            "int *code",
-        ]
         body = [*head, "verdict why;", *lines]
-        # once in the function that users call; apart where several call it
-        alone = self.f.is_exported and "weights" not in self.read
-        kind = "INLINE" if alone else "static"
-        name = f"{self.f.name}_{'lanes' if self.lanes else 'one'}"
-        return Routine.of(name, parameters, body, kind)
+        if self.lanes:
+            parameters = [*self._parameters(self.f.inputs), "int *code"]
+            return Routine.of(f"{self.f.name}_lanes", parameters, body)
+        if "weights" not in self.read and self.f.is_exported:
+            return self._called_by_users(body)
+        one = Routine.of(f"{self.f.name}_one", self._parameters(self.f.inputs), body, "static")
+        return replace(one, result="int")
+
+    def _parameters(self, inputs: Iterable[Argument]) -> list[str]:
+        return [
+            "const prepared *m",
+            *(f"const real *{name}" for name in c_order([a.name for a in inputs])),
+            *(f"real *{o.label}_out" for o in self.f.outputs),
+        ]
+
+    def _called_by_users(self, body: list[str]) -> Routine:
+        """The routine with all parameters that users know; NULL stands for what C does not take."""
+        parameters = self._parameters(a for a in self.f.inputs if a.name not in WITHOUT)
+        parameters = parameters if self.f.needs_model else parameters[1:]
+        words, names = words_of(body), [parameter_name(p) for p in parameters]
+        lines = [f"(void){name};" for name in names if name not in words]
+        for a in self.f.inputs:
+            if a.name in WITHOUT and a.name in words:
+                lines.append(f"const real *{a.name} = NULL;")
+        name = f"{self.bundle.name}_{self.f.name}"
+        return Routine(name, tuple(parameters), (*lines, *body), "", "int")
 
     def _outputs(self) -> list[str]:
         """The verdict, and results where the user wants them."""
@@ -118,7 +152,8 @@ class Steps:
         if summed:
             lines[:0] = ["if (!is_finite(why.total[0])) {", *indented(summed), "}"]
         refused = [f"refuse({self._size(o.value)}, {wanted[o.name]});" for o in outputs]
-        return [*lines, "if (judge(&why, code) != OK) {", *indented(refused), "}"]
+        judged_so = ["const int code = judge(&why);", "if (code != OK) {", *indented(refused), "}"]
+        return [*lines, *judged_so, "return code;"]
 
     def _unused(self) -> list[Value]:
         """Arrays that runs give and nothing uses: where they overflow the state is none either."""
@@ -368,7 +403,7 @@ class Steps:
         names = {p.rsplit("*", 1)[-1] for r in (residual, slope) for p in r.parameters}
         inputs = [a.name for a in self.f.inputs if a.name in names and a.name != "X"]
         others = c_order(inputs)
-        found = {"X": "found", "code": "&code"}
+        found = {"X": "found"}
         text = render(
             "c/search.c.jinja",
             name=step.residual,
@@ -376,9 +411,9 @@ class Steps:
             gaps=self._extent(step.residual),
             trials=interpret.HALVINGS if step.halving else 1,
             close="CLOSED" if step.halving else "MET",
-            residual=residual.call_with({**found, "gap_out": "gap"}),
-            slope=slope.call_with({**found, "slope_out": "slope"}),
-            trial=residual.call_with({"X": "trial", "code": "&tried", "gap_out": "next"}),
+            residual=residual.call_with(found | {"gap_out": "gap"}),
+            slope=slope.call_with(found | {"slope_out": "slope"}),
+            trial=residual.call_with({"X": "trial", "gap_out": "next"}),
         )  # fmt: skip
         self.before.append(text)
         arguments = ", ".join(("m", *others, step.start.name, self._made(step.target)))

@@ -136,13 +136,15 @@ class Routine:
         name: of the function.
         parameters: declarations, such as "const real *X".
         body: lines.
-        kind: how the compiler is to treat it.
+        kind: how the compiler is to treat it; "" for what users call.
+        result: its type.
     """
 
     name: str
     parameters: tuple[str, ...]
     body: tuple[str, ...]
     kind: str = "INLINE"
+    result: str = "void"
 
     @staticmethod
     def of(
@@ -157,7 +159,7 @@ class Routine:
     def definition(self) -> list[str]:
         """The text of the function."""
         return [
-            *listing(f"{self.kind} void {self.name}(", self.parameters, ")"),
+            *listing(f"{self.kind} {self.result} {self.name}(".lstrip(), self.parameters, ")"),
             "{",
             *indented(self.body),
             "}",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -44,11 +45,17 @@ def function(operation: str, shapes: tuple[Shape, ...], numbers: tuple[int, ...]
     )
 
 
-def exported(number: int, routine: Routine, *, lanes: bool) -> list[str]:
-    """A function that calls the routine."""
-    names = ", ".join(parameter_name(p) for p in routine.parameters)
-    head = f"void run_{number}{'_lanes' if lanes else ''}({', '.join(routine.parameters)})"
-    return [*routine.definition(), f"{head};", f"{head} {{ {routine.name}({names}); }}"]
+def exported(number: int, of: PublicFunction, routine: Routine, *, lanes: bool) -> list[str]:
+    """A function that calls the routine; what is empty is left out."""
+    empty = {a.name for a in of.inputs if not a.value.size}
+    empty |= {f"{o.label}_out" for o in of.outputs if not o.value.size}
+    taken = [p for p in routine.parameters if parameter_name(p) not in empty]
+    parameters = ", ".join(taken if lanes else [*taken, "int *code"])
+    head = f"void run_{number}{'_lanes' if lanes else ''}({parameters})"
+    call = routine.call_with(dict.fromkeys(empty, "NULL"))
+    definition = routine.definition()
+    definition[0] = f"static {definition[0]}" if not routine.kind else definition[0]
+    return [*definition, f"{head};", f"{head} {{ {'' if lanes else '*code = '}{call} }}"]
 
 
 @pytest.fixture(scope="module")
@@ -58,10 +65,11 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
     lines = []
     for number, case in enumerate(LISTED):
         for lanes in [False, True] if lanes_of(case[0]) else [False]:
-            routine = Steps(bundle, function(*case), {}, {}, Eliminations(), lanes=lanes).routine()
+            of = function(*case)
+            routine = Steps(bundle, of, {}, {}, Eliminations(), lanes=lanes).routine()
             name = f"of_{number}{'_lanes' if lanes else ''}"
-            routine = Routine(name, routine.parameters, routine.body, routine.kind)
-            lines += exported(number, routine, lanes=lanes)
+            routine = replace(routine, name=name)
+            lines += exported(number, of, routine, lanes=lanes)
     head = files["planar_3rpr.c"].split("/* ---- parameters ---- */")[0]
 
     text = "\n".join(lines)
