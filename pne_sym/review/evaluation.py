@@ -58,7 +58,7 @@ class Structure:
         return found
 
     def made_of(self, expr: Any) -> tuple[list[Given] | None, list[str]]:
-        """The given vectors that an expression is made of, and the definitions on the way.
+        """The given vectors that an expression is made of, and the vectors on the way.
 
         None where it is not made of such alone.
         """
@@ -75,7 +75,9 @@ class Structure:
             given, equation = self.givens.get(name), self.equations.get(name)
             if given is not None and len(given.components) > 1:
                 found[name] = given
-            elif equation is None or names_in(equation.rhs) != names_outside_sums(equation.rhs):
+            elif equation is None or not isinstance(equation.lhs, VectorSymbol):
+                return None, []
+            elif names_in(equation.rhs) != names_outside_sums(equation.rhs):
                 return None, []
             elif name not in names:
                 names.append(name)
