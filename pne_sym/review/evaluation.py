@@ -58,7 +58,7 @@ class Structure:
         return found
 
     def made_of(self, expr: Any) -> tuple[list[Given] | None, list[str]]:
-        """The given vectors that an expression is made of, and the definitions on the way.
+        """The given vectors that an expression is made of, and the vectors on the way.
 
         None where it is not made of such alone.
         """
@@ -75,7 +75,7 @@ class Structure:
             given, equation = self.givens.get(name), self.equations.get(name)
             if given is not None and len(given.components) > 1:
                 found[name] = given
-            elif equation is None or names_in(equation.rhs) != names_outside_sums(equation.rhs):
+            elif equation is None or not _is_vector_without_sums(equation):
                 return None, []
             elif name not in names:
                 names.append(name)
@@ -94,6 +94,11 @@ def names_outside_sums(expr: Any) -> set[str]:
     if hasattr(expr, "name") or not getattr(expr, "args", ()):
         return set(names_in(expr))
     return {name for arg in expr.args for name in names_outside_sums(arg)}
+
+
+def _is_vector_without_sums(equation: Equation) -> bool:
+    is_vector = isinstance(equation.lhs, VectorSymbol)
+    return is_vector and names_in(equation.rhs) == names_outside_sums(equation.rhs)
 
 
 class State:

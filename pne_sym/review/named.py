@@ -7,7 +7,7 @@ and tensors in base axes, by nothing but the derivation.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -149,11 +149,14 @@ class _Values:
             for (target, _), equation in totals:
                 yield from self._named(str(target), equation, (None,))
 
-    def _named(self, name: str, equation: str, legs: Iterable[int | None]) -> Iterator[Statement]:
+    def _named(self, name: str, equation: str, legs: Sequence[int | None]) -> Iterator[Statement]:
         for component in self.means.get(name, ()):
             # of what else a value is it is that equation which the value would contradict
             of = self.said.ids.get(component.quantity, equation)
-            for k, leg in enumerate(legs):
+            owner = component.frame.partition(".")[0]
+            # one value for all legs, along whose own axes it may be the same too
+            own = self.structure.legs.get(owner, legs) if tuple(legs) == (None,) else legs
+            for k, leg in enumerate(own):
                 whole = self.said.whole(component, leg)
                 value = np.atleast_1d(self.values[name])
                 found = value.reshape(value.shape[0], -1)[min(k, len(value) - 1), 0]

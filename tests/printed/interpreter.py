@@ -161,6 +161,10 @@ class Interpreter:
             found = found[section.legs.index(leg)] if leg else found
             if found.shape == (3, 3) and what == "zz alone":
                 return np.diag([0.0, 0.0, found[2, 2]])
+            if what.startswith("entry "):
+                at, count = map(int, what.removeprefix("entry ").split(" of "))
+                assert found.size == count
+                return float(found.reshape(-1)[at - 1])
             if what.startswith("row "):
                 return found[int(what.removeprefix("row ")) - 1]
             kept = _PART.fullmatch(what)

@@ -16,6 +16,7 @@ from pne_sym.model.manipulator import Manipulator
 from tests import models
 from tests.printed.interpreter import Interpreter
 from tests.whole.test_coupling import both
+from tests.whole.test_joint_forces import dressed
 
 SAMPLE = ("planar_3rpr", "tripod_3rps")
 CASES = [
@@ -53,6 +54,16 @@ def least(found: Interpreter, wrench: Any) -> Any:
 def test_report_computes(name: str, seed: int) -> None:
     """M, Z, H, Hk, q and tau, as the module has them."""
     computes(manipulator_of(name, seed), seed)
+
+
+def test_margins() -> None:
+    """Which entry of the limits is the least is told."""
+    manipulator = dressed("planar_3rpr", 1)
+    bundle, state = models.bundle(manipulator), models.state_at(manipulator, 1)
+    text = ReportBackend().emit(bundle)["planar_3rpr.md"]
+    found = Interpreter(text, numbers_of(bundle, state))
+    margins = [found.legs[i + 1].base[rf"\chi_{j + 1}"] for i, j in bundle.coordinates.joints]
+    close(np.array(margins), models.module(manipulator).joint_margins(state.X), "margins")
 
 
 def test_coupled_motors() -> None:

@@ -106,7 +106,8 @@ class ChapterWriter:
 
     def _statements(self, chapter: Chapter) -> Iterator[Statement]:
         same = [c for c in self.derivation.chapters if c.leg_type == chapter.leg_type]
-        if chapter.leg_type and chapter is same[-1]:
+        of_forces = next((c for c in same if c.id == f"{chapter.leg_type}-N"), same[-1])
+        if chapter.leg_type and chapter is of_forces:
             yield from leg_force_statements(
                 self.derivation, self.collected, chapter.leg_type, self.plain
             )

@@ -172,7 +172,8 @@ class GivenWriter:
     def _scalar(self, quantity: Quantity, info: LegTypeInfo | None) -> str:
         name, parameters = quantity.name, self.d.parameters
         if name in parameters.entries:
-            return f"`{parameters.entries[name][0].name}`"
+            field, index = parameters.entries[name]
+            return f"`{field.name}`" + f": entry {index + 1} of {field.size}" * bool(field.shape)
         if name in parameters.branches:
             assert info is not None
             return _signs(info, parameters.branches[name][1])
