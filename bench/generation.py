@@ -15,6 +15,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 PNE_GEN = Path(sys.executable).with_name("pne-gen")
+ALONE = {"all": ("--jobs", "1")}  # what workers take is not counted
 MODELS = ("planar_3rpr", "stewart", "hexapod_6uhs", "hexapod_6x6r")
 
 
@@ -34,7 +35,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as out:
         commands: dict[str, list[str | Path]] = {
             "import sympy": [sys.executable, "-c", "import sympy"],
-            **{name: [PNE_GEN, name, "--out", out] for name in chosen.models},
+            **{name: [PNE_GEN, name, "--out", out, *ALONE.get(name, ())] for name in chosen.models},
         }
         for command in commands.values():
             cpu_time(command)  # compiles the sources

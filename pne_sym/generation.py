@@ -20,6 +20,7 @@ import warnings
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
+from multiprocessing.context import BaseContext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -177,15 +178,15 @@ def compile_many(
         SpecError, InputError: a manipulator is outside the method.
         TargetError: there is no such target, or it cannot print a model.
     """
-    from pne_sym.pipeline import compile_model
-
     wanted = targets or {}
     todo = tuple((item, wanted.get(item.name)) for item in manipulators)
     jobs = min(jobs, len(todo))
     if jobs <= 1:
+        from pne_sym.pipeline import compile_model
+
         yield from (Compiled(item, compile_model(item, names)) for item, names in todo)
         return
-    context = multiprocessing.get_context("spawn")
+    context = _workers()
     pool = ProcessPoolExecutor(
         jobs, mp_context=context, initializer=gc.set_threshold, initargs=gc.get_threshold()
     )
@@ -202,6 +203,16 @@ def compile_many(
         raise
     finally:
         pool.shutdown()
+
+
+def _workers() -> BaseContext:
+    """How workers start: where the system can, from one process that has the compiler."""
+    if "forkserver" not in multiprocessing.get_all_start_methods():
+        return multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")
+    backends = {target.backend.partition(":")[0] for target in registry.TARGETS if target.default}
+    context.set_forkserver_preload(["pne_sym.pipeline", *sorted(backends)])
+    return context
 
 
 @dataclass(frozen=True)
