@@ -18,7 +18,7 @@ from pne_sym.model.full_form import to_full_form
 from pne_sym.model.home import read_home
 from pne_sym.model.legs import is_plane, read_legs
 from pne_sym.model.limits import check_limits
-from pne_sym.model.manipulator import ZERO3, Body, Manipulator, Space, Vector3
+from pne_sym.model.manipulator import ZERO3, Body, Home, Leg, Manipulator, Space, Vector3
 from pne_sym.model.names import read_name
 from pne_sym.model.symbols import read_symbols
 from pne_sym.model.values import vector
@@ -90,8 +90,7 @@ def from_mapping(data: Mapping[str, object], source: str) -> Manipulator:
     space = Space(table.require("space", f"one of {', '.join(spaces)}").choice(spaces))
     legs = read_legs(table.require("legs", "a list of legs"), table.get("leg_types"), space)
     centre = _fixed_centre(table, space)
-    home = read_home(table.require("home", "a pose X and displacements q"), space, legs, centre)
-    check_limits(table.require("home", "a pose"), home, legs)
+    at_home = table.require("home", "a pose X and displacements q")
     return Manipulator(
         name=name,
         title=_title(table, name),
@@ -100,12 +99,19 @@ def from_mapping(data: Mapping[str, object], source: str) -> Manipulator:
         platform=_platform(table, space),
         payload=_payload(table, space),
         legs=legs,
-        home=home,
         fixed_centre=centre,
         symbols=read_symbols(table.get("symbols")),
         moving_base=_flag(table, "moving_base"),
         coupling=read_coupling(table.get("coupling"), legs),
+        home=_home(at_home, space, legs, centre),  # last: what is found is told
     )
+
+
+def _home(entry: Entry, space: Space, legs: tuple[Leg, ...], centre: Vector3 | None) -> Home:
+    """Pose and displacements, within the limits of the joints."""
+    home = read_home(entry, space, legs, centre)
+    check_limits(entry, home, legs)
+    return home
 
 
 def checked(manipulator: Manipulator) -> Manipulator:

@@ -118,6 +118,18 @@ def test_a_home_without_q_is_found(name: str) -> None:
     assert "closures the usual ones (pne-gen home lists all)" in message
 
 
+@pytest.mark.parametrize(
+    "wrong", [{"coupling": [[1.0]]}, {"moving_base": 1}, {"platform": {"mass": -1.0}}]
+)
+def test_of_a_specification_that_is_refused_nothing_else_is_told(wrong: Any) -> None:
+    form = form_of("planar_3rpr")
+    form["home"].pop("q")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(SpecError, match=next(iter(wrong))):
+            from_mapping(form | wrong, "found.json")
+
+
 def test_a_home_without_q_in_python() -> None:
     m = manipulators.load("planar_3rpr")
     with pytest.warns(SpecNote, match="q found from X"):
