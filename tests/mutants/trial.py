@@ -130,7 +130,9 @@ def _environment(top: Path) -> dict[str, str]:
 
 
 def _limit_memory() -> None:
-    resource.setrlimit(resource.RLIMIT_DATA, (_MEMORY, _MEMORY))
+    """Softly: what runs under AddressSanitizer, which reserves terabytes, lifts it."""
+    _, most = resource.getrlimit(resource.RLIMIT_DATA)
+    resource.setrlimit(resource.RLIMIT_DATA, (_MEMORY, most))
 
 
 def _kill_group(pid: int) -> None:
