@@ -184,13 +184,27 @@ INLINE int sum_is_finite(const real *x, size_t n)
     return is_finite(total(sum, LANES));
 }
 
+/* How many of some numbers are not finite. */
+APART real not_finite(size_t n, const real *x)
+{
+    real count = 0;
+    if (!sum_is_finite(x, n)) {
+        for (size_t i = 0; i < n; ++i) {
+            count += UNLESS(is_finite(x[i]));
+        }
+    }
+    return count;
+}
+
 /* Flag the states with entries that are not finite; the states stand side by side. */
 INLINE void check(size_t size, size_t w, const real *x, real *flags)
 {
-    if (!sum_is_finite(x, size*w)) {
-        for (size_t i = 0; i < size*w; ++i) {
-            flags[i%w] += UNLESS(is_finite(x[i]));
-        }
+    if (w == 1) {
+        flags[0] += not_finite(size, x);
+        return;
+    }
+    for (size_t i = 0; i < size*w; ++i) {
+        flags[i%w] += UNLESS(is_finite(x[i]));
     }
 }
 
@@ -245,18 +259,17 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE int judge(const verdict *t, int *code)
+INLINE int judge(const verdict *t)
 {
-    *code = t->invalid[0] > 0 ? INVALID
+    return t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
         : t->unreachable[0] > 0 ? UNREACHABLE
         : t->singular[0] > 0 ? SINGULAR
         : t->overflow[0] > 0 ? INVALID : OK;
-    return *code;
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
-INLINE void suspect(const verdict *t, int *code)
+APART void suspect(const verdict *t, int *code)
 {
     real flags[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -278,7 +291,7 @@ INLINE void blame(int code, verdict *t)
 }
 
 /* Outputs of an impossible state. */
-INLINE void refuse(size_t size, real *out)
+APART void refuse(size_t size, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
@@ -314,6 +327,32 @@ INLINE size_t record(const int *code, size_t w, int *status)
     }
     return failed;
 }
+
+/* Bodies of batches.  lanes: settles the states from number i on, side by side, in codes; one: settles
+   state j, what fails and what is left too. */
+#define SIDE_BY_SIDE(lanes, one) \
+    size_t failed = 0, w; \
+    for (size_t i = 0; i < n; i += w) { \
+        int codes[LANES] = {INVALID}; \
+        w = LANES > 1 && i + LANES <= n ? LANES : 1; \
+        if (w > 1) { \
+            lanes; \
+        } \
+        for (size_t j = i; j < i + w; ++j) { \
+            if (codes[j - i] != OK) { \
+                codes[j - i] = one; \
+            } \
+        } \
+        failed += record(codes, w, status ? status + i : NULL); \
+    } \
+    return failed
+#define ONE_BY_ONE(one) \
+    size_t failed = 0; \
+    for (size_t j = 0; j < n; ++j) { \
+        const int code = one; \
+        failed += record(&code, 1, status ? status + j : NULL); \
+    } \
+    return failed
 
 /* What the reader of specifications allows; floats have less to offer. */
 #define ROUNDED BY_TYPE(1e-5, 1e-06, 1e-06)  /* lengths and products of unit vectors */
@@ -632,7 +671,7 @@ int delta_prepare(const delta_params *params, delta_model *model)
            without the mass at the connection point */
         const real rus_d_c_in_axes3_yy = -rus_d_Gamma_3_in_axes3_y*rus_w_3_in_axes3_y -
             rus_h_3_in_spec3_x*rus_w_3_in_axes3_y;
-        /* (h_star) first moment about the platform origin */
+        /* (h_star) */
         const real rus_h_star_t = rus_link3_mass*rus_platform_point_x;
         const real rus_h_star_t_2 = rus_link3_mass*rus_platform_point_y;
         const real rus_h_star_t_3 = rus_link3_mass*rus_platform_point_z;
@@ -713,7 +752,7 @@ int delta_prepare(const delta_params *params, delta_model *model)
     }
     /* (m_star) mass of the platform with the gathered masses */
     const real m_star = m_star_of_legs + platform_mass;
-    /* (h_star) first moment about the platform origin */
+    /* (h_star) */
     const real h_star_x = h_star_t + h_star_x_of_legs;
     const real h_star_y = h_star_t_2 + h_star_y_of_legs;
     const real h_star_z = h_star_t_3 + h_star_z_of_legs;
@@ -1169,80 +1208,57 @@ INLINE void stage_rus_X(const prepared *m, size_t w, size_t i, size_t j, const r
     *v)
 {
     /* (rus-S) from the base point to the connection point */
-    const real rus_base_point_x = m->rus_base_point_x[i];
-    const real rus_platform_point_x = m->rus_platform_point_x[i];
     const real t_x = X[0*w + j];
-    const real rus_S_x = rus_platform_point_x + t_x - rus_base_point_x;
-    const real rus_base_point_y = m->rus_base_point_y[i];
-    const real rus_platform_point_y = m->rus_platform_point_y[i];
+    const real rus_S_x = m->rus_platform_point_x[i] + t_x - m->rus_base_point_x[i];
     const real t_y = X[1*w + j];
-    const real rus_S_y = rus_platform_point_y + t_y - rus_base_point_y;
-    const real rus_base_point_z = m->rus_base_point_z[i];
-    const real rus_platform_point_z = m->rus_platform_point_z[i];
+    const real rus_S_y = m->rus_platform_point_y[i] + t_y - m->rus_base_point_y[i];
     const real t_z = X[2*w + j];
-    const real rus_S_z = rus_platform_point_z + t_z - rus_base_point_z;
+    const real rus_S_z = m->rus_platform_point_z[i] + t_z - m->rus_base_point_z[i];
     /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 1 */
     const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-    const real rus_J_3_t = m->rus_J_3_t[i];
-    const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
-    const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
+    const real rus_Kd_1 = m->rus_J_3_t[i] + R(0.5)*rus_Kd_1_t - m->rus_J_3_t_2[i];
     /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-    const real rus_base_frame_xx = m->rus_base_frame_xx[i];
-    const real rus_base_frame_yx = m->rus_base_frame_yx[i];
-    const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-    const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-    const real rus_Kc_1 = rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx +
-        rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx);
+    const real rus_Kc_1 = m->rus_joint2_offset_x[i]*(rus_S_x*m->rus_base_frame_xx[i] +
+        rus_S_y*m->rus_base_frame_yx[i] + rus_S_z*m->rus_base_frame_zx[i]);
     /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
-    const real rus_base_frame_xy = m->rus_base_frame_xy[i];
-    const real rus_base_frame_yy = m->rus_base_frame_yy[i];
-    const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-    const real rus_Ks_1 = rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy +
-        rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy);
+    const real rus_Ks_1 = m->rus_joint2_offset_x[i]*(rus_S_x*m->rus_base_frame_xy[i] +
+        rus_S_y*m->rus_base_frame_yy[i] + rus_S_z*m->rus_base_frame_zy[i]);
     /* (rus-rho2_1) squared amplitude */
     const real rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1;
     /* (rus-disc_1) discriminant */
     const real rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1;
     /* (rus-root_1) root, with the sign of the branch */
-    const real rus_branch_1 = m->rus_branch_1[i];
-    const real rus_root_1 = rus_branch_1*root(rus_disc_1);
+    const real rus_root_1 = m->rus_branch_1[i]*root(rus_disc_1);
     /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
     const real inv_rus_rho2_1 = 1/rus_rho2_1;
     const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
     /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
     const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
     /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-    const real inv_rus_size_t = m->inv_rus_size_t[i];
-    const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
+    const real rus_xi_1_t = m->inv_rus_size_t[i]*m->rus_joint2_offset_x[i]*rus_root_1;
     /* (rus-x_2) from the origin of joint 2 to the connection point */
-    const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
-        rus_joint2_offset_x;
+    const real rus_x_2_in_axes1_x = m->inv_rus_size_t[i]*rus_Kd_1*m->rus_joint2_offset_x[i] -
+        m->rus_joint2_offset_x[i];
     /* (rus-rho2_2) squared amplitude */
     const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
     /* (rus-root_2) root, with the sign of the branch */
-    const real rus_branch_2 = m->rus_branch_2[i];
-    const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
+    const real rus_root_2 = m->rus_branch_2[i]*root(rus_rho2_2);
     /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
     const real inv_rus_rho2_2 = 1/rus_rho2_2;
     const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
     /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
     const real rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
     /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-    const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
-    const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-    const real rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
+    const real rus_c_3 = m->inv_rus_size_t_2[i]*m->rus_platform_joint_offset_x[i]*rus_root_2;
     /* (rus-r_1) from joint 1 to the connection point, along the links */
-    const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-    const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-    const real rus_base_frame_zz = m->rus_base_frame_zz[i];
     const real rus_e_1_in_axes3_x =
-        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
-        rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz);
-    const real rus_r_1_t = rus_c_3*rus_platform_joint_offset_x;
-    const real rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x;
+        m->inv_rus_size_t_2[i]*m->rus_platform_joint_offset_x[i]*(rus_S_x*m->rus_base_frame_xz[i]
+        + rus_S_y*m->rus_base_frame_yz[i] + rus_S_z*m->rus_base_frame_zz[i]);
+    const real rus_r_1_t = rus_c_3*m->rus_platform_joint_offset_x[i];
+    const real rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*m->rus_platform_joint_offset_x[i];
     const real rus_r_1_t_2 = rus_r_1_t*rus_s_2_t;
-    const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t;
+    const real rus_r_1_in_axes1_x = m->rus_joint2_offset_x[i] + rus_c_2*rus_r_1_t;
     const real rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2;
     /* (rus-v_1) velocity of the connection point per rate of joint 1 */
     const real rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t;
@@ -1263,27 +1279,27 @@ INLINE void stage_rus_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rus_qd_1_t_5 = rus_c_1*rus_qd_1_t_3 + rus_qd_1_t_4*rus_s_1;
     const real rus_qd_1_t_6 = rus_qd_1_t_3*rus_s_1 - rus_c_1*rus_qd_1_t_4;
     /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-    const real rus_bias_t = rus_c_2*rus_joint2_offset_x;
-    const real rus_d_2_in_axes3_z = rus_joint2_offset_x*rus_s_2_t;
-    /* (rus-w_1) reciprocal vector 1 */
+    const real rus_bias_t = rus_c_2*m->rus_joint2_offset_x[i];
+    const real rus_d_2_in_axes3_z = m->rus_joint2_offset_x[i]*rus_s_2_t;
+    /* (rus-w_1) */
     const real rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1;
     const real rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t;
-    const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t +
-        rus_base_frame_xy*rus_w_1_t_2;
-    const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t +
-        rus_base_frame_yy*rus_w_1_t_2;
-    const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t +
-        rus_base_frame_zy*rus_w_1_t_2;
+    const real axis_z_rus_axes3_x = m->rus_base_frame_xx[i]*rus_w_1_t +
+        m->rus_base_frame_xy[i]*rus_w_1_t_2;
+    const real axis_z_rus_axes3_y = m->rus_base_frame_yx[i]*rus_w_1_t +
+        m->rus_base_frame_yy[i]*rus_w_1_t_2;
+    const real axis_z_rus_axes3_z = m->rus_base_frame_zx[i]*rus_w_1_t +
+        m->rus_base_frame_zy[i]*rus_w_1_t_2;
     const real rus_w_1_t_3 = rus_c_2*rus_e_1_in_axes3_x;
     const real rus_w_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t;
     const real rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4;
     const real rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4;
-    const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_w_1_t_5 +
-        rus_base_frame_xy*rus_w_1_t_6 - rus_base_frame_xz*rus_c_3;
-    const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_w_1_t_5 +
-        rus_base_frame_yy*rus_w_1_t_6 - rus_base_frame_yz*rus_c_3;
-    const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_w_1_t_5 +
-        rus_base_frame_zy*rus_w_1_t_6 - rus_base_frame_zz*rus_c_3;
+    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*rus_w_1_t_5 +
+        m->rus_base_frame_xy[i]*rus_w_1_t_6 - m->rus_base_frame_xz[i]*rus_c_3;
+    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*rus_w_1_t_5 +
+        m->rus_base_frame_yy[i]*rus_w_1_t_6 - m->rus_base_frame_yz[i]*rus_c_3;
+    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*rus_w_1_t_5 +
+        m->rus_base_frame_zy[i]*rus_w_1_t_6 - m->rus_base_frame_zz[i]*rus_c_3;
     v->rus_S_x = rus_S_x;
     v->rus_S_y = rus_S_y;
     v->rus_S_z = rus_S_z;
@@ -1352,65 +1368,39 @@ INLINE void stage_rus_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
     values_rus *v)
 {
     /* (rus-J_3) inertia tensor of link 3 about the connection point */
-    const real rus_base_point_x = m->rus_base_point_x[i];
-    const real rus_platform_point_x = m->rus_platform_point_x[i];
     const real t_x = X[0*w + j];
-    const real rus_J_3_t_3 = rus_platform_point_x + t_x - rus_base_point_x;
-    const real rus_base_point_y = m->rus_base_point_y[i];
-    const real rus_platform_point_y = m->rus_platform_point_y[i];
+    const real rus_J_3_t_3 = m->rus_platform_point_x[i] + t_x - m->rus_base_point_x[i];
     const real t_y = X[1*w + j];
-    const real rus_J_3_t_4 = rus_platform_point_y + t_y - rus_base_point_y;
-    const real rus_base_point_z = m->rus_base_point_z[i];
-    const real rus_platform_point_z = m->rus_platform_point_z[i];
+    const real rus_J_3_t_4 = m->rus_platform_point_y[i] + t_y - m->rus_base_point_y[i];
     const real t_z = X[2*w + j];
-    const real rus_J_3_t_5 = rus_platform_point_z + t_z - rus_base_point_z;
+    const real rus_J_3_t_5 = m->rus_platform_point_z[i] + t_z - m->rus_base_point_z[i];
     const real rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 +
         rus_J_3_t_5*rus_J_3_t_5;
-    const real rus_J_3_t = m->rus_J_3_t[i];
-    const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
-    const real rus_J_3_t_7 = rus_J_3_t + R(0.5)*rus_J_3_t_6 - rus_J_3_t_2;
-    const real rus_base_frame_xx = m->rus_base_frame_xx[i];
-    const real rus_base_frame_yx = m->rus_base_frame_yx[i];
-    const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-    const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-    const real rus_J_3_t_8 = rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx +
-        rus_J_3_t_4*rus_base_frame_yx + rus_J_3_t_5*rus_base_frame_zx);
-    const real rus_base_frame_xy = m->rus_base_frame_xy[i];
-    const real rus_base_frame_yy = m->rus_base_frame_yy[i];
-    const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-    const real rus_J_3_t_9 = rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy +
-        rus_J_3_t_4*rus_base_frame_yy + rus_J_3_t_5*rus_base_frame_zy);
+    const real rus_J_3_t_7 = m->rus_J_3_t[i] + R(0.5)*rus_J_3_t_6 - m->rus_J_3_t_2[i];
+    const real rus_J_3_t_8 = m->rus_joint2_offset_x[i]*(rus_J_3_t_3*m->rus_base_frame_xx[i] +
+        rus_J_3_t_4*m->rus_base_frame_yx[i] + rus_J_3_t_5*m->rus_base_frame_zx[i]);
+    const real rus_J_3_t_9 = m->rus_joint2_offset_x[i]*(rus_J_3_t_3*m->rus_base_frame_xy[i] +
+        rus_J_3_t_4*m->rus_base_frame_yy[i] + rus_J_3_t_5*m->rus_base_frame_zy[i]);
     const real rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9;
     const real rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7;
-    const real rus_branch_1 = m->rus_branch_1[i];
-    const real rus_J_3_t_12 = root(rus_J_3_t_11)*rus_branch_1;
-    const real inv_rus_size_t = m->inv_rus_size_t[i];
-    const real rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x;
-    const real rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x -
-        rus_joint2_offset_x;
+    const real rus_J_3_t_12 = root(rus_J_3_t_11)*m->rus_branch_1[i];
+    const real rus_J_3_t_13 = m->inv_rus_size_t[i]*rus_J_3_t_12*m->rus_joint2_offset_x[i];
+    const real rus_J_3_t_14 = m->inv_rus_size_t[i]*rus_J_3_t_7*m->rus_joint2_offset_x[i] -
+        m->rus_joint2_offset_x[i];
     const real rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14;
-    const real rus_branch_2 = m->rus_branch_2[i];
-    const real rus_J_3_t_16 = root(rus_J_3_t_15)*rus_branch_2;
-    const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
-    const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-    const real rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x;
-    const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-    const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-    const real rus_base_frame_zz = m->rus_base_frame_zz[i];
+    const real rus_J_3_t_16 = root(rus_J_3_t_15)*m->rus_branch_2[i];
+    const real rus_J_3_t_17 =
+        m->inv_rus_size_t_2[i]*rus_J_3_t_16*m->rus_platform_joint_offset_x[i];
     const real rus_e_1_in_axes3_x =
-        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
-        rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz);
-    const real rus_J_3_in_spec3_xy = m->rus_J_3_in_spec3_xy[i];
-    const real rus_J_3_in_spec3_yz = m->rus_J_3_in_spec3_yz[i];
-    const real rus_J_3_in_axes2_yz = rus_J_3_in_spec3_xy*rus_e_1_in_axes3_x +
-        rus_J_3_in_spec3_yz*rus_J_3_t_17;
-    const real rus_J_3_in_spec3_xx = m->rus_J_3_in_spec3_xx[i];
-    const real rus_J_3_in_spec3_xz = m->rus_J_3_in_spec3_xz[i];
-    const real rus_J_3_in_spec3_zz = m->rus_J_3_in_spec3_zz[i];
-    const real rus_J_3_in_axes1_zz = rus_J_3_t_17*(rus_J_3_in_spec3_xz*rus_e_1_in_axes3_x +
-        rus_J_3_in_spec3_zz*rus_J_3_t_17) -
-        rus_e_1_in_axes3_x*(-rus_J_3_in_spec3_xx*rus_e_1_in_axes3_x -
-        rus_J_3_in_spec3_xz*rus_J_3_t_17);
+        m->inv_rus_size_t_2[i]*m->rus_platform_joint_offset_x[i]*(rus_J_3_t_3*m->rus_base_frame_xz[i]
+        + rus_J_3_t_4*m->rus_base_frame_yz[i] + rus_J_3_t_5*m->rus_base_frame_zz[i]);
+    const real rus_J_3_in_axes2_yz = m->rus_J_3_in_spec3_xy[i]*rus_e_1_in_axes3_x +
+        m->rus_J_3_in_spec3_yz[i]*rus_J_3_t_17;
+    const real rus_J_3_in_axes1_zz =
+        rus_J_3_t_17*(m->rus_J_3_in_spec3_xz[i]*rus_e_1_in_axes3_x +
+        m->rus_J_3_in_spec3_zz[i]*rus_J_3_t_17) -
+        rus_e_1_in_axes3_x*(-m->rus_J_3_in_spec3_xx[i]*rus_e_1_in_axes3_x -
+        m->rus_J_3_in_spec3_xz[i]*rus_J_3_t_17);
     /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
     const real inv_rus_J_3_t_10 = 1/rus_J_3_t_10;
     const real rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 -
@@ -1424,10 +1414,10 @@ INLINE void stage_rus_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
     /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
     const real rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16;
     /* (rus-r_1) from joint 1 to the connection point, along the links */
-    const real rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x;
-    const real rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x;
+    const real rus_r_1_t = rus_J_3_t_17*m->rus_platform_joint_offset_x[i];
+    const real rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*m->rus_platform_joint_offset_x[i];
     const real rus_r_1_t_2 = rus_r_1_t*rus_s_2_t;
-    const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t;
+    const real rus_r_1_in_axes1_x = m->rus_joint2_offset_x[i] + rus_c_2*rus_r_1_t;
     const real rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2;
     /* (rus-v_1) velocity of the connection point per rate of joint 1 */
     const real rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t;
@@ -1442,56 +1432,50 @@ INLINE void stage_rus_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
     const real rus_w_2_in_axes3_x = inv_rus_v_1_t_2*rus_v_1_in_axes3_z*rus_w_2_in_axes3_z;
     /* (rus-w_3) reciprocal vector 3 */
-    const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
-    const real rus_w_3_in_axes3_x = inv_rus_v_1_t_2*rus_v_1_in_axes3_y*rus_w_3_in_axes3_y;
+    const real rus_w_3_in_axes3_x =
+        inv_rus_v_1_t_2*rus_v_1_in_axes3_y*m->rus_w_3_in_axes3_y[i];
     /* (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
     const real rus_d_alpha_3_in_axes3_xz = rus_e_1_in_axes3_x*rus_w_2_in_axes3_z;
     const real rus_d_alpha_3_t = rus_J_3_t_17*rus_w_2_in_axes3_z;
     /* (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
        inertia and weight */
     const real rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_yz*rus_w_2_in_axes3_z;
-    const real rus_d_Gamma_3_t = m->rus_d_Gamma_3_t[i];
-    const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
-    const real rus_d_Gamma_3_in_axes3_x = rus_h_3_in_spec3_z -
+    const real rus_d_Gamma_3_in_axes3_x = m->rus_h_3_in_spec3_z[i] -
         inv_rus_v_1_t_2*(rus_J_3_in_axes2_yz - rus_d_Gamma_3_in_axes3_z*rus_v_1_in_axes3_z -
-        rus_d_Gamma_3_t*rus_v_1_in_axes3_y);
+        m->rus_d_Gamma_3_t[i]*rus_v_1_in_axes3_y);
     /* (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
        inertia and weight */
-    const real rus_h_3_in_spec3_y = m->rus_h_3_in_spec3_y[i];
-    const real rus_d_Gamma_2_t = rus_J_3_t_17*rus_h_3_in_spec3_y;
+    const real rus_d_Gamma_2_t = rus_J_3_t_17*m->rus_h_3_in_spec3_y[i];
     const real rus_d_Gamma_2_t_2 = rus_J_3_in_axes1_zz*rus_w_2_in_axes3_z;
-    const real rus_d_Gamma_2_t_3 = rus_J_3_in_axes2_yz*rus_w_3_in_axes3_y;
+    const real rus_d_Gamma_2_t_3 = rus_J_3_in_axes2_yz*m->rus_w_3_in_axes3_y[i];
     const real rus_d_Gamma_2_t_4 = rus_d_Gamma_2_t_2*rus_v_1_in_axes3_z;
     const real rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_in_axes3_y;
     const real rus_d_Gamma_2_in_axes3_x = inv_rus_v_1_t_2*(rus_d_Gamma_2_t_4 +
         rus_d_Gamma_2_t_5 - rus_J_3_in_axes1_zz) - rus_d_Gamma_2_t;
     const real rus_d_Gamma_2_in_axes3_y = rus_d_Gamma_2_t_3 -
-        rus_e_1_in_axes3_x*rus_h_3_in_spec3_y;
-    const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
-    const real rus_d_Gamma_2_in_axes3_z = rus_d_Gamma_2_t_2 + rus_J_3_t_17*rus_h_3_in_spec3_x
-        - rus_e_1_in_axes3_x*rus_h_3_in_spec3_z;
+        rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_y[i];
+    const real rus_d_Gamma_2_in_axes3_z = rus_d_Gamma_2_t_2 +
+        rus_J_3_t_17*m->rus_h_3_in_spec3_x[i] - rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_z[i];
     /* (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
-    const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
     const real rus_d_Gamma_1_in_axes3_x = inv_rus_v_1_t_2*(rus_d_Gamma_2_t_4 +
-        rus_d_Gamma_2_t_5 - rus_J_1_in_spec1_zz - rus_J_3_in_axes1_zz) - rus_d_Gamma_2_t;
+        rus_d_Gamma_2_t_5 - m->rus_J_1_in_spec1_zz[i] - rus_J_3_in_axes1_zz) -
+        rus_d_Gamma_2_t;
     /* (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
        without the mass at the connection point */
     const real rus_d_c_in_axes3_xx = inv_rus_v_1_t_2*rus_d_Gamma_1_in_axes3_x -
         rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
         rus_d_Gamma_3_in_axes3_x*rus_w_3_in_axes3_x -
-        rus_h_3_in_spec3_y*(inv_rus_v_1_t_2*rus_J_3_t_17 - rus_J_3_t_17*rus_w_2_in_axes3_x) -
-        rus_h_3_in_spec3_z*rus_w_3_in_axes3_x;
-    const real rus_d_Gamma_3_in_axes3_y = m->rus_d_Gamma_3_in_axes3_y[i];
-    const real rus_d_phi_3_in_axes3_xy = m->rus_d_phi_3_in_axes3_xy[i];
+        m->rus_h_3_in_spec3_y[i]*(inv_rus_v_1_t_2*rus_J_3_t_17 -
+        rus_J_3_t_17*rus_w_2_in_axes3_x) - m->rus_h_3_in_spec3_z[i]*rus_w_3_in_axes3_x;
     const real rus_d_c_in_axes3_xy = inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_y -
-        rus_d_phi_3_in_axes3_xy - rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_x -
-        rus_d_Gamma_3_in_axes3_y*rus_w_3_in_axes3_x;
+        m->rus_d_phi_3_in_axes3_xy[i] - rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_x -
+        m->rus_d_Gamma_3_in_axes3_y[i]*rus_w_3_in_axes3_x;
     const real rus_d_c_in_axes3_xz = inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z +
-        rus_d_alpha_3_t*rus_h_3_in_spec3_y - rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x -
-        rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_x;
-    const real rus_d_c_in_axes3_yz = rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_y -
-        rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_y;
+        rus_d_alpha_3_t*m->rus_h_3_in_spec3_y[i] - rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x
+        - rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_x;
+    const real rus_d_c_in_axes3_yz = rus_d_alpha_3_in_axes3_xz*m->rus_h_3_in_spec3_y[i] -
+        rus_d_Gamma_3_in_axes3_z*m->rus_w_3_in_axes3_y[i];
     v->rus_J_3_t_10 = rus_J_3_t_10;
     v->rus_J_3_t_11 = rus_J_3_t_11;
     v->rus_J_3_t_15 = rus_J_3_t_15;
@@ -1538,8 +1522,7 @@ INLINE void stage_rus_legs_required(const prepared *m, size_t w, size_t i, size_
     /* (rus-qd_3) rate of joint 3 */
     const real rus_qd_3_t = v->axis_y_rus_axes3_x*t_dot_x + v->axis_y_rus_axes3_y*t_dot_y +
         v->axis_y_rus_axes3_z*t_dot_z + rus_qd_1_t*v->rus_v_1_in_axes3_y;
-    const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
-    const real rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y;
+    const real rus_qd_3 = rus_qd_3_t*m->rus_w_3_in_axes3_y[i];
     /* (rus-omega_1) angular velocity of link 1 */
     const real rus_omega_1_in_axes3_x = -v->rus_e_1_in_axes3_x*rus_qd_1_t;
     const real rus_omega_1_in_axes3_y = v->rus_c_3*rus_qd_1_t;
@@ -1566,13 +1549,12 @@ INLINE void stage_rus_legs_required(const prepared *m, size_t w, size_t i, size_
     /* (rus-bias) acceleration of the connection point at zero joint accelerations */
     const real rus_bias_t_2 = v->rus_bias_t*v->rus_c_3*rus_omega_1_in_axes3_y -
         v->rus_bias_t*v->rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
-    const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-    const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
+    const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*m->rus_platform_joint_offset_x[i];
     const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y -
         rus_bias_t_2*rus_omega_1_in_axes3_y - rus_qd_3*rus_qd_3_t;
     const real rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
         rus_bias_t_3*rus_omega_2_in_axes3_x;
-    const real rus_bias_in_axes3_z = rus_W_3_in_axes3_xz*rus_platform_joint_offset_x +
+    const real rus_bias_in_axes3_z = rus_W_3_in_axes3_xz*m->rus_platform_joint_offset_x[i] +
         rus_omega_2_in_axes3_x*rus_qd_3_t -
         v->rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
         v->rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
@@ -1583,7 +1565,7 @@ INLINE void stage_rus_legs_required(const prepared *m, size_t w, size_t i, size_
     /* (rus-qdd_1) acceleration of joint 1 */
     const real rus_qdd_1_t = v->inv_rus_v_1_t_2*rus_rel_in_axes3_x;
     /* (rus-qdd_3) acceleration of joint 3 */
-    const real rus_qdd_3_t = rus_w_3_in_axes3_y*(-rus_rel_in_axes3_y -
+    const real rus_qdd_3_t = m->rus_w_3_in_axes3_y[i]*(-rus_rel_in_axes3_y -
         rus_qdd_1_t*v->rus_v_1_in_axes3_y);
     /* (rus-alpha_2) angular acceleration of link 2 */
     const real rus_alpha_2_in_axes2_z = v->rus_w_2_in_axes3_z*(rus_rel_in_axes3_z +
@@ -1599,73 +1581,64 @@ INLINE void stage_rus_legs_required(const prepared *m, size_t w, size_t i, size_
     const real rus_B_3_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_in_axes3_y;
     const real rus_B_3_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_in_axes3_x;
     /* (rus-acc_3) acceleration of the reference point of link 3, less gravity */
-    const real gravity_x = m->gravity_x;
-    const real gravity_y = m->gravity_y;
-    const real gravity_z = m->gravity_z;
-    const real rus_acc_3_in_axes3_x = rus_S_ddot_in_axes3_x - axis_x_rus_axes3_x*gravity_x -
-        axis_x_rus_axes3_y*gravity_y - axis_x_rus_axes3_z*gravity_z;
-    const real rus_acc_3_in_axes3_y = rus_S_ddot_in_axes3_y - v->axis_y_rus_axes3_x*gravity_x
-        - v->axis_y_rus_axes3_y*gravity_y - v->axis_y_rus_axes3_z*gravity_z;
-    const real rus_acc_3_in_axes3_z = rus_S_ddot_in_axes3_z - v->axis_z_rus_axes3_x*gravity_x
-        - v->axis_z_rus_axes3_y*gravity_y - v->axis_z_rus_axes3_z*gravity_z;
+    const real rus_acc_3_in_axes3_x = rus_S_ddot_in_axes3_x - axis_x_rus_axes3_x*m->gravity_x
+        - axis_x_rus_axes3_y*m->gravity_y - axis_x_rus_axes3_z*m->gravity_z;
+    const real rus_acc_3_in_axes3_y = rus_S_ddot_in_axes3_y -
+        v->axis_y_rus_axes3_x*m->gravity_x - v->axis_y_rus_axes3_y*m->gravity_y -
+        v->axis_y_rus_axes3_z*m->gravity_z;
+    const real rus_acc_3_in_axes3_z = rus_S_ddot_in_axes3_z -
+        v->axis_z_rus_axes3_x*m->gravity_x - v->axis_z_rus_axes3_y*m->gravity_y -
+        v->axis_z_rus_axes3_z*m->gravity_z;
     /* (rus-mu_3) inertia moment of the links that turn with link 3, about their reference points */
     const real rus_mu_3_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
     const real rus_mu_3_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
     const real rus_mu_3_t_3 = rus_qd_3*rus_qd_3;
-    const real rus_J_3_in_spec3_xy = m->rus_J_3_in_spec3_xy[i];
-    const real rus_J_3_in_spec3_xz = m->rus_J_3_in_spec3_xz[i];
-    const real rus_J_3_in_spec3_yz = m->rus_J_3_in_spec3_yz[i];
-    const real rus_Sigma_3_in_axes3_yy = m->rus_Sigma_3_in_axes3_yy[i];
-    const real rus_Sigma_3_in_axes3_zz = m->rus_Sigma_3_in_axes3_zz[i];
-    const real rus_h_3_in_spec3_y = m->rus_h_3_in_spec3_y[i];
-    const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
-    const real rus_mu_3_in_axes3_x = rus_B_3_in_axes3_yx*rus_J_3_in_spec3_xy +
-        rus_B_3_in_axes3_zx*rus_J_3_in_spec3_xz + rus_B_3_in_axes3_zy*rus_Sigma_3_in_axes3_yy
-        + rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_x - rus_J_3_in_spec3_yz*(rus_mu_3_t_2 -
-        rus_mu_3_t_3) - rus_acc_3_in_axes3_y*rus_h_3_in_spec3_y -
-        rus_acc_3_in_axes3_z*rus_h_3_in_spec3_z;
-    const real rus_Sigma_3_in_axes3_xx = m->rus_Sigma_3_in_axes3_xx[i];
-    const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
-    const real rus_mu_3_in_axes3_y = rus_B_3_in_axes3_xy*rus_J_3_in_spec3_yz +
-        rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_y +
-        rus_acc_3_in_axes3_x*rus_h_3_in_spec3_y - rus_B_3_in_axes3_zx*rus_Sigma_3_in_axes3_xx
-        - rus_B_3_in_axes3_zy*rus_J_3_in_spec3_xz - rus_J_3_in_spec3_xy*(rus_mu_3_t -
-        rus_mu_3_t_3) - rus_acc_3_in_axes3_z*rus_h_3_in_spec3_x;
-    const real rus_mu_3_in_axes3_z = rus_B_3_in_axes3_yx*rus_Sigma_3_in_axes3_xx +
-        rus_J_3_in_spec3_xy*rus_alpha_2_in_axes3_x + rus_acc_3_in_axes3_x*rus_h_3_in_spec3_z +
-        rus_acc_3_in_axes3_y*rus_h_3_in_spec3_x - rus_B_3_in_axes3_xy*rus_Sigma_3_in_axes3_yy
-        - rus_J_3_in_spec3_xz*(rus_mu_3_t - rus_mu_3_t_2) -
-        rus_J_3_in_spec3_yz*rus_alpha_2_in_axes3_y;
+    const real rus_mu_3_in_axes3_x = rus_B_3_in_axes3_yx*m->rus_J_3_in_spec3_xy[i] +
+        rus_B_3_in_axes3_zx*m->rus_J_3_in_spec3_xz[i] +
+        rus_B_3_in_axes3_zy*m->rus_Sigma_3_in_axes3_yy[i] +
+        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_in_axes3_x -
+        m->rus_J_3_in_spec3_yz[i]*(rus_mu_3_t_2 - rus_mu_3_t_3) -
+        rus_acc_3_in_axes3_y*m->rus_h_3_in_spec3_y[i] -
+        rus_acc_3_in_axes3_z*m->rus_h_3_in_spec3_z[i];
+    const real rus_mu_3_in_axes3_y = rus_B_3_in_axes3_xy*m->rus_J_3_in_spec3_yz[i] +
+        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_in_axes3_y +
+        rus_acc_3_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
+        rus_B_3_in_axes3_zx*m->rus_Sigma_3_in_axes3_xx[i] -
+        rus_B_3_in_axes3_zy*m->rus_J_3_in_spec3_xz[i] - m->rus_J_3_in_spec3_xy[i]*(rus_mu_3_t
+        - rus_mu_3_t_3) - rus_acc_3_in_axes3_z*m->rus_h_3_in_spec3_x[i];
+    const real rus_mu_3_in_axes3_z = rus_B_3_in_axes3_yx*m->rus_Sigma_3_in_axes3_xx[i] +
+        m->rus_J_3_in_spec3_xy[i]*rus_alpha_2_in_axes3_x +
+        rus_acc_3_in_axes3_x*m->rus_h_3_in_spec3_z[i] +
+        rus_acc_3_in_axes3_y*m->rus_h_3_in_spec3_x[i] -
+        rus_B_3_in_axes3_xy*m->rus_Sigma_3_in_axes3_yy[i] -
+        m->rus_J_3_in_spec3_xz[i]*(rus_mu_3_t - rus_mu_3_t_2) -
+        m->rus_J_3_in_spec3_yz[i]*rus_alpha_2_in_axes3_y;
     const real rus_mu_3_in_axes1_z = v->rus_e_1_in_axes3_x*rus_mu_3_in_axes3_x -
         v->rus_c_3*rus_mu_3_in_axes3_y;
     /* (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-    const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
-    const real rus_h_1_in_spec1_x = m->rus_h_1_in_spec1_x[i];
-    const real rus_h_1_in_spec1_y = m->rus_h_1_in_spec1_y[i];
-    const real rus_mu_1_t = m->rus_mu_1_t[i];
-    const real rus_mu_1_t_2 = m->rus_mu_1_t_2[i];
-    const real rus_mu_1_in_axes1_z = rus_h_1_in_spec1_y*(v->rus_c_1*rus_mu_1_t +
-        rus_mu_1_t_2*v->rus_s_1) - rus_J_1_in_spec1_zz*rus_qdd_1_t -
-        rus_h_1_in_spec1_x*(v->rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*v->rus_s_1);
+    const real rus_mu_1_in_axes1_z = m->rus_h_1_in_spec1_y[i]*(v->rus_c_1*m->rus_mu_1_t[i] +
+        m->rus_mu_1_t_2[i]*v->rus_s_1) - m->rus_J_1_in_spec1_zz[i]*rus_qdd_1_t -
+        m->rus_h_1_in_spec1_x[i]*(v->rus_c_1*m->rus_mu_1_t_2[i] -
+        m->rus_mu_1_t[i]*v->rus_s_1);
     /* (rus-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real rus_N_1_in_axes1_z = rus_mu_1_in_axes1_z + rus_mu_3_in_axes1_z;
     /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
     const real rus_G_in_axes3_z = rus_mu_3_in_axes1_z*v->rus_w_2_in_axes3_z;
-    const real rus_G_in_axes3_y = rus_mu_3_in_axes3_z*rus_w_3_in_axes3_y;
+    const real rus_G_in_axes3_y = rus_mu_3_in_axes3_z*m->rus_w_3_in_axes3_y[i];
     /* (rus-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real rus_c_in_axes3_x = v->inv_rus_v_1_t_2*(rus_N_1_in_axes1_z -
         rus_G_in_axes3_y*v->rus_v_1_in_axes3_y - rus_G_in_axes3_z*v->rus_v_1_in_axes3_z) +
-        rus_B_3_in_axes3_xy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_x*(rus_mu_3_t_2 +
-        rus_mu_3_t_3) - rus_alpha_2_in_axes3_y*rus_h_3_in_spec3_y;
-    const real rus_c_in_axes3_y = rus_alpha_2_in_axes3_x*rus_h_3_in_spec3_y - rus_G_in_axes3_y
-        - rus_B_3_in_axes3_yx*rus_h_3_in_spec3_x - rus_h_3_in_spec3_z*(rus_mu_3_t +
-        rus_mu_3_t_3);
-    const real rus_c_in_axes3_z = rus_B_3_in_axes3_zy*rus_h_3_in_spec3_z +
-        rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2) - rus_G_in_axes3_z -
-        rus_B_3_in_axes3_zx*rus_h_3_in_spec3_x;
+        rus_B_3_in_axes3_xy*m->rus_h_3_in_spec3_z[i] + m->rus_h_3_in_spec3_x[i]*(rus_mu_3_t_2
+        + rus_mu_3_t_3) - rus_alpha_2_in_axes3_y*m->rus_h_3_in_spec3_y[i];
+    const real rus_c_in_axes3_y = rus_alpha_2_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
+        rus_G_in_axes3_y - rus_B_3_in_axes3_yx*m->rus_h_3_in_spec3_x[i] -
+        m->rus_h_3_in_spec3_z[i]*(rus_mu_3_t + rus_mu_3_t_3);
+    const real rus_c_in_axes3_z = rus_B_3_in_axes3_zy*m->rus_h_3_in_spec3_z[i] +
+        m->rus_h_3_in_spec3_y[i]*(rus_mu_3_t + rus_mu_3_t_2) - rus_G_in_axes3_z -
+        rus_B_3_in_axes3_zx*m->rus_h_3_in_spec3_x[i];
     v->axis_x_rus_axes3_x = axis_x_rus_axes3_x;
     v->axis_x_rus_axes3_y = axis_x_rus_axes3_y;
     v->axis_x_rus_axes3_z = axis_x_rus_axes3_z;
@@ -1687,330 +1660,297 @@ INLINE void dynamics_before()
 {
 }
 
-INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, size_t states,
-    size_t count, int add, const real *X, const real *V, real *terms, real *o)
+INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rus v;
-        stage_rus_M_dynamics(m, w, i, j, X, &v);
-        /* (rus-w_1) reciprocal vector 1 */
-        const real rus_w_1_t = v.rus_c_1*v.rus_s_2_t - v.rus_c_2*v.rus_s_1;
-        const real rus_w_1_t_2 = v.rus_c_1*v.rus_c_2 + v.rus_s_1*v.rus_s_2_t;
-        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
-        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
-        const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t +
-            rus_base_frame_xy*rus_w_1_t_2;
-        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
-        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
-        const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t +
-            rus_base_frame_yy*rus_w_1_t_2;
-        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-        const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t +
-            rus_base_frame_zy*rus_w_1_t_2;
-        const real rus_w_1_t_3 = v.rus_c_2*v.rus_e_1_in_axes3_x;
-        const real rus_w_1_t_4 = v.rus_e_1_in_axes3_x*v.rus_s_2_t;
-        const real rus_w_1_t_5 = v.rus_c_1*rus_w_1_t_3 + v.rus_s_1*rus_w_1_t_4;
-        const real rus_w_1_t_6 = v.rus_s_1*rus_w_1_t_3 - v.rus_c_1*rus_w_1_t_4;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_w_1_t_5 +
-            rus_base_frame_xy*rus_w_1_t_6 - v.rus_J_3_t_17*rus_base_frame_xz;
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_w_1_t_5 +
-            rus_base_frame_yy*rus_w_1_t_6 - v.rus_J_3_t_17*rus_base_frame_yz;
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_w_1_t_5 +
-            rus_base_frame_zy*rus_w_1_t_6 - v.rus_J_3_t_17*rus_base_frame_zz;
-        const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
-            axis_y_rus_axes3_z*axis_z_rus_axes3_y;
-        const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
-            axis_y_rus_axes3_x*axis_z_rus_axes3_z;
-        const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
-            axis_y_rus_axes3_y*axis_z_rus_axes3_x;
-        const real rus_w_1_t_7 = axis_x_rus_axes3_x*v.inv_rus_v_1_t_2;
-        const real rus_w_1_t_8 = axis_x_rus_axes3_y*v.inv_rus_v_1_t_2;
-        const real rus_w_1_t_9 = axis_x_rus_axes3_z*v.inv_rus_v_1_t_2;
-        /* (rus-qd_1) rate of joint 1 */
-        const real t_dot_x = V[0*w + j];
-        const real t_dot_y = V[1*w + j];
-        const real t_dot_z = V[2*w + j];
-        const real rus_qd_1_t = v.inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x +
-            axis_x_rus_axes3_y*t_dot_y + axis_x_rus_axes3_z*t_dot_z);
-        /* (rus-qd_3) rate of joint 3 */
-        const real rus_qd_3_t = axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y +
-            axis_y_rus_axes3_z*t_dot_z + rus_qd_1_t*v.rus_v_1_in_axes3_y;
-        const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
-        const real rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y;
-        /* (rus-omega_1) angular velocity of link 1 */
-        const real rus_omega_1_in_axes3_x = -v.rus_e_1_in_axes3_x*rus_qd_1_t;
-        const real rus_omega_1_in_axes3_y = v.rus_J_3_t_17*rus_qd_1_t;
-        /* (rus-omega_2) angular velocity of link 2 */
-        const real rus_omega_2_in_axes2_z = v.rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x +
-            axis_z_rus_axes3_y*t_dot_y + axis_z_rus_axes3_z*t_dot_z +
-            rus_qd_1_t*v.rus_v_1_in_axes3_z) - rus_qd_1_t;
-        const real rus_omega_2_in_axes3_x = v.rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z;
-        const real rus_omega_2_in_axes3_y = -v.rus_J_3_t_17*rus_omega_2_in_axes2_z;
-        /* (rus-W_3) centripetal tensor of link 3 */
-        const real rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3;
-        const real rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3;
-        const real rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
-        /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_bias_t = v.rus_c_2*rus_joint2_offset_x;
-        const real rus_d_2_in_axes3_z = rus_joint2_offset_x*v.rus_s_2_t;
-        const real rus_bias_t_2 = v.rus_J_3_t_17*rus_bias_t*rus_omega_1_in_axes3_y -
-            rus_bias_t*v.rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
-        const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y -
-            rus_bias_t_2*rus_omega_1_in_axes3_y - rus_qd_3*rus_qd_3_t;
-        const real rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
-            rus_bias_t_3*rus_omega_2_in_axes3_x;
-        const real rus_bias_in_axes3_z = rus_W_3_in_axes3_xz*rus_platform_joint_offset_x +
-            rus_omega_2_in_axes3_x*rus_qd_3_t -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
-        /* (rus-qdd_1_o) remainder of: acceleration of joint 1 */
-        const real rus_qdd_1_o = v.inv_rus_v_1_t_2*rus_bias_in_axes3_x;
-        /* (rus-qdd_3_o) remainder of: acceleration of joint 3 */
-        const real rus_qdd_3_o = -rus_w_3_in_axes3_y*(rus_bias_in_axes3_y +
-            rus_qdd_1_o*v.rus_v_1_in_axes3_y);
-        /* (rus-alpha_2_o) remainder of: angular acceleration of link 2 */
-        const real rus_alpha_2_o_in_axes2_z = rus_qdd_1_o -
-            v.rus_w_2_in_axes3_z*(rus_bias_in_axes3_z + rus_qdd_1_o*v.rus_v_1_in_axes3_z);
-        const real rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*v.rus_e_1_in_axes3_x;
-        const real rus_alpha_2_o_in_axes3_y = -v.rus_J_3_t_17*rus_alpha_2_o_in_axes2_z;
-        /* (rus-alpha_3_o) remainder of: angular acceleration of link 3 */
-        const real rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x;
-        const real rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - rus_W_3_in_axes3_xz;
-        /* (rus-B_3_o) remainder of the acceleration tensor of link 3 */
-        const real rus_B_3_o_in_axes3_xy = rus_W_3_in_axes3_xy - rus_qdd_3_o;
-        const real rus_B_3_o_in_axes3_yx = rus_W_3_in_axes3_xy + rus_qdd_3_o;
-        const real rus_B_3_o_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_o_in_axes3_y;
-        const real rus_B_3_o_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_o_in_axes3_x;
-        /* (rus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
-           reference points */
-        const real rus_mu_3_o_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
-        const real rus_mu_3_o_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
-        const real rus_mu_3_o_t_3 = rus_qd_3*rus_qd_3;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real rus_g_in_axes3_x = axis_x_rus_axes3_x*gravity_x + axis_x_rus_axes3_y*gravity_y
-            + axis_x_rus_axes3_z*gravity_z;
-        const real rus_g_in_axes3_y = axis_y_rus_axes3_x*gravity_x + axis_y_rus_axes3_y*gravity_y
-            + axis_y_rus_axes3_z*gravity_z;
-        const real rus_g_in_axes3_z = axis_z_rus_axes3_x*gravity_x + axis_z_rus_axes3_y*gravity_y
-            + axis_z_rus_axes3_z*gravity_z;
-        const real rus_J_3_in_spec3_xy = m->rus_J_3_in_spec3_xy[i];
-        const real rus_J_3_in_spec3_xz = m->rus_J_3_in_spec3_xz[i];
-        const real rus_J_3_in_spec3_yz = m->rus_J_3_in_spec3_yz[i];
-        const real rus_Sigma_3_in_axes3_yy = m->rus_Sigma_3_in_axes3_yy[i];
-        const real rus_Sigma_3_in_axes3_zz = m->rus_Sigma_3_in_axes3_zz[i];
-        const real rus_h_3_in_spec3_y = m->rus_h_3_in_spec3_y[i];
-        const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
-        const real rus_mu_3_o_in_axes3_x = rus_B_3_o_in_axes3_yx*rus_J_3_in_spec3_xy +
-            rus_B_3_o_in_axes3_zx*rus_J_3_in_spec3_xz +
-            rus_B_3_o_in_axes3_zy*rus_Sigma_3_in_axes3_yy +
-            rus_Sigma_3_in_axes3_zz*rus_alpha_2_o_in_axes3_x + rus_g_in_axes3_y*rus_h_3_in_spec3_y
-            + rus_g_in_axes3_z*rus_h_3_in_spec3_z - rus_J_3_in_spec3_yz*(rus_mu_3_o_t_2 -
-            rus_mu_3_o_t_3);
-        const real rus_Sigma_3_in_axes3_xx = m->rus_Sigma_3_in_axes3_xx[i];
-        const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
-        const real rus_mu_3_o_in_axes3_y = rus_B_3_o_in_axes3_xy*rus_J_3_in_spec3_yz +
-            rus_Sigma_3_in_axes3_zz*rus_alpha_2_o_in_axes3_y + rus_g_in_axes3_z*rus_h_3_in_spec3_x
-            - rus_B_3_o_in_axes3_zx*rus_Sigma_3_in_axes3_xx -
-            rus_B_3_o_in_axes3_zy*rus_J_3_in_spec3_xz - rus_J_3_in_spec3_xy*(rus_mu_3_o_t -
-            rus_mu_3_o_t_3) - rus_g_in_axes3_x*rus_h_3_in_spec3_y;
-        const real rus_mu_3_o_in_axes3_z = rus_B_3_o_in_axes3_yx*rus_Sigma_3_in_axes3_xx +
-            rus_J_3_in_spec3_xy*rus_alpha_2_o_in_axes3_x -
-            rus_B_3_o_in_axes3_xy*rus_Sigma_3_in_axes3_yy - rus_J_3_in_spec3_xz*(rus_mu_3_o_t -
-            rus_mu_3_o_t_2) - rus_J_3_in_spec3_yz*rus_alpha_2_o_in_axes3_y -
-            rus_g_in_axes3_x*rus_h_3_in_spec3_z - rus_g_in_axes3_y*rus_h_3_in_spec3_x;
-        const real rus_mu_3_o_in_axes1_z = v.rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x -
-            v.rus_J_3_t_17*rus_mu_3_o_in_axes3_y;
-        /* (rus-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-           reference points */
-        const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
-        const real rus_h_1_in_spec1_x = m->rus_h_1_in_spec1_x[i];
-        const real rus_h_1_in_spec1_y = m->rus_h_1_in_spec1_y[i];
-        const real rus_mu_1_t = m->rus_mu_1_t[i];
-        const real rus_mu_1_t_2 = m->rus_mu_1_t_2[i];
-        const real rus_mu_1_o_in_axes1_z = rus_J_1_in_spec1_zz*rus_qdd_1_o +
-            rus_h_1_in_spec1_y*(v.rus_c_1*rus_mu_1_t + rus_mu_1_t_2*v.rus_s_1) -
-            rus_h_1_in_spec1_x*(v.rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*v.rus_s_1);
-        /* (rus-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
-           connection point left out */
-        const real rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z;
-        /* (rus-G_o) remainder of: force at the connection point that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*v.rus_w_2_in_axes3_z;
-        const real rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*rus_w_3_in_axes3_y;
-        /* (rus-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-           connection point */
-        const real rus_c_o_in_axes3_x = v.inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z -
-            rus_G_o_in_axes3_y*v.rus_v_1_in_axes3_y - rus_G_o_in_axes3_z*v.rus_v_1_in_axes3_z) +
-            rus_B_3_o_in_axes3_xy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_x*(rus_mu_3_o_t_2 +
-            rus_mu_3_o_t_3) - rus_alpha_2_o_in_axes3_y*rus_h_3_in_spec3_y;
-        const real rus_c_o_in_axes3_y = rus_alpha_2_o_in_axes3_x*rus_h_3_in_spec3_y -
-            rus_G_o_in_axes3_y - rus_B_3_o_in_axes3_yx*rus_h_3_in_spec3_x -
-            rus_h_3_in_spec3_z*(rus_mu_3_o_t + rus_mu_3_o_t_3);
-        const real rus_c_o_in_axes3_z = rus_B_3_o_in_axes3_zy*rus_h_3_in_spec3_z +
-            rus_h_3_in_spec3_y*(rus_mu_3_o_t + rus_mu_3_o_t_2) - rus_G_o_in_axes3_z -
-            rus_B_3_o_in_axes3_zx*rus_h_3_in_spec3_x;
-        /* (rus-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rus_d_c_in_axes3_yy = m->rus_d_c_in_axes3_yy[i];
-        const real rus_Q_t = v.rus_d_c_in_axes3_xx - rus_d_c_in_axes3_yy;
-        const real rus_Q_t_2 = R(0.5)*rus_Q_t;
-        const real rus_Q_t_3 = v.rus_d_c_in_axes3_xx +
-            v.rus_d_Gamma_2_in_axes3_z*v.rus_w_2_in_axes3_z + v.rus_d_alpha_3_t*rus_h_3_in_spec3_x
-            - v.rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_z;
-        const real rus_Q_t_4 = R(0.5)*rus_Q_t_3;
-        const real rus_Q_t_5 = axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xy +
-            axis_z_rus_axes3_x*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_x*rus_Q_t_2;
-        const real rus_Q_t_6 = axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xy +
-            axis_z_rus_axes3_y*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_y*rus_Q_t_2;
-        const real rus_Q_t_7 = axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xy +
-            axis_z_rus_axes3_z*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_z*rus_Q_t_2;
-        const real rus_Q_t_8 = axis_z_rus_axes3_x*rus_Q_t_4 -
-            axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xz;
-        const real rus_Q_t_9 = axis_z_rus_axes3_y*rus_Q_t_4 -
-            axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xz;
-        const real rus_Q_t_10 = axis_z_rus_axes3_z*rus_Q_t_4 -
-            axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xz;
-        const real rus_Q_t_11 = axis_y_rus_axes3_x*rus_Q_t_5 - axis_z_rus_axes3_x*rus_Q_t_8;
-        const real rus_Q_xx = -2*rus_Q_t_11 - v.rus_d_c_in_axes3_xx;
-        const real rus_Q_xy = axis_z_rus_axes3_x*rus_Q_t_9 + axis_z_rus_axes3_y*rus_Q_t_8 -
-            axis_y_rus_axes3_x*rus_Q_t_6 - axis_y_rus_axes3_y*rus_Q_t_5;
-        const real rus_Q_xz = axis_z_rus_axes3_x*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_8 -
-            axis_y_rus_axes3_x*rus_Q_t_7 - axis_y_rus_axes3_z*rus_Q_t_5;
-        const real rus_Q_t_12 = axis_y_rus_axes3_y*rus_Q_t_6 - axis_z_rus_axes3_y*rus_Q_t_9;
-        const real rus_Q_yy = -2*rus_Q_t_12 - v.rus_d_c_in_axes3_xx;
-        const real rus_Q_yz = axis_z_rus_axes3_y*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_9 -
-            axis_y_rus_axes3_y*rus_Q_t_7 - axis_y_rus_axes3_z*rus_Q_t_6;
-        const real rus_Q_t_13 = axis_y_rus_axes3_z*rus_Q_t_7 - axis_z_rus_axes3_z*rus_Q_t_10;
-        const real rus_Q_zz = -2*rus_Q_t_13 - v.rus_d_c_in_axes3_xx;
-        /* (rus-U) velocity and gravity terms of the leg force */
-        const real rus_U_x = -axis_x_rus_axes3_x*rus_c_o_in_axes3_x -
-            axis_y_rus_axes3_x*rus_c_o_in_axes3_y - axis_z_rus_axes3_x*rus_c_o_in_axes3_z;
-        const real rus_U_y = -axis_x_rus_axes3_y*rus_c_o_in_axes3_x -
-            axis_y_rus_axes3_y*rus_c_o_in_axes3_y - axis_z_rus_axes3_y*rus_c_o_in_axes3_z;
-        const real rus_U_z = -axis_x_rus_axes3_z*rus_c_o_in_axes3_x -
-            axis_y_rus_axes3_z*rus_c_o_in_axes3_y - axis_z_rus_axes3_z*rus_c_o_in_axes3_z;
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, rus_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, rus_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, rus_Q_xz);  /* M_tt_xz */
-        gather(&terms[3*count + k], add, rus_Q_yy);  /* M_tt_yy_of_legs */
-        gather(&terms[4*count + k], add, rus_Q_yz);  /* M_tt_yz */
-        gather(&terms[5*count + k], add, rus_Q_zz);  /* M_tt_zz_of_legs */
-        /* (Z_t) translational part of Z */
-        gather(&terms[6*count + k], add, rus_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[7*count + k], add, rus_U_y);  /* Z_t_y_of_legs */
-        gather(&terms[8*count + k], add, rus_U_z);  /* Z_t_z_of_legs */
-        /* (rus-w_1) reciprocal vector 1 */
-        o[0*count + k] = -rus_w_1_t_7;
-        o[1*count + k] = -rus_w_1_t_8;
-        o[2*count + k] = -rus_w_1_t_9;
-        o[5*count + k] = rus_w_1_t_7 + (rus_w_1_t_8 + rus_w_1_t_9);
-        const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t_3 = m->rus_size_t_3[i];
-        const real rus_size = m->rus_size[i];
-        o[4*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(v.rus_J_3_t_15) > TOLERANCE*TOLERANCE*rus_size_t_3) +
-            UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(v.rus_v_1_t_2)
-            > TOLERANCE*rus_size);
-        o[3*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
-    }
+    values_rus v;
+    stage_rus_M_dynamics(m, w, i, j, X, &v);
+    /* (rus-w_1) reciprocal vector 1 */
+    const real rus_w_1_t = v.rus_c_1*v.rus_s_2_t - v.rus_c_2*v.rus_s_1;
+    const real rus_w_1_t_2 = v.rus_c_1*v.rus_c_2 + v.rus_s_1*v.rus_s_2_t;
+    const real axis_z_rus_axes3_x = m->rus_base_frame_xx[i]*rus_w_1_t +
+        m->rus_base_frame_xy[i]*rus_w_1_t_2;
+    const real axis_z_rus_axes3_y = m->rus_base_frame_yx[i]*rus_w_1_t +
+        m->rus_base_frame_yy[i]*rus_w_1_t_2;
+    const real axis_z_rus_axes3_z = m->rus_base_frame_zx[i]*rus_w_1_t +
+        m->rus_base_frame_zy[i]*rus_w_1_t_2;
+    const real rus_w_1_t_3 = v.rus_c_2*v.rus_e_1_in_axes3_x;
+    const real rus_w_1_t_4 = v.rus_e_1_in_axes3_x*v.rus_s_2_t;
+    const real rus_w_1_t_5 = v.rus_c_1*rus_w_1_t_3 + v.rus_s_1*rus_w_1_t_4;
+    const real rus_w_1_t_6 = v.rus_s_1*rus_w_1_t_3 - v.rus_c_1*rus_w_1_t_4;
+    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*rus_w_1_t_5 +
+        m->rus_base_frame_xy[i]*rus_w_1_t_6 - v.rus_J_3_t_17*m->rus_base_frame_xz[i];
+    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*rus_w_1_t_5 +
+        m->rus_base_frame_yy[i]*rus_w_1_t_6 - v.rus_J_3_t_17*m->rus_base_frame_yz[i];
+    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*rus_w_1_t_5 +
+        m->rus_base_frame_zy[i]*rus_w_1_t_6 - v.rus_J_3_t_17*m->rus_base_frame_zz[i];
+    const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
+        axis_y_rus_axes3_z*axis_z_rus_axes3_y;
+    const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
+        axis_y_rus_axes3_x*axis_z_rus_axes3_z;
+    const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
+        axis_y_rus_axes3_y*axis_z_rus_axes3_x;
+    const real rus_w_1_t_7 = axis_x_rus_axes3_x*v.inv_rus_v_1_t_2;
+    const real rus_w_1_t_8 = axis_x_rus_axes3_y*v.inv_rus_v_1_t_2;
+    const real rus_w_1_t_9 = axis_x_rus_axes3_z*v.inv_rus_v_1_t_2;
+    /* (rus-qd_1) rate of joint 1 */
+    const real t_dot_x = V[0*w + j];
+    const real t_dot_y = V[1*w + j];
+    const real t_dot_z = V[2*w + j];
+    const real rus_qd_1_t = v.inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x +
+        axis_x_rus_axes3_y*t_dot_y + axis_x_rus_axes3_z*t_dot_z);
+    /* (rus-qd_3) rate of joint 3 */
+    const real rus_qd_3_t = axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y +
+        axis_y_rus_axes3_z*t_dot_z + rus_qd_1_t*v.rus_v_1_in_axes3_y;
+    const real rus_qd_3 = rus_qd_3_t*m->rus_w_3_in_axes3_y[i];
+    /* (rus-omega_1) angular velocity of link 1 */
+    const real rus_omega_1_in_axes3_x = -v.rus_e_1_in_axes3_x*rus_qd_1_t;
+    const real rus_omega_1_in_axes3_y = v.rus_J_3_t_17*rus_qd_1_t;
+    /* (rus-omega_2) angular velocity of link 2 */
+    const real rus_omega_2_in_axes2_z = v.rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x +
+        axis_z_rus_axes3_y*t_dot_y + axis_z_rus_axes3_z*t_dot_z +
+        rus_qd_1_t*v.rus_v_1_in_axes3_z) - rus_qd_1_t;
+    const real rus_omega_2_in_axes3_x = v.rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z;
+    const real rus_omega_2_in_axes3_y = -v.rus_J_3_t_17*rus_omega_2_in_axes2_z;
+    /* (rus-W_3) centripetal tensor of link 3 */
+    const real rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3;
+    const real rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3;
+    const real rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
+    /* (rus-bias) acceleration of the connection point at zero joint accelerations */
+    const real rus_bias_t = v.rus_c_2*m->rus_joint2_offset_x[i];
+    const real rus_d_2_in_axes3_z = m->rus_joint2_offset_x[i]*v.rus_s_2_t;
+    const real rus_bias_t_2 = v.rus_J_3_t_17*rus_bias_t*rus_omega_1_in_axes3_y -
+        rus_bias_t*v.rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
+    const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*m->rus_platform_joint_offset_x[i];
+    const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y -
+        rus_bias_t_2*rus_omega_1_in_axes3_y - rus_qd_3*rus_qd_3_t;
+    const real rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
+        rus_bias_t_3*rus_omega_2_in_axes3_x;
+    const real rus_bias_in_axes3_z = rus_W_3_in_axes3_xz*m->rus_platform_joint_offset_x[i] +
+        rus_omega_2_in_axes3_x*rus_qd_3_t -
+        rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
+        rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
+    /* (rus-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real rus_qdd_1_o = v.inv_rus_v_1_t_2*rus_bias_in_axes3_x;
+    /* (rus-qdd_3_o) remainder of: acceleration of joint 3 */
+    const real rus_qdd_3_o = -m->rus_w_3_in_axes3_y[i]*(rus_bias_in_axes3_y +
+        rus_qdd_1_o*v.rus_v_1_in_axes3_y);
+    /* (rus-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real rus_alpha_2_o_in_axes2_z = rus_qdd_1_o -
+        v.rus_w_2_in_axes3_z*(rus_bias_in_axes3_z + rus_qdd_1_o*v.rus_v_1_in_axes3_z);
+    const real rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*v.rus_e_1_in_axes3_x;
+    const real rus_alpha_2_o_in_axes3_y = -v.rus_J_3_t_17*rus_alpha_2_o_in_axes2_z;
+    /* (rus-alpha_3_o) remainder of: angular acceleration of link 3 */
+    const real rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x;
+    const real rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - rus_W_3_in_axes3_xz;
+    /* (rus-B_3_o) remainder of the acceleration tensor of link 3 */
+    const real rus_B_3_o_in_axes3_xy = rus_W_3_in_axes3_xy - rus_qdd_3_o;
+    const real rus_B_3_o_in_axes3_yx = rus_W_3_in_axes3_xy + rus_qdd_3_o;
+    const real rus_B_3_o_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_o_in_axes3_y;
+    const real rus_B_3_o_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_o_in_axes3_x;
+    /* (rus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+       reference points */
+    const real rus_mu_3_o_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
+    const real rus_mu_3_o_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
+    const real rus_mu_3_o_t_3 = rus_qd_3*rus_qd_3;
+    const real rus_g_in_axes3_x = axis_x_rus_axes3_x*m->gravity_x +
+        axis_x_rus_axes3_y*m->gravity_y + axis_x_rus_axes3_z*m->gravity_z;
+    const real rus_g_in_axes3_y = axis_y_rus_axes3_x*m->gravity_x +
+        axis_y_rus_axes3_y*m->gravity_y + axis_y_rus_axes3_z*m->gravity_z;
+    const real rus_g_in_axes3_z = axis_z_rus_axes3_x*m->gravity_x +
+        axis_z_rus_axes3_y*m->gravity_y + axis_z_rus_axes3_z*m->gravity_z;
+    const real rus_mu_3_o_in_axes3_x = rus_B_3_o_in_axes3_yx*m->rus_J_3_in_spec3_xy[i] +
+        rus_B_3_o_in_axes3_zx*m->rus_J_3_in_spec3_xz[i] +
+        rus_B_3_o_in_axes3_zy*m->rus_Sigma_3_in_axes3_yy[i] +
+        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_x +
+        rus_g_in_axes3_y*m->rus_h_3_in_spec3_y[i] + rus_g_in_axes3_z*m->rus_h_3_in_spec3_z[i]
+        - m->rus_J_3_in_spec3_yz[i]*(rus_mu_3_o_t_2 - rus_mu_3_o_t_3);
+    const real rus_mu_3_o_in_axes3_y = rus_B_3_o_in_axes3_xy*m->rus_J_3_in_spec3_yz[i] +
+        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_y +
+        rus_g_in_axes3_z*m->rus_h_3_in_spec3_x[i] -
+        rus_B_3_o_in_axes3_zx*m->rus_Sigma_3_in_axes3_xx[i] -
+        rus_B_3_o_in_axes3_zy*m->rus_J_3_in_spec3_xz[i] -
+        m->rus_J_3_in_spec3_xy[i]*(rus_mu_3_o_t - rus_mu_3_o_t_3) -
+        rus_g_in_axes3_x*m->rus_h_3_in_spec3_y[i];
+    const real rus_mu_3_o_in_axes3_z = rus_B_3_o_in_axes3_yx*m->rus_Sigma_3_in_axes3_xx[i] +
+        m->rus_J_3_in_spec3_xy[i]*rus_alpha_2_o_in_axes3_x -
+        rus_B_3_o_in_axes3_xy*m->rus_Sigma_3_in_axes3_yy[i] -
+        m->rus_J_3_in_spec3_xz[i]*(rus_mu_3_o_t - rus_mu_3_o_t_2) -
+        m->rus_J_3_in_spec3_yz[i]*rus_alpha_2_o_in_axes3_y -
+        rus_g_in_axes3_x*m->rus_h_3_in_spec3_z[i] - rus_g_in_axes3_y*m->rus_h_3_in_spec3_x[i];
+    const real rus_mu_3_o_in_axes1_z = v.rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x -
+        v.rus_J_3_t_17*rus_mu_3_o_in_axes3_y;
+    /* (rus-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
+    const real rus_mu_1_o_in_axes1_z = m->rus_J_1_in_spec1_zz[i]*rus_qdd_1_o +
+        m->rus_h_1_in_spec1_y[i]*(v.rus_c_1*m->rus_mu_1_t[i] + m->rus_mu_1_t_2[i]*v.rus_s_1) -
+        m->rus_h_1_in_spec1_x[i]*(v.rus_c_1*m->rus_mu_1_t_2[i] - m->rus_mu_1_t[i]*v.rus_s_1);
+    /* (rus-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+       connection point left out */
+    const real rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z;
+    /* (rus-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*v.rus_w_2_in_axes3_z;
+    const real rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*m->rus_w_3_in_axes3_y[i];
+    /* (rus-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
+    const real rus_c_o_in_axes3_x = v.inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z -
+        rus_G_o_in_axes3_y*v.rus_v_1_in_axes3_y - rus_G_o_in_axes3_z*v.rus_v_1_in_axes3_z) +
+        rus_B_3_o_in_axes3_xy*m->rus_h_3_in_spec3_z[i] +
+        m->rus_h_3_in_spec3_x[i]*(rus_mu_3_o_t_2 + rus_mu_3_o_t_3) -
+        rus_alpha_2_o_in_axes3_y*m->rus_h_3_in_spec3_y[i];
+    const real rus_c_o_in_axes3_y = rus_alpha_2_o_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
+        rus_G_o_in_axes3_y - rus_B_3_o_in_axes3_yx*m->rus_h_3_in_spec3_x[i] -
+        m->rus_h_3_in_spec3_z[i]*(rus_mu_3_o_t + rus_mu_3_o_t_3);
+    const real rus_c_o_in_axes3_z = rus_B_3_o_in_axes3_zy*m->rus_h_3_in_spec3_z[i] +
+        m->rus_h_3_in_spec3_y[i]*(rus_mu_3_o_t + rus_mu_3_o_t_2) - rus_G_o_in_axes3_z -
+        rus_B_3_o_in_axes3_zx*m->rus_h_3_in_spec3_x[i];
+    /* (rus-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rus_Q_t = v.rus_d_c_in_axes3_xx - m->rus_d_c_in_axes3_yy[i];
+    const real rus_Q_t_2 = R(0.5)*rus_Q_t;
+    const real rus_Q_t_3 = v.rus_d_c_in_axes3_xx +
+        v.rus_d_Gamma_2_in_axes3_z*v.rus_w_2_in_axes3_z +
+        v.rus_d_alpha_3_t*m->rus_h_3_in_spec3_x[i] -
+        v.rus_d_alpha_3_in_axes3_xz*m->rus_h_3_in_spec3_z[i];
+    const real rus_Q_t_4 = R(0.5)*rus_Q_t_3;
+    const real rus_Q_t_5 = axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xy +
+        axis_z_rus_axes3_x*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_x*rus_Q_t_2;
+    const real rus_Q_t_6 = axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xy +
+        axis_z_rus_axes3_y*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_y*rus_Q_t_2;
+    const real rus_Q_t_7 = axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xy +
+        axis_z_rus_axes3_z*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_z*rus_Q_t_2;
+    const real rus_Q_t_8 = axis_z_rus_axes3_x*rus_Q_t_4 -
+        axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xz;
+    const real rus_Q_t_9 = axis_z_rus_axes3_y*rus_Q_t_4 -
+        axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xz;
+    const real rus_Q_t_10 = axis_z_rus_axes3_z*rus_Q_t_4 -
+        axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xz;
+    const real rus_Q_t_11 = axis_y_rus_axes3_x*rus_Q_t_5 - axis_z_rus_axes3_x*rus_Q_t_8;
+    const real rus_Q_xx = -2*rus_Q_t_11 - v.rus_d_c_in_axes3_xx;
+    const real rus_Q_xy = axis_z_rus_axes3_x*rus_Q_t_9 + axis_z_rus_axes3_y*rus_Q_t_8 -
+        axis_y_rus_axes3_x*rus_Q_t_6 - axis_y_rus_axes3_y*rus_Q_t_5;
+    const real rus_Q_xz = axis_z_rus_axes3_x*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_8 -
+        axis_y_rus_axes3_x*rus_Q_t_7 - axis_y_rus_axes3_z*rus_Q_t_5;
+    const real rus_Q_t_12 = axis_y_rus_axes3_y*rus_Q_t_6 - axis_z_rus_axes3_y*rus_Q_t_9;
+    const real rus_Q_yy = -2*rus_Q_t_12 - v.rus_d_c_in_axes3_xx;
+    const real rus_Q_yz = axis_z_rus_axes3_y*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_9 -
+        axis_y_rus_axes3_y*rus_Q_t_7 - axis_y_rus_axes3_z*rus_Q_t_6;
+    const real rus_Q_t_13 = axis_y_rus_axes3_z*rus_Q_t_7 - axis_z_rus_axes3_z*rus_Q_t_10;
+    const real rus_Q_zz = -2*rus_Q_t_13 - v.rus_d_c_in_axes3_xx;
+    /* (rus-U) velocity and gravity terms of the leg force */
+    const real rus_U_x = -axis_x_rus_axes3_x*rus_c_o_in_axes3_x -
+        axis_y_rus_axes3_x*rus_c_o_in_axes3_y - axis_z_rus_axes3_x*rus_c_o_in_axes3_z;
+    const real rus_U_y = -axis_x_rus_axes3_y*rus_c_o_in_axes3_x -
+        axis_y_rus_axes3_y*rus_c_o_in_axes3_y - axis_z_rus_axes3_y*rus_c_o_in_axes3_z;
+    const real rus_U_z = -axis_x_rus_axes3_z*rus_c_o_in_axes3_x -
+        axis_y_rus_axes3_z*rus_c_o_in_axes3_y - axis_z_rus_axes3_z*rus_c_o_in_axes3_z;
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, rus_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, rus_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, rus_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, rus_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, rus_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, rus_Q_zz);  /* M_tt_zz_of_legs */
+    /* (Z_t) translational part of Z */
+    gather(&terms[6*count + k], add, rus_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[7*count + k], add, rus_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[8*count + k], add, rus_U_z);  /* Z_t_z_of_legs */
+    /* (rus-w_1) */
+    o[0*count + k] = -rus_w_1_t_7;
+    o[1*count + k] = -rus_w_1_t_8;
+    o[2*count + k] = -rus_w_1_t_9;
+    o[5*count + k] = rus_w_1_t_7 + (rus_w_1_t_8 + rus_w_1_t_9);
+    o[4*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
+        TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
+        TOLERANCE*m->rus_size[i]);
+    o[3*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
-INLINE void dynamics_place_rus(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *H, verdict *t)
+INLINE void dynamics_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count, const real
+    *o, real *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        t->unreachable[k] += o[3*count + first + k];
-        t->singular[k] += o[4*count + first + k];
-        t->total[k] += o[5*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    t->unreachable[k] += o[3*count + at];
+    t->singular[k] += o[4*count + at];
+    t->total[k] += o[5*count + at];
 }
 
-INLINE void dynamics_after(const prepared *m, size_t w, const real *sums, real *M, real *Z,
-    verdict *t)
+INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, real
+    *Z, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (M_tt) translational block of M */
-        const real M_tt_xx_of_legs = sums[0*w + k];
-        const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_xx_of_legs + m_star;
-        const real M_tt_yy_of_legs = sums[3*w + k];
-        const real M_tt_yy = M_tt_yy_of_legs + m_star;
-        const real M_tt_zz_of_legs = sums[5*w + k];
-        const real M_tt_zz = M_tt_zz_of_legs + m_star;
-        /* (Z_t) translational part of Z */
-        const real Z_p_x = m->Z_p_x;
-        const real Z_t_x_of_legs = sums[6*w + k];
-        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = m->Z_p_y;
-        const real Z_t_y_of_legs = sums[7*w + k];
-        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = m->Z_p_z;
-        const real Z_t_z_of_legs = sums[8*w + k];
-        const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-        /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        const real M_tt_xy = sums[1*w + k];
-        M[1*w + k] = M_tt_xy;
-        M[NV*w + k] = M_tt_xy;
-        const real M_tt_xz = sums[2*w + k];
-        M[2*w + k] = M_tt_xz;
-        M[2*NV*w + k] = M_tt_xz;
-        M[(NV + 1)*w + k] = M_tt_yy;
-        const real M_tt_yz = sums[4*w + k];
-        M[(NV + 2)*w + k] = M_tt_yz;
-        M[(2*NV + 1)*w + k] = M_tt_yz;
-        M[(2*NV + 2)*w + k] = M_tt_zz;
-        /* (Z_t) translational part of Z */
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-        Z[2*w + k] = Z_t_z;
-        t->total[k] += ((M_tt_xx + M_tt_xy) + (M_tt_xz + M_tt_yy)) + ((M_tt_yz + M_tt_zz) + (Z_t_x
-            + (Z_t_y + Z_t_z)));
-    }
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    /* (Z_t) */
+    const real Z_t_x_of_legs = sums[6*w + k];
+    const real Z_t_x = m->Z_p_x + Z_t_x_of_legs;
+    const real Z_t_y_of_legs = sums[7*w + k];
+    const real Z_t_y = m->Z_p_y + Z_t_y_of_legs;
+    const real Z_t_z_of_legs = sums[8*w + k];
+    const real Z_t_z = m->Z_p_z + Z_t_z_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    const real M_tt_xz = sums[2*w + k];
+    M[2*w + k] = M_tt_xz;
+    M[2*NV*w + k] = M_tt_xz;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_yz = sums[4*w + k];
+    M[(NV + 2)*w + k] = M_tt_yz;
+    M[(2*NV + 1)*w + k] = M_tt_yz;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    t->total[k] += ((M_tt_xx + M_tt_xy) + (M_tt_xz + M_tt_yy)) + ((M_tt_yz + M_tt_zz) + (Z_t_x
+        + (Z_t_y + Z_t_z)));
 }
 
-INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
+APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, verdict *t)
 {
     real sums[9] = {0};
     real terms_rus[9*LEGS(LEGS_OF_rus)] = {0}, o_rus[6*LEGS(LEGS_OF_rus)] = {0};
-    dynamics_before();
-    dynamics_legs_rus(m, 1, 0, 1, 0, LEGS(LEGS_OF_rus), 0, X, V, terms_rus, o_rus);
-    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        dynamics_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, H, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
+        dynamics_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, X, V, terms_rus, o_rus);
+    }
+    for (size_t i = 0; i < LEGS_OF_rus; ++i) {
+        dynamics_place_rus(1, i, 0, i, LEGS(LEGS_OF_rus), o_rus, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
-    dynamics_after(m, 1, sums, M, Z, t);
+    dynamics_after(m, 1, 0, sums, M, Z, t);
 }
 
-INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
-    real *H, verdict *t)
+APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
+    real *restrict Z, real *restrict H, verdict *restrict t)
 {
     real sums[9*LANES];
     real o_rus[6*LANES];
-    dynamics_before();
     clear(sums, 9*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        dynamics_legs_rus(m, LANES, leg, 0, 1, LANES, 1, X, V, sums, o_rus);
-        dynamics_place_rus(LANES, LANES, o_rus, leg, 0, H, t);
+    for (size_t i = 0; i < LEGS_OF_rus; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_legs_rus(m, LANES, i, k, k, LANES, 1, X, V, sums, o_rus);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_place_rus(LANES, i, k, k, LANES, o_rus, H, t);
+        }
     }
-    dynamics_after(m, LANES, sums, M, Z, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        dynamics_after(m, LANES, k, sums, M, Z, t);
+    }
 }
 
 /* ---- M ---- */
@@ -2018,158 +1958,145 @@ INLINE void M_before()
 {
 }
 
-INLINE void M_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, size_t states, size_t
-    count, int add, const real *X, real *terms, real *o)
+INLINE void M_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rus v;
-        stage_rus_M_dynamics(m, w, i, j, X, &v);
-        /* (rus-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rus_Q_t = v.rus_c_1*v.rus_s_2_t - v.rus_c_2*v.rus_s_1;
-        const real rus_Q_t_2 = v.rus_c_1*v.rus_c_2 + v.rus_s_1*v.rus_s_2_t;
-        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
-        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
-        const real axis_z_rus_axes3_x = rus_Q_t*rus_base_frame_xx + rus_Q_t_2*rus_base_frame_xy;
-        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
-        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
-        const real axis_z_rus_axes3_y = rus_Q_t*rus_base_frame_yx + rus_Q_t_2*rus_base_frame_yy;
-        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-        const real axis_z_rus_axes3_z = rus_Q_t*rus_base_frame_zx + rus_Q_t_2*rus_base_frame_zy;
-        const real rus_Q_t_3 = v.rus_c_2*v.rus_e_1_in_axes3_x;
-        const real rus_Q_t_4 = v.rus_e_1_in_axes3_x*v.rus_s_2_t;
-        const real rus_Q_t_5 = rus_Q_t_3*v.rus_c_1 + rus_Q_t_4*v.rus_s_1;
-        const real rus_Q_t_6 = rus_Q_t_3*v.rus_s_1 - rus_Q_t_4*v.rus_c_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real axis_y_rus_axes3_x = rus_Q_t_5*rus_base_frame_xx + rus_Q_t_6*rus_base_frame_xy
-            - v.rus_J_3_t_17*rus_base_frame_xz;
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real axis_y_rus_axes3_y = rus_Q_t_5*rus_base_frame_yx + rus_Q_t_6*rus_base_frame_yy
-            - v.rus_J_3_t_17*rus_base_frame_yz;
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real axis_y_rus_axes3_z = rus_Q_t_5*rus_base_frame_zx + rus_Q_t_6*rus_base_frame_zy
-            - v.rus_J_3_t_17*rus_base_frame_zz;
-        const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
-            axis_y_rus_axes3_z*axis_z_rus_axes3_y;
-        const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
-            axis_y_rus_axes3_x*axis_z_rus_axes3_z;
-        const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
-            axis_y_rus_axes3_y*axis_z_rus_axes3_x;
-        const real rus_d_c_in_axes3_yy = m->rus_d_c_in_axes3_yy[i];
-        const real rus_Q_t_7 = v.rus_d_c_in_axes3_xx - rus_d_c_in_axes3_yy;
-        const real rus_Q_t_8 = R(0.5)*rus_Q_t_7;
-        const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
-        const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
-        const real rus_Q_t_9 = v.rus_d_c_in_axes3_xx +
-            v.rus_d_Gamma_2_in_axes3_z*v.rus_w_2_in_axes3_z + v.rus_d_alpha_3_t*rus_h_3_in_spec3_x
-            - v.rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_z;
-        const real rus_Q_t_10 = R(0.5)*rus_Q_t_9;
-        const real rus_Q_t_11 = axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xy +
-            axis_z_rus_axes3_x*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_x*rus_Q_t_8;
-        const real rus_Q_t_12 = axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xy +
-            axis_z_rus_axes3_y*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_y*rus_Q_t_8;
-        const real rus_Q_t_13 = axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xy +
-            axis_z_rus_axes3_z*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_z*rus_Q_t_8;
-        const real rus_Q_t_14 = axis_z_rus_axes3_x*rus_Q_t_10 -
-            axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xz;
-        const real rus_Q_t_15 = axis_z_rus_axes3_y*rus_Q_t_10 -
-            axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xz;
-        const real rus_Q_t_16 = axis_z_rus_axes3_z*rus_Q_t_10 -
-            axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xz;
-        const real rus_Q_t_17 = axis_y_rus_axes3_x*rus_Q_t_11 - axis_z_rus_axes3_x*rus_Q_t_14;
-        const real rus_Q_xx = -2*rus_Q_t_17 - v.rus_d_c_in_axes3_xx;
-        const real rus_Q_xy = axis_z_rus_axes3_x*rus_Q_t_15 + axis_z_rus_axes3_y*rus_Q_t_14 -
-            axis_y_rus_axes3_x*rus_Q_t_12 - axis_y_rus_axes3_y*rus_Q_t_11;
-        const real rus_Q_xz = axis_z_rus_axes3_x*rus_Q_t_16 + axis_z_rus_axes3_z*rus_Q_t_14 -
-            axis_y_rus_axes3_x*rus_Q_t_13 - axis_y_rus_axes3_z*rus_Q_t_11;
-        const real rus_Q_t_18 = axis_y_rus_axes3_y*rus_Q_t_12 - axis_z_rus_axes3_y*rus_Q_t_15;
-        const real rus_Q_yy = -2*rus_Q_t_18 - v.rus_d_c_in_axes3_xx;
-        const real rus_Q_yz = axis_z_rus_axes3_y*rus_Q_t_16 + axis_z_rus_axes3_z*rus_Q_t_15 -
-            axis_y_rus_axes3_y*rus_Q_t_13 - axis_y_rus_axes3_z*rus_Q_t_12;
-        const real rus_Q_t_19 = axis_y_rus_axes3_z*rus_Q_t_13 - axis_z_rus_axes3_z*rus_Q_t_16;
-        const real rus_Q_zz = -2*rus_Q_t_19 - v.rus_d_c_in_axes3_xx;
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, rus_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, rus_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, rus_Q_xz);  /* M_tt_xz */
-        gather(&terms[3*count + k], add, rus_Q_yy);  /* M_tt_yy_of_legs */
-        gather(&terms[4*count + k], add, rus_Q_yz);  /* M_tt_yz */
-        gather(&terms[5*count + k], add, rus_Q_zz);  /* M_tt_zz_of_legs */
-        const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t_3 = m->rus_size_t_3[i];
-        const real rus_size = m->rus_size[i];
-        o[1*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(v.rus_J_3_t_15) > TOLERANCE*TOLERANCE*rus_size_t_3) +
-            UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(v.rus_v_1_t_2)
-            > TOLERANCE*rus_size);
-        o[0*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
-    }
+    values_rus v;
+    stage_rus_M_dynamics(m, w, i, j, X, &v);
+    /* (rus-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rus_Q_t = v.rus_c_1*v.rus_s_2_t - v.rus_c_2*v.rus_s_1;
+    const real rus_Q_t_2 = v.rus_c_1*v.rus_c_2 + v.rus_s_1*v.rus_s_2_t;
+    const real axis_z_rus_axes3_x = rus_Q_t*m->rus_base_frame_xx[i] +
+        rus_Q_t_2*m->rus_base_frame_xy[i];
+    const real axis_z_rus_axes3_y = rus_Q_t*m->rus_base_frame_yx[i] +
+        rus_Q_t_2*m->rus_base_frame_yy[i];
+    const real axis_z_rus_axes3_z = rus_Q_t*m->rus_base_frame_zx[i] +
+        rus_Q_t_2*m->rus_base_frame_zy[i];
+    const real rus_Q_t_3 = v.rus_c_2*v.rus_e_1_in_axes3_x;
+    const real rus_Q_t_4 = v.rus_e_1_in_axes3_x*v.rus_s_2_t;
+    const real rus_Q_t_5 = rus_Q_t_3*v.rus_c_1 + rus_Q_t_4*v.rus_s_1;
+    const real rus_Q_t_6 = rus_Q_t_3*v.rus_s_1 - rus_Q_t_4*v.rus_c_1;
+    const real axis_y_rus_axes3_x = rus_Q_t_5*m->rus_base_frame_xx[i] +
+        rus_Q_t_6*m->rus_base_frame_xy[i] - v.rus_J_3_t_17*m->rus_base_frame_xz[i];
+    const real axis_y_rus_axes3_y = rus_Q_t_5*m->rus_base_frame_yx[i] +
+        rus_Q_t_6*m->rus_base_frame_yy[i] - v.rus_J_3_t_17*m->rus_base_frame_yz[i];
+    const real axis_y_rus_axes3_z = rus_Q_t_5*m->rus_base_frame_zx[i] +
+        rus_Q_t_6*m->rus_base_frame_zy[i] - v.rus_J_3_t_17*m->rus_base_frame_zz[i];
+    const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
+        axis_y_rus_axes3_z*axis_z_rus_axes3_y;
+    const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
+        axis_y_rus_axes3_x*axis_z_rus_axes3_z;
+    const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
+        axis_y_rus_axes3_y*axis_z_rus_axes3_x;
+    const real rus_Q_t_7 = v.rus_d_c_in_axes3_xx - m->rus_d_c_in_axes3_yy[i];
+    const real rus_Q_t_8 = R(0.5)*rus_Q_t_7;
+    const real rus_Q_t_9 = v.rus_d_c_in_axes3_xx +
+        v.rus_d_Gamma_2_in_axes3_z*v.rus_w_2_in_axes3_z +
+        v.rus_d_alpha_3_t*m->rus_h_3_in_spec3_x[i] -
+        v.rus_d_alpha_3_in_axes3_xz*m->rus_h_3_in_spec3_z[i];
+    const real rus_Q_t_10 = R(0.5)*rus_Q_t_9;
+    const real rus_Q_t_11 = axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xy +
+        axis_z_rus_axes3_x*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_x*rus_Q_t_8;
+    const real rus_Q_t_12 = axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xy +
+        axis_z_rus_axes3_y*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_y*rus_Q_t_8;
+    const real rus_Q_t_13 = axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xy +
+        axis_z_rus_axes3_z*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_z*rus_Q_t_8;
+    const real rus_Q_t_14 = axis_z_rus_axes3_x*rus_Q_t_10 -
+        axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xz;
+    const real rus_Q_t_15 = axis_z_rus_axes3_y*rus_Q_t_10 -
+        axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xz;
+    const real rus_Q_t_16 = axis_z_rus_axes3_z*rus_Q_t_10 -
+        axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xz;
+    const real rus_Q_t_17 = axis_y_rus_axes3_x*rus_Q_t_11 - axis_z_rus_axes3_x*rus_Q_t_14;
+    const real rus_Q_xx = -2*rus_Q_t_17 - v.rus_d_c_in_axes3_xx;
+    const real rus_Q_xy = axis_z_rus_axes3_x*rus_Q_t_15 + axis_z_rus_axes3_y*rus_Q_t_14 -
+        axis_y_rus_axes3_x*rus_Q_t_12 - axis_y_rus_axes3_y*rus_Q_t_11;
+    const real rus_Q_xz = axis_z_rus_axes3_x*rus_Q_t_16 + axis_z_rus_axes3_z*rus_Q_t_14 -
+        axis_y_rus_axes3_x*rus_Q_t_13 - axis_y_rus_axes3_z*rus_Q_t_11;
+    const real rus_Q_t_18 = axis_y_rus_axes3_y*rus_Q_t_12 - axis_z_rus_axes3_y*rus_Q_t_15;
+    const real rus_Q_yy = -2*rus_Q_t_18 - v.rus_d_c_in_axes3_xx;
+    const real rus_Q_yz = axis_z_rus_axes3_y*rus_Q_t_16 + axis_z_rus_axes3_z*rus_Q_t_15 -
+        axis_y_rus_axes3_y*rus_Q_t_13 - axis_y_rus_axes3_z*rus_Q_t_12;
+    const real rus_Q_t_19 = axis_y_rus_axes3_z*rus_Q_t_13 - axis_z_rus_axes3_z*rus_Q_t_16;
+    const real rus_Q_zz = -2*rus_Q_t_19 - v.rus_d_c_in_axes3_xx;
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, rus_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, rus_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, rus_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, rus_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, rus_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, rus_Q_zz);  /* M_tt_zz_of_legs */
+    o[1*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
+        TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
+        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_r_1_t) >
+        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t_2) >
+        TOLERANCE*m->rus_size[i]);
+    o[0*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
-INLINE void M_place_rus(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void M_place_rus(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o[0*count + first + k];
-        t->singular[k] += o[1*count + first + k];
-    }
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
 }
 
-INLINE void M_after(const prepared *m, size_t w, const real *sums, real *M, verdict *t)
+INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (M_tt) translational block of M */
-        const real M_tt_xx_of_legs = sums[0*w + k];
-        const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_xx_of_legs + m_star;
-        const real M_tt_yy_of_legs = sums[3*w + k];
-        const real M_tt_yy = M_tt_yy_of_legs + m_star;
-        const real M_tt_zz_of_legs = sums[5*w + k];
-        const real M_tt_zz = M_tt_zz_of_legs + m_star;
-        /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        const real M_tt_xy = sums[1*w + k];
-        M[1*w + k] = M_tt_xy;
-        M[NV*w + k] = M_tt_xy;
-        const real M_tt_xz = sums[2*w + k];
-        M[2*w + k] = M_tt_xz;
-        M[2*NV*w + k] = M_tt_xz;
-        M[(NV + 1)*w + k] = M_tt_yy;
-        const real M_tt_yz = sums[4*w + k];
-        M[(NV + 2)*w + k] = M_tt_yz;
-        M[(2*NV + 1)*w + k] = M_tt_yz;
-        M[(2*NV + 2)*w + k] = M_tt_zz;
-        t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz));
-    }
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    const real M_tt_xz = sums[2*w + k];
+    M[2*w + k] = M_tt_xz;
+    M[2*NV*w + k] = M_tt_xz;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_yz = sums[4*w + k];
+    M[(NV + 2)*w + k] = M_tt_yz;
+    M[(2*NV + 1)*w + k] = M_tt_yz;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz));
 }
 
-INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
+APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
     real sums[6] = {0};
     real terms_rus[6*LEGS(LEGS_OF_rus)] = {0}, o_rus[2*LEGS(LEGS_OF_rus)] = {0};
-    M_before();
-    M_legs_rus(m, 1, 0, 1, 0, LEGS(LEGS_OF_rus), 0, X, terms_rus, o_rus);
-    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        M_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
+        M_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, X, terms_rus, o_rus);
+    }
+    for (size_t i = 0; i < LEGS_OF_rus; ++i) {
+        M_place_rus(0, i, LEGS(LEGS_OF_rus), o_rus, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
-    M_after(m, 1, sums, M, t);
+    M_after(m, 1, 0, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
+INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verdict *restrict t)
 {
     real sums[6*LANES];
     real o_rus[2*LANES];
-    M_before();
     clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        M_legs_rus(m, LANES, leg, 0, 1, LANES, 1, X, sums, o_rus);
-        M_place_rus(LANES, LANES, o_rus, 0, t);
+    for (size_t i = 0; i < LEGS_OF_rus; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            M_legs_rus(m, LANES, i, k, k, LANES, 1, X, sums, o_rus);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            M_place_rus(k, k, LANES, o_rus, t);
+        }
     }
-    M_after(m, LANES, sums, M, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        M_after(m, LANES, k, sums, M, t);
+    }
 }
 
 /* ---- Z ---- */
@@ -2177,243 +2104,212 @@ INLINE void Z_before()
 {
 }
 
-INLINE void Z_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, size_t states, size_t
-    count, int add, const real *X, const real *V, real *terms, real *o)
+INLINE void Z_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rus v;
-        stage_rus_X(m, w, i, j, X, &v);
-        /* (rus-qd_1) rate of joint 1 */
-        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
-        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
-        const real axis_z_rus_axes3_x = rus_base_frame_xx*v.rus_qd_1_t +
-            rus_base_frame_xy*v.rus_qd_1_t_2;
-        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
-        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
-        const real axis_z_rus_axes3_y = rus_base_frame_yx*v.rus_qd_1_t +
-            rus_base_frame_yy*v.rus_qd_1_t_2;
-        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-        const real axis_z_rus_axes3_z = rus_base_frame_zx*v.rus_qd_1_t +
-            rus_base_frame_zy*v.rus_qd_1_t_2;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real axis_y_rus_axes3_x = rus_base_frame_xx*v.rus_qd_1_t_5 +
-            rus_base_frame_xy*v.rus_qd_1_t_6 - rus_base_frame_xz*v.rus_c_3;
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real axis_y_rus_axes3_y = rus_base_frame_yx*v.rus_qd_1_t_5 +
-            rus_base_frame_yy*v.rus_qd_1_t_6 - rus_base_frame_yz*v.rus_c_3;
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real axis_y_rus_axes3_z = rus_base_frame_zx*v.rus_qd_1_t_5 +
-            rus_base_frame_zy*v.rus_qd_1_t_6 - rus_base_frame_zz*v.rus_c_3;
-        const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
-            axis_y_rus_axes3_z*axis_z_rus_axes3_y;
-        const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
-            axis_y_rus_axes3_x*axis_z_rus_axes3_z;
-        const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
-            axis_y_rus_axes3_y*axis_z_rus_axes3_x;
-        const real t_dot_x = V[0*w + j];
-        const real t_dot_y = V[1*w + j];
-        const real t_dot_z = V[2*w + j];
-        const real rus_qd_1_t_7 = v.inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x +
-            axis_x_rus_axes3_y*t_dot_y + axis_x_rus_axes3_z*t_dot_z);
-        /* (rus-qd_3) rate of joint 3 */
-        const real rus_qd_3_t = axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y +
-            axis_y_rus_axes3_z*t_dot_z + rus_qd_1_t_7*v.rus_v_1_in_axes3_y;
-        const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
-        const real rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y;
-        /* (rus-omega_1) angular velocity of link 1 */
-        const real rus_omega_1_in_axes3_x = -v.rus_e_1_in_axes3_x*rus_qd_1_t_7;
-        const real rus_omega_1_in_axes3_y = v.rus_c_3*rus_qd_1_t_7;
-        /* (rus-omega_2) angular velocity of link 2 */
-        const real rus_omega_2_in_axes2_z = v.rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x +
-            axis_z_rus_axes3_y*t_dot_y + axis_z_rus_axes3_z*t_dot_z +
-            rus_qd_1_t_7*v.rus_v_1_in_axes3_z) - rus_qd_1_t_7;
-        const real rus_omega_2_in_axes3_x = v.rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z;
-        const real rus_omega_2_in_axes3_y = -v.rus_c_3*rus_omega_2_in_axes2_z;
-        /* (rus-W_3) centripetal tensor of link 3 */
-        const real rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3;
-        const real rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3;
-        const real rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
-        /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-        const real rus_bias_t_2 = v.rus_bias_t*v.rus_c_3*rus_omega_1_in_axes3_y -
-            v.rus_bias_t*v.rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
-        const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y -
-            rus_bias_t_2*rus_omega_1_in_axes3_y - rus_qd_3*rus_qd_3_t;
-        const real rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
-            rus_bias_t_3*rus_omega_2_in_axes3_x;
-        const real rus_bias_in_axes3_z = rus_W_3_in_axes3_xz*rus_platform_joint_offset_x +
-            rus_omega_2_in_axes3_x*rus_qd_3_t -
-            v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-            v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
-        /* (rus-qdd_1_o) remainder of: acceleration of joint 1 */
-        const real rus_qdd_1_o = v.inv_rus_v_1_t_2*rus_bias_in_axes3_x;
-        /* (rus-qdd_3_o) remainder of: acceleration of joint 3 */
-        const real rus_qdd_3_o = -rus_w_3_in_axes3_y*(rus_bias_in_axes3_y +
-            rus_qdd_1_o*v.rus_v_1_in_axes3_y);
-        /* (rus-alpha_2_o) remainder of: angular acceleration of link 2 */
-        const real rus_alpha_2_o_in_axes2_z = rus_qdd_1_o -
-            v.rus_w_2_in_axes3_z*(rus_bias_in_axes3_z + rus_qdd_1_o*v.rus_v_1_in_axes3_z);
-        const real rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*v.rus_e_1_in_axes3_x;
-        const real rus_alpha_2_o_in_axes3_y = -rus_alpha_2_o_in_axes2_z*v.rus_c_3;
-        /* (rus-alpha_3_o) remainder of: angular acceleration of link 3 */
-        const real rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x;
-        const real rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - rus_W_3_in_axes3_xz;
-        /* (rus-B_3_o) remainder of the acceleration tensor of link 3 */
-        const real rus_B_3_o_in_axes3_xy = rus_W_3_in_axes3_xy - rus_qdd_3_o;
-        const real rus_B_3_o_in_axes3_yx = rus_W_3_in_axes3_xy + rus_qdd_3_o;
-        const real rus_B_3_o_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_o_in_axes3_y;
-        const real rus_B_3_o_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_o_in_axes3_x;
-        /* (rus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
-           reference points */
-        const real rus_mu_3_o_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
-        const real rus_mu_3_o_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
-        const real rus_mu_3_o_t_3 = rus_qd_3*rus_qd_3;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real rus_g_in_axes3_x = axis_x_rus_axes3_x*gravity_x + axis_x_rus_axes3_y*gravity_y
-            + axis_x_rus_axes3_z*gravity_z;
-        const real rus_g_in_axes3_y = axis_y_rus_axes3_x*gravity_x + axis_y_rus_axes3_y*gravity_y
-            + axis_y_rus_axes3_z*gravity_z;
-        const real rus_g_in_axes3_z = axis_z_rus_axes3_x*gravity_x + axis_z_rus_axes3_y*gravity_y
-            + axis_z_rus_axes3_z*gravity_z;
-        const real rus_J_3_in_spec3_xy = m->rus_J_3_in_spec3_xy[i];
-        const real rus_J_3_in_spec3_xz = m->rus_J_3_in_spec3_xz[i];
-        const real rus_J_3_in_spec3_yz = m->rus_J_3_in_spec3_yz[i];
-        const real rus_Sigma_3_in_axes3_yy = m->rus_Sigma_3_in_axes3_yy[i];
-        const real rus_Sigma_3_in_axes3_zz = m->rus_Sigma_3_in_axes3_zz[i];
-        const real rus_h_3_in_spec3_y = m->rus_h_3_in_spec3_y[i];
-        const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
-        const real rus_mu_3_o_in_axes3_x = rus_B_3_o_in_axes3_yx*rus_J_3_in_spec3_xy +
-            rus_B_3_o_in_axes3_zx*rus_J_3_in_spec3_xz +
-            rus_B_3_o_in_axes3_zy*rus_Sigma_3_in_axes3_yy +
-            rus_Sigma_3_in_axes3_zz*rus_alpha_2_o_in_axes3_x + rus_g_in_axes3_y*rus_h_3_in_spec3_y
-            + rus_g_in_axes3_z*rus_h_3_in_spec3_z - rus_J_3_in_spec3_yz*(rus_mu_3_o_t_2 -
-            rus_mu_3_o_t_3);
-        const real rus_Sigma_3_in_axes3_xx = m->rus_Sigma_3_in_axes3_xx[i];
-        const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
-        const real rus_mu_3_o_in_axes3_y = rus_B_3_o_in_axes3_xy*rus_J_3_in_spec3_yz +
-            rus_Sigma_3_in_axes3_zz*rus_alpha_2_o_in_axes3_y + rus_g_in_axes3_z*rus_h_3_in_spec3_x
-            - rus_B_3_o_in_axes3_zx*rus_Sigma_3_in_axes3_xx -
-            rus_B_3_o_in_axes3_zy*rus_J_3_in_spec3_xz - rus_J_3_in_spec3_xy*(rus_mu_3_o_t -
-            rus_mu_3_o_t_3) - rus_g_in_axes3_x*rus_h_3_in_spec3_y;
-        const real rus_mu_3_o_in_axes3_z = rus_B_3_o_in_axes3_yx*rus_Sigma_3_in_axes3_xx +
-            rus_J_3_in_spec3_xy*rus_alpha_2_o_in_axes3_x -
-            rus_B_3_o_in_axes3_xy*rus_Sigma_3_in_axes3_yy - rus_J_3_in_spec3_xz*(rus_mu_3_o_t -
-            rus_mu_3_o_t_2) - rus_J_3_in_spec3_yz*rus_alpha_2_o_in_axes3_y -
-            rus_g_in_axes3_x*rus_h_3_in_spec3_z - rus_g_in_axes3_y*rus_h_3_in_spec3_x;
-        const real rus_mu_3_o_in_axes1_z = v.rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x -
-            v.rus_c_3*rus_mu_3_o_in_axes3_y;
-        /* (rus-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-           reference points */
-        const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
-        const real rus_h_1_in_spec1_x = m->rus_h_1_in_spec1_x[i];
-        const real rus_h_1_in_spec1_y = m->rus_h_1_in_spec1_y[i];
-        const real rus_mu_1_t = m->rus_mu_1_t[i];
-        const real rus_mu_1_t_2 = m->rus_mu_1_t_2[i];
-        const real rus_mu_1_o_in_axes1_z = rus_J_1_in_spec1_zz*rus_qdd_1_o +
-            rus_h_1_in_spec1_y*(v.rus_c_1*rus_mu_1_t + rus_mu_1_t_2*v.rus_s_1) -
-            rus_h_1_in_spec1_x*(v.rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*v.rus_s_1);
-        /* (rus-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
-           connection point left out */
-        const real rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z;
-        /* (rus-G_o) remainder of: force at the connection point that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*v.rus_w_2_in_axes3_z;
-        const real rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*rus_w_3_in_axes3_y;
-        /* (rus-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-           connection point */
-        const real rus_c_o_in_axes3_x = v.inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z -
-            rus_G_o_in_axes3_y*v.rus_v_1_in_axes3_y - rus_G_o_in_axes3_z*v.rus_v_1_in_axes3_z) +
-            rus_B_3_o_in_axes3_xy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_x*(rus_mu_3_o_t_2 +
-            rus_mu_3_o_t_3) - rus_alpha_2_o_in_axes3_y*rus_h_3_in_spec3_y;
-        const real rus_c_o_in_axes3_y = rus_alpha_2_o_in_axes3_x*rus_h_3_in_spec3_y -
-            rus_G_o_in_axes3_y - rus_B_3_o_in_axes3_yx*rus_h_3_in_spec3_x -
-            rus_h_3_in_spec3_z*(rus_mu_3_o_t + rus_mu_3_o_t_3);
-        const real rus_c_o_in_axes3_z = rus_B_3_o_in_axes3_zy*rus_h_3_in_spec3_z +
-            rus_h_3_in_spec3_y*(rus_mu_3_o_t + rus_mu_3_o_t_2) - rus_G_o_in_axes3_z -
-            rus_B_3_o_in_axes3_zx*rus_h_3_in_spec3_x;
-        /* (rus-U) velocity and gravity terms of the leg force */
-        const real rus_U_x = -axis_x_rus_axes3_x*rus_c_o_in_axes3_x -
-            axis_y_rus_axes3_x*rus_c_o_in_axes3_y - axis_z_rus_axes3_x*rus_c_o_in_axes3_z;
-        const real rus_U_y = -axis_x_rus_axes3_y*rus_c_o_in_axes3_x -
-            axis_y_rus_axes3_y*rus_c_o_in_axes3_y - axis_z_rus_axes3_y*rus_c_o_in_axes3_z;
-        const real rus_U_z = -axis_x_rus_axes3_z*rus_c_o_in_axes3_x -
-            axis_y_rus_axes3_z*rus_c_o_in_axes3_y - axis_z_rus_axes3_z*rus_c_o_in_axes3_z;
-        /* (Z_t) translational part of Z */
-        gather(&terms[0*count + k], add, rus_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[1*count + k], add, rus_U_y);  /* Z_t_y_of_legs */
-        gather(&terms[2*count + k], add, rus_U_z);  /* Z_t_z_of_legs */
-        const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t_3 = m->rus_size_t_3[i];
-        const real rus_size = m->rus_size[i];
-        o[1*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
-            UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(v.rus_v_1_t_2)
-            > TOLERANCE*rus_size);
-        o[0*count + k] = UNLESS(v.rus_disc_1 >= 0);
-    }
+    values_rus v;
+    stage_rus_X(m, w, i, j, X, &v);
+    /* (rus-qd_1) rate of joint 1 */
+    const real axis_z_rus_axes3_x = m->rus_base_frame_xx[i]*v.rus_qd_1_t +
+        m->rus_base_frame_xy[i]*v.rus_qd_1_t_2;
+    const real axis_z_rus_axes3_y = m->rus_base_frame_yx[i]*v.rus_qd_1_t +
+        m->rus_base_frame_yy[i]*v.rus_qd_1_t_2;
+    const real axis_z_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t +
+        m->rus_base_frame_zy[i]*v.rus_qd_1_t_2;
+    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*v.rus_qd_1_t_5 +
+        m->rus_base_frame_xy[i]*v.rus_qd_1_t_6 - m->rus_base_frame_xz[i]*v.rus_c_3;
+    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*v.rus_qd_1_t_5 +
+        m->rus_base_frame_yy[i]*v.rus_qd_1_t_6 - m->rus_base_frame_yz[i]*v.rus_c_3;
+    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t_5 +
+        m->rus_base_frame_zy[i]*v.rus_qd_1_t_6 - m->rus_base_frame_zz[i]*v.rus_c_3;
+    const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
+        axis_y_rus_axes3_z*axis_z_rus_axes3_y;
+    const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
+        axis_y_rus_axes3_x*axis_z_rus_axes3_z;
+    const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
+        axis_y_rus_axes3_y*axis_z_rus_axes3_x;
+    const real t_dot_x = V[0*w + j];
+    const real t_dot_y = V[1*w + j];
+    const real t_dot_z = V[2*w + j];
+    const real rus_qd_1_t_7 = v.inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x +
+        axis_x_rus_axes3_y*t_dot_y + axis_x_rus_axes3_z*t_dot_z);
+    /* (rus-qd_3) rate of joint 3 */
+    const real rus_qd_3_t = axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y +
+        axis_y_rus_axes3_z*t_dot_z + rus_qd_1_t_7*v.rus_v_1_in_axes3_y;
+    const real rus_qd_3 = rus_qd_3_t*m->rus_w_3_in_axes3_y[i];
+    /* (rus-omega_1) angular velocity of link 1 */
+    const real rus_omega_1_in_axes3_x = -v.rus_e_1_in_axes3_x*rus_qd_1_t_7;
+    const real rus_omega_1_in_axes3_y = v.rus_c_3*rus_qd_1_t_7;
+    /* (rus-omega_2) angular velocity of link 2 */
+    const real rus_omega_2_in_axes2_z = v.rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x +
+        axis_z_rus_axes3_y*t_dot_y + axis_z_rus_axes3_z*t_dot_z +
+        rus_qd_1_t_7*v.rus_v_1_in_axes3_z) - rus_qd_1_t_7;
+    const real rus_omega_2_in_axes3_x = v.rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z;
+    const real rus_omega_2_in_axes3_y = -v.rus_c_3*rus_omega_2_in_axes2_z;
+    /* (rus-W_3) centripetal tensor of link 3 */
+    const real rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3;
+    const real rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3;
+    const real rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
+    /* (rus-bias) acceleration of the connection point at zero joint accelerations */
+    const real rus_bias_t_2 = v.rus_bias_t*v.rus_c_3*rus_omega_1_in_axes3_y -
+        v.rus_bias_t*v.rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
+    const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*m->rus_platform_joint_offset_x[i];
+    const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y -
+        rus_bias_t_2*rus_omega_1_in_axes3_y - rus_qd_3*rus_qd_3_t;
+    const real rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
+        rus_bias_t_3*rus_omega_2_in_axes3_x;
+    const real rus_bias_in_axes3_z = rus_W_3_in_axes3_xz*m->rus_platform_joint_offset_x[i] +
+        rus_omega_2_in_axes3_x*rus_qd_3_t -
+        v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
+        v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
+    /* (rus-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real rus_qdd_1_o = v.inv_rus_v_1_t_2*rus_bias_in_axes3_x;
+    /* (rus-qdd_3_o) remainder of: acceleration of joint 3 */
+    const real rus_qdd_3_o = -m->rus_w_3_in_axes3_y[i]*(rus_bias_in_axes3_y +
+        rus_qdd_1_o*v.rus_v_1_in_axes3_y);
+    /* (rus-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real rus_alpha_2_o_in_axes2_z = rus_qdd_1_o -
+        v.rus_w_2_in_axes3_z*(rus_bias_in_axes3_z + rus_qdd_1_o*v.rus_v_1_in_axes3_z);
+    const real rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*v.rus_e_1_in_axes3_x;
+    const real rus_alpha_2_o_in_axes3_y = -rus_alpha_2_o_in_axes2_z*v.rus_c_3;
+    /* (rus-alpha_3_o) remainder of: angular acceleration of link 3 */
+    const real rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x;
+    const real rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - rus_W_3_in_axes3_xz;
+    /* (rus-B_3_o) remainder of the acceleration tensor of link 3 */
+    const real rus_B_3_o_in_axes3_xy = rus_W_3_in_axes3_xy - rus_qdd_3_o;
+    const real rus_B_3_o_in_axes3_yx = rus_W_3_in_axes3_xy + rus_qdd_3_o;
+    const real rus_B_3_o_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_o_in_axes3_y;
+    const real rus_B_3_o_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_o_in_axes3_x;
+    /* (rus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+       reference points */
+    const real rus_mu_3_o_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
+    const real rus_mu_3_o_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
+    const real rus_mu_3_o_t_3 = rus_qd_3*rus_qd_3;
+    const real rus_g_in_axes3_x = axis_x_rus_axes3_x*m->gravity_x +
+        axis_x_rus_axes3_y*m->gravity_y + axis_x_rus_axes3_z*m->gravity_z;
+    const real rus_g_in_axes3_y = axis_y_rus_axes3_x*m->gravity_x +
+        axis_y_rus_axes3_y*m->gravity_y + axis_y_rus_axes3_z*m->gravity_z;
+    const real rus_g_in_axes3_z = axis_z_rus_axes3_x*m->gravity_x +
+        axis_z_rus_axes3_y*m->gravity_y + axis_z_rus_axes3_z*m->gravity_z;
+    const real rus_mu_3_o_in_axes3_x = rus_B_3_o_in_axes3_yx*m->rus_J_3_in_spec3_xy[i] +
+        rus_B_3_o_in_axes3_zx*m->rus_J_3_in_spec3_xz[i] +
+        rus_B_3_o_in_axes3_zy*m->rus_Sigma_3_in_axes3_yy[i] +
+        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_x +
+        rus_g_in_axes3_y*m->rus_h_3_in_spec3_y[i] + rus_g_in_axes3_z*m->rus_h_3_in_spec3_z[i]
+        - m->rus_J_3_in_spec3_yz[i]*(rus_mu_3_o_t_2 - rus_mu_3_o_t_3);
+    const real rus_mu_3_o_in_axes3_y = rus_B_3_o_in_axes3_xy*m->rus_J_3_in_spec3_yz[i] +
+        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_y +
+        rus_g_in_axes3_z*m->rus_h_3_in_spec3_x[i] -
+        rus_B_3_o_in_axes3_zx*m->rus_Sigma_3_in_axes3_xx[i] -
+        rus_B_3_o_in_axes3_zy*m->rus_J_3_in_spec3_xz[i] -
+        m->rus_J_3_in_spec3_xy[i]*(rus_mu_3_o_t - rus_mu_3_o_t_3) -
+        rus_g_in_axes3_x*m->rus_h_3_in_spec3_y[i];
+    const real rus_mu_3_o_in_axes3_z = rus_B_3_o_in_axes3_yx*m->rus_Sigma_3_in_axes3_xx[i] +
+        m->rus_J_3_in_spec3_xy[i]*rus_alpha_2_o_in_axes3_x -
+        rus_B_3_o_in_axes3_xy*m->rus_Sigma_3_in_axes3_yy[i] -
+        m->rus_J_3_in_spec3_xz[i]*(rus_mu_3_o_t - rus_mu_3_o_t_2) -
+        m->rus_J_3_in_spec3_yz[i]*rus_alpha_2_o_in_axes3_y -
+        rus_g_in_axes3_x*m->rus_h_3_in_spec3_z[i] - rus_g_in_axes3_y*m->rus_h_3_in_spec3_x[i];
+    const real rus_mu_3_o_in_axes1_z = v.rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x -
+        v.rus_c_3*rus_mu_3_o_in_axes3_y;
+    /* (rus-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
+    const real rus_mu_1_o_in_axes1_z = m->rus_J_1_in_spec1_zz[i]*rus_qdd_1_o +
+        m->rus_h_1_in_spec1_y[i]*(v.rus_c_1*m->rus_mu_1_t[i] + m->rus_mu_1_t_2[i]*v.rus_s_1) -
+        m->rus_h_1_in_spec1_x[i]*(v.rus_c_1*m->rus_mu_1_t_2[i] - m->rus_mu_1_t[i]*v.rus_s_1);
+    /* (rus-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+       connection point left out */
+    const real rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z;
+    /* (rus-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*v.rus_w_2_in_axes3_z;
+    const real rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*m->rus_w_3_in_axes3_y[i];
+    /* (rus-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
+    const real rus_c_o_in_axes3_x = v.inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z -
+        rus_G_o_in_axes3_y*v.rus_v_1_in_axes3_y - rus_G_o_in_axes3_z*v.rus_v_1_in_axes3_z) +
+        rus_B_3_o_in_axes3_xy*m->rus_h_3_in_spec3_z[i] +
+        m->rus_h_3_in_spec3_x[i]*(rus_mu_3_o_t_2 + rus_mu_3_o_t_3) -
+        rus_alpha_2_o_in_axes3_y*m->rus_h_3_in_spec3_y[i];
+    const real rus_c_o_in_axes3_y = rus_alpha_2_o_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
+        rus_G_o_in_axes3_y - rus_B_3_o_in_axes3_yx*m->rus_h_3_in_spec3_x[i] -
+        m->rus_h_3_in_spec3_z[i]*(rus_mu_3_o_t + rus_mu_3_o_t_3);
+    const real rus_c_o_in_axes3_z = rus_B_3_o_in_axes3_zy*m->rus_h_3_in_spec3_z[i] +
+        m->rus_h_3_in_spec3_y[i]*(rus_mu_3_o_t + rus_mu_3_o_t_2) - rus_G_o_in_axes3_z -
+        rus_B_3_o_in_axes3_zx*m->rus_h_3_in_spec3_x[i];
+    /* (rus-U) velocity and gravity terms of the leg force */
+    const real rus_U_x = -axis_x_rus_axes3_x*rus_c_o_in_axes3_x -
+        axis_y_rus_axes3_x*rus_c_o_in_axes3_y - axis_z_rus_axes3_x*rus_c_o_in_axes3_z;
+    const real rus_U_y = -axis_x_rus_axes3_y*rus_c_o_in_axes3_x -
+        axis_y_rus_axes3_y*rus_c_o_in_axes3_y - axis_z_rus_axes3_y*rus_c_o_in_axes3_z;
+    const real rus_U_z = -axis_x_rus_axes3_z*rus_c_o_in_axes3_x -
+        axis_y_rus_axes3_z*rus_c_o_in_axes3_y - axis_z_rus_axes3_z*rus_c_o_in_axes3_z;
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, rus_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, rus_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, rus_U_z);  /* Z_t_z_of_legs */
+    o[1*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
+        + UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) +
+        UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*m->rus_size[i]) +
+        UNLESS(magnitude(v.rus_v_1_t_2) > TOLERANCE*m->rus_size[i]);
+    o[0*count + k] = UNLESS(v.rus_disc_1 >= 0);
 }
 
-INLINE void Z_place_rus(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void Z_place_rus(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o[0*count + first + k];
-        t->singular[k] += o[1*count + first + k];
-    }
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
 }
 
-INLINE void Z_after(const prepared *m, size_t w, const real *sums, real *Z, verdict *t)
+INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, real *Z, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (Z_t) translational part of Z */
-        const real Z_p_x = m->Z_p_x;
-        const real Z_t_x_of_legs = sums[0*w + k];
-        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = m->Z_p_y;
-        const real Z_t_y_of_legs = sums[1*w + k];
-        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = m->Z_p_z;
-        const real Z_t_z_of_legs = sums[2*w + k];
-        const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-        /* (Z_t) translational part of Z */
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-        Z[2*w + k] = Z_t_z;
-        t->total[k] += Z_t_x + (Z_t_y + Z_t_z);
-    }
+    /* (Z_t) */
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = m->Z_p_x + Z_t_x_of_legs;
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = m->Z_p_y + Z_t_y_of_legs;
+    const real Z_t_z_of_legs = sums[2*w + k];
+    const real Z_t_z = m->Z_p_z + Z_t_z_of_legs;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    t->total[k] += Z_t_x + (Z_t_y + Z_t_z);
 }
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
     real sums[3] = {0};
     real terms_rus[3*LEGS(LEGS_OF_rus)] = {0}, o_rus[2*LEGS(LEGS_OF_rus)] = {0};
-    Z_before();
-    Z_legs_rus(m, 1, 0, 1, 0, LEGS(LEGS_OF_rus), 0, X, V, terms_rus, o_rus);
-    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        Z_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
+        Z_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, X, V, terms_rus, o_rus);
+    }
+    for (size_t i = 0; i < LEGS_OF_rus; ++i) {
+        Z_place_rus(0, i, LEGS(LEGS_OF_rus), o_rus, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
-    Z_after(m, 1, sums, Z, t);
+    Z_after(m, 1, 0, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z, verdict
+    *restrict t)
 {
     real sums[3*LANES];
     real o_rus[2*LANES];
-    Z_before();
     clear(sums, 3*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        Z_legs_rus(m, LANES, leg, 0, 1, LANES, 1, X, V, sums, o_rus);
-        Z_place_rus(LANES, LANES, o_rus, 0, t);
+    for (size_t i = 0; i < LEGS_OF_rus; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_legs_rus(m, LANES, i, k, k, LANES, 1, X, V, sums, o_rus);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_place_rus(k, k, LANES, o_rus, t);
+        }
     }
-    Z_after(m, LANES, sums, Z, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        Z_after(m, LANES, k, sums, Z, t);
+    }
 }
 
 /* ---- H ---- */
@@ -2421,185 +2317,173 @@ INLINE void H_before()
 {
 }
 
-INLINE void H_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, size_t states, size_t
-    count, const real *X, real *o)
+INLINE void H_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rus v;
-        stage_rus_X(m, w, i, j, X, &v);
-        stage_rus_H_condition(&v);
-        /* (rus-w_1) reciprocal vector 1 */
-        o[0*count + k] = -v.rus_w_1_t_7;
-        o[1*count + k] = -v.rus_w_1_t_8;
-        o[2*count + k] = -v.rus_w_1_t_9;
-        o[5*count + k] = v.rus_w_1_t_7 + (v.rus_w_1_t_8 + v.rus_w_1_t_9);
-        const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t_3 = m->rus_size_t_3[i];
-        const real rus_size = m->rus_size[i];
-        o[4*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
-            UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(v.rus_v_1_t) >
-            TOLERANCE*rus_size);
-        o[3*count + k] = UNLESS(v.rus_disc_1 >= 0);
-    }
+    values_rus v;
+    stage_rus_X(m, w, i, j, X, &v);
+    stage_rus_H_condition(&v);
+    /* (rus-w_1) reciprocal vector 1 */
+    o[0*count + k] = -v.rus_w_1_t_7;
+    o[1*count + k] = -v.rus_w_1_t_8;
+    o[2*count + k] = -v.rus_w_1_t_9;
+    o[5*count + k] = v.rus_w_1_t_7 + (v.rus_w_1_t_8 + v.rus_w_1_t_9);
+    o[4*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
+        + UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) +
+        UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*m->rus_size[i]) +
+        UNLESS(magnitude(v.rus_v_1_t) > TOLERANCE*m->rus_size[i]);
+    o[3*count + k] = UNLESS(v.rus_disc_1 >= 0);
 }
 
-INLINE void H_place_rus(size_t w, size_t count, const real *o, size_t leg, size_t first, real *H,
-    verdict *t)
+INLINE void H_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
+    *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        t->unreachable[k] += o[3*count + first + k];
-        t->singular[k] += o[4*count + first + k];
-        t->total[k] += o[5*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    t->unreachable[k] += o[3*count + at];
+    t->singular[k] += o[4*count + at];
+    t->total[k] += o[5*count + at];
 }
 
-INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
+APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
     real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
-    H_before();
-    H_legs_rus(m, 1, 0, 1, 0, LEGS(LEGS_OF_rus), X, o_rus);
-    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        H_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, H, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
+        H_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), X, o_rus);
+    }
+    for (size_t i = 0; i < LEGS_OF_rus; ++i) {
+        H_place_rus(1, i, 0, i, LEGS(LEGS_OF_rus), o_rus, H, t);
     }
 }
 
-INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
+INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verdict *restrict t)
 {
     real o_rus[6*LANES];
-    H_before();
-    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        H_legs_rus(m, LANES, leg, 0, 1, LANES, X, o_rus);
-        H_place_rus(LANES, LANES, o_rus, leg, 0, H, t);
+    for (size_t i = 0; i < LEGS_OF_rus; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            H_legs_rus(m, LANES, i, k, k, LANES, X, o_rus);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            H_place_rus(LANES, i, k, k, LANES, o_rus, H, t);
+        }
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, const real *A, real *s)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *A, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (a_t) acceleration of the platform origin, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real t_ddot_x = A[0*w + k];
-        const real a_t_x = t_ddot_x - gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real t_ddot_y = A[1*w + k];
-        const real a_t_y = t_ddot_y - gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real t_ddot_z = A[2*w + k];
-        const real a_t_z = t_ddot_z - gravity_z;
-        /* (f_p) inertia force of the platform less its weight */
-        const real m_star = m->m_star;
-        const real f_p_x = a_t_x*m_star;
-        const real f_p_y = a_t_y*m_star;
-        const real f_p_z = a_t_z*m_star;
-        s[0*w + k] = f_p_x;
-        s[1*w + k] = f_p_y;
-        s[2*w + k] = f_p_z;
-    }
+    /* (a_t) acceleration of the platform origin, less gravity */
+    const real t_ddot_x = A[0*w + k];
+    const real a_t_x = t_ddot_x - m->gravity_x;
+    const real t_ddot_y = A[1*w + k];
+    const real a_t_y = t_ddot_y - m->gravity_y;
+    const real t_ddot_z = A[2*w + k];
+    const real a_t_z = t_ddot_z - m->gravity_z;
+    /* (f_p) inertia force of the platform less its weight */
+    const real f_p_x = a_t_x*m->m_star;
+    const real f_p_y = a_t_y*m->m_star;
+    const real f_p_z = a_t_z*m->m_star;
+    s[0*w + k] = f_p_x;
+    s[1*w + k] = f_p_y;
+    s[2*w + k] = f_p_z;
 }
 
-INLINE void required_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, size_t states,
-    size_t count, int add, const real *X, const real *V, const real *A, real *terms, real *o)
+INLINE void required_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *X, const real *V, const real *A, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rus v;
-        stage_rus_X(m, w, i, j, X, &v);
-        stage_rus_legs_required(m, w, i, j, V, A, &v);
-        /* (rus-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real rus_c_x = v.axis_x_rus_axes3_x*v.rus_c_in_axes3_x +
-            v.axis_y_rus_axes3_x*v.rus_c_in_axes3_y + v.axis_z_rus_axes3_x*v.rus_c_in_axes3_z;
-        const real rus_c_y = v.axis_x_rus_axes3_y*v.rus_c_in_axes3_x +
-            v.axis_y_rus_axes3_y*v.rus_c_in_axes3_y + v.axis_z_rus_axes3_y*v.rus_c_in_axes3_z;
-        const real rus_c_z = v.axis_x_rus_axes3_z*v.rus_c_in_axes3_x +
-            v.axis_y_rus_axes3_z*v.rus_c_in_axes3_y + v.axis_z_rus_axes3_z*v.rus_c_in_axes3_z;
-        /* (R_t) force that actuators and external wrench must give */
-        gather(&terms[0*count + k], add, rus_c_x);  /* R_t_x_of_legs */
-        gather(&terms[1*count + k], add, rus_c_y);  /* R_t_y_of_legs */
-        gather(&terms[2*count + k], add, rus_c_z);  /* R_t_z_of_legs */
-        /* (rus-w_1) reciprocal vector 1 */
-        o[0*count + k] = -v.rus_w_1_t_7;
-        o[1*count + k] = -v.rus_w_1_t_8;
-        o[2*count + k] = -v.rus_w_1_t_9;
-        const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t_3 = m->rus_size_t_3[i];
-        const real rus_size = m->rus_size[i];
-        o[4*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
-            UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(v.rus_v_1_t_2)
-            > TOLERANCE*rus_size);
-        o[3*count + k] = UNLESS(v.rus_disc_1 >= 0);
-    }
+    values_rus v;
+    stage_rus_X(m, w, i, j, X, &v);
+    stage_rus_legs_required(m, w, i, j, V, A, &v);
+    /* (rus-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real rus_c_x = v.axis_x_rus_axes3_x*v.rus_c_in_axes3_x +
+        v.axis_y_rus_axes3_x*v.rus_c_in_axes3_y + v.axis_z_rus_axes3_x*v.rus_c_in_axes3_z;
+    const real rus_c_y = v.axis_x_rus_axes3_y*v.rus_c_in_axes3_x +
+        v.axis_y_rus_axes3_y*v.rus_c_in_axes3_y + v.axis_z_rus_axes3_y*v.rus_c_in_axes3_z;
+    const real rus_c_z = v.axis_x_rus_axes3_z*v.rus_c_in_axes3_x +
+        v.axis_y_rus_axes3_z*v.rus_c_in_axes3_y + v.axis_z_rus_axes3_z*v.rus_c_in_axes3_z;
+    /* (R_t) force that actuators and external wrench must give */
+    gather(&terms[0*count + k], add, rus_c_x);  /* R_t_x_of_legs */
+    gather(&terms[1*count + k], add, rus_c_y);  /* R_t_y_of_legs */
+    gather(&terms[2*count + k], add, rus_c_z);  /* R_t_z_of_legs */
+    /* (rus-w_1) reciprocal vector 1 */
+    o[0*count + k] = -v.rus_w_1_t_7;
+    o[1*count + k] = -v.rus_w_1_t_8;
+    o[2*count + k] = -v.rus_w_1_t_9;
+    o[4*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
+        + UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) +
+        UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*m->rus_size[i]) +
+        UNLESS(magnitude(v.rus_v_1_t_2) > TOLERANCE*m->rus_size[i]);
+    o[3*count + k] = UNLESS(v.rus_disc_1 >= 0);
 }
 
-INLINE void required_place_rus(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *H, verdict *t)
+INLINE void required_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count, const real
+    *o, real *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        t->unreachable[k] += o[3*count + first + k];
-        t->singular[k] += o[4*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    t->unreachable[k] += o[3*count + at];
+    t->singular[k] += o[4*count + at];
 }
 
-INLINE void required_after(size_t w, const real *s, const real *sums, real *required)
+INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (R_t) force that actuators and external wrench must give */
-        const real R_t_x_of_legs = sums[0*w + k];
-        const real f_p_x = s[0*w + k];
-        const real R_t_x = f_p_x - R_t_x_of_legs;
-        const real R_t_y_of_legs = sums[1*w + k];
-        const real f_p_y = s[1*w + k];
-        const real R_t_y = f_p_y - R_t_y_of_legs;
-        const real R_t_z_of_legs = sums[2*w + k];
-        const real f_p_z = s[2*w + k];
-        const real R_t_z = f_p_z - R_t_z_of_legs;
-        /* (R_t) force that actuators and external wrench must give */
-        required[0*w + k] = R_t_x;
-        required[1*w + k] = R_t_y;
-        required[2*w + k] = R_t_z;
-    }
+    /* (R_t) */
+    const real R_t_x_of_legs = sums[0*w + k];
+    const real f_p_x = s[0*w + k];
+    const real R_t_x = f_p_x - R_t_x_of_legs;
+    const real R_t_y_of_legs = sums[1*w + k];
+    const real f_p_y = s[1*w + k];
+    const real R_t_y = f_p_y - R_t_y_of_legs;
+    const real R_t_z_of_legs = sums[2*w + k];
+    const real f_p_z = s[2*w + k];
+    const real R_t_z = f_p_z - R_t_z_of_legs;
+    /* (R_t) */
+    required[0*w + k] = R_t_x;
+    required[1*w + k] = R_t_y;
+    required[2*w + k] = R_t_z;
 }
 
-INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
     real s[3] = {0}, sums[3] = {0};
     real terms_rus[3*LEGS(LEGS_OF_rus)] = {0}, o_rus[5*LEGS(LEGS_OF_rus)] = {0};
-    required_before(m, 1, A, s);
-    required_legs_rus(m, 1, 0, 1, 0, LEGS(LEGS_OF_rus), 0, X, V, A, terms_rus, o_rus);
-    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        required_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, H, t);
+    required_before(m, 1, 0, A, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
+        required_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, X, V, A, terms_rus, o_rus);
+    }
+    for (size_t i = 0; i < LEGS_OF_rus; ++i) {
+        required_place_rus(1, i, 0, i, LEGS(LEGS_OF_rus), o_rus, H, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
-    required_after(1, s, sums, required);
+    required_after(1, 0, s, sums, required);
 }
 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *required, real *H, verdict *t)
+    real *restrict required, real *restrict H, verdict *restrict t)
 {
     real s[3*LANES], sums[3*LANES];
     real o_rus[5*LANES];
-    required_before(m, LANES, A, s);
-    clear(sums, 3*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        required_legs_rus(m, LANES, leg, 0, 1, LANES, 1, X, V, A, sums, o_rus);
-        required_place_rus(LANES, LANES, o_rus, leg, 0, H, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        required_before(m, LANES, k, A, s);
     }
-    required_after(LANES, s, sums, required);
+    clear(sums, 3*LANES);
+    for (size_t i = 0; i < LEGS_OF_rus; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            required_legs_rus(m, LANES, i, k, k, LANES, 1, X, V, A, sums, o_rus);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            required_place_rus(LANES, i, k, k, LANES, o_rus, H, t);
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        required_after(LANES, k, s, sums, required);
+    }
 }
 
 /* ---- inverse_kinematics ---- */
@@ -2607,76 +2491,68 @@ INLINE void inverse_kinematics_before()
 {
 }
 
-INLINE void inverse_kinematics_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs,
-    size_t states, size_t count, const real *X, real *o)
+INLINE void inverse_kinematics_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k,
+    size_t count, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rus v;
-        stage_rus_X(m, w, i, j, X, &v);
-        /* (rus-q_1) displacement of joint 1 */
-        const real rus_q_1 = angle(v.inv_rus_rho2_1*(v.rus_Kc_1*v.rus_root_1 +
-            v.rus_Kd_1*v.rus_Ks_1), v.inv_rus_rho2_1*(v.rus_Kc_1*v.rus_Kd_1 -
-            v.rus_Ks_1*v.rus_root_1));
-        /* (rus-q_2) displacement of joint 2 */
-        const real rus_q_2 = angle(-v.inv_rus_rho2_2*v.rus_root_2*v.rus_xi_1_t,
-            v.inv_rus_rho2_2*v.rus_root_2*v.rus_x_2_in_axes1_x);
-        /* (rus-q_3) displacement of joint 3 */
-        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_q_3 =
-            angle(-inv_rus_size_t_2*rus_platform_joint_offset_x*(v.rus_S_x*rus_base_frame_xz +
-            v.rus_S_y*rus_base_frame_yz + v.rus_S_z*rus_base_frame_zz),
-            inv_rus_size_t_2*rus_platform_joint_offset_x*v.rus_root_2);
-        /* (rus-q_1) displacement of joint 1 */
-        o[0*count + k] = rus_q_1;
-        /* (rus-q_2) displacement of joint 2 */
-        o[1*count + k] = rus_q_2;
-        /* (rus-q_3) displacement of joint 3 */
-        o[2*count + k] = rus_q_3;
-        o[5*count + k] = rus_q_1 + (rus_q_2 + rus_q_3);
-        const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t_3 = m->rus_size_t_3[i];
-        o[4*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3);
-        o[3*count + k] = UNLESS(v.rus_disc_1 >= 0);
-    }
+    values_rus v;
+    stage_rus_X(m, w, i, j, X, &v);
+    /* (rus-q_1) displacement of joint 1 */
+    const real rus_q_1 = angle(v.inv_rus_rho2_1*(v.rus_Kc_1*v.rus_root_1 +
+        v.rus_Kd_1*v.rus_Ks_1), v.inv_rus_rho2_1*(v.rus_Kc_1*v.rus_Kd_1 -
+        v.rus_Ks_1*v.rus_root_1));
+    /* (rus-q_2) displacement of joint 2 */
+    const real rus_q_2 = angle(-v.inv_rus_rho2_2*v.rus_root_2*v.rus_xi_1_t,
+        v.inv_rus_rho2_2*v.rus_root_2*v.rus_x_2_in_axes1_x);
+    /* (rus-q_3) displacement of joint 3 */
+    const real rus_q_3 =
+        angle(-m->inv_rus_size_t_2[i]*m->rus_platform_joint_offset_x[i]*(v.rus_S_x*m->rus_base_frame_xz[i]
+        + v.rus_S_y*m->rus_base_frame_yz[i] + v.rus_S_z*m->rus_base_frame_zz[i]),
+        m->inv_rus_size_t_2[i]*m->rus_platform_joint_offset_x[i]*v.rus_root_2);
+    /* (rus-q_1) */
+    o[0*count + k] = rus_q_1;
+    /* (rus-q_2) */
+    o[1*count + k] = rus_q_2;
+    /* (rus-q_3) */
+    o[2*count + k] = rus_q_3;
+    o[5*count + k] = rus_q_1 + (rus_q_2 + rus_q_3);
+    o[4*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
+        + UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]);
+    o[3*count + k] = UNLESS(v.rus_disc_1 >= 0);
 }
 
-INLINE void inverse_kinematics_place_rus(size_t w, size_t count, const real *o, size_t leg, size_t
-    first, real *q, verdict *t)
+INLINE void inverse_kinematics_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count,
+    const real *o, real *q, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        q[3*leg*w + k] = o[0*count + first + k];
-        q[(1 + 3*leg)*w + k] = o[1*count + first + k];
-        q[(2 + 3*leg)*w + k] = o[2*count + first + k];
-        t->unreachable[k] += o[3*count + first + k];
-        t->singular[k] += o[4*count + first + k];
-        t->total[k] += o[5*count + first + k];
-    }
+    q[3*i*w + k] = o[0*count + at];
+    q[(1 + 3*i)*w + k] = o[1*count + at];
+    q[(2 + 3*i)*w + k] = o[2*count + at];
+    t->unreachable[k] += o[3*count + at];
+    t->singular[k] += o[4*count + at];
+    t->total[k] += o[5*count + at];
 }
 
-INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
+APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
     real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
-    inverse_kinematics_before();
-    inverse_kinematics_legs_rus(m, 1, 0, 1, 0, LEGS(LEGS_OF_rus), X, o_rus);
-    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        inverse_kinematics_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, q, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
+        inverse_kinematics_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), X, o_rus);
+    }
+    for (size_t i = 0; i < LEGS_OF_rus; ++i) {
+        inverse_kinematics_place_rus(1, i, 0, i, LEGS(LEGS_OF_rus), o_rus, q, t);
     }
 }
 
-INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
+INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
+    verdict *restrict t)
 {
     real o_rus[6*LANES];
-    inverse_kinematics_before();
-    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        inverse_kinematics_legs_rus(m, LANES, leg, 0, 1, LANES, X, o_rus);
-        inverse_kinematics_place_rus(LANES, LANES, o_rus, leg, 0, q, t);
+    for (size_t i = 0; i < LEGS_OF_rus; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_legs_rus(m, LANES, i, k, k, LANES, X, o_rus);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_place_rus(LANES, i, k, k, LANES, o_rus, q, t);
+        }
     }
 }
 
@@ -2685,109 +2561,94 @@ INLINE void joint_rates_before()
 {
 }
 
-INLINE void joint_rates_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, size_t
-    states, size_t count, const real *X, const real *V, real *o)
+INLINE void joint_rates_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, const real *X, const real *V, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rus v;
-        stage_rus_X(m, w, i, j, X, &v);
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = v.rus_c_3*v.rus_r_1_in_axes3_z;
-        /* (rus-qd_1) rate of joint 1 */
-        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
-        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
-        const real axis_z_rus_axes3_x = rus_base_frame_xx*v.rus_qd_1_t +
-            rus_base_frame_xy*v.rus_qd_1_t_2;
-        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
-        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
-        const real axis_z_rus_axes3_y = rus_base_frame_yx*v.rus_qd_1_t +
-            rus_base_frame_yy*v.rus_qd_1_t_2;
-        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-        const real axis_z_rus_axes3_z = rus_base_frame_zx*v.rus_qd_1_t +
-            rus_base_frame_zy*v.rus_qd_1_t_2;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real axis_y_rus_axes3_x = rus_base_frame_xx*v.rus_qd_1_t_5 +
-            rus_base_frame_xy*v.rus_qd_1_t_6 - rus_base_frame_xz*v.rus_c_3;
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real axis_y_rus_axes3_y = rus_base_frame_yx*v.rus_qd_1_t_5 +
-            rus_base_frame_yy*v.rus_qd_1_t_6 - rus_base_frame_yz*v.rus_c_3;
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real axis_y_rus_axes3_z = rus_base_frame_zx*v.rus_qd_1_t_5 +
-            rus_base_frame_zy*v.rus_qd_1_t_6 - rus_base_frame_zz*v.rus_c_3;
-        const real t_dot_x = V[0*w + j];
-        const real t_dot_y = V[1*w + j];
-        const real t_dot_z = V[2*w + j];
-        const real rus_qd_1_t_7 = (t_dot_x*(axis_y_rus_axes3_y*axis_z_rus_axes3_z -
-            axis_y_rus_axes3_z*axis_z_rus_axes3_y) +
-            t_dot_y*(axis_y_rus_axes3_z*axis_z_rus_axes3_x -
-            axis_y_rus_axes3_x*axis_z_rus_axes3_z) +
-            t_dot_z*(axis_y_rus_axes3_x*axis_z_rus_axes3_y -
-            axis_y_rus_axes3_y*axis_z_rus_axes3_x))/rus_v_1_t;
-        /* (rus-qd_2) rate of joint 2 */
-        const real rus_qd_2_t = v.rus_c_2*v.rus_r_1_in_axes1_x + v.rus_r_1_t_2*v.rus_s_2_t;
-        const real rus_qd_2_t_2 = axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
-            axis_z_rus_axes3_z*t_dot_z + rus_qd_1_t_7*(v.rus_c_3*(v.rus_c_3*rus_qd_2_t +
-            v.rus_e_1_in_axes3_x*v.rus_r_1_in_axes1_z) +
-            v.rus_e_1_in_axes3_x*(v.rus_e_1_in_axes3_x*rus_qd_2_t -
-            v.rus_c_3*v.rus_r_1_in_axes1_z));
-        const real rus_qd_2 = rus_qd_2_t_2/v.rus_r_1_t;
-        /* (rus-qd_3) rate of joint 3 */
-        const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
-        const real rus_qd_3 = rus_w_3_in_axes3_y*(axis_y_rus_axes3_x*t_dot_x +
-            axis_y_rus_axes3_y*t_dot_y + axis_y_rus_axes3_z*t_dot_z -
-            v.rus_e_1_in_axes3_x*rus_qd_1_t_7*v.rus_r_1_in_axes3_z);
-        /* (rus-qd_1) rate of joint 1 */
-        o[0*count + k] = -rus_qd_1_t_7;
-        /* (rus-qd_2) rate of joint 2 */
-        o[1*count + k] = rus_qd_2;
-        /* (rus-qd_3) rate of joint 3 */
-        o[2*count + k] = rus_qd_3;
-        o[5*count + k] = rus_qd_1_t_7 + (rus_qd_2 + rus_qd_3);
-        const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t_3 = m->rus_size_t_3[i];
-        const real rus_size = m->rus_size[i];
-        o[4*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
-            UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t) >
-            TOLERANCE*rus_size);
-        o[3*count + k] = UNLESS(v.rus_disc_1 >= 0);
-    }
+    values_rus v;
+    stage_rus_X(m, w, i, j, X, &v);
+    /* (rus-v_1) velocity of the connection point per rate of joint 1 */
+    const real rus_v_1_t = v.rus_c_3*v.rus_r_1_in_axes3_z;
+    /* (rus-qd_1) rate of joint 1 */
+    const real axis_z_rus_axes3_x = m->rus_base_frame_xx[i]*v.rus_qd_1_t +
+        m->rus_base_frame_xy[i]*v.rus_qd_1_t_2;
+    const real axis_z_rus_axes3_y = m->rus_base_frame_yx[i]*v.rus_qd_1_t +
+        m->rus_base_frame_yy[i]*v.rus_qd_1_t_2;
+    const real axis_z_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t +
+        m->rus_base_frame_zy[i]*v.rus_qd_1_t_2;
+    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*v.rus_qd_1_t_5 +
+        m->rus_base_frame_xy[i]*v.rus_qd_1_t_6 - m->rus_base_frame_xz[i]*v.rus_c_3;
+    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*v.rus_qd_1_t_5 +
+        m->rus_base_frame_yy[i]*v.rus_qd_1_t_6 - m->rus_base_frame_yz[i]*v.rus_c_3;
+    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t_5 +
+        m->rus_base_frame_zy[i]*v.rus_qd_1_t_6 - m->rus_base_frame_zz[i]*v.rus_c_3;
+    const real t_dot_x = V[0*w + j];
+    const real t_dot_y = V[1*w + j];
+    const real t_dot_z = V[2*w + j];
+    const real rus_qd_1_t_7 = (t_dot_x*(axis_y_rus_axes3_y*axis_z_rus_axes3_z -
+        axis_y_rus_axes3_z*axis_z_rus_axes3_y) +
+        t_dot_y*(axis_y_rus_axes3_z*axis_z_rus_axes3_x -
+        axis_y_rus_axes3_x*axis_z_rus_axes3_z) +
+        t_dot_z*(axis_y_rus_axes3_x*axis_z_rus_axes3_y -
+        axis_y_rus_axes3_y*axis_z_rus_axes3_x))/rus_v_1_t;
+    /* (rus-qd_2) rate of joint 2 */
+    const real rus_qd_2_t = v.rus_c_2*v.rus_r_1_in_axes1_x + v.rus_r_1_t_2*v.rus_s_2_t;
+    const real rus_qd_2_t_2 = axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
+        axis_z_rus_axes3_z*t_dot_z + rus_qd_1_t_7*(v.rus_c_3*(v.rus_c_3*rus_qd_2_t +
+        v.rus_e_1_in_axes3_x*v.rus_r_1_in_axes1_z) +
+        v.rus_e_1_in_axes3_x*(v.rus_e_1_in_axes3_x*rus_qd_2_t -
+        v.rus_c_3*v.rus_r_1_in_axes1_z));
+    const real rus_qd_2 = rus_qd_2_t_2/v.rus_r_1_t;
+    /* (rus-qd_3) rate of joint 3 */
+    const real rus_qd_3 = m->rus_w_3_in_axes3_y[i]*(axis_y_rus_axes3_x*t_dot_x +
+        axis_y_rus_axes3_y*t_dot_y + axis_y_rus_axes3_z*t_dot_z -
+        v.rus_e_1_in_axes3_x*rus_qd_1_t_7*v.rus_r_1_in_axes3_z);
+    /* (rus-qd_1) */
+    o[0*count + k] = -rus_qd_1_t_7;
+    /* (rus-qd_2) */
+    o[1*count + k] = rus_qd_2;
+    /* (rus-qd_3) */
+    o[2*count + k] = rus_qd_3;
+    o[5*count + k] = rus_qd_1_t_7 + (rus_qd_2 + rus_qd_3);
+    o[4*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
+        + UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) +
+        UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*m->rus_size[i]) +
+        UNLESS(magnitude(rus_v_1_t) > TOLERANCE*m->rus_size[i]);
+    o[3*count + k] = UNLESS(v.rus_disc_1 >= 0);
 }
 
-INLINE void joint_rates_place_rus(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *qd, verdict *t)
+INLINE void joint_rates_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count, const
+    real *o, real *qd, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        qd[3*leg*w + k] = o[0*count + first + k];
-        qd[(1 + 3*leg)*w + k] = o[1*count + first + k];
-        qd[(2 + 3*leg)*w + k] = o[2*count + first + k];
-        t->unreachable[k] += o[3*count + first + k];
-        t->singular[k] += o[4*count + first + k];
-        t->total[k] += o[5*count + first + k];
-    }
+    qd[3*i*w + k] = o[0*count + at];
+    qd[(1 + 3*i)*w + k] = o[1*count + at];
+    qd[(2 + 3*i)*w + k] = o[2*count + at];
+    t->unreachable[k] += o[3*count + at];
+    t->singular[k] += o[4*count + at];
+    t->total[k] += o[5*count + at];
 }
 
-INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
     real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
-    joint_rates_before();
-    joint_rates_legs_rus(m, 1, 0, 1, 0, LEGS(LEGS_OF_rus), X, V, o_rus);
-    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        joint_rates_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, qd, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
+        joint_rates_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), X, V, o_rus);
+    }
+    for (size_t i = 0; i < LEGS_OF_rus; ++i) {
+        joint_rates_place_rus(1, i, 0, i, LEGS(LEGS_OF_rus), o_rus, qd, t);
     }
 }
 
-INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
-    verdict *t)
+INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
+    qd, verdict *restrict t)
 {
     real o_rus[6*LANES];
-    joint_rates_before();
-    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        joint_rates_legs_rus(m, LANES, leg, 0, 1, LANES, X, V, o_rus);
-        joint_rates_place_rus(LANES, LANES, o_rus, leg, 0, qd, t);
+    for (size_t i = 0; i < LEGS_OF_rus; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_legs_rus(m, LANES, i, k, k, LANES, X, V, o_rus);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_place_rus(LANES, i, k, k, LANES, o_rus, qd, t);
+        }
     }
 }
 
@@ -2796,142 +2657,126 @@ INLINE void joint_accelerations_before()
 {
 }
 
-INLINE void joint_accelerations_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs,
-    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
+INLINE void joint_accelerations_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t
+    k, size_t count, const real *X, const real *V, const real *A, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rus v;
-        stage_rus_X(m, w, i, j, X, &v);
-        /* (rus-qd_1) rate of joint 1 */
-        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
-        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
-        const real axis_z_rus_axes3_x = rus_base_frame_xx*v.rus_qd_1_t +
-            rus_base_frame_xy*v.rus_qd_1_t_2;
-        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
-        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
-        const real axis_z_rus_axes3_y = rus_base_frame_yx*v.rus_qd_1_t +
-            rus_base_frame_yy*v.rus_qd_1_t_2;
-        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-        const real axis_z_rus_axes3_z = rus_base_frame_zx*v.rus_qd_1_t +
-            rus_base_frame_zy*v.rus_qd_1_t_2;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real axis_y_rus_axes3_x = rus_base_frame_xx*v.rus_qd_1_t_5 +
-            rus_base_frame_xy*v.rus_qd_1_t_6 - rus_base_frame_xz*v.rus_c_3;
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real axis_y_rus_axes3_y = rus_base_frame_yx*v.rus_qd_1_t_5 +
-            rus_base_frame_yy*v.rus_qd_1_t_6 - rus_base_frame_yz*v.rus_c_3;
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real axis_y_rus_axes3_z = rus_base_frame_zx*v.rus_qd_1_t_5 +
-            rus_base_frame_zy*v.rus_qd_1_t_6 - rus_base_frame_zz*v.rus_c_3;
-        const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
-            axis_y_rus_axes3_z*axis_z_rus_axes3_y;
-        const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
-            axis_y_rus_axes3_x*axis_z_rus_axes3_z;
-        const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
-            axis_y_rus_axes3_y*axis_z_rus_axes3_x;
-        const real t_dot_x = V[0*w + j];
-        const real t_dot_y = V[1*w + j];
-        const real t_dot_z = V[2*w + j];
-        const real rus_qd_1_t_7 = v.inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x +
-            axis_x_rus_axes3_y*t_dot_y + axis_x_rus_axes3_z*t_dot_z);
-        /* (rus-qd_3) rate of joint 3 */
-        const real rus_qd_3_t = axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y +
-            axis_y_rus_axes3_z*t_dot_z + rus_qd_1_t_7*v.rus_v_1_in_axes3_y;
-        const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
-        const real rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y;
-        /* (rus-omega_1) angular velocity of link 1 */
-        const real rus_omega_1_in_axes3_x = -v.rus_e_1_in_axes3_x*rus_qd_1_t_7;
-        const real rus_omega_1_in_axes3_y = v.rus_c_3*rus_qd_1_t_7;
-        /* (rus-omega_2) angular velocity of link 2 */
-        const real rus_omega_2_in_axes2_z = v.rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x +
-            axis_z_rus_axes3_y*t_dot_y + axis_z_rus_axes3_z*t_dot_z +
-            rus_qd_1_t_7*v.rus_v_1_in_axes3_z) - rus_qd_1_t_7;
-        const real rus_omega_2_in_axes3_x = v.rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z;
-        const real rus_omega_2_in_axes3_y = -v.rus_c_3*rus_omega_2_in_axes2_z;
-        /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-        const real rus_bias_t_2 = v.rus_bias_t*v.rus_c_3*rus_omega_1_in_axes3_y -
-            v.rus_bias_t*v.rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
-        const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y -
-            rus_bias_t_2*rus_omega_1_in_axes3_y - rus_qd_3*rus_qd_3_t;
-        const real rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
-            rus_bias_t_3*rus_omega_2_in_axes3_x;
-        const real rus_bias_in_axes3_z = rus_omega_2_in_axes3_x*rus_qd_3_t +
-            rus_omega_2_in_axes3_x*rus_platform_joint_offset_x*rus_qd_3 -
-            v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-            v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
-        /* (rus-rel) acceleration of the connection point left to the joint accelerations */
-        const real t_ddot_x = A[0*w + j];
-        const real t_ddot_y = A[1*w + j];
-        const real t_ddot_z = A[2*w + j];
-        const real rus_rel_in_axes3_x = axis_x_rus_axes3_x*t_ddot_x + axis_x_rus_axes3_y*t_ddot_y
-            + axis_x_rus_axes3_z*t_ddot_z - rus_bias_in_axes3_x;
-        const real rus_rel_in_axes3_y = axis_y_rus_axes3_x*t_ddot_x + axis_y_rus_axes3_y*t_ddot_y
-            + axis_y_rus_axes3_z*t_ddot_z - rus_bias_in_axes3_y;
-        const real rus_rel_in_axes3_z = axis_z_rus_axes3_x*t_ddot_x + axis_z_rus_axes3_y*t_ddot_y
-            + axis_z_rus_axes3_z*t_ddot_z - rus_bias_in_axes3_z;
-        /* (rus-qdd_1) acceleration of joint 1 */
-        const real rus_qdd_1_t = v.inv_rus_v_1_t_2*rus_rel_in_axes3_x;
-        /* (rus-qdd_2) acceleration of joint 2 */
-        const real rus_qdd_2 = v.rus_w_2_in_axes3_z*(rus_rel_in_axes3_z +
-            rus_qdd_1_t*v.rus_v_1_in_axes3_z);
-        /* (rus-qdd_3) acceleration of joint 3 */
-        const real rus_qdd_3_t = rus_w_3_in_axes3_y*(-rus_rel_in_axes3_y -
-            rus_qdd_1_t*v.rus_v_1_in_axes3_y);
-        /* (rus-qdd_1) acceleration of joint 1 */
-        o[0*count + k] = -rus_qdd_1_t;
-        /* (rus-qdd_2) acceleration of joint 2 */
-        o[1*count + k] = rus_qdd_2;
-        /* (rus-qdd_3) acceleration of joint 3 */
-        o[2*count + k] = -rus_qdd_3_t;
-        o[5*count + k] = rus_qdd_1_t + (rus_qdd_2 + rus_qdd_3_t);
-        const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t_3 = m->rus_size_t_3[i];
-        const real rus_size = m->rus_size[i];
-        o[4*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
-            UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(v.rus_v_1_t_2)
-            > TOLERANCE*rus_size);
-        o[3*count + k] = UNLESS(v.rus_disc_1 >= 0);
-    }
+    values_rus v;
+    stage_rus_X(m, w, i, j, X, &v);
+    /* (rus-qd_1) rate of joint 1 */
+    const real axis_z_rus_axes3_x = m->rus_base_frame_xx[i]*v.rus_qd_1_t +
+        m->rus_base_frame_xy[i]*v.rus_qd_1_t_2;
+    const real axis_z_rus_axes3_y = m->rus_base_frame_yx[i]*v.rus_qd_1_t +
+        m->rus_base_frame_yy[i]*v.rus_qd_1_t_2;
+    const real axis_z_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t +
+        m->rus_base_frame_zy[i]*v.rus_qd_1_t_2;
+    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*v.rus_qd_1_t_5 +
+        m->rus_base_frame_xy[i]*v.rus_qd_1_t_6 - m->rus_base_frame_xz[i]*v.rus_c_3;
+    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*v.rus_qd_1_t_5 +
+        m->rus_base_frame_yy[i]*v.rus_qd_1_t_6 - m->rus_base_frame_yz[i]*v.rus_c_3;
+    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t_5 +
+        m->rus_base_frame_zy[i]*v.rus_qd_1_t_6 - m->rus_base_frame_zz[i]*v.rus_c_3;
+    const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
+        axis_y_rus_axes3_z*axis_z_rus_axes3_y;
+    const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
+        axis_y_rus_axes3_x*axis_z_rus_axes3_z;
+    const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
+        axis_y_rus_axes3_y*axis_z_rus_axes3_x;
+    const real t_dot_x = V[0*w + j];
+    const real t_dot_y = V[1*w + j];
+    const real t_dot_z = V[2*w + j];
+    const real rus_qd_1_t_7 = v.inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x +
+        axis_x_rus_axes3_y*t_dot_y + axis_x_rus_axes3_z*t_dot_z);
+    /* (rus-qd_3) rate of joint 3 */
+    const real rus_qd_3_t = axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y +
+        axis_y_rus_axes3_z*t_dot_z + rus_qd_1_t_7*v.rus_v_1_in_axes3_y;
+    const real rus_qd_3 = rus_qd_3_t*m->rus_w_3_in_axes3_y[i];
+    /* (rus-omega_1) angular velocity of link 1 */
+    const real rus_omega_1_in_axes3_x = -v.rus_e_1_in_axes3_x*rus_qd_1_t_7;
+    const real rus_omega_1_in_axes3_y = v.rus_c_3*rus_qd_1_t_7;
+    /* (rus-omega_2) angular velocity of link 2 */
+    const real rus_omega_2_in_axes2_z = v.rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x +
+        axis_z_rus_axes3_y*t_dot_y + axis_z_rus_axes3_z*t_dot_z +
+        rus_qd_1_t_7*v.rus_v_1_in_axes3_z) - rus_qd_1_t_7;
+    const real rus_omega_2_in_axes3_x = v.rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z;
+    const real rus_omega_2_in_axes3_y = -v.rus_c_3*rus_omega_2_in_axes2_z;
+    /* (rus-bias) acceleration of the connection point at zero joint accelerations */
+    const real rus_bias_t_2 = v.rus_bias_t*v.rus_c_3*rus_omega_1_in_axes3_y -
+        v.rus_bias_t*v.rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
+    const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*m->rus_platform_joint_offset_x[i];
+    const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y -
+        rus_bias_t_2*rus_omega_1_in_axes3_y - rus_qd_3*rus_qd_3_t;
+    const real rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
+        rus_bias_t_3*rus_omega_2_in_axes3_x;
+    const real rus_bias_in_axes3_z = rus_omega_2_in_axes3_x*rus_qd_3_t +
+        rus_omega_2_in_axes3_x*m->rus_platform_joint_offset_x[i]*rus_qd_3 -
+        v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
+        v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
+    /* (rus-rel) acceleration of the connection point left to the joint accelerations */
+    const real t_ddot_x = A[0*w + j];
+    const real t_ddot_y = A[1*w + j];
+    const real t_ddot_z = A[2*w + j];
+    const real rus_rel_in_axes3_x = axis_x_rus_axes3_x*t_ddot_x + axis_x_rus_axes3_y*t_ddot_y
+        + axis_x_rus_axes3_z*t_ddot_z - rus_bias_in_axes3_x;
+    const real rus_rel_in_axes3_y = axis_y_rus_axes3_x*t_ddot_x + axis_y_rus_axes3_y*t_ddot_y
+        + axis_y_rus_axes3_z*t_ddot_z - rus_bias_in_axes3_y;
+    const real rus_rel_in_axes3_z = axis_z_rus_axes3_x*t_ddot_x + axis_z_rus_axes3_y*t_ddot_y
+        + axis_z_rus_axes3_z*t_ddot_z - rus_bias_in_axes3_z;
+    /* (rus-qdd_1) acceleration of joint 1 */
+    const real rus_qdd_1_t = v.inv_rus_v_1_t_2*rus_rel_in_axes3_x;
+    /* (rus-qdd_2) acceleration of joint 2 */
+    const real rus_qdd_2 = v.rus_w_2_in_axes3_z*(rus_rel_in_axes3_z +
+        rus_qdd_1_t*v.rus_v_1_in_axes3_z);
+    /* (rus-qdd_3) acceleration of joint 3 */
+    const real rus_qdd_3_t = m->rus_w_3_in_axes3_y[i]*(-rus_rel_in_axes3_y -
+        rus_qdd_1_t*v.rus_v_1_in_axes3_y);
+    /* (rus-qdd_1) */
+    o[0*count + k] = -rus_qdd_1_t;
+    /* (rus-qdd_2) */
+    o[1*count + k] = rus_qdd_2;
+    /* (rus-qdd_3) */
+    o[2*count + k] = -rus_qdd_3_t;
+    o[5*count + k] = rus_qdd_1_t + (rus_qdd_2 + rus_qdd_3_t);
+    o[4*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
+        + UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) +
+        UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*m->rus_size[i]) +
+        UNLESS(magnitude(v.rus_v_1_t_2) > TOLERANCE*m->rus_size[i]);
+    o[3*count + k] = UNLESS(v.rus_disc_1 >= 0);
 }
 
-INLINE void joint_accelerations_place_rus(size_t w, size_t count, const real *o, size_t leg,
-    size_t first, real *qdd, verdict *t)
+INLINE void joint_accelerations_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count,
+    const real *o, real *qdd, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        qdd[3*leg*w + k] = o[0*count + first + k];
-        qdd[(1 + 3*leg)*w + k] = o[1*count + first + k];
-        qdd[(2 + 3*leg)*w + k] = o[2*count + first + k];
-        t->unreachable[k] += o[3*count + first + k];
-        t->singular[k] += o[4*count + first + k];
-        t->total[k] += o[5*count + first + k];
-    }
+    qdd[3*i*w + k] = o[0*count + at];
+    qdd[(1 + 3*i)*w + k] = o[1*count + at];
+    qdd[(2 + 3*i)*w + k] = o[2*count + at];
+    t->unreachable[k] += o[3*count + at];
+    t->singular[k] += o[4*count + at];
+    t->total[k] += o[5*count + at];
 }
 
-INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd, verdict *t)
+APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
+    real *qdd, verdict *t)
 {
     real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
-    joint_accelerations_before();
-    joint_accelerations_legs_rus(m, 1, 0, 1, 0, LEGS(LEGS_OF_rus), X, V, A, o_rus);
-    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        joint_accelerations_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, qdd, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
+        joint_accelerations_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), X, V, A, o_rus);
+    }
+    for (size_t i = 0; i < LEGS_OF_rus; ++i) {
+        joint_accelerations_place_rus(1, i, 0, i, LEGS(LEGS_OF_rus), o_rus, qdd, t);
     }
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *qdd, verdict *t)
+    real *A, real *restrict qdd, verdict *restrict t)
 {
     real o_rus[6*LANES];
-    joint_accelerations_before();
-    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        joint_accelerations_legs_rus(m, LANES, leg, 0, 1, LANES, X, V, A, o_rus);
-        joint_accelerations_place_rus(LANES, LANES, o_rus, leg, 0, qdd, t);
+    for (size_t i = 0; i < LEGS_OF_rus; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_legs_rus(m, LANES, i, k, k, LANES, X, V, A, o_rus);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_place_rus(LANES, i, k, k, LANES, o_rus, qdd, t);
+        }
     }
 }
 
@@ -2940,290 +2785,233 @@ INLINE void legs_before()
 {
 }
 
-INLINE void legs_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, size_t states,
-    size_t count, const real *X, const real *V, const real *A, real *o)
+INLINE void legs_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    const real *X, const real *V, const real *A, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rus v;
-        stage_rus_X(m, w, i, j, X, &v);
-        stage_rus_legs_required(m, w, i, j, V, A, &v);
-        /* (rus-c_true) leg force on the platform without actuation, the last link's mass included */
-        const real rus_link3_mass = m->rus_link3_mass[i];
-        const real rus_c_true_in_axes3_x = v.rus_c_in_axes3_x -
-            v.rus_acc_3_in_axes3_x*rus_link3_mass;
-        const real rus_c_true_in_axes3_y = v.rus_c_in_axes3_y -
-            v.rus_acc_3_in_axes3_y*rus_link3_mass;
-        const real rus_c_true_in_axes3_z = v.rus_c_in_axes3_z -
-            v.rus_acc_3_in_axes3_z*rus_link3_mass;
-        const real rus_c_true_x = v.axis_x_rus_axes3_x*rus_c_true_in_axes3_x +
-            v.axis_y_rus_axes3_x*rus_c_true_in_axes3_y +
-            v.axis_z_rus_axes3_x*rus_c_true_in_axes3_z;
-        const real rus_c_true_y = v.axis_x_rus_axes3_y*rus_c_true_in_axes3_x +
-            v.axis_y_rus_axes3_y*rus_c_true_in_axes3_y +
-            v.axis_z_rus_axes3_y*rus_c_true_in_axes3_z;
-        const real rus_c_true_z = v.axis_x_rus_axes3_z*rus_c_true_in_axes3_x +
-            v.axis_y_rus_axes3_z*rus_c_true_in_axes3_y +
-            v.axis_z_rus_axes3_z*rus_c_true_in_axes3_z;
-        /* (rus-c_true) leg force on the platform without actuation, the last link's mass included */
-        o[0*count + k] = rus_c_true_x;
-        o[1*count + k] = rus_c_true_y;
-        o[2*count + k] = rus_c_true_z;
-        /* (rus-w_1) reciprocal vector 1 */
-        o[3*count + k] = -v.rus_w_1_t_7;
-        o[4*count + k] = -v.rus_w_1_t_8;
-        o[5*count + k] = -v.rus_w_1_t_9;
-        const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t_3 = m->rus_size_t_3[i];
-        const real rus_size = m->rus_size[i];
-        o[7*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
-            UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(v.rus_v_1_t_2)
-            > TOLERANCE*rus_size);
-        o[6*count + k] = UNLESS(v.rus_disc_1 >= 0);
-    }
+    values_rus v;
+    stage_rus_X(m, w, i, j, X, &v);
+    stage_rus_legs_required(m, w, i, j, V, A, &v);
+    /* (rus-c_true) leg force on the platform without actuation, the last link's mass included */
+    const real rus_c_true_in_axes3_x = v.rus_c_in_axes3_x -
+        v.rus_acc_3_in_axes3_x*m->rus_link3_mass[i];
+    const real rus_c_true_in_axes3_y = v.rus_c_in_axes3_y -
+        v.rus_acc_3_in_axes3_y*m->rus_link3_mass[i];
+    const real rus_c_true_in_axes3_z = v.rus_c_in_axes3_z -
+        v.rus_acc_3_in_axes3_z*m->rus_link3_mass[i];
+    const real rus_c_true_x = v.axis_x_rus_axes3_x*rus_c_true_in_axes3_x +
+        v.axis_y_rus_axes3_x*rus_c_true_in_axes3_y +
+        v.axis_z_rus_axes3_x*rus_c_true_in_axes3_z;
+    const real rus_c_true_y = v.axis_x_rus_axes3_y*rus_c_true_in_axes3_x +
+        v.axis_y_rus_axes3_y*rus_c_true_in_axes3_y +
+        v.axis_z_rus_axes3_y*rus_c_true_in_axes3_z;
+    const real rus_c_true_z = v.axis_x_rus_axes3_z*rus_c_true_in_axes3_x +
+        v.axis_y_rus_axes3_z*rus_c_true_in_axes3_y +
+        v.axis_z_rus_axes3_z*rus_c_true_in_axes3_z;
+    /* (rus-c_true) */
+    o[0*count + k] = rus_c_true_x;
+    o[1*count + k] = rus_c_true_y;
+    o[2*count + k] = rus_c_true_z;
+    /* (rus-w_1) reciprocal vector 1 */
+    o[3*count + k] = -v.rus_w_1_t_7;
+    o[4*count + k] = -v.rus_w_1_t_8;
+    o[5*count + k] = -v.rus_w_1_t_9;
+    o[7*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
+        + UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) +
+        UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*m->rus_size[i]) +
+        UNLESS(magnitude(v.rus_v_1_t_2) > TOLERANCE*m->rus_size[i]);
+    o[6*count + k] = UNLESS(v.rus_disc_1 >= 0);
 }
 
-INLINE void legs_place_rus(size_t w, size_t count, const real *o, size_t leg, size_t first, real
-    *leg_force, real *actuator, verdict *t)
+INLINE void legs_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *leg_force, real *actuator, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        leg_force[3*leg*w + k] = o[0*count + first + k];
-        leg_force[(3*leg + 1)*w + k] = o[1*count + first + k];
-        leg_force[(3*leg + 2)*w + k] = o[2*count + first + k];
-        actuator[3*leg*w + k] = o[3*count + first + k];
-        actuator[(3*leg + 1)*w + k] = o[4*count + first + k];
-        actuator[(3*leg + 2)*w + k] = o[5*count + first + k];
-        t->unreachable[k] += o[6*count + first + k];
-        t->singular[k] += o[7*count + first + k];
-    }
+    leg_force[3*i*w + k] = o[0*count + at];
+    leg_force[(3*i + 1)*w + k] = o[1*count + at];
+    leg_force[(3*i + 2)*w + k] = o[2*count + at];
+    actuator[3*i*w + k] = o[3*count + at];
+    actuator[(3*i + 1)*w + k] = o[4*count + at];
+    actuator[(3*i + 2)*w + k] = o[5*count + at];
+    t->unreachable[k] += o[6*count + at];
+    t->singular[k] += o[7*count + at];
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, verdict *t)
 {
     real o_rus[8*LEGS(LEGS_OF_rus)] = {0};
-    legs_before();
-    legs_legs_rus(m, 1, 0, 1, 0, LEGS(LEGS_OF_rus), X, V, A, o_rus);
-    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        legs_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, leg_force, actuator, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
+        legs_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), X, V, A, o_rus);
+    }
+    for (size_t i = 0; i < LEGS_OF_rus; ++i) {
+        legs_place_rus(1, i, 0, i, LEGS(LEGS_OF_rus), o_rus, leg_force, actuator, t);
     }
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (potential) potential energy */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real m_star = m->m_star;
-        const real t_x = X[0*w + k];
-        const real t_y = X[1*w + k];
-        const real t_z = X[2*w + k];
-        const real potential_t = gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y +
-            m_star*t_y) + gravity_z*(h_star_z + m_star*t_z);
-        s[0*w + k] = potential_t;
-    }
+    /* (potential) potential energy */
+    const real t_x = X[0*w + k];
+    const real t_y = X[1*w + k];
+    const real t_z = X[2*w + k];
+    const real potential_t = m->gravity_x*(m->h_star_x + m->m_star*t_x) +
+        m->gravity_y*(m->h_star_y + m->m_star*t_y) + m->gravity_z*(m->h_star_z +
+        m->m_star*t_z);
+    s[0*w + k] = potential_t;
 }
 
-INLINE void potential_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, size_t
-    states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void potential_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rus v;
-        stage_rus_X(m, w, i, j, X, &v);
-        /* (potential) potential energy */
-        const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
-        const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
-        const real rus_potential_t_4 = v.rus_e_1_in_axes3_x*rus_h_3_in_spec3_z -
-            v.rus_c_3*rus_h_3_in_spec3_x;
-        const real rus_g_in_axes1_z = m->rus_g_in_axes1_z[i];
-        const real rus_h_1_in_spec1_x = m->rus_h_1_in_spec1_x[i];
-        const real rus_h_1_in_spec1_y = m->rus_h_1_in_spec1_y[i];
-        const real rus_h_1_in_spec1_z = m->rus_h_1_in_spec1_z[i];
-        const real rus_h_3_in_spec3_y = m->rus_h_3_in_spec3_y[i];
-        const real rus_link1_mass = m->rus_link1_mass[i];
-        const real rus_mu_1_t = m->rus_mu_1_t[i];
-        const real rus_mu_1_t_2 = m->rus_mu_1_t_2[i];
-        const real rus_potential_t = m->rus_potential_t[i];
-        const real rus_potential_t_2 = m->rus_potential_t_2[i];
-        const real rus_potential_t_3 = m->rus_potential_t_3[i];
-        const real rus_potential_t_5 = rus_g_in_axes1_z*(rus_h_1_in_spec1_z + rus_potential_t_3 +
-            v.rus_c_3*rus_h_3_in_spec3_z + v.rus_e_1_in_axes3_x*rus_h_3_in_spec3_x) +
-            (v.rus_c_1*rus_mu_1_t + rus_mu_1_t_2*v.rus_s_1)*(rus_h_1_in_spec1_x +
-            rus_h_3_in_spec3_y*v.rus_s_2_t + rus_link1_mass*(v.rus_c_1*rus_potential_t +
-            rus_potential_t_2*v.rus_s_1) - v.rus_c_2*rus_potential_t_4) + (v.rus_c_1*rus_mu_1_t_2
-            - rus_mu_1_t*v.rus_s_1)*(rus_h_1_in_spec1_y + v.rus_c_2*rus_h_3_in_spec3_y +
-            rus_link1_mass*(v.rus_c_1*rus_potential_t_2 - rus_potential_t*v.rus_s_1) +
-            rus_potential_t_4*v.rus_s_2_t);
-        /* (potential) potential energy */
-        gather(&terms[0*count + k], add, rus_potential_t_5);  /* potential_of_legs */
-        const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t_3 = m->rus_size_t_3[i];
-        o[1*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3);
-        o[0*count + k] = UNLESS(v.rus_disc_1 >= 0);
-    }
+    values_rus v;
+    stage_rus_X(m, w, i, j, X, &v);
+    /* (potential) */
+    const real rus_potential_t_4 = v.rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_z[i] -
+        v.rus_c_3*m->rus_h_3_in_spec3_x[i];
+    const real rus_potential_t_5 = m->rus_g_in_axes1_z[i]*(m->rus_h_1_in_spec1_z[i] +
+        m->rus_potential_t_3[i] + v.rus_c_3*m->rus_h_3_in_spec3_z[i] +
+        v.rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_x[i]) + (v.rus_c_1*m->rus_mu_1_t[i] +
+        m->rus_mu_1_t_2[i]*v.rus_s_1)*(m->rus_h_1_in_spec1_x[i] +
+        m->rus_h_3_in_spec3_y[i]*v.rus_s_2_t +
+        m->rus_link1_mass[i]*(v.rus_c_1*m->rus_potential_t[i] +
+        m->rus_potential_t_2[i]*v.rus_s_1) - v.rus_c_2*rus_potential_t_4) +
+        (v.rus_c_1*m->rus_mu_1_t_2[i] - m->rus_mu_1_t[i]*v.rus_s_1)*(m->rus_h_1_in_spec1_y[i]
+        + v.rus_c_2*m->rus_h_3_in_spec3_y[i] +
+        m->rus_link1_mass[i]*(v.rus_c_1*m->rus_potential_t_2[i] -
+        m->rus_potential_t[i]*v.rus_s_1) + rus_potential_t_4*v.rus_s_2_t);
+    /* (potential) */
+    gather(&terms[0*count + k], add, rus_potential_t_5);  /* potential_of_legs */
+    o[1*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
+        + UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]);
+    o[0*count + k] = UNLESS(v.rus_disc_1 >= 0);
 }
 
-INLINE void potential_place_rus(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void potential_place_rus(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o[0*count + first + k];
-        t->singular[k] += o[1*count + first + k];
-    }
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
 }
 
-INLINE void potential_after(size_t w, const real *s, const real *sums, real *potential)
+INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (potential) potential energy */
-        const real potential_of_legs = sums[0*w + k];
-        const real potential_t = s[0*w + k];
-        const real potential_ = -potential_of_legs - potential_t;
-        /* (potential) potential energy */
-        potential[0*w + k] = potential_;
-    }
+    /* (potential) */
+    const real potential_of_legs = sums[0*w + k];
+    const real potential_t = s[0*w + k];
+    const real potential_ = -potential_of_legs - potential_t;
+    /* (potential) */
+    potential[0*w + k] = potential_;
 }
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
     real s[1] = {0}, sums[1] = {0};
     real terms_rus[LEGS(LEGS_OF_rus)] = {0}, o_rus[2*LEGS(LEGS_OF_rus)] = {0};
-    potential_before(m, 1, X, s);
-    potential_legs_rus(m, 1, 0, 1, 0, LEGS(LEGS_OF_rus), 0, X, terms_rus, o_rus);
-    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        potential_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, t);
+    potential_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
+        potential_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, X, terms_rus, o_rus);
+    }
+    for (size_t i = 0; i < LEGS_OF_rus; ++i) {
+        potential_place_rus(0, i, LEGS(LEGS_OF_rus), o_rus, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
-    potential_after(1, s, sums, potential);
+    potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, real *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, real *lengths, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        const real legs_size = m->legs_size;
-        lengths[1*w + k] = legs_size;
-        t->total[k] += legs_size;
-    }
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    lengths[1*w + k] = m->legs_size;
+    t->total[k] += m->legs_size;
 }
 
-INLINE void condition_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, size_t
-    states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void condition_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rus v;
-        stage_rus_X(m, w, i, j, X, &v);
-        stage_rus_H_condition(&v);
-        /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real rus_pivot_size = magnitude(v.rus_rho2_1);
-        const real rus_pivot_size_2 = magnitude(v.rus_rho2_2);
-        const real rus_pivot_size_3 = magnitude(v.rus_r_1_t);
-        const real rus_pivot_size_4 = magnitude(v.rus_v_1_t);
-        const real inv_rus_rho2_1_t = m->inv_rus_rho2_1_t[i];
-        const real inv_rus_size = m->inv_rus_size[i];
-        const real inv_rus_size_t_3 = m->inv_rus_size_t_3[i];
-        const real rus_least_pivots = lesser(lesser(lesser(root(inv_rus_rho2_1_t*rus_pivot_size),
-            inv_rus_size*rus_pivot_size_3), inv_rus_size*rus_pivot_size_4),
-            root(inv_rus_size_t_3*rus_pivot_size_2));
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_in_platform_x = m->b_c_in_platform_x;
-        const real rus_platform_point_x = m->rus_platform_point_x[i];
-        const real rus_spread_t = b_c_in_platform_x - rus_platform_point_x;
-        const real b_c_in_platform_y = m->b_c_in_platform_y;
-        const real rus_platform_point_y = m->rus_platform_point_y[i];
-        const real rus_spread_t_2 = b_c_in_platform_y - rus_platform_point_y;
-        const real b_c_in_platform_z = m->b_c_in_platform_z;
-        const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real rus_spread_t_3 = b_c_in_platform_z - rus_platform_point_z;
-        const real rus_spread_t_4 = rus_spread_t*rus_spread_t + rus_spread_t_2*rus_spread_t_2 +
-            rus_spread_t_3*rus_spread_t_3;
-        /* (spread) rms distance of the platform points from their centroid */
-        gather(&terms[0*count + k], add, rus_spread_t_4);  /* spread_rus */
-        /* (rus-w_1) reciprocal vector 1 */
-        o[0*count + k] = -v.rus_w_1_t_7;
-        o[1*count + k] = -v.rus_w_1_t_8;
-        o[2*count + k] = -v.rus_w_1_t_9;
-        /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        o[3*count + k] = rus_least_pivots;
-        o[4*count + k] = v.rus_disc_1;
-        o[7*count + k] = (v.rus_w_1_t_7 + v.rus_w_1_t_8) + (v.rus_w_1_t_9 + (rus_least_pivots +
-            v.rus_disc_1));
-        const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t_3 = m->rus_size_t_3[i];
-        const real rus_size = m->rus_size[i];
-        o[6*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
-            UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(v.rus_v_1_t) >
-            TOLERANCE*rus_size);
-        o[5*count + k] = UNLESS(v.rus_disc_1 >= 0);
-    }
+    values_rus v;
+    stage_rus_X(m, w, i, j, X, &v);
+    stage_rus_H_condition(&v);
+    /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real rus_pivot_size = magnitude(v.rus_rho2_1);
+    const real rus_pivot_size_2 = magnitude(v.rus_rho2_2);
+    const real rus_pivot_size_3 = magnitude(v.rus_r_1_t);
+    const real rus_pivot_size_4 = magnitude(v.rus_v_1_t);
+    const real rus_least_pivots =
+        lesser(lesser(lesser(root(m->inv_rus_rho2_1_t[i]*rus_pivot_size),
+        m->inv_rus_size[i]*rus_pivot_size_3), m->inv_rus_size[i]*rus_pivot_size_4),
+        root(m->inv_rus_size_t_3[i]*rus_pivot_size_2));
+    /* (spread) rms distance of the platform points from their centroid */
+    const real rus_spread_t = m->b_c_in_platform_x - m->rus_platform_point_x[i];
+    const real rus_spread_t_2 = m->b_c_in_platform_y - m->rus_platform_point_y[i];
+    const real rus_spread_t_3 = m->b_c_in_platform_z - m->rus_platform_point_z[i];
+    const real rus_spread_t_4 = rus_spread_t*rus_spread_t + rus_spread_t_2*rus_spread_t_2 +
+        rus_spread_t_3*rus_spread_t_3;
+    /* (spread) */
+    gather(&terms[0*count + k], add, rus_spread_t_4);  /* spread_rus */
+    /* (rus-w_1) reciprocal vector 1 */
+    o[0*count + k] = -v.rus_w_1_t_7;
+    o[1*count + k] = -v.rus_w_1_t_8;
+    o[2*count + k] = -v.rus_w_1_t_9;
+    /* (rus-G) */
+    o[3*count + k] = rus_least_pivots;
+    o[4*count + k] = v.rus_disc_1;
+    o[7*count + k] = (v.rus_w_1_t_7 + v.rus_w_1_t_8) + (v.rus_w_1_t_9 + (rus_least_pivots +
+        v.rus_disc_1));
+    o[6*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
+        + UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) +
+        UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*m->rus_size[i]) +
+        UNLESS(magnitude(v.rus_v_1_t) > TOLERANCE*m->rus_size[i]);
+    o[5*count + k] = UNLESS(v.rus_disc_1 >= 0);
 }
 
-INLINE void condition_place_rus(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *H, real *pivots, real *reach, verdict *t)
+INLINE void condition_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count, const real
+    *o, real *H, real *pivots, real *reach, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        pivots[leg*w + k] = o[3*count + first + k];
-        reach[leg*w + k] = o[4*count + first + k];
-        t->unreachable[k] += o[5*count + first + k];
-        t->singular[k] += o[6*count + first + k];
-        t->total[k] += o[7*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    pivots[i*w + k] = o[3*count + at];
+    reach[i*w + k] = o[4*count + at];
+    t->unreachable[k] += o[5*count + at];
+    t->singular[k] += o[6*count + at];
+    t->total[k] += o[7*count + at];
 }
 
-INLINE void condition_after(const prepared *m, size_t w, const real *sums, real *lengths, verdict
-    *t)
+INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
+    *lengths, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (spread) rms distance of the platform points from their centroid */
-        const real spread_rus = sums[0*w + k];
-        const real spread_t = m->spread_t;
-        const real spread_ = root(spread_rus)*spread_t;
-        /* (spread) rms distance of the platform points from their centroid */
-        lengths[0*w + k] = spread_;
-        t->total[k] += spread_;
-    }
+    /* (spread) */
+    const real spread_rus = sums[0*w + k];
+    const real spread_ = root(spread_rus)*m->spread_t;
+    /* (spread) */
+    lengths[0*w + k] = spread_;
+    t->total[k] += spread_;
 }
 
-INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
+APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, verdict *t)
 {
     real sums[1] = {0};
     real terms_rus[LEGS(LEGS_OF_rus)] = {0}, o_rus[8*LEGS(LEGS_OF_rus)] = {0};
-    condition_before(m, 1, lengths, t);
-    condition_legs_rus(m, 1, 0, 1, 0, LEGS(LEGS_OF_rus), 0, X, terms_rus, o_rus);
-    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        condition_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, H, pivots, reach, t);
+    condition_before(m, 1, 0, lengths, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
+        condition_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, X, terms_rus, o_rus);
+    }
+    for (size_t i = 0; i < LEGS_OF_rus; ++i) {
+        condition_place_rus(1, i, 0, i, LEGS(LEGS_OF_rus), o_rus, H, pivots, reach, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
-    condition_after(m, 1, sums, lengths, t);
+    condition_after(m, 1, 0, sums, lengths, t);
 }
 
 /* ---- what users call, as steps over these ---- */
 
-INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
+int delta_M(const prepared *m, const real *X, real *M_out)
 {
     verdict why;
     start(1, &why);
@@ -3232,9 +3020,11 @@ INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NV, M_out);
     }
+    return code;
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -3248,7 +3038,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
     deliver(NV*NV, M, M_out);
 }
 
-INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
+int delta_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     verdict why;
     start(1, &why);
@@ -3261,9 +3051,11 @@ INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, 
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, Z_out);
     }
+    return code;
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -3278,7 +3070,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
     deliver(NV, Z, Z_out);
 }
 
-INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
+int delta_H(const prepared *m, const real *X, real *H_out)
 {
     verdict why;
     start(1, &why);
@@ -3287,9 +3079,11 @@ INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NU, H_out);
     }
+    return code;
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -3303,7 +3097,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
     deliver(NV*NU, H, H_out);
 }
 
-INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out, int *code)
+int delta_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
     verdict why;
     start(1, &why);
@@ -3312,9 +3106,11 @@ INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, q_out);
     }
+    return code;
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -3328,8 +3124,7 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
     deliver(NJ, q, q_out);
 }
 
-INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
-    *code)
+int delta_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     verdict why;
     start(1, &why);
@@ -3342,9 +3137,11 @@ INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, rea
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, qd_out);
     }
+    return code;
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -3360,8 +3157,8 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
     deliver(NJ, qd, qd_out);
 }
 
-INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out, int *code)
+int delta_joint_accelerations(const prepared *m, const real *X, const real *V, const real *A, real
+    *qdd_out)
 {
     verdict why;
     start(1, &why);
@@ -3375,9 +3172,11 @@ INLINE void joint_accelerations_one(const prepared *m, const real *X, const real
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, qdd_out);
     }
+    return code;
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -3394,8 +3193,8 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
     deliver(NJ, qdd, qdd_out);
 }
 
-INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
-    *Z_out, real *H_out, int *code)
+int delta_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real *Z_out, real
+    *H_out)
 {
     verdict why;
     start(1, &why);
@@ -3410,11 +3209,13 @@ INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NV, M_out);
         refuse(NV, Z_out);
         refuse(NV*NU, H_out);
     }
+    return code;
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -3482,8 +3283,8 @@ INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real
 static const size_t order_tau[] = {0, 1, 2};
 static const real sizes_tau[] = {1.0, 1.0, 4.0};
 
-INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *tau_out, int *code)
+int delta_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A, const
+    real *wrench, real *tau_out)
 {
     real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
@@ -3509,9 +3310,11 @@ INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, tau_out);
     }
+    return code;
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -3537,8 +3340,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 static const size_t order_A[] = {0, 1, 2};
 static const real sizes_A[] = {16.0, 16.0, 16.0};
 
-INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
-    const real *wrench, real *A_out, int *code)
+int delta_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau, const
+    real *wrench, real *A_out)
 {
     real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] =
         {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
@@ -3568,9 +3371,11 @@ INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, A_out);
     }
+    return code;
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -3598,21 +3403,28 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     deliver(NV, A, A_out);
 }
 
-INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
+int delta_complete_acceleration(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *completed_out)
 {
+    (void)m;
+    (void)X;
+    (void)V;
+    (void)wrench;
     verdict why;
     start(1, &why);
     check(NV, 1, A, why.invalid);
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, completed_out);
     }
+    return code;
 }
 
-INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces_out, int *code)
+int delta_leg_reactions(const prepared *m, const real *X, const real *V, const real *A, const real
+    *wrench, real *forces_out)
 {
     static const size_t places_forces[] = {0, 1, 2};
     real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
@@ -3644,13 +3456,15 @@ INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, c
     add_forces(NL, 3, 1, places_forces, solve_1, actuator, forces);
     check(NL*NL, 1, forces, why.overflow);
     copy(NL*NL, forces, forces_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NL*NL, forces_out);
     }
+    return code;
 }
 
-INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
-    *potential_out, int *code)
+int delta_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
+    *potential_out)
 {
     real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
@@ -3668,14 +3482,15 @@ INLINE void energy_one(const prepared *m, const real *X, const real *V, real *ki
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, kinetic_out);
         refuse(1, potential_out);
     }
+    return code;
 }
 
-INLINE void condition_one(const prepared *m, const real *X, real *sigma_out, real *legs_out, int
-    *code)
+int delta_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
     real H[NV*NU] = {0}, lengths[2] = {0}, reach[NL] = {0}, sigma[NV] = {0};
     verdict why;
@@ -3690,14 +3505,15 @@ INLINE void condition_one(const prepared *m, const real *X, real *sigma_out, rea
     check(2, 1, lengths, why.overflow);
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, sigma_out);
         refuse(NL, legs_out);
     }
+    return code;
 }
 
-INLINE void manipulability_one(const prepared *m, const real *X, real *measure_out, real
-    *isotropy_out, int *code)
+int delta_manipulability(const prepared *m, const real *X, real *measure_out, real *isotropy_out)
 {
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
         {0}, measure[1] = {0}, isotropy[1] = {0};
@@ -3714,14 +3530,16 @@ INLINE void manipulability_one(const prepared *m, const real *X, real *measure_o
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, measure_out);
         refuse(1, isotropy_out);
     }
+    return code;
 }
 
-INLINE void singularity_distance_one(const prepared *m, const real *X, real *actuators_out, real
-    *legs_out, int *code)
+int delta_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
+    *legs_out)
 {
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
         {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
@@ -3738,14 +3556,15 @@ INLINE void singularity_distance_one(const prepared *m, const real *X, real *act
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, actuators_out);
         refuse(1, legs_out);
     }
+    return code;
 }
 
-static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
-    int *code)
+static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
 {
     static const size_t places_gap[] = {0, 1, 2};
     real q[NJ] = {0}, q_of_inverse_kinematics_from_0[3] = {0}, subtract_1[NU] = {0}, gap[NU] = {0};
@@ -3767,12 +3586,14 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
     wrap_turns(NU, 1, places_gap, gap);
     check(NU, 1, gap, why.overflow);
     copy(NU, gap, gap_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, gap_out);
     }
+    return code;
 }
 
-static void slope_one(const prepared *m, const real *X, real *slope_out, int *code)
+static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     verdict why;
     start(1, &why);
@@ -3781,9 +3602,11 @@ static void slope_one(const prepared *m, const real *X, real *slope_out, int *co
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NU, slope_out);
     }
+    return code;
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -3794,12 +3617,12 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    mismatch_one(m, found, q_actuated, gap, &code);
+    code = mismatch_one(m, found, q_actuated, gap);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        slope_one(m, found, slope, &code);
+        code = slope_one(m, found, slope);
         if (code != OK) {
             break;
         }
@@ -3813,7 +3636,7 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            mismatch_one(m, trial, q_actuated, next, &tried);
+            tried = mismatch_one(m, trial, q_actuated, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -3831,8 +3654,8 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 }
 
 
-INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
-    *X_out, int *code)
+int delta_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real
+    *X_out)
 {
     real X[NQ] = {0};
     verdict why;
@@ -3845,13 +3668,17 @@ INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, co
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
-INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
+int delta_dissipation(const prepared *m, const real *X, const real *V, real *dissipation_out)
 {
+    (void)m;
+    (void)X;
     real subtract_1[NV] = {0};
     verdict why;
     start(1, &why);
@@ -3862,13 +3689,14 @@ INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, dissipation_out);
     }
+    return code;
 }
 
-INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
-    *code)
+int delta_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
     real M[NV*NV] = {0}, momentum[NV] = {0};
     verdict why;
@@ -3882,27 +3710,14 @@ INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, momentum_out);
     }
+    return code;
 }
 
-INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
-    int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], momentum[NV*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    M_run_lanes(m, X, M, &why);
-    product(NV, NV, 1, LANES, M, V, momentum);
-    add_up(NV, momentum, why.total);
-    suspect(&why, code);
-    deliver(NV, momentum, momentum_out);
-}
-
-INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
+int delta_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
     real q[NJ] = {0}, margins[NJ] = {0};
@@ -3915,28 +3730,14 @@ INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_ou
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, margins_out);
     }
+    return code;
 }
 
-INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
-{
-    static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
-    real X_in[NQ*LANES], q[NJ*LANES], margins[NJ*LANES];
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < NJ*LANES; ++i) {
-        margins[i] = q[i];
-    }
-    unlimited(NJ, NJ, LANES, places_margins, margins, why.invalid);
-    suspect(&why, code);
-    deliver(NJ, margins, margins_out);
-}
-
-INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
+int delta_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
     verdict why;
@@ -3949,28 +3750,14 @@ INLINE void within_limits_one(const prepared *m, const real *X, real *within_out
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, within_out);
     }
+    return code;
 }
 
-INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
-{
-    real X_in[NQ*LANES], q[NJ*LANES], subtract_1[NJ*LANES], within[LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < NJ*LANES; ++i) {
-        subtract_1[i] = q[i] - q[i];
-    }
-    not_negative(NJ, LANES, subtract_1, within, why.invalid);
-    add_up(1, within, why.total);
-    suspect(&why, code);
-    deliver(1, within, within_out);
-}
-
-INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
+int delta_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
     verdict why;
@@ -3980,26 +3767,14 @@ INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out
     take(NU, 1, delta_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, q_out);
     }
+    return code;
 }
 
-INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
-{
-    real X_in[NQ*LANES], q_of_inverse_kinematics[NJ*LANES], q[NU*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
-    take(NU, LANES, delta_ACTUATED, q_of_inverse_kinematics, q);
-    add_up(NU, q, why.total);
-    suspect(&why, code);
-    deliver(NU, q, q_out);
-}
-
-INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
-    *code)
+int delta_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
     verdict why;
@@ -4013,28 +3788,15 @@ INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, 
     take(NU, 1, delta_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, qd_out);
     }
+    return code;
 }
 
-INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
-    int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], qd_of_joint_rates[NJ*LANES], qd[NU*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
-    take(NU, LANES, delta_ACTUATED, qd_of_joint_rates, qd);
-    add_up(NU, qd, why.total);
-    suspect(&why, code);
-    deliver(NU, qd, qd_out);
-}
-
-INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out, int *code)
+int delta_actuator_accelerations(const prepared *m, const real *X, const real *V, const real *A,
+    real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
     verdict why;
@@ -4049,30 +3811,14 @@ INLINE void actuator_accelerations_one(const prepared *m, const real *X, const r
     take(NU, 1, delta_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, qdd_out);
     }
+    return code;
 }
 
-INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *qdd_out, int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd_of_joint_accelerations[NJ*LANES],
-        qdd[NU*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    A = side_by_side(NV, A, A_in, why.total);
-    joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
-    take(NU, LANES, delta_ACTUATED, qdd_of_joint_accelerations, qdd);
-    add_up(NU, qdd, why.total);
-    suspect(&why, code);
-    deliver(NU, qdd, qdd_out);
-}
-
-INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out, int *code)
+int delta_power(const prepared *m, const real *X, const real *V, const real *tau, real *power_out)
 {
     real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
     verdict why;
@@ -4088,30 +3834,14 @@ INLINE void power_one(const prepared *m, const real *X, const real *V, const rea
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, power_out);
     }
+    return code;
 }
 
-INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out, int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0},
-        power[LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    tau = side_by_side(NU, tau, tau_in, why.total);
-    H_run_lanes(m, X, H, &why);
-    product(NV, NU, 1, LANES, H, tau, times_1);
-    inner(NV, LANES, times_1, V, power);
-    add_up(1, power, why.total);
-    suspect(&why, code);
-    deliver(1, power, power_out);
-}
-
-INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
+int delta_retract(const real *X, const real *step, real *X_moved_out)
 {
     real X_moved[NQ] = {0};
     verdict why;
@@ -4126,12 +3856,14 @@ INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int 
     }
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_moved_out);
     }
+    return code;
 }
 
-INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
+int delta_difference(const real *X0, const real *X1, real *step_out)
 {
     real step[NV] = {0};
     verdict why;
@@ -4146,12 +3878,14 @@ INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *
     }
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, step_out);
     }
+    return code;
 }
 
-INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
+int delta_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     real subtract_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
     verdict why;
@@ -4173,654 +3907,180 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
     }
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
 /* ---- one state, and batches ---- */
 
-int delta_M(const prepared *model, const real *X, real *M)
+size_t delta_M_batch(const prepared *m, size_t n, const real *X, real *M, int *status)
 {
-    int code;
-    M_one(model, X, M, &code);
-    return code;
+    SIDE_BY_SIDE(M_lanes(m, X + NQ*i, M + NV*NV*i, codes), delta_M(m, X + NQ*j, M + NV*NV*j));
 }
 
-size_t delta_M_batch(const prepared *model, size_t n, const real *X, real *M, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = delta_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int delta_Z(const prepared *model, const real *X, const real *V, real *Z)
-{
-    int code;
-    Z_one(model, X, V, Z, &code);
-    return code;
-}
-
-size_t delta_Z_batch(const prepared *model, size_t n, const real *X, const real *V, real *Z, int
+size_t delta_Z_batch(const prepared *m, size_t n, const real *X, const real *V, real *Z, int
     *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = delta_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(Z_lanes(m, X + NQ*i, V + NV*i, Z + NV*i, codes), delta_Z(m, X + NQ*j, V + NV*j, Z +
+        NV*j));
 }
 
-int delta_H(const prepared *model, const real *X, real *H)
+size_t delta_H_batch(const prepared *m, size_t n, const real *X, real *H, int *status)
 {
-    int code;
-    H_one(model, X, H, &code);
-    return code;
+    SIDE_BY_SIDE(H_lanes(m, X + NQ*i, H + NV*NU*i, codes), delta_H(m, X + NQ*j, H + NV*NU*j));
 }
 
-size_t delta_H_batch(const prepared *model, size_t n, const real *X, real *H, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = delta_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int delta_inverse_kinematics(const prepared *model, const real *X, real *q)
-{
-    int code;
-    inverse_kinematics_one(model, X, q, &code);
-    return code;
-}
-
-size_t delta_inverse_kinematics_batch(const prepared *model, size_t n, const real *X, real *q, int
+size_t delta_inverse_kinematics_batch(const prepared *m, size_t n, const real *X, real *q, int
     *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = delta_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(inverse_kinematics_lanes(m, X + NQ*i, q + NJ*i, codes), delta_inverse_kinematics(m, X
+        + NQ*j, q + NJ*j));
 }
 
-int delta_joint_rates(const prepared *model, const real *X, const real *V, real *rates)
-{
-    int code;
-    joint_rates_one(model, X, V, rates, &code);
-    return code;
-}
-
-size_t delta_joint_rates_batch(const prepared *model, size_t n, const real *X, const real *V, real
+size_t delta_joint_rates_batch(const prepared *m, size_t n, const real *X, const real *V, real
     *rates, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = delta_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(joint_rates_lanes(m, X + NQ*i, V + NV*i, rates + NJ*i, codes), delta_joint_rates(m, X
+        + NQ*j, V + NV*j, rates + NJ*j));
 }
 
-int delta_joint_accelerations(const prepared *model, const real *X, const real *V, const real *A,
-    real *accelerations)
+size_t delta_joint_accelerations_batch(const prepared *m, size_t n, const real *X, const real *V,
+    const real *A, real *accelerations, int *status)
 {
-    int code;
-    joint_accelerations_one(model, X, V, A, accelerations, &code);
-    return code;
+    SIDE_BY_SIDE(joint_accelerations_lanes(m, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i,
+        codes), delta_joint_accelerations(m, X + NQ*j, V + NV*j, A + NV*j, accelerations + NJ*j));
 }
 
-size_t delta_joint_accelerations_batch(const prepared *model, size_t n, const real *X, const real
-    *V, const real *A, real *accelerations, int *status)
+size_t delta_dynamics_batch(const prepared *m, size_t n, const real *X, const real *V, real *M,
+    real *Z, real *H, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = delta_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
-                    accelerations + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(dynamics_lanes(m, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes),
+        delta_dynamics(m, X + NQ*j, V + NV*j, M + NV*NV*j, Z + NV*j, H + NV*NU*j));
 }
 
-int delta_dynamics(const prepared *model, const real *X, const real *V, real *M, real *Z, real *H)
-{
-    int code;
-    dynamics_one(model, X, V, M, Z, H, &code);
-    return code;
-}
-
-size_t delta_dynamics_batch(const prepared *model, size_t n, const real *X, const real *V, real
-    *M, real *Z, real *H, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = delta_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z + NV*(i +
-                    k), H + NV*NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int delta_inverse_dynamics(const prepared *model, const real *X, const real *V, const real *A,
-    const real *wrench, real *tau)
-{
-    int code;
-    inverse_dynamics_one(model, X, V, A, wrench, tau, &code);
-    return code;
-}
-
-size_t delta_inverse_dynamics_batch(const prepared *model, size_t n, const real *X, const real *V,
+size_t delta_inverse_dynamics_batch(const prepared *m, size_t n, const real *X, const real *V,
     const real *A, const real *wrench, real *tau, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
-                NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = delta_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k), wrench ?
-                    wrench + NW*(i + k) : NULL, tau + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(inverse_dynamics_lanes(m, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i :
+        NULL, tau + NU*i, codes), delta_inverse_dynamics(m, X + NQ*j, V + NV*j, A + NV*j, wrench ?
+        wrench + NW*j : NULL, tau + NU*j));
 }
 
-int delta_forward_dynamics(const prepared *model, const real *X, const real *V, const real *tau,
-    const real *wrench, real *A)
-{
-    int code;
-    forward_dynamics_one(model, X, V, tau, wrench, A, &code);
-    return code;
-}
-
-size_t delta_forward_dynamics_batch(const prepared *model, size_t n, const real *X, const real *V,
+size_t delta_forward_dynamics_batch(const prepared *m, size_t n, const real *X, const real *V,
     const real *tau, const real *wrench, real *A, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
-                NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = delta_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), wrench
-                    ? wrench + NW*(i + k) : NULL, A + NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(forward_dynamics_lanes(m, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i :
+        NULL, A + NV*i, codes), delta_forward_dynamics(m, X + NQ*j, V + NV*j, tau + NU*j, wrench ?
+        wrench + NW*j : NULL, A + NV*j));
 }
 
-int delta_complete_acceleration(const prepared *model, const real *X, const real *V, const real
-    *A, const real *wrench, real *completed)
+size_t delta_complete_acceleration_batch(const prepared *m, size_t n, const real *X, const real
+    *V, const real *A, const real *wrench, real *completed, int *status)
 {
-    int code;
-    (void)model, (void)X, (void)V, (void)wrench;
-    complete_acceleration_one(A, completed, &code);
-    return code;
+    ONE_BY_ONE(delta_complete_acceleration(m, X + NQ*j, V + NV*j, A + NV*j, wrench ? wrench + NW*j :
+        NULL, completed + NV*j));
 }
 
-size_t delta_complete_acceleration_batch(const prepared *model, size_t n, const real *X, const
-    real *V, const real *A, const real *wrench, real *completed, int *status)
+size_t delta_leg_reactions_batch(const prepared *m, size_t n, const real *X, const real *V, const
+    real *A, const real *wrench, real *forces, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = delta_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench
-            + NW*i : NULL, completed + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(delta_leg_reactions(m, X + NQ*j, V + NV*j, A + NV*j, wrench ? wrench + NW*j : NULL,
+        forces + 9*j));
 }
 
-int delta_leg_reactions(const prepared *model, const real *X, const real *V, const real *A, const
-    real *wrench, real *forces)
-{
-    int code;
-    leg_reactions_one(model, X, V, A, wrench, forces, &code);
-    return code;
-}
-
-size_t delta_leg_reactions_batch(const prepared *model, size_t n, const real *X, const real *V,
-    const real *A, const real *wrench, real *forces, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = delta_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i :
-            NULL, forces + 9*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int delta_energy(const prepared *model, const real *X, const real *V, real *kinetic, real
-    *potential)
-{
-    int code;
-    energy_one(model, X, V, kinetic, potential, &code);
-    return code;
-}
-
-size_t delta_energy_batch(const prepared *model, size_t n, const real *X, const real *V, real
+size_t delta_energy_batch(const prepared *m, size_t n, const real *X, const real *V, real
     *kinetic, real *potential, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = delta_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(delta_energy(m, X + NQ*j, V + NV*j, kinetic + j, potential + j));
 }
 
-int delta_condition(const prepared *model, const real *X, real *sigma, real *legs)
-{
-    int code;
-    condition_one(model, X, sigma, legs, &code);
-    return code;
-}
-
-size_t delta_condition_batch(const prepared *model, size_t n, const real *X, real *sigma, real
-    *legs, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = delta_condition(model, X + NQ*i, sigma + 3*i, legs + 3*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int delta_manipulability(const prepared *model, const real *X, real *measure, real *isotropy)
-{
-    int code;
-    manipulability_one(model, X, measure, isotropy, &code);
-    return code;
-}
-
-size_t delta_manipulability_batch(const prepared *model, size_t n, const real *X, real *measure,
-    real *isotropy, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = delta_manipulability(model, X + NQ*i, measure + i, isotropy + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int delta_singularity_distance(const prepared *model, const real *X, real *actuators, real *legs)
-{
-    int code;
-    singularity_distance_one(model, X, actuators, legs, &code);
-    return code;
-}
-
-size_t delta_singularity_distance_batch(const prepared *model, size_t n, const real *X, real
-    *actuators, real *legs, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = delta_singularity_distance(model, X + NQ*i, actuators + i, legs + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int delta_forward_kinematics(const prepared *model, const real *q_actuated, const real *X0, real
-    *X)
-{
-    int code;
-    forward_kinematics_one(model, q_actuated, X0, X, &code);
-    return code;
-}
-
-size_t delta_forward_kinematics_batch(const prepared *model, size_t n, const real *q_actuated,
-    const real *X0, real *X, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = delta_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int delta_dissipation(const prepared *model, const real *X, const real *V, real *dissipation)
-{
-    int code;
-    (void)model, (void)X;
-    dissipation_one(V, dissipation, &code);
-    return code;
-}
-
-size_t delta_dissipation_batch(const prepared *model, size_t n, const real *X, const real *V, real
-    *dissipation, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = delta_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int delta_momentum(const prepared *model, const real *X, const real *V, real *momentum)
-{
-    int code;
-    momentum_one(model, X, V, momentum, &code);
-    return code;
-}
-
-size_t delta_momentum_batch(const prepared *model, size_t n, const real *X, const real *V, real
-    *momentum, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = delta_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int delta_joint_margins(const prepared *model, const real *X, real *margins)
-{
-    int code;
-    joint_margins_one(model, X, margins, &code);
-    return code;
-}
-
-size_t delta_joint_margins_batch(const prepared *model, size_t n, const real *X, real *margins,
+size_t delta_condition_batch(const prepared *m, size_t n, const real *X, real *sigma, real *legs,
     int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = delta_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(delta_condition(m, X + NQ*j, sigma + 3*j, legs + 3*j));
 }
 
-int delta_within_limits(const prepared *model, const real *X, real *within)
+size_t delta_manipulability_batch(const prepared *m, size_t n, const real *X, real *measure, real
+    *isotropy, int *status)
 {
-    int code;
-    within_limits_one(model, X, within, &code);
-    return code;
+    ONE_BY_ONE(delta_manipulability(m, X + NQ*j, measure + j, isotropy + j));
 }
 
-size_t delta_within_limits_batch(const prepared *model, size_t n, const real *X, real *within, int
+size_t delta_singularity_distance_batch(const prepared *m, size_t n, const real *X, real
+    *actuators, real *legs, int *status)
+{
+    ONE_BY_ONE(delta_singularity_distance(m, X + NQ*j, actuators + j, legs + j));
+}
+
+size_t delta_forward_kinematics_batch(const prepared *m, size_t n, const real *q_actuated, const
+    real *X0, real *X, int *status)
+{
+    ONE_BY_ONE(delta_forward_kinematics(m, q_actuated + NU*j, X0 + NQ*j, X + NQ*j));
+}
+
+size_t delta_dissipation_batch(const prepared *m, size_t n, const real *X, const real *V, real
+    *dissipation, int *status)
+{
+    ONE_BY_ONE(delta_dissipation(m, X + NQ*j, V + NV*j, dissipation + j));
+}
+
+size_t delta_momentum_batch(const prepared *m, size_t n, const real *X, const real *V, real
+    *momentum, int *status)
+{
+    ONE_BY_ONE(delta_momentum(m, X + NQ*j, V + NV*j, momentum + NV*j));
+}
+
+size_t delta_joint_margins_batch(const prepared *m, size_t n, const real *X, real *margins, int
     *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            within_limits_lanes(model, X + NQ*i, within + i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = delta_within_limits(model, X + NQ*(i + k), within + (i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(delta_joint_margins(m, X + NQ*j, margins + NJ*j));
 }
 
-int delta_actuator_positions(const prepared *model, const real *X, real *q)
-{
-    int code;
-    actuator_positions_one(model, X, q, &code);
-    return code;
-}
-
-size_t delta_actuator_positions_batch(const prepared *model, size_t n, const real *X, real *q, int
+size_t delta_within_limits_batch(const prepared *m, size_t n, const real *X, real *within, int
     *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = delta_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(delta_within_limits(m, X + NQ*j, within + j));
 }
 
-int delta_actuator_rates(const prepared *model, const real *X, const real *V, real *rates)
+size_t delta_actuator_positions_batch(const prepared *m, size_t n, const real *X, real *q, int
+    *status)
 {
-    int code;
-    actuator_rates_one(model, X, V, rates, &code);
-    return code;
+    ONE_BY_ONE(delta_actuator_positions(m, X + NQ*j, q + NU*j));
 }
 
-size_t delta_actuator_rates_batch(const prepared *model, size_t n, const real *X, const real *V,
-    real *rates, int *status)
+size_t delta_actuator_rates_batch(const prepared *m, size_t n, const real *X, const real *V, real
+    *rates, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = delta_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(delta_actuator_rates(m, X + NQ*j, V + NV*j, rates + NU*j));
 }
 
-int delta_actuator_accelerations(const prepared *model, const real *X, const real *V, const real
-    *A, real *accelerations)
+size_t delta_actuator_accelerations_batch(const prepared *m, size_t n, const real *X, const real
+    *V, const real *A, real *accelerations, int *status)
 {
-    int code;
-    actuator_accelerations_one(model, X, V, A, accelerations, &code);
-    return code;
+    ONE_BY_ONE(delta_actuator_accelerations(m, X + NQ*j, V + NV*j, A + NV*j, accelerations + NU*j));
 }
 
-size_t delta_actuator_accelerations_batch(const prepared *model, size_t n, const real *X, const
-    real *V, const real *A, real *accelerations, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = delta_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
-                    accelerations + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int delta_power(const prepared *model, const real *X, const real *V, const real *tau, real *power)
-{
-    int code;
-    power_one(model, X, V, tau, power, &code);
-    return code;
-}
-
-size_t delta_power_batch(const prepared *model, size_t n, const real *X, const real *V, const real
+size_t delta_power_batch(const prepared *m, size_t n, const real *X, const real *V, const real
     *tau, real *power, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = delta_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power + (i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int delta_retract(const real *X, const real *step, real *X_moved)
-{
-    int code;
-    retract_one(X, step, X_moved, &code);
-    return code;
+    ONE_BY_ONE(delta_power(m, X + NQ*j, V + NV*j, tau + NU*j, power + j));
 }
 
 size_t delta_retract_batch(size_t n, const real *X, const real *step, real *X_moved, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = delta_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int delta_difference(const real *X0, const real *X1, real *step)
-{
-    int code;
-    difference_one(X0, X1, step, &code);
-    return code;
+    ONE_BY_ONE(delta_retract(X + NQ*j, step + NV*j, X_moved + NQ*j));
 }
 
 size_t delta_difference_batch(size_t n, const real *X0, const real *X1, real *step, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = delta_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int delta_interpolate(const real *X0, const real *X1, const real *s, real *X)
-{
-    int code;
-    interpolate_one(X0, X1, s, X, &code);
-    return code;
+    ONE_BY_ONE(delta_difference(X0 + NQ*j, X1 + NQ*j, step + NV*j));
 }
 
 size_t delta_interpolate_batch(size_t n, const real *X0, const real *X1, const real *s, real *X,
     int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = delta_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(delta_interpolate(X0 + NQ*j, X1 + NQ*j, s + j, X + NQ*j));
 }

@@ -185,13 +185,27 @@ INLINE int sum_is_finite(const real *x, size_t n)
     return is_finite(total(sum, LANES));
 }
 
+/* How many of some numbers are not finite. */
+APART real not_finite(size_t n, const real *x)
+{
+    real count = 0;
+    if (!sum_is_finite(x, n)) {
+        for (size_t i = 0; i < n; ++i) {
+            count += UNLESS(is_finite(x[i]));
+        }
+    }
+    return count;
+}
+
 /* Flag the states with entries that are not finite; the states stand side by side. */
 INLINE void check(size_t size, size_t w, const real *x, real *flags)
 {
-    if (!sum_is_finite(x, size*w)) {
-        for (size_t i = 0; i < size*w; ++i) {
-            flags[i%w] += UNLESS(is_finite(x[i]));
-        }
+    if (w == 1) {
+        flags[0] += not_finite(size, x);
+        return;
+    }
+    for (size_t i = 0; i < size*w; ++i) {
+        flags[i%w] += UNLESS(is_finite(x[i]));
     }
 }
 
@@ -246,18 +260,17 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE int judge(const verdict *t, int *code)
+INLINE int judge(const verdict *t)
 {
-    *code = t->invalid[0] > 0 ? INVALID
+    return t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
         : t->unreachable[0] > 0 ? UNREACHABLE
         : t->singular[0] > 0 ? SINGULAR
         : t->overflow[0] > 0 ? INVALID : OK;
-    return *code;
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
-INLINE void suspect(const verdict *t, int *code)
+APART void suspect(const verdict *t, int *code)
 {
     real flags[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -279,7 +292,7 @@ INLINE void blame(int code, verdict *t)
 }
 
 /* Outputs of an impossible state. */
-INLINE void refuse(size_t size, real *out)
+APART void refuse(size_t size, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
@@ -315,6 +328,32 @@ INLINE size_t record(const int *code, size_t w, int *status)
     }
     return failed;
 }
+
+/* Bodies of batches.  lanes: settles the states from number i on, side by side, in codes; one: settles
+   state j, what fails and what is left too. */
+#define SIDE_BY_SIDE(lanes, one) \
+    size_t failed = 0, w; \
+    for (size_t i = 0; i < n; i += w) { \
+        int codes[LANES] = {INVALID}; \
+        w = LANES > 1 && i + LANES <= n ? LANES : 1; \
+        if (w > 1) { \
+            lanes; \
+        } \
+        for (size_t j = i; j < i + w; ++j) { \
+            if (codes[j - i] != OK) { \
+                codes[j - i] = one; \
+            } \
+        } \
+        failed += record(codes, w, status ? status + i : NULL); \
+    } \
+    return failed
+#define ONE_BY_ONE(one) \
+    size_t failed = 0; \
+    for (size_t j = 0; j < n; ++j) { \
+        const int code = one; \
+        failed += record(&code, 1, status ? status + j : NULL); \
+    } \
+    return failed
 
 /* What the reader of specifications allows; floats have less to offer. */
 #define ROUNDED BY_TYPE(1e-5, 1e-06, 1e-06)  /* lengths and products of unit vectors */
@@ -687,15 +726,15 @@ int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_m
            without the mass at the connection point */
         const real rrr_d_c_in_axes2_yy = -rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_y -
             rrr_h_2_in_spec2_x*rrr_w_2_in_axes2_y;
-        /* (h_star) first moment about the platform origin */
+        /* (h_star) */
         const real rrr_h_star_t = rrr_link2_mass*rrr_platform_point_x;
         const real rrr_h_star_t_2 = rrr_link2_mass*rrr_platform_point_y;
-        /* (J_star) inertia tensor about the platform origin */
+        /* (J_star) */
         const real rrr_J_star_t = rrr_platform_point_y*rrr_platform_point_y;
         const real rrr_J_star_t_2 = rrr_J_star_t + rrr_platform_point_x*rrr_platform_point_x;
         const real rrr_J_star_t_3 = rrr_J_star_t*rrr_link2_mass;
         const real rrr_J_star_t_4 = rrr_J_star_t_2*rrr_link2_mass;
-        /* (potential) potential energy */
+        /* (potential) */
         const real rrr_potential_t = rrr_base_frame_xx*rrr_base_point_x +
             rrr_base_frame_yx*rrr_base_point_y;
         const real rrr_potential_t_2 = rrr_base_frame_xy*rrr_base_point_x +
@@ -748,10 +787,10 @@ int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_m
     }
     /* (m_star) mass of the platform with the gathered masses */
     const real m_star = m_star_of_legs + platform_mass;
-    /* (h_star) first moment about the platform origin */
+    /* (h_star) */
     const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
     const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
-    /* (J_star) inertia tensor about the platform origin */
+    /* (J_star) */
     const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + J_star_t_3;
     const real J_star_t_5 = J_star_in_platform_xx - J_star_t_4 - J_star_t_5_of_legs -
         platform_inertia_zz;
@@ -1320,10 +1359,8 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real R_xx = cosine(X_2);
     const real R_yx = sine(X_2);
     /* (h_star) first moment about the platform origin */
-    const real h_star_in_platform_x = m->h_star_in_platform_x;
-    const real h_star_in_platform_y = m->h_star_in_platform_y;
-    const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
-    const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
+    const real h_star_x = R_xx*m->h_star_in_platform_x - R_yx*m->h_star_in_platform_y;
+    const real h_star_y = R_xx*m->h_star_in_platform_y + R_yx*m->h_star_in_platform_x;
     v->R_xx = R_xx;
     v->R_yx = R_yx;
     v->h_star_x = h_star_x;
@@ -1344,47 +1381,37 @@ INLINE void stage_crank_X(const prepared *m, size_t w, size_t i, size_t j, const
     /* (crank-S) from the base point to the connection point */
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
-    const real crank_platform_point_x = m->crank_platform_point_x[i];
-    const real crank_platform_point_y = m->crank_platform_point_y[i];
-    const real crank_q_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y;
-    const real crank_q_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x;
-    const real crank_base_point_x = m->crank_base_point_x[i];
+    const real crank_q_x = R_xx*m->crank_platform_point_x[i] -
+        R_yx*m->crank_platform_point_y[i];
+    const real crank_q_y = R_xx*m->crank_platform_point_y[i] +
+        R_yx*m->crank_platform_point_x[i];
     const real t_x = X[0*w + j];
-    const real crank_S_x = crank_q_x + t_x - crank_base_point_x;
-    const real crank_base_point_y = m->crank_base_point_y[i];
+    const real crank_S_x = crank_q_x + t_x - m->crank_base_point_x[i];
     const real t_y = X[1*w + j];
-    const real crank_S_y = crank_q_y + t_y - crank_base_point_y;
-    const real crank_base_frame_xx = m->crank_base_frame_xx[i];
-    const real crank_base_frame_yx = m->crank_base_frame_yx[i];
-    const real crank_S_in_turn1_x = crank_S_x*crank_base_frame_xx +
-        crank_S_y*crank_base_frame_yx;
-    const real crank_base_frame_xy = m->crank_base_frame_xy[i];
-    const real crank_base_frame_yy = m->crank_base_frame_yy[i];
-    const real crank_S_in_turn1_y = crank_S_x*crank_base_frame_xy +
-        crank_S_y*crank_base_frame_yy;
+    const real crank_S_y = crank_q_y + t_y - m->crank_base_point_y[i];
+    const real crank_S_in_turn1_x = crank_S_x*m->crank_base_frame_xx[i] +
+        crank_S_y*m->crank_base_frame_yx[i];
+    const real crank_S_in_turn1_y = crank_S_x*m->crank_base_frame_xy[i] +
+        crank_S_y*m->crank_base_frame_yy[i];
     /* (crank-rho2_1) squared amplitude */
-    const real crank_size_t = m->crank_size_t[i];
-    const real crank_rho2_1 = crank_size_t*(crank_S_in_turn1_x*crank_S_in_turn1_x +
+    const real crank_rho2_1 = m->crank_size_t[i]*(crank_S_in_turn1_x*crank_S_in_turn1_x +
         crank_S_in_turn1_y*crank_S_in_turn1_y);
     /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
     const real crank_c_1_t = 1/(root(crank_rho2_1));
-    const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
-    const real crank_c_1 = crank_S_in_turn1_x*crank_c_1_t*crank_platform_joint_offset_x;
+    const real crank_c_1 = crank_S_in_turn1_x*crank_c_1_t*m->crank_platform_joint_offset_x[i];
     /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
-    const real crank_s_1 = crank_S_in_turn1_y*crank_c_1_t*crank_platform_joint_offset_x;
+    const real crank_s_1 = crank_S_in_turn1_y*crank_c_1_t*m->crank_platform_joint_offset_x[i];
     /* (crank-S_dot) velocity of the connection point */
-    const real axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 -
-        crank_base_frame_xx*crank_s_1;
-    const real axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 -
-        crank_base_frame_yx*crank_s_1;
+    const real axis_y_crank_axes1_x = m->crank_base_frame_xy[i]*crank_c_1 -
+        m->crank_base_frame_xx[i]*crank_s_1;
+    const real axis_x_crank_axes1_x = m->crank_base_frame_yy[i]*crank_c_1 -
+        m->crank_base_frame_yx[i]*crank_s_1;
     /* (crank-n_c) direction of the constraint force */
-    const real crank_n_c_in_axes1_x = m->crank_n_c_in_axes1_x[i];
-    const real crank_n_c_x = axis_x_crank_axes1_x*crank_n_c_in_axes1_x;
-    const real crank_n_c_y = -axis_y_crank_axes1_x*crank_n_c_in_axes1_x;
+    const real crank_n_c_x = axis_x_crank_axes1_x*m->crank_n_c_in_axes1_x[i];
+    const real crank_n_c_y = -axis_y_crank_axes1_x*m->crank_n_c_in_axes1_x[i];
     /* (crank-w_1) reciprocal vector 1 */
-    const real crank_w_1_in_axes1_y = m->crank_w_1_in_axes1_y[i];
-    const real crank_w_1_x = axis_y_crank_axes1_x*crank_w_1_in_axes1_y;
-    const real crank_w_1_y = axis_x_crank_axes1_x*crank_w_1_in_axes1_y;
+    const real crank_w_1_x = axis_y_crank_axes1_x*m->crank_w_1_in_axes1_y[i];
+    const real crank_w_1_y = axis_x_crank_axes1_x*m->crank_w_1_in_axes1_y[i];
     /* (crank-H_a_1) moment of the column's unit force about the platform origin */
     const real crank_H_a_1_z = crank_q_x*crank_w_1_y - crank_q_y*crank_w_1_x;
     /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
@@ -1429,12 +1456,11 @@ INLINE void stage_crank_A_V_X(size_t w, size_t j, const real *V, values_crank *v
 INLINE void stage_crank_M_dynamics(const prepared *m, size_t i, values_crank *v)
 {
     /* (crank-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real crank_d_G_in_axes1_yy = m->crank_d_G_in_axes1_yy[i];
-    const real crank_Q_t = v->axis_y_crank_axes1_x*crank_d_G_in_axes1_yy;
+    const real crank_Q_t = v->axis_y_crank_axes1_x*m->crank_d_G_in_axes1_yy[i];
     const real crank_Q_xx = v->axis_y_crank_axes1_x*crank_Q_t;
     const real crank_Q_xy = v->axis_x_crank_axes1_x*crank_Q_t;
     const real crank_Q_yy =
-        v->axis_x_crank_axes1_x*v->axis_x_crank_axes1_x*crank_d_G_in_axes1_yy;
+        v->axis_x_crank_axes1_x*v->axis_x_crank_axes1_x*m->crank_d_G_in_axes1_yy[i];
     /* (M_ta) coupling block of M */
     const real crank_M_ta_t = crank_Q_xy*v->crank_q_x - crank_Q_xx*v->crank_q_y;
     const real crank_M_ta_t_2 = crank_Q_yy*v->crank_q_x - crank_Q_xy*v->crank_q_y;
@@ -1469,20 +1495,16 @@ INLINE void stage_crank_constraint_bias_dynamics(size_t w, size_t j, const real 
 INLINE void stage_crank_legs_required(const prepared *m, size_t i, values_crank *v)
 {
     /* (crank-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-    const real crank_J_1_in_spec1_zz = m->crank_J_1_in_spec1_zz[i];
-    const real crank_h_1_in_spec1_x = m->crank_h_1_in_spec1_x[i];
-    const real crank_h_1_in_spec1_y = m->crank_h_1_in_spec1_y[i];
-    const real crank_mu_1_t = m->crank_mu_1_t[i];
-    const real crank_mu_1_t_2 = m->crank_mu_1_t_2[i];
-    const real crank_w_1_in_axes1_y = m->crank_w_1_in_axes1_y[i];
-    const real crank_mu_1_in_axes1_z = crank_h_1_in_spec1_y*(v->crank_c_1*crank_mu_1_t +
-        crank_mu_1_t_2*v->crank_s_1) +
-        crank_J_1_in_spec1_zz*crank_w_1_in_axes1_y*(v->axis_x_crank_axes1_x*v->crank_S_ddot_y
+    const real crank_mu_1_in_axes1_z =
+        m->crank_h_1_in_spec1_y[i]*(v->crank_c_1*m->crank_mu_1_t[i] +
+        m->crank_mu_1_t_2[i]*v->crank_s_1) +
+        m->crank_J_1_in_spec1_zz[i]*m->crank_w_1_in_axes1_y[i]*(v->axis_x_crank_axes1_x*v->crank_S_ddot_y
         + v->axis_y_crank_axes1_x*v->crank_S_ddot_x) -
-        crank_h_1_in_spec1_x*(v->crank_c_1*crank_mu_1_t_2 - crank_mu_1_t*v->crank_s_1);
+        m->crank_h_1_in_spec1_x[i]*(v->crank_c_1*m->crank_mu_1_t_2[i] -
+        m->crank_mu_1_t[i]*v->crank_s_1);
     /* (crank-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
-    const real crank_G_in_axes1_y = crank_mu_1_in_axes1_z*crank_w_1_in_axes1_y;
+    const real crank_G_in_axes1_y = crank_mu_1_in_axes1_z*m->crank_w_1_in_axes1_y[i];
     /* (crank-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real crank_c_t = v->axis_y_crank_axes1_x*crank_G_in_axes1_y;
@@ -1509,68 +1531,55 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (rrr-S) from the base point to the connection point */
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
-    const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-    const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-    const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-    const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-    const real rrr_base_point_x = m->rrr_base_point_x[i];
+    const real rrr_q_x = R_xx*m->rrr_platform_point_x[i] - R_yx*m->rrr_platform_point_y[i];
+    const real rrr_q_y = R_xx*m->rrr_platform_point_y[i] + R_yx*m->rrr_platform_point_x[i];
     const real t_x = X[0*w + j];
-    const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
-    const real rrr_base_point_y = m->rrr_base_point_y[i];
+    const real rrr_S_x = rrr_q_x + t_x - m->rrr_base_point_x[i];
     const real t_y = X[1*w + j];
-    const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
+    const real rrr_S_y = rrr_q_y + t_y - m->rrr_base_point_y[i];
     /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 1 */
     const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-    const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-    const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-    const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
+    const real rrr_Kd_1 = m->rrr_Kd_1_t[i] + R(0.5)*rrr_Kd_1_t_3 - m->rrr_Kd_1_t_2[i];
     /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-    const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-    const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-    const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-    const real rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx +
-        rrr_S_y*rrr_base_frame_yx);
+    const real rrr_Kc_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xx[i] +
+        rrr_S_y*m->rrr_base_frame_yx[i]);
     /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-    const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-    const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-    const real rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy +
-        rrr_S_y*rrr_base_frame_yy);
+    const real rrr_Ks_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xy[i] +
+        rrr_S_y*m->rrr_base_frame_yy[i]);
     /* (rrr-rho2_1) squared amplitude */
     const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
     /* (rrr-disc_1) discriminant */
     const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
     /* (rrr-root_1) root, with the sign of the branch */
-    const real rrr_branch_1 = m->rrr_branch_1[i];
-    const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+    const real rrr_root_1 = m->rrr_branch_1[i]*root(rrr_disc_1);
     /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
     const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
     const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
     /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
     const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
     /* (rrr-x_2) from the origin of joint 2 to the connection point */
-    const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-    const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-        rrr_joint2_offset_x;
+    const real rrr_x_2_in_axes1_x = m->inv_rrr_size_t[i]*rrr_Kd_1*m->rrr_joint2_offset_x[i] -
+        m->rrr_joint2_offset_x[i];
     /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-    const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-    const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+    const real rrr_c_2 =
+        m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*rrr_x_2_in_axes1_x;
     /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
     const real rrr_s_2 =
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        -m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*rrr_root_1;
     /* (rrr-r_1) from joint 1 to the connection point, along the links */
-    const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-    const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+    const real rrr_r_1_in_axes1_y = m->rrr_platform_joint_offset_x[i]*rrr_s_2;
+    const real rrr_r_1_in_axes1_x = m->rrr_joint2_offset_x[i] +
+        rrr_c_2*m->rrr_platform_joint_offset_x[i];
     const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
     const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
     /* (rrr-w_1) reciprocal vector 1 */
     const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
     const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-    const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
-        rrr_base_frame_xx*rrr_w_1_t;
-    const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
-        rrr_base_frame_yx*rrr_w_1_t;
+    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*rrr_w_1_t_2 -
+        m->rrr_base_frame_xx[i]*rrr_w_1_t;
+    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*rrr_w_1_t_2 -
+        m->rrr_base_frame_yx[i]*rrr_w_1_t;
     const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
     const real rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x;
     const real rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x;
@@ -1629,17 +1638,14 @@ INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     /* (rrr-W_1) centripetal tensor of link 1 */
     const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
     /* (rrr-omega_2) angular velocity of link 2 */
-    const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
     const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
-        rrr_w_2_in_axes2_y*(v->axis_x_rrr_axes2_x*rrr_S_dot_y +
+        m->rrr_w_2_in_axes2_y[i]*(v->axis_x_rrr_axes2_x*rrr_S_dot_y +
         v->axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*v->rrr_r_1_in_axes2_x);
     /* (rrr-W_2) centripetal tensor of link 2 */
     const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
     /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-    const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-    const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-        rrr_W_1_t*v->rrr_c_2*rrr_joint2_offset_x;
+    const real rrr_bias_in_axes2_x = -rrr_W_2_t*m->rrr_platform_joint_offset_x[i] -
+        rrr_W_1_t*v->rrr_c_2*m->rrr_joint2_offset_x[i];
     v->rrr_S_dot_t = rrr_S_dot_t;
     v->rrr_S_dot_t_2 = rrr_S_dot_t_2;
     v->rrr_S_dot_x = rrr_S_dot_x;
@@ -1662,19 +1668,14 @@ INLINE void stage_rrr_A_V_X(size_t w, size_t j, const real *V, values_rrr *v)
 INLINE void stage_rrr_H_condition(const prepared *m, size_t i, values_rrr *v)
 {
     /* (rrr-r_1) from joint 1 to the connection point, along the links */
-    const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-    const real rrr_r_1_in_axes2_y = v->rrr_c_2*rrr_platform_joint_offset_x*v->rrr_s_2 -
+    const real rrr_r_1_in_axes2_y = v->rrr_c_2*m->rrr_platform_joint_offset_x[i]*v->rrr_s_2 -
         v->rrr_r_1_in_axes1_x*v->rrr_s_2;
     /* (rrr-w_1) reciprocal vector 1 */
     const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
-    const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-    const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-    const real rrr_w_1_x = rrr_w_1_in_axes2_x*(rrr_base_frame_yy*v->rrr_w_1_t_2 -
-        rrr_base_frame_yx*v->rrr_w_1_t);
-    const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-    const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-    const real rrr_w_1_y = -rrr_w_1_in_axes2_x*(rrr_base_frame_xy*v->rrr_w_1_t_2 -
-        rrr_base_frame_xx*v->rrr_w_1_t);
+    const real rrr_w_1_x = rrr_w_1_in_axes2_x*(m->rrr_base_frame_yy[i]*v->rrr_w_1_t_2 -
+        m->rrr_base_frame_yx[i]*v->rrr_w_1_t);
+    const real rrr_w_1_y = -rrr_w_1_in_axes2_x*(m->rrr_base_frame_xy[i]*v->rrr_w_1_t_2 -
+        m->rrr_base_frame_xx[i]*v->rrr_w_1_t);
     /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
     const real rrr_H_a_1_z = v->rrr_q_x*rrr_w_1_y - v->rrr_q_y*rrr_w_1_x;
     v->rrr_r_1_in_axes2_y = rrr_r_1_in_axes2_y;
@@ -1686,29 +1687,22 @@ INLINE void stage_rrr_H_condition(const prepared *m, size_t i, values_rrr *v)
 INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
 {
     /* (rrr-w_2) reciprocal vector 2 */
-    const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
     const real rrr_w_2_in_axes2_x =
-        -v->rrr_r_1_in_axes2_x*v->rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y;
+        -v->rrr_r_1_in_axes2_x*v->rrr_w_1_in_axes2_x*m->rrr_w_2_in_axes2_y[i];
     /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
        inertia and weight */
-    const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
-    const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*v->rrr_r_1_in_axes2_x;
-    const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
-    const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-    const real rrr_d_Gamma_2_in_axes2_x = v->rrr_w_1_in_axes2_x*(rrr_J_2_in_spec2_zz -
-        rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y;
+    const real rrr_d_Gamma_2_t_2 = m->rrr_d_Gamma_2_t[i]*v->rrr_r_1_in_axes2_x;
+    const real rrr_d_Gamma_2_in_axes2_x = v->rrr_w_1_in_axes2_x*(m->rrr_J_2_in_spec2_zz[i] -
+        rrr_d_Gamma_2_t_2) - m->rrr_h_2_in_spec2_y[i];
     /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
-    const real rrr_Jc_1_in_axes1_zz = m->rrr_Jc_1_in_axes1_zz[i];
-    const real rrr_d_Gamma_1_in_axes2_x = v->rrr_w_1_in_axes2_x*(rrr_Jc_1_in_axes1_zz -
-        rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y;
+    const real rrr_d_Gamma_1_in_axes2_x = v->rrr_w_1_in_axes2_x*(m->rrr_Jc_1_in_axes1_zz[i] -
+        rrr_d_Gamma_2_t_2) - m->rrr_h_2_in_spec2_y[i];
     /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
        without the mass at the connection point */
-    const real rrr_d_Gamma_2_in_axes2_y = m->rrr_d_Gamma_2_in_axes2_y[i];
-    const real rrr_d_phi_2_t = m->rrr_d_phi_2_t[i];
-    const real rrr_d_c_in_axes2_xy = rrr_d_phi_2_t -
-        rrr_d_Gamma_2_in_axes2_y*v->rrr_w_1_in_axes2_x -
-        rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x;
+    const real rrr_d_c_in_axes2_xy = m->rrr_d_phi_2_t[i] -
+        m->rrr_d_Gamma_2_in_axes2_y[i]*v->rrr_w_1_in_axes2_x -
+        m->rrr_d_Gamma_2_in_axes2_y[i]*rrr_w_2_in_axes2_x;
     v->rrr_w_2_in_axes2_x = rrr_w_2_in_axes2_x;
     v->rrr_d_Gamma_2_in_axes2_x = rrr_d_Gamma_2_in_axes2_x;
     v->rrr_d_Gamma_1_in_axes2_x = rrr_d_Gamma_1_in_axes2_x;
@@ -1721,46 +1715,33 @@ INLINE void stage_rrr_inverse_kinematics_potential(const prepared *m, size_t w, 
     /* (rrr-S) from the base point to the connection point */
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
-    const real rrr_base_point_x = m->rrr_base_point_x[i];
-    const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-    const real rrr_platform_point_y = m->rrr_platform_point_y[i];
     const real t_x = X[0*w + j];
-    const real rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x -
-        R_yx*rrr_platform_point_y;
-    const real rrr_base_point_y = m->rrr_base_point_y[i];
+    const real rrr_S_x = t_x + R_xx*m->rrr_platform_point_x[i] - m->rrr_base_point_x[i] -
+        R_yx*m->rrr_platform_point_y[i];
     const real t_y = X[1*w + j];
-    const real rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x -
-        rrr_base_point_y;
+    const real rrr_S_y = t_y + R_xx*m->rrr_platform_point_y[i] +
+        R_yx*m->rrr_platform_point_x[i] - m->rrr_base_point_y[i];
     /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 1 */
     const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-    const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-    const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-    const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
+    const real rrr_Kd_1 = m->rrr_Kd_1_t[i] + R(0.5)*rrr_Kd_1_t_3 - m->rrr_Kd_1_t_2[i];
     /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-    const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-    const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-    const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-    const real rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx +
-        rrr_S_y*rrr_base_frame_yx);
+    const real rrr_Kc_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xx[i] +
+        rrr_S_y*m->rrr_base_frame_yx[i]);
     /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-    const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-    const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-    const real rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy +
-        rrr_S_y*rrr_base_frame_yy);
+    const real rrr_Ks_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xy[i] +
+        rrr_S_y*m->rrr_base_frame_yy[i]);
     /* (rrr-rho2_1) squared amplitude */
     const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
     /* (rrr-disc_1) discriminant */
     const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
     /* (rrr-root_1) root, with the sign of the branch */
-    const real rrr_branch_1 = m->rrr_branch_1[i];
-    const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+    const real rrr_root_1 = m->rrr_branch_1[i]*root(rrr_disc_1);
     /* (rrr-q_1) displacement of joint 1 */
     const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
     /* (rrr-x_2) from the origin of joint 2 to the connection point */
-    const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-    const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-        rrr_joint2_offset_x;
+    const real rrr_x_2_in_axes1_x = m->inv_rrr_size_t[i]*rrr_Kd_1*m->rrr_joint2_offset_x[i] -
+        m->rrr_joint2_offset_x[i];
     v->rrr_Kd_1 = rrr_Kd_1;
     v->rrr_Kc_1 = rrr_Kc_1;
     v->rrr_Ks_1 = rrr_Ks_1;
@@ -1780,50 +1761,40 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
         v->axis_y_rrr_axes2_x*v->rrr_S_ddot_x;
     /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
     const real rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - v->rrr_bias_in_axes2_x;
-    const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
     const real rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y -
-        v->rrr_W_1_t*rrr_joint2_offset_x*v->rrr_s_2;
+        v->rrr_W_1_t*m->rrr_joint2_offset_x[i]*v->rrr_s_2;
     /* (rrr-B_1) acceleration tensor of link 1 */
     const real rrr_B_1_in_axes1_xy = -rrr_rel_in_axes2_x*v->rrr_w_1_in_axes2_x;
     /* (rrr-alpha_2) angular acceleration of link 2 */
-    const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-    const real rrr_alpha_2_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
+    const real rrr_alpha_2_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_in_axes2_y +
         rrr_B_1_in_axes1_xy*v->rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
     /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
-    const real gravity_x = m->gravity_x;
-    const real gravity_y = m->gravity_y;
-    const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x + v->axis_y_rrr_axes2_x*gravity_y
-        - v->axis_x_rrr_axes2_x*gravity_x;
-    const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - v->axis_x_rrr_axes2_x*gravity_y
-        - v->axis_y_rrr_axes2_x*gravity_x;
+    const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x +
+        v->axis_y_rrr_axes2_x*m->gravity_y - v->axis_x_rrr_axes2_x*m->gravity_x;
+    const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y -
+        v->axis_x_rrr_axes2_x*m->gravity_y - v->axis_y_rrr_axes2_x*m->gravity_x;
     /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
-    const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
-    const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-    const real rrr_mu_2_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z +
-        rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y;
+    const real rrr_mu_2_in_axes2_z = m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_in_axes2_z +
+        rrr_acc_2_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
+        rrr_acc_2_in_axes2_x*m->rrr_h_2_in_spec2_y[i];
     /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-    const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
-    const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
-    const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
-    const real rrr_mu_1_t = m->rrr_mu_1_t[i];
-    const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
-    const real rrr_mu_1_in_axes1_z = rrr_h_1_in_spec1_y*(v->rrr_c_1*rrr_mu_1_t +
-        rrr_mu_1_t_2*v->rrr_s_1) - rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz -
-        rrr_h_1_in_spec1_x*(v->rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v->rrr_s_1);
+    const real rrr_mu_1_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v->rrr_c_1*m->rrr_mu_1_t[i] +
+        m->rrr_mu_1_t_2[i]*v->rrr_s_1) - rrr_B_1_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i] -
+        m->rrr_h_1_in_spec1_x[i]*(v->rrr_c_1*m->rrr_mu_1_t_2[i] -
+        m->rrr_mu_1_t[i]*v->rrr_s_1);
     /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
     /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
-    const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y;
+    const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
     /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rrr_c_in_axes2_x = v->rrr_W_2_t*rrr_h_2_in_spec2_x +
-        rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
+    const real rrr_c_in_axes2_x = v->rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
+        rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
         v->rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*v->rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
-    const real rrr_c_in_axes2_y = v->rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
-        rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x;
+    const real rrr_c_in_axes2_y = v->rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] - rrr_G_in_axes2_y -
+        rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_x[i];
     v->rrr_acc_2_in_axes2_x = rrr_acc_2_in_axes2_x;
     v->rrr_acc_2_in_axes2_y = rrr_acc_2_in_axes2_y;
     v->rrr_c_in_axes2_x = rrr_c_in_axes2_x;
@@ -1833,754 +1804,682 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_V(w, k, V, &v);
-        stage_X(m, w, k, X, &v);
-        /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = v.W_p_xx*v.h_star_x - Z_p_t;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = v.W_p_xx*v.h_star_y - Z_p_t_2;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real Z_q_z = gravity_x*v.h_star_y - gravity_y*v.h_star_x;
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-        s[2*w + k] = v.h_star_x;
-        s[3*w + k] = v.h_star_y;
-        s[4*w + k] = Z_p_x;
-        s[5*w + k] = Z_p_y;
-        s[6*w + k] = Z_q_z;
-    }
+    values v;
+    stage_V(w, k, V, &v);
+    stage_X(m, w, k, X, &v);
+    /* (Z_p) centripetal force and weight of the platform */
+    const real Z_p_x = v.W_p_xx*v.h_star_x - m->Z_p_t;
+    const real Z_p_y = v.W_p_xx*v.h_star_y - m->Z_p_t_2;
+    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    const real Z_q_z = m->gravity_x*v.h_star_y - m->gravity_y*v.h_star_x;
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
+    s[2*w + k] = v.h_star_x;
+    s[3*w + k] = v.h_star_y;
+    s[4*w + k] = Z_p_x;
+    s[5*w + k] = Z_p_y;
+    s[6*w + k] = Z_q_z;
 }
 
-INLINE void dynamics_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
+INLINE void dynamics_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_crank v;
-        stage_crank_X(m, w, i, j, s, X, &v);
-        stage_crank_M_dynamics(m, i, &v);
-        stage_crank_constraint_bias_dynamics(w, j, V, &v);
-        /* (crank-u_1) centripetal acceleration of the connection point */
-        const real omega_z = V[2*w + j];
-        const real crank_u_1_x = -v.crank_S_dot_t_2*omega_z;
-        const real crank_u_1_t = v.crank_S_dot_t*omega_z;
-        /* (crank-rel_o) remainder of: acceleration of the connection point left to the joint
-           accelerations */
-        const real crank_w_1_in_axes1_y = m->crank_w_1_in_axes1_y[i];
-        const real crank_rel_o_in_axes1_x = v.axis_x_crank_axes1_x*crank_u_1_x +
-            v.axis_y_crank_axes1_x*crank_u_1_t +
-            v.crank_S_dot_in_axes1_y*v.crank_S_dot_in_axes1_y*crank_w_1_in_axes1_y;
-        /* (crank-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-           reference points */
-        const real crank_J_1_in_spec1_zz = m->crank_J_1_in_spec1_zz[i];
-        const real crank_h_1_in_spec1_x = m->crank_h_1_in_spec1_x[i];
-        const real crank_h_1_in_spec1_y = m->crank_h_1_in_spec1_y[i];
-        const real crank_mu_1_t = m->crank_mu_1_t[i];
-        const real crank_mu_1_t_2 = m->crank_mu_1_t_2[i];
-        const real crank_mu_1_o_in_axes1_z = crank_h_1_in_spec1_y*(v.crank_c_1*crank_mu_1_t +
-            crank_mu_1_t_2*v.crank_s_1) +
-            crank_J_1_in_spec1_zz*crank_w_1_in_axes1_y*(v.axis_y_crank_axes1_x*crank_u_1_x -
-            v.axis_x_crank_axes1_x*crank_u_1_t) - crank_h_1_in_spec1_x*(v.crank_c_1*crank_mu_1_t_2
-            - crank_mu_1_t*v.crank_s_1);
-        /* (crank-G_o) remainder of: force at the connection point that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real crank_G_o_in_axes1_y = crank_mu_1_o_in_axes1_z*crank_w_1_in_axes1_y;
-        /* (crank-U) velocity and gravity terms of the leg force */
-        const real crank_U_x = v.axis_y_crank_axes1_x*crank_G_o_in_axes1_y;
-        const real crank_U_y = v.axis_x_crank_axes1_x*crank_G_o_in_axes1_y;
-        /* (Z_a) rotational part of Z */
-        const real crank_Z_a_t = crank_U_y*v.crank_q_x - crank_U_x*v.crank_q_y;
-        /* (crank-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-           */
-        const real crank_n_c_in_axes1_x = m->crank_n_c_in_axes1_x[i];
-        const real crank_gamma_c1 = crank_n_c_in_axes1_x*crank_rel_o_in_axes1_x;
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, v.crank_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, v.crank_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, v.crank_Q_yy);  /* M_tt_yy_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[3*count + k], add, v.crank_M_ta_t);  /* M_ta_xz_of_legs */
-        gather(&terms[4*count + k], add, v.crank_M_ta_t_2);  /* M_ta_yz_of_legs */
-        /* (M_aa) rotational block of M */
-        gather(&terms[5*count + k], add, v.crank_M_aa_t);  /* M_aa_zz_of_legs */
-        /* (Z_t) translational part of Z */
-        gather(&terms[6*count + k], add, crank_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[7*count + k], add, crank_U_y);  /* Z_t_y_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[8*count + k], add, crank_Z_a_t);  /* Z_a_z_of_legs */
-        /* (crank-w_1) reciprocal vector 1 */
-        o[0*count + k] = v.crank_w_1_x;
-        o[1*count + k] = v.crank_w_1_y;
-        /* (crank-H_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = v.crank_H_a_1_z;
-        /* (crank-n_c) direction of the constraint force */
-        o[3*count + k] = v.crank_n_c_x;
-        o[4*count + k] = v.crank_n_c_y;
-        /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[5*count + k] = v.crank_Hk_a_1_z;
-        /* (crank-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-           */
-        o[6*count + k] = crank_gamma_c1;
-        o[8*count + k] = (v.crank_w_1_x + (v.crank_w_1_y + v.crank_H_a_1_z)) + ((v.crank_n_c_x +
-            v.crank_n_c_y) + (v.crank_Hk_a_1_z + crank_gamma_c1));
-        const real crank_root_1_t = m->crank_root_1_t[i];
-        o[7*count + k] = UNLESS(magnitude(v.crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
-    }
+    values_crank v;
+    stage_crank_X(m, w, i, j, s, X, &v);
+    stage_crank_M_dynamics(m, i, &v);
+    stage_crank_constraint_bias_dynamics(w, j, V, &v);
+    /* (crank-u_1) centripetal acceleration of the connection point */
+    const real omega_z = V[2*w + j];
+    const real crank_u_1_x = -v.crank_S_dot_t_2*omega_z;
+    const real crank_u_1_t = v.crank_S_dot_t*omega_z;
+    /* (crank-rel_o) remainder of: acceleration of the connection point left to the joint
+       accelerations */
+    const real crank_rel_o_in_axes1_x = v.axis_x_crank_axes1_x*crank_u_1_x +
+        v.axis_y_crank_axes1_x*crank_u_1_t +
+        v.crank_S_dot_in_axes1_y*v.crank_S_dot_in_axes1_y*m->crank_w_1_in_axes1_y[i];
+    /* (crank-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
+    const real crank_mu_1_o_in_axes1_z =
+        m->crank_h_1_in_spec1_y[i]*(v.crank_c_1*m->crank_mu_1_t[i] +
+        m->crank_mu_1_t_2[i]*v.crank_s_1) +
+        m->crank_J_1_in_spec1_zz[i]*m->crank_w_1_in_axes1_y[i]*(v.axis_y_crank_axes1_x*crank_u_1_x
+        - v.axis_x_crank_axes1_x*crank_u_1_t) -
+        m->crank_h_1_in_spec1_x[i]*(v.crank_c_1*m->crank_mu_1_t_2[i] -
+        m->crank_mu_1_t[i]*v.crank_s_1);
+    /* (crank-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real crank_G_o_in_axes1_y = crank_mu_1_o_in_axes1_z*m->crank_w_1_in_axes1_y[i];
+    /* (crank-U) velocity and gravity terms of the leg force */
+    const real crank_U_x = v.axis_y_crank_axes1_x*crank_G_o_in_axes1_y;
+    const real crank_U_y = v.axis_x_crank_axes1_x*crank_G_o_in_axes1_y;
+    /* (Z_a) rotational part of Z */
+    const real crank_Z_a_t = crank_U_y*v.crank_q_x - crank_U_x*v.crank_q_y;
+    /* (crank-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+       */
+    const real crank_gamma_c1 = m->crank_n_c_in_axes1_x[i]*crank_rel_o_in_axes1_x;
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v.crank_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.crank_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.crank_Q_yy);  /* M_tt_yy_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[3*count + k], add, v.crank_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, v.crank_M_ta_t_2);  /* M_ta_yz_of_legs */
+    /* (M_aa) rotational block of M */
+    gather(&terms[5*count + k], add, v.crank_M_aa_t);  /* M_aa_zz_of_legs */
+    /* (Z_t) translational part of Z */
+    gather(&terms[6*count + k], add, crank_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[7*count + k], add, crank_U_y);  /* Z_t_y_of_legs */
+    /* (Z_a) */
+    gather(&terms[8*count + k], add, crank_Z_a_t);  /* Z_a_z_of_legs */
+    /* (crank-w_1) reciprocal vector 1 */
+    o[0*count + k] = v.crank_w_1_x;
+    o[1*count + k] = v.crank_w_1_y;
+    /* (crank-H_a_1) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v.crank_H_a_1_z;
+    /* (crank-n_c) direction of the constraint force */
+    o[3*count + k] = v.crank_n_c_x;
+    o[4*count + k] = v.crank_n_c_y;
+    /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
+    o[5*count + k] = v.crank_Hk_a_1_z;
+    /* (crank-gamma_c1) */
+    o[6*count + k] = crank_gamma_c1;
+    o[8*count + k] = (v.crank_w_1_x + (v.crank_w_1_y + v.crank_H_a_1_z)) + ((v.crank_n_c_x +
+        v.crank_n_c_y) + (v.crank_Hk_a_1_z + crank_gamma_c1));
+    o[7*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
+        TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
 }
 
-INLINE void dynamics_place_crank(size_t w, size_t count, const real *o, size_t first, real *H,
-    real *Hk, real *constraint_bias, verdict *t)
+INLINE void dynamics_place_crank(size_t w, size_t k, size_t at, size_t count, const real *o, real
+    *H, real *Hk, real *constraint_bias, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[0*w + k] = o[0*count + first + k];
-        H[NU*w + k] = o[1*count + first + k];
-        H[2*NU*w + k] = o[2*count + first + k];
-        Hk[0*w + k] = o[3*count + first + k];
-        Hk[NC*w + k] = o[4*count + first + k];
-        Hk[2*NC*w + k] = o[5*count + first + k];
-        constraint_bias[0*w + k] = o[6*count + first + k];
-        t->singular[k] += o[7*count + first + k];
-        t->total[k] += o[8*count + first + k];
-    }
+    H[0*w + k] = o[0*count + at];
+    H[NU*w + k] = o[1*count + at];
+    H[2*NU*w + k] = o[2*count + at];
+    Hk[0*w + k] = o[3*count + at];
+    Hk[NC*w + k] = o[4*count + at];
+    Hk[2*NC*w + k] = o[5*count + at];
+    constraint_bias[0*w + k] = o[6*count + at];
+    t->singular[k] += o[7*count + at];
+    t->total[k] += o[8*count + at];
 }
 
-INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
+INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_X(m, w, i, j, s, X, &v);
-        stage_rrr_V_X(m, w, i, j, V, &v);
-        stage_rrr_M_dynamics(m, i, &v);
-        /* (rrr-u_1) centripetal acceleration of the connection point */
-        const real omega_z = V[2*w + j];
-        const real rrr_u_1_x = -omega_z*v.rrr_S_dot_t_2;
-        const real rrr_u_1_t = omega_z*v.rrr_S_dot_t;
-        const real rrr_u_1_in_axes2_x = v.axis_x_rrr_axes2_x*rrr_u_1_x +
-            v.axis_y_rrr_axes2_x*rrr_u_1_t;
-        const real rrr_u_1_in_axes2_y = v.axis_y_rrr_axes2_x*rrr_u_1_x -
-            v.axis_x_rrr_axes2_x*rrr_u_1_t;
-        /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-           */
-        const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - v.rrr_bias_in_axes2_x;
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
-            v.rrr_W_1_t*rrr_joint2_offset_x*v.rrr_s_2;
-        /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
-        const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*v.rrr_w_1_in_axes2_x;
-        /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_alpha_2_o_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y +
-            rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
-        /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + v.axis_y_rrr_axes2_x*gravity_y -
-            v.axis_x_rrr_axes2_x*gravity_x;
-        const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - v.axis_x_rrr_axes2_x*gravity_y -
-            v.axis_y_rrr_axes2_x*gravity_x;
-        /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-           reference points */
-        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
-        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
-        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-        const real rrr_mu_2_o_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
-            rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y;
-        /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-           reference points */
-        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
-        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
-        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
-        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
-        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
-        const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(v.rrr_c_1*rrr_mu_1_t +
-            rrr_mu_1_t_2*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
-            rrr_h_1_in_spec1_x*(v.rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v.rrr_s_1);
-        /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
-           connection point left out */
-        const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
-        /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y;
-        /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-           connection point */
-        const real rrr_c_o_in_axes2_x = v.rrr_W_2_t*rrr_h_2_in_spec2_x +
-            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
-            v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
-        const real rrr_c_o_in_axes2_y = v.rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
-            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x;
-        /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rrr_d_c_in_axes2_yy = m->rrr_d_c_in_axes2_yy[i];
-        const real rrr_Q_t = rrr_h_2_in_spec2_y*(v.rrr_w_1_in_axes2_x + v.rrr_w_2_in_axes2_x) -
-            rrr_d_c_in_axes2_yy - v.rrr_d_Gamma_1_in_axes2_x*v.rrr_w_1_in_axes2_x -
-            v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
-        const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
-        const real rrr_Q_t_3 = v.axis_x_rrr_axes2_x*rrr_Q_t_2 +
-            v.axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
-        const real rrr_Q_t_4 = v.axis_y_rrr_axes2_x*rrr_Q_t_2 -
-            v.axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
-        const real rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2*v.axis_x_rrr_axes2_x*rrr_Q_t_3;
-        const real rrr_Q_xy = v.axis_x_rrr_axes2_x*rrr_Q_t_4 + v.axis_y_rrr_axes2_x*rrr_Q_t_3;
-        const real rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2*v.axis_y_rrr_axes2_x*rrr_Q_t_4;
-        /* (rrr-U) velocity and gravity terms of the leg force */
-        const real rrr_U_x = -v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
-            v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
-        const real rrr_U_y = v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
-            v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
-        /* (M_ta) coupling block of M */
-        const real rrr_M_ta_t = rrr_Q_xy*v.rrr_q_x - rrr_Q_xx*v.rrr_q_y;
-        const real rrr_M_ta_t_2 = rrr_Q_yy*v.rrr_q_x - rrr_Q_xy*v.rrr_q_y;
-        /* (M_aa) rotational block of M */
-        const real rrr_M_aa_t = rrr_M_ta_t_2*v.rrr_q_x - rrr_M_ta_t*v.rrr_q_y;
-        /* (Z_a) rotational part of Z */
-        const real rrr_Z_a_t = rrr_U_y*v.rrr_q_x - rrr_U_x*v.rrr_q_y;
-        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_H_a_1_z = v.rrr_q_x*v.rrr_w_1_y - v.rrr_q_y*v.rrr_w_1_x;
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, rrr_Q_yy);  /* M_tt_yy_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[3*count + k], add, rrr_M_ta_t);  /* M_ta_xz_of_legs */
-        gather(&terms[4*count + k], add, rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
-        /* (M_aa) rotational block of M */
-        gather(&terms[5*count + k], add, rrr_M_aa_t);  /* M_aa_zz_of_legs */
-        /* (Z_t) translational part of Z */
-        gather(&terms[6*count + k], add, rrr_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[7*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[8*count + k], add, rrr_Z_a_t);  /* Z_a_z_of_legs */
-        /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = v.rrr_w_1_x;
-        o[1*count + k] = v.rrr_w_1_y;
-        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = rrr_H_a_1_z;
-        o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + rrr_H_a_1_z);
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        const real rrr_size = m->rrr_size[i];
-        o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
+    values_rrr v;
+    stage_rrr_X(m, w, i, j, s, X, &v);
+    stage_rrr_V_X(m, w, i, j, V, &v);
+    stage_rrr_M_dynamics(m, i, &v);
+    /* (rrr-u_1) centripetal acceleration of the connection point */
+    const real omega_z = V[2*w + j];
+    const real rrr_u_1_x = -omega_z*v.rrr_S_dot_t_2;
+    const real rrr_u_1_t = omega_z*v.rrr_S_dot_t;
+    const real rrr_u_1_in_axes2_x = v.axis_x_rrr_axes2_x*rrr_u_1_x +
+        v.axis_y_rrr_axes2_x*rrr_u_1_t;
+    const real rrr_u_1_in_axes2_y = v.axis_y_rrr_axes2_x*rrr_u_1_x -
+        v.axis_x_rrr_axes2_x*rrr_u_1_t;
+    /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - v.rrr_bias_in_axes2_x;
+    const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
+        v.rrr_W_1_t*m->rrr_joint2_offset_x[i]*v.rrr_s_2;
+    /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
+    const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*v.rrr_w_1_in_axes2_x;
+    /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real rrr_alpha_2_o_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_o_in_axes2_y +
+        rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
+    /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
+    const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + v.axis_y_rrr_axes2_x*m->gravity_y
+        - v.axis_x_rrr_axes2_x*m->gravity_x;
+    const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - v.axis_x_rrr_axes2_x*m->gravity_y
+        - v.axis_y_rrr_axes2_x*m->gravity_x;
+    /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real rrr_mu_2_o_in_axes2_z = m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z +
+        rrr_acc_2_o_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
+        rrr_acc_2_o_in_axes2_x*m->rrr_h_2_in_spec2_y[i];
+    /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
+    const real rrr_mu_1_o_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] +
+        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i] -
+        m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v.rrr_s_1);
+    /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+       connection point left out */
+    const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
+    /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
+    /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
+    const real rrr_c_o_in_axes2_x = v.rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
+        v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
+    const real rrr_c_o_in_axes2_y = v.rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] - rrr_G_o_in_axes2_y
+        - rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i];
+    /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rrr_Q_t = m->rrr_h_2_in_spec2_y[i]*(v.rrr_w_1_in_axes2_x +
+        v.rrr_w_2_in_axes2_x) - m->rrr_d_c_in_axes2_yy[i] -
+        v.rrr_d_Gamma_1_in_axes2_x*v.rrr_w_1_in_axes2_x -
+        v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
+    const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
+    const real rrr_Q_t_3 = v.axis_x_rrr_axes2_x*rrr_Q_t_2 +
+        v.axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+    const real rrr_Q_t_4 = v.axis_y_rrr_axes2_x*rrr_Q_t_2 -
+        v.axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+    const real rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v.axis_x_rrr_axes2_x*rrr_Q_t_3;
+    const real rrr_Q_xy = v.axis_x_rrr_axes2_x*rrr_Q_t_4 + v.axis_y_rrr_axes2_x*rrr_Q_t_3;
+    const real rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v.axis_y_rrr_axes2_x*rrr_Q_t_4;
+    /* (rrr-U) velocity and gravity terms of the leg force */
+    const real rrr_U_x = -v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
+        v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
+    const real rrr_U_y = v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
+        v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
+    /* (M_ta) */
+    const real rrr_M_ta_t = rrr_Q_xy*v.rrr_q_x - rrr_Q_xx*v.rrr_q_y;
+    const real rrr_M_ta_t_2 = rrr_Q_yy*v.rrr_q_x - rrr_Q_xy*v.rrr_q_y;
+    /* (M_aa) */
+    const real rrr_M_aa_t = rrr_M_ta_t_2*v.rrr_q_x - rrr_M_ta_t*v.rrr_q_y;
+    /* (Z_a) */
+    const real rrr_Z_a_t = rrr_U_y*v.rrr_q_x - rrr_U_x*v.rrr_q_y;
+    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+    const real rrr_H_a_1_z = v.rrr_q_x*v.rrr_w_1_y - v.rrr_q_y*v.rrr_w_1_x;
+    /* (M_tt) */
+    gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, rrr_Q_yy);  /* M_tt_yy_of_legs */
+    /* (M_ta) */
+    gather(&terms[3*count + k], add, rrr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    /* (M_aa) */
+    gather(&terms[5*count + k], add, rrr_M_aa_t);  /* M_aa_zz_of_legs */
+    /* (Z_t) */
+    gather(&terms[6*count + k], add, rrr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[7*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
+    /* (Z_a) */
+    gather(&terms[8*count + k], add, rrr_Z_a_t);  /* Z_a_z_of_legs */
+    /* (rrr-w_1) reciprocal vector 1 */
+    o[0*count + k] = v.rrr_w_1_x;
+    o[1*count + k] = v.rrr_w_1_y;
+    /* (rrr-H_a_1) */
+    o[2*count + k] = rrr_H_a_1_z;
+    o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + rrr_H_a_1_z);
+    o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
+        + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
+    o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void dynamics_place_rrr(size_t w, size_t count, const real *o, size_t first, real *H,
-    verdict *t)
+INLINE void dynamics_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
+    *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[1*w + k] = o[0*count + first + k];
-        H[(NU + 1)*w + k] = o[1*count + first + k];
-        H[(2*NU + 1)*w + k] = o[2*count + first + k];
-        t->unreachable[k] += o[3*count + first + k];
-        t->singular[k] += o[4*count + first + k];
-        t->total[k] += o[5*count + first + k];
-    }
+    H[1*w + k] = o[0*count + at];
+    H[(NU + 1)*w + k] = o[1*count + at];
+    H[(2*NU + 1)*w + k] = o[2*count + at];
+    t->unreachable[k] += o[3*count + at];
+    t->singular[k] += o[4*count + at];
+    t->total[k] += o[5*count + at];
 }
 
-INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const real *sums, real *M,
-    real *Z, verdict *t)
+INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
+    real *M, real *Z, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (M_tt) translational block of M */
-        const real M_tt_xx_of_legs = sums[0*w + k];
-        const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_xx_of_legs + m_star;
-        const real M_tt_yy_of_legs = sums[2*w + k];
-        const real M_tt_yy = M_tt_yy_of_legs + m_star;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xz_of_legs = sums[3*w + k];
-        const real h_star_y = s[3*w + k];
-        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-        const real M_ta_yz_of_legs = sums[4*w + k];
-        const real h_star_x = s[2*w + k];
-        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
-        /* (M_aa) rotational block of M */
-        const real J_star_zz = m->J_star_zz;
-        const real M_aa_zz_of_legs = sums[5*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-        /* (Z_t) translational part of Z */
-        const real Z_p_x = s[4*w + k];
-        const real Z_t_x_of_legs = sums[6*w + k];
-        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[5*w + k];
-        const real Z_t_y_of_legs = sums[7*w + k];
-        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        /* (Z_a) rotational part of Z */
-        const real Z_a_z_of_legs = sums[8*w + k];
-        const real Z_q_z = s[6*w + k];
-        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
-        /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        const real M_tt_xy = sums[1*w + k];
-        M[1*w + k] = M_tt_xy;
-        M[NV*w + k] = M_tt_xy;
-        M[(NV + 1)*w + k] = M_tt_yy;
-        /* (M_ta) coupling block of M */
-        M[2*w + k] = M_ta_xz;
-        M[2*NV*w + k] = M_ta_xz;
-        M[(NV + 2)*w + k] = M_ta_yz;
-        M[(2*NV + 1)*w + k] = M_ta_yz;
-        /* (M_aa) rotational block of M */
-        M[(2*NV + 2)*w + k] = M_aa_zz;
-        /* (Z_t) translational part of Z */
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-        /* (Z_a) rotational part of Z */
-        Z[2*w + k] = Z_a_z;
-        t->total[k] += ((M_tt_xx + M_tt_xy) + (M_tt_yy + M_ta_xz)) + ((M_ta_yz + M_aa_zz) + (Z_t_x
-            + (Z_t_y + Z_a_z)));
-    }
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_yy_of_legs = sums[2*w + k];
+    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    /* (M_ta) */
+    const real M_ta_xz_of_legs = sums[3*w + k];
+    const real h_star_y = s[3*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yz_of_legs = sums[4*w + k];
+    const real h_star_x = s[2*w + k];
+    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    /* (M_aa) */
+    const real M_aa_zz_of_legs = sums[5*w + k];
+    const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
+    /* (Z_t) */
+    const real Z_p_x = s[4*w + k];
+    const real Z_t_x_of_legs = sums[6*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[5*w + k];
+    const real Z_t_y_of_legs = sums[7*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    /* (Z_a) */
+    const real Z_a_z_of_legs = sums[8*w + k];
+    const real Z_q_z = s[6*w + k];
+    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    /* (M_ta) */
+    M[2*w + k] = M_ta_xz;
+    M[2*NV*w + k] = M_ta_xz;
+    M[(NV + 2)*w + k] = M_ta_yz;
+    M[(2*NV + 1)*w + k] = M_ta_yz;
+    /* (M_aa) */
+    M[(2*NV + 2)*w + k] = M_aa_zz;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    /* (Z_a) */
+    Z[2*w + k] = Z_a_z;
+    t->total[k] += ((M_tt_xx + M_tt_xy) + (M_tt_yy + M_ta_xz)) + ((M_ta_yz + M_aa_zz) + (Z_t_x
+        + (Z_t_y + Z_a_z)));
 }
 
-INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
+APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, real *Hk, real *constraint_bias, verdict *t)
 {
     real s[7] = {0}, sums[9] = {0};
     real terms_crank[9*LEGS(LEGS_OF_crank)] = {0}, o_crank[9*LEGS(LEGS_OF_crank)] = {0};
     real terms_rrr[9*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
-    dynamics_before(m, 1, X, V, s);
-    dynamics_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), 0, X, V, terms_crank, o_crank);
-    dynamics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, V, terms_rrr, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        dynamics_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, H, Hk, constraint_bias, t);
+    dynamics_before(m, 1, 0, X, V, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
+        dynamics_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), 0, s, X, V, terms_crank, o_crank);
+    }
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        dynamics_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, V, terms_rrr, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        dynamics_place_crank(1, 0, i, LEGS(LEGS_OF_crank), o_crank, H, Hk, constraint_bias, t);
     }
     for (size_t n = 0; n < 9; ++n) {
         sums[n] = total(terms_crank + n*LEGS(LEGS_OF_crank), LEGS_OF_crank);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        dynamics_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, t);
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        dynamics_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
-    dynamics_after(m, 1, s, sums, M, Z, t);
+    dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
-INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
-    real *H, real *Hk, real *constraint_bias, verdict *t)
+APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
+    real *restrict Z, real *restrict H, real *restrict Hk, real *restrict constraint_bias, verdict
+    *restrict t)
 {
     real s[7*LANES], sums[9*LANES];
     real o_crank[9*LANES];
     real o_rrr[6*LANES];
-    dynamics_before(m, LANES, X, V, s);
+    for (size_t k = 0; k < LANES; ++k) {
+        dynamics_before(m, LANES, k, X, V, s);
+    }
     clear(sums, 9*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        dynamics_legs_crank(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_crank);
-        dynamics_place_crank(LANES, LANES, o_crank, 0, H, Hk, constraint_bias, t);
+    for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_legs_crank(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_crank);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_place_crank(LANES, k, k, LANES, o_crank, H, Hk, constraint_bias, t);
+        }
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        dynamics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rrr);
-        dynamics_place_rrr(LANES, LANES, o_rrr, 0, H, t);
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
+        }
     }
-    dynamics_after(m, LANES, s, sums, M, Z, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        dynamics_after(m, LANES, k, s, sums, M, Z, t);
+    }
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-        s[2*w + k] = v.h_star_x;
-        s[3*w + k] = v.h_star_y;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
+    s[2*w + k] = v.h_star_x;
+    s[3*w + k] = v.h_star_y;
 }
 
-INLINE void M_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void M_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_crank v;
-        stage_crank_X(m, w, i, j, s, X, &v);
-        stage_crank_M_dynamics(m, i, &v);
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, v.crank_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, v.crank_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, v.crank_Q_yy);  /* M_tt_yy_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[3*count + k], add, v.crank_M_ta_t);  /* M_ta_xz_of_legs */
-        gather(&terms[4*count + k], add, v.crank_M_ta_t_2);  /* M_ta_yz_of_legs */
-        /* (M_aa) rotational block of M */
-        gather(&terms[5*count + k], add, v.crank_M_aa_t);  /* M_aa_zz_of_legs */
-        const real crank_root_1_t = m->crank_root_1_t[i];
-        o[0*count + k] = UNLESS(magnitude(v.crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
-    }
+    values_crank v;
+    stage_crank_X(m, w, i, j, s, X, &v);
+    stage_crank_M_dynamics(m, i, &v);
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v.crank_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.crank_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v.crank_Q_yy);  /* M_tt_yy_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[3*count + k], add, v.crank_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, v.crank_M_ta_t_2);  /* M_ta_yz_of_legs */
+    /* (M_aa) rotational block of M */
+    gather(&terms[5*count + k], add, v.crank_M_aa_t);  /* M_aa_zz_of_legs */
+    o[0*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
+        TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
 }
 
-INLINE void M_place_crank(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void M_place_crank(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o[0*count + first + k];
-    }
+    t->singular[k] += o[0*count + at];
 }
 
-INLINE void M_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_X(m, w, i, j, s, X, &v);
-        stage_rrr_M_dynamics(m, i, &v);
-        /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rrr_Q_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
-        const real rrr_Q_t_2 = v.rrr_c_1*v.rrr_c_2 - v.rrr_s_1*v.rrr_s_2;
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real axis_y_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_xy - rrr_Q_t*rrr_base_frame_xx;
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real axis_x_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_yy - rrr_Q_t*rrr_base_frame_yx;
-        const real rrr_d_c_in_axes2_yy = m->rrr_d_c_in_axes2_yy[i];
-        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-        const real rrr_Q_t_3 = rrr_h_2_in_spec2_y*(v.rrr_w_1_in_axes2_x + v.rrr_w_2_in_axes2_x) -
-            rrr_d_c_in_axes2_yy - v.rrr_d_Gamma_1_in_axes2_x*v.rrr_w_1_in_axes2_x -
-            v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
-        const real rrr_Q_t_4 = R(0.5)*rrr_Q_t_3;
-        const real rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 +
-            axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
-        const real rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 -
-            axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
-        const real rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2*axis_x_rrr_axes2_x*rrr_Q_t_5;
-        const real rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_6 + axis_y_rrr_axes2_x*rrr_Q_t_5;
-        const real rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2*axis_y_rrr_axes2_x*rrr_Q_t_6;
-        /* (M_ta) coupling block of M */
-        const real rrr_M_ta_t = rrr_Q_xy*v.rrr_q_x - rrr_Q_xx*v.rrr_q_y;
-        const real rrr_M_ta_t_2 = rrr_Q_yy*v.rrr_q_x - rrr_Q_xy*v.rrr_q_y;
-        /* (M_aa) rotational block of M */
-        const real rrr_M_aa_t = rrr_M_ta_t_2*v.rrr_q_x - rrr_M_ta_t*v.rrr_q_y;
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, rrr_Q_yy);  /* M_tt_yy_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[3*count + k], add, rrr_M_ta_t);  /* M_ta_xz_of_legs */
-        gather(&terms[4*count + k], add, rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
-        /* (M_aa) rotational block of M */
-        gather(&terms[5*count + k], add, rrr_M_aa_t);  /* M_aa_zz_of_legs */
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        const real rrr_size = m->rrr_size[i];
-        o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
+    values_rrr v;
+    stage_rrr_X(m, w, i, j, s, X, &v);
+    stage_rrr_M_dynamics(m, i, &v);
+    /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rrr_Q_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
+    const real rrr_Q_t_2 = v.rrr_c_1*v.rrr_c_2 - v.rrr_s_1*v.rrr_s_2;
+    const real axis_y_rrr_axes2_x = rrr_Q_t_2*m->rrr_base_frame_xy[i] -
+        rrr_Q_t*m->rrr_base_frame_xx[i];
+    const real axis_x_rrr_axes2_x = rrr_Q_t_2*m->rrr_base_frame_yy[i] -
+        rrr_Q_t*m->rrr_base_frame_yx[i];
+    const real rrr_Q_t_3 = m->rrr_h_2_in_spec2_y[i]*(v.rrr_w_1_in_axes2_x +
+        v.rrr_w_2_in_axes2_x) - m->rrr_d_c_in_axes2_yy[i] -
+        v.rrr_d_Gamma_1_in_axes2_x*v.rrr_w_1_in_axes2_x -
+        v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
+    const real rrr_Q_t_4 = R(0.5)*rrr_Q_t_3;
+    const real rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 +
+        axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+    const real rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 -
+        axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+    const real rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*axis_x_rrr_axes2_x*rrr_Q_t_5;
+    const real rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_6 + axis_y_rrr_axes2_x*rrr_Q_t_5;
+    const real rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*axis_y_rrr_axes2_x*rrr_Q_t_6;
+    /* (M_ta) */
+    const real rrr_M_ta_t = rrr_Q_xy*v.rrr_q_x - rrr_Q_xx*v.rrr_q_y;
+    const real rrr_M_ta_t_2 = rrr_Q_yy*v.rrr_q_x - rrr_Q_xy*v.rrr_q_y;
+    /* (M_aa) */
+    const real rrr_M_aa_t = rrr_M_ta_t_2*v.rrr_q_x - rrr_M_ta_t*v.rrr_q_y;
+    /* (M_tt) */
+    gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, rrr_Q_yy);  /* M_tt_yy_of_legs */
+    /* (M_ta) */
+    gather(&terms[3*count + k], add, rrr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    /* (M_aa) */
+    gather(&terms[5*count + k], add, rrr_M_aa_t);  /* M_aa_zz_of_legs */
+    o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
+        + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
+    o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void M_place_rrr(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void M_place_rrr(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o[0*count + first + k];
-        t->singular[k] += o[1*count + first + k];
-    }
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
 }
 
-INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums, real *M, verdict
-    *t)
+INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
+    *M, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (M_tt) translational block of M */
-        const real M_tt_xx_of_legs = sums[0*w + k];
-        const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_xx_of_legs + m_star;
-        const real M_tt_yy_of_legs = sums[2*w + k];
-        const real M_tt_yy = M_tt_yy_of_legs + m_star;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xz_of_legs = sums[3*w + k];
-        const real h_star_y = s[3*w + k];
-        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-        const real M_ta_yz_of_legs = sums[4*w + k];
-        const real h_star_x = s[2*w + k];
-        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
-        /* (M_aa) rotational block of M */
-        const real J_star_zz = m->J_star_zz;
-        const real M_aa_zz_of_legs = sums[5*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-        /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        const real M_tt_xy = sums[1*w + k];
-        M[1*w + k] = M_tt_xy;
-        M[NV*w + k] = M_tt_xy;
-        M[(NV + 1)*w + k] = M_tt_yy;
-        /* (M_ta) coupling block of M */
-        M[2*w + k] = M_ta_xz;
-        M[2*NV*w + k] = M_ta_xz;
-        M[(NV + 2)*w + k] = M_ta_yz;
-        M[(2*NV + 1)*w + k] = M_ta_yz;
-        /* (M_aa) rotational block of M */
-        M[(2*NV + 2)*w + k] = M_aa_zz;
-        t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
-    }
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_yy_of_legs = sums[2*w + k];
+    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    /* (M_ta) */
+    const real M_ta_xz_of_legs = sums[3*w + k];
+    const real h_star_y = s[3*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yz_of_legs = sums[4*w + k];
+    const real h_star_x = s[2*w + k];
+    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    /* (M_aa) */
+    const real M_aa_zz_of_legs = sums[5*w + k];
+    const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    /* (M_ta) */
+    M[2*w + k] = M_ta_xz;
+    M[2*NV*w + k] = M_ta_xz;
+    M[(NV + 2)*w + k] = M_ta_yz;
+    M[(2*NV + 1)*w + k] = M_ta_yz;
+    /* (M_aa) */
+    M[(2*NV + 2)*w + k] = M_aa_zz;
+    t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
 }
 
-INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
+APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
     real s[4] = {0}, sums[6] = {0};
     real terms_crank[6*LEGS(LEGS_OF_crank)] = {0}, o_crank[LEGS(LEGS_OF_crank)] = {0};
     real terms_rrr[6*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    M_before(m, 1, X, s);
-    M_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), 0, X, terms_crank, o_crank);
-    M_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        M_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, t);
+    M_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
+        M_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), 0, s, X, terms_crank, o_crank);
+    }
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        M_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, terms_rrr, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        M_place_crank(0, i, LEGS(LEGS_OF_crank), o_crank, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_crank + n*LEGS(LEGS_OF_crank), LEGS_OF_crank);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        M_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        M_place_rrr(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
-    M_after(m, 1, s, sums, M, t);
+    M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
+INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verdict *restrict t)
 {
     real s[4*LANES], sums[6*LANES];
     real o_crank[LANES];
     real o_rrr[2*LANES];
-    M_before(m, LANES, X, s);
+    for (size_t k = 0; k < LANES; ++k) {
+        M_before(m, LANES, k, X, s);
+    }
     clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        M_legs_crank(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_crank);
-        M_place_crank(LANES, LANES, o_crank, 0, t);
+    for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            M_legs_crank(m, LANES, i, k, k, LANES, 1, s, X, sums, o_crank);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            M_place_crank(k, k, LANES, o_crank, t);
+        }
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        M_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_rrr);
-        M_place_rrr(LANES, LANES, o_rrr, 0, t);
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            M_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            M_place_rrr(k, k, LANES, o_rrr, t);
+        }
     }
-    M_after(m, LANES, s, sums, M, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        M_after(m, LANES, k, s, sums, M, t);
+    }
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s)
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_V(w, k, V, &v);
-        stage_X(m, w, k, X, &v);
-        /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = v.W_p_xx*v.h_star_x - Z_p_t;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = v.W_p_xx*v.h_star_y - Z_p_t_2;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real Z_q_z = gravity_x*v.h_star_y - gravity_y*v.h_star_x;
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-        s[2*w + k] = Z_p_x;
-        s[3*w + k] = Z_p_y;
-        s[4*w + k] = Z_q_z;
-    }
+    values v;
+    stage_V(w, k, V, &v);
+    stage_X(m, w, k, X, &v);
+    /* (Z_p) centripetal force and weight of the platform */
+    const real Z_p_x = v.W_p_xx*v.h_star_x - m->Z_p_t;
+    const real Z_p_y = v.W_p_xx*v.h_star_y - m->Z_p_t_2;
+    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    const real Z_q_z = m->gravity_x*v.h_star_y - m->gravity_y*v.h_star_x;
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
+    s[2*w + k] = Z_p_x;
+    s[3*w + k] = Z_p_y;
+    s[4*w + k] = Z_q_z;
 }
 
-INLINE void Z_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
+INLINE void Z_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_crank v;
-        stage_crank_X(m, w, i, j, s, X, &v);
-        /* (crank-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-           reference points */
-        const real crank_J_1_in_spec1_zz = m->crank_J_1_in_spec1_zz[i];
-        const real crank_h_1_in_spec1_x = m->crank_h_1_in_spec1_x[i];
-        const real crank_h_1_in_spec1_y = m->crank_h_1_in_spec1_y[i];
-        const real crank_mu_1_t = m->crank_mu_1_t[i];
-        const real crank_mu_1_t_2 = m->crank_mu_1_t_2[i];
-        const real crank_w_1_in_axes1_y = m->crank_w_1_in_axes1_y[i];
-        const real omega_z = V[2*w + j];
-        const real crank_mu_1_o_in_axes1_z = crank_h_1_in_spec1_y*(v.crank_c_1*crank_mu_1_t +
-            crank_mu_1_t_2*v.crank_s_1) +
-            crank_J_1_in_spec1_zz*crank_w_1_in_axes1_y*(-v.axis_x_crank_axes1_x*v.crank_q_y*omega_z*omega_z
-            - v.axis_y_crank_axes1_x*v.crank_q_x*omega_z*omega_z) -
-            crank_h_1_in_spec1_x*(v.crank_c_1*crank_mu_1_t_2 - crank_mu_1_t*v.crank_s_1);
-        /* (crank-G_o) remainder of: force at the connection point that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real crank_G_o_in_axes1_y = crank_mu_1_o_in_axes1_z*crank_w_1_in_axes1_y;
-        /* (crank-U) velocity and gravity terms of the leg force */
-        const real crank_U_x = v.axis_y_crank_axes1_x*crank_G_o_in_axes1_y;
-        const real crank_U_y = v.axis_x_crank_axes1_x*crank_G_o_in_axes1_y;
-        /* (Z_a) rotational part of Z */
-        const real crank_Z_a_t = crank_U_y*v.crank_q_x - crank_U_x*v.crank_q_y;
-        /* (Z_t) translational part of Z */
-        gather(&terms[0*count + k], add, crank_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[1*count + k], add, crank_U_y);  /* Z_t_y_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[2*count + k], add, crank_Z_a_t);  /* Z_a_z_of_legs */
-        const real crank_root_1_t = m->crank_root_1_t[i];
-        o[0*count + k] = UNLESS(magnitude(v.crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
-    }
+    values_crank v;
+    stage_crank_X(m, w, i, j, s, X, &v);
+    /* (crank-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
+    const real omega_z = V[2*w + j];
+    const real crank_mu_1_o_in_axes1_z =
+        m->crank_h_1_in_spec1_y[i]*(v.crank_c_1*m->crank_mu_1_t[i] +
+        m->crank_mu_1_t_2[i]*v.crank_s_1) +
+        m->crank_J_1_in_spec1_zz[i]*m->crank_w_1_in_axes1_y[i]*(-v.axis_x_crank_axes1_x*v.crank_q_y*omega_z*omega_z
+        - v.axis_y_crank_axes1_x*v.crank_q_x*omega_z*omega_z) -
+        m->crank_h_1_in_spec1_x[i]*(v.crank_c_1*m->crank_mu_1_t_2[i] -
+        m->crank_mu_1_t[i]*v.crank_s_1);
+    /* (crank-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real crank_G_o_in_axes1_y = crank_mu_1_o_in_axes1_z*m->crank_w_1_in_axes1_y[i];
+    /* (crank-U) velocity and gravity terms of the leg force */
+    const real crank_U_x = v.axis_y_crank_axes1_x*crank_G_o_in_axes1_y;
+    const real crank_U_y = v.axis_x_crank_axes1_x*crank_G_o_in_axes1_y;
+    /* (Z_a) rotational part of Z */
+    const real crank_Z_a_t = crank_U_y*v.crank_q_x - crank_U_x*v.crank_q_y;
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, crank_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, crank_U_y);  /* Z_t_y_of_legs */
+    /* (Z_a) */
+    gather(&terms[2*count + k], add, crank_Z_a_t);  /* Z_a_z_of_legs */
+    o[0*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
+        TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
 }
 
-INLINE void Z_place_crank(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void Z_place_crank(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o[0*count + first + k];
-    }
+    t->singular[k] += o[0*count + at];
 }
 
-INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
+INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_X(m, w, i, j, s, X, &v);
-        stage_rrr_V_X(m, w, i, j, V, &v);
-        /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*v.rrr_qd_1_t_2 -
-            rrr_base_frame_xx*v.rrr_qd_1_t;
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*v.rrr_qd_1_t_2 -
-            rrr_base_frame_yx*v.rrr_qd_1_t;
-        const real rrr_qd_1 = v.rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*v.rrr_S_dot_x -
-            axis_y_rrr_axes2_x*v.rrr_S_dot_y);
-        /* (rrr-W_1) centripetal tensor of link 1 */
-        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
-            rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*v.rrr_S_dot_y +
-            axis_y_rrr_axes2_x*v.rrr_S_dot_x - rrr_qd_1*v.rrr_r_1_in_axes2_x);
-        /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
-        /* (rrr-u_1) centripetal acceleration of the connection point */
-        const real omega_z = V[2*w + j];
-        const real rrr_u_1_x = -omega_z*v.rrr_S_dot_t_2;
-        const real rrr_u_1_t = omega_z*v.rrr_S_dot_t;
-        const real rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x +
-            axis_y_rrr_axes2_x*rrr_u_1_t;
-        const real rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x -
-            axis_x_rrr_axes2_x*rrr_u_1_t;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-            rrr_W_1_t*v.rrr_c_2*rrr_joint2_offset_x;
-        /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-           */
-        const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x;
-        const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
-            rrr_W_1_t*rrr_joint2_offset_x*v.rrr_s_2;
-        /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
-        const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*v.rrr_w_1_in_axes2_x;
-        /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
-        const real rrr_alpha_2_o_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y +
-            rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
-        /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
-            axis_x_rrr_axes2_x*gravity_x;
-        const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
-            axis_y_rrr_axes2_x*gravity_x;
-        /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-           reference points */
-        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
-        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
-        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-        const real rrr_mu_2_o_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
-            rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y;
-        /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-           reference points */
-        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
-        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
-        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
-        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
-        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
-        const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(v.rrr_c_1*rrr_mu_1_t +
-            rrr_mu_1_t_2*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
-            rrr_h_1_in_spec1_x*(v.rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v.rrr_s_1);
-        /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
-           connection point left out */
-        const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
-        /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y;
-        /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-           connection point */
-        const real rrr_c_o_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
-            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
-            v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
-        const real rrr_c_o_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
-            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x;
-        /* (rrr-U) velocity and gravity terms of the leg force */
-        const real rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
-            axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
-        const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
-            axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
-        /* (Z_a) rotational part of Z */
-        const real rrr_Z_a_t = rrr_U_y*v.rrr_q_x - rrr_U_x*v.rrr_q_y;
-        /* (Z_t) translational part of Z */
-        gather(&terms[0*count + k], add, rrr_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[1*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[2*count + k], add, rrr_Z_a_t);  /* Z_a_z_of_legs */
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        const real rrr_size = m->rrr_size[i];
-        o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
+    values_rrr v;
+    stage_rrr_X(m, w, i, j, s, X, &v);
+    stage_rrr_V_X(m, w, i, j, V, &v);
+    /* (rrr-qd_1) rate of joint 1 */
+    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*v.rrr_qd_1_t_2 -
+        m->rrr_base_frame_xx[i]*v.rrr_qd_1_t;
+    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*v.rrr_qd_1_t_2 -
+        m->rrr_base_frame_yx[i]*v.rrr_qd_1_t;
+    const real rrr_qd_1 = v.rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*v.rrr_S_dot_x -
+        axis_y_rrr_axes2_x*v.rrr_S_dot_y);
+    /* (rrr-W_1) centripetal tensor of link 1 */
+    const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+    /* (rrr-omega_2) angular velocity of link 2 */
+    const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
+        m->rrr_w_2_in_axes2_y[i]*(axis_x_rrr_axes2_x*v.rrr_S_dot_y +
+        axis_y_rrr_axes2_x*v.rrr_S_dot_x - rrr_qd_1*v.rrr_r_1_in_axes2_x);
+    /* (rrr-W_2) centripetal tensor of link 2 */
+    const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
+    /* (rrr-u_1) centripetal acceleration of the connection point */
+    const real omega_z = V[2*w + j];
+    const real rrr_u_1_x = -omega_z*v.rrr_S_dot_t_2;
+    const real rrr_u_1_t = omega_z*v.rrr_S_dot_t;
+    const real rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x +
+        axis_y_rrr_axes2_x*rrr_u_1_t;
+    const real rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x -
+        axis_x_rrr_axes2_x*rrr_u_1_t;
+    /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+    const real rrr_bias_in_axes2_x = -rrr_W_2_t*m->rrr_platform_joint_offset_x[i] -
+        rrr_W_1_t*v.rrr_c_2*m->rrr_joint2_offset_x[i];
+    /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x;
+    const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
+        rrr_W_1_t*m->rrr_joint2_offset_x[i]*v.rrr_s_2;
+    /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
+    const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*v.rrr_w_1_in_axes2_x;
+    /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real rrr_alpha_2_o_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_o_in_axes2_y +
+        rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
+    /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
+    const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*m->gravity_y -
+        axis_x_rrr_axes2_x*m->gravity_x;
+    const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*m->gravity_y -
+        axis_y_rrr_axes2_x*m->gravity_x;
+    /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real rrr_mu_2_o_in_axes2_z = m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z +
+        rrr_acc_2_o_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
+        rrr_acc_2_o_in_axes2_x*m->rrr_h_2_in_spec2_y[i];
+    /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
+    const real rrr_mu_1_o_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] +
+        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i] -
+        m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v.rrr_s_1);
+    /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+       connection point left out */
+    const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
+    /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
+    /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
+    const real rrr_c_o_in_axes2_x = rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
+        v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
+    const real rrr_c_o_in_axes2_y = rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] - rrr_G_o_in_axes2_y -
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i];
+    /* (rrr-U) velocity and gravity terms of the leg force */
+    const real rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
+        axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
+    const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
+        axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
+    /* (Z_a) */
+    const real rrr_Z_a_t = rrr_U_y*v.rrr_q_x - rrr_U_x*v.rrr_q_y;
+    /* (Z_t) */
+    gather(&terms[0*count + k], add, rrr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
+    /* (Z_a) */
+    gather(&terms[2*count + k], add, rrr_Z_a_t);  /* Z_a_z_of_legs */
+    o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
+        + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
+    o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void Z_place_rrr(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void Z_place_rrr(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o[0*count + first + k];
-        t->singular[k] += o[1*count + first + k];
-    }
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
 }
 
-INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict *t)
+INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (Z_t) translational part of Z */
-        const real Z_p_x = s[2*w + k];
-        const real Z_t_x_of_legs = sums[0*w + k];
-        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[3*w + k];
-        const real Z_t_y_of_legs = sums[1*w + k];
-        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        /* (Z_a) rotational part of Z */
-        const real Z_a_z_of_legs = sums[2*w + k];
-        const real Z_q_z = s[4*w + k];
-        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
-        /* (Z_t) translational part of Z */
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-        /* (Z_a) rotational part of Z */
-        Z[2*w + k] = Z_a_z;
-        t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
-    }
+    /* (Z_t) */
+    const real Z_p_x = s[2*w + k];
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[3*w + k];
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    /* (Z_a) */
+    const real Z_a_z_of_legs = sums[2*w + k];
+    const real Z_q_z = s[4*w + k];
+    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    /* (Z_a) */
+    Z[2*w + k] = Z_a_z;
+    t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
 }
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
@@ -2588,290 +2487,286 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     real s[5] = {0}, sums[3] = {0};
     real terms_crank[3*LEGS(LEGS_OF_crank)] = {0}, o_crank[LEGS(LEGS_OF_crank)] = {0};
     real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    Z_before(m, 1, X, V, s);
-    Z_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), 0, X, V, terms_crank, o_crank);
-    Z_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, V, terms_rrr, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        Z_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, t);
+    Z_before(m, 1, 0, X, V, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
+        Z_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), 0, s, X, V, terms_crank, o_crank);
+    }
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        Z_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, V, terms_rrr, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        Z_place_crank(0, i, LEGS(LEGS_OF_crank), o_crank, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_crank + n*LEGS(LEGS_OF_crank), LEGS_OF_crank);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        Z_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        Z_place_rrr(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
-    Z_after(1, s, sums, Z, t);
+    Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z, verdict
+    *restrict t)
 {
     real s[5*LANES], sums[3*LANES];
     real o_crank[LANES];
     real o_rrr[2*LANES];
-    Z_before(m, LANES, X, V, s);
+    for (size_t k = 0; k < LANES; ++k) {
+        Z_before(m, LANES, k, X, V, s);
+    }
     clear(sums, 3*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        Z_legs_crank(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_crank);
-        Z_place_crank(LANES, LANES, o_crank, 0, t);
+    for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_legs_crank(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_crank);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_place_crank(k, k, LANES, o_crank, t);
+        }
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        Z_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rrr);
-        Z_place_rrr(LANES, LANES, o_rrr, 0, t);
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_place_rrr(k, k, LANES, o_rrr, t);
+        }
     }
-    Z_after(LANES, s, sums, Z, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        Z_after(LANES, k, s, sums, Z, t);
+    }
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
 }
 
-INLINE void H_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, const real *X, real *o)
+INLINE void H_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_crank v;
-        stage_crank_X(m, w, i, j, s, X, &v);
-        /* (crank-w_1) reciprocal vector 1 */
-        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
-        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
-        const real crank_w_1_in_axes1_y = m->crank_w_1_in_axes1_y[i];
-        const real crank_w_1_x = crank_w_1_in_axes1_y*(crank_base_frame_xy*v.crank_c_1 -
-            crank_base_frame_xx*v.crank_s_1);
-        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
-        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
-        const real crank_w_1_y = crank_w_1_in_axes1_y*(crank_base_frame_yy*v.crank_c_1 -
-            crank_base_frame_yx*v.crank_s_1);
-        /* (crank-H_a_1) moment of the column's unit force about the platform origin */
-        const real crank_H_a_1_z = v.crank_q_x*crank_w_1_y - v.crank_q_y*crank_w_1_x;
-        /* (crank-w_1) reciprocal vector 1 */
-        o[0*count + k] = crank_w_1_x;
-        o[1*count + k] = crank_w_1_y;
-        /* (crank-H_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = crank_H_a_1_z;
-        o[4*count + k] = crank_w_1_x + (crank_w_1_y + crank_H_a_1_z);
-        const real crank_root_1_t = m->crank_root_1_t[i];
-        o[3*count + k] = UNLESS(magnitude(v.crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
-    }
+    values_crank v;
+    stage_crank_X(m, w, i, j, s, X, &v);
+    /* (crank-w_1) reciprocal vector 1 */
+    const real crank_w_1_x = m->crank_w_1_in_axes1_y[i]*(m->crank_base_frame_xy[i]*v.crank_c_1
+        - m->crank_base_frame_xx[i]*v.crank_s_1);
+    const real crank_w_1_y = m->crank_w_1_in_axes1_y[i]*(m->crank_base_frame_yy[i]*v.crank_c_1
+        - m->crank_base_frame_yx[i]*v.crank_s_1);
+    /* (crank-H_a_1) moment of the column's unit force about the platform origin */
+    const real crank_H_a_1_z = v.crank_q_x*crank_w_1_y - v.crank_q_y*crank_w_1_x;
+    /* (crank-w_1) */
+    o[0*count + k] = crank_w_1_x;
+    o[1*count + k] = crank_w_1_y;
+    /* (crank-H_a_1) */
+    o[2*count + k] = crank_H_a_1_z;
+    o[4*count + k] = crank_w_1_x + (crank_w_1_y + crank_H_a_1_z);
+    o[3*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
+        TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
 }
 
-INLINE void H_place_crank(size_t w, size_t count, const real *o, size_t first, real *H, verdict
-    *t)
+INLINE void H_place_crank(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[0*w + k] = o[0*count + first + k];
-        H[NU*w + k] = o[1*count + first + k];
-        H[2*NU*w + k] = o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
+    H[0*w + k] = o[0*count + at];
+    H[NU*w + k] = o[1*count + at];
+    H[2*NU*w + k] = o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
 }
 
-INLINE void H_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, const real *X, real *o)
+INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_X(m, w, i, j, s, X, &v);
-        stage_rrr_H_condition(m, i, &v);
-        /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = v.rrr_w_1_x;
-        o[1*count + k] = v.rrr_w_1_y;
-        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = v.rrr_H_a_1_z;
-        o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + v.rrr_H_a_1_z);
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        const real rrr_size = m->rrr_size[i];
-        o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
+    values_rrr v;
+    stage_rrr_X(m, w, i, j, s, X, &v);
+    stage_rrr_H_condition(m, i, &v);
+    /* (rrr-w_1) reciprocal vector 1 */
+    o[0*count + k] = v.rrr_w_1_x;
+    o[1*count + k] = v.rrr_w_1_y;
+    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v.rrr_H_a_1_z;
+    o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + v.rrr_H_a_1_z);
+    o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
+        + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
+    o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void H_place_rrr(size_t w, size_t count, const real *o, size_t first, real *H, verdict *t)
+INLINE void H_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[1*w + k] = o[0*count + first + k];
-        H[(NU + 1)*w + k] = o[1*count + first + k];
-        H[(2*NU + 1)*w + k] = o[2*count + first + k];
-        t->unreachable[k] += o[3*count + first + k];
-        t->singular[k] += o[4*count + first + k];
-        t->total[k] += o[5*count + first + k];
-    }
+    H[1*w + k] = o[0*count + at];
+    H[(NU + 1)*w + k] = o[1*count + at];
+    H[(2*NU + 1)*w + k] = o[2*count + at];
+    t->unreachable[k] += o[3*count + at];
+    t->singular[k] += o[4*count + at];
+    t->total[k] += o[5*count + at];
 }
 
-INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
+APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
     real s[2] = {0};
     real o_crank[5*LEGS(LEGS_OF_crank)] = {0};
     real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
-    H_before(m, 1, X, s);
-    H_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), X, o_crank);
-    H_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), X, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        H_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, H, t);
+    H_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
+        H_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, o_crank);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        H_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        H_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        H_place_crank(1, 0, i, LEGS(LEGS_OF_crank), o_crank, H, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        H_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
 }
 
-INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
+INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verdict *restrict t)
 {
     real s[2*LANES];
     real o_crank[5*LANES];
     real o_rrr[6*LANES];
-    H_before(m, LANES, X, s);
-    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        H_legs_crank(m, LANES, leg, 0, s, 1, LANES, X, o_crank);
-        H_place_crank(LANES, LANES, o_crank, 0, H, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        H_before(m, LANES, k, X, s);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        H_legs_rrr(m, LANES, leg, 0, s, 1, LANES, X, o_rrr);
-        H_place_rrr(LANES, LANES, o_rrr, 0, H, t);
+    for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            H_legs_crank(m, LANES, i, k, k, LANES, s, X, o_crank);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            H_place_crank(LANES, k, k, LANES, o_crank, H, t);
+        }
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            H_legs_rrr(m, LANES, i, k, k, LANES, s, X, o_rrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            H_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
+        }
     }
 }
 
 /* ---- Hk ---- */
-INLINE void Hk_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void Hk_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
 }
 
-INLINE void Hk_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, const real *X, real *o)
+INLINE void Hk_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_crank v;
-        stage_crank_X(m, w, i, j, s, X, &v);
-        /* (crank-n_c) direction of the constraint force */
-        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
-        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
-        const real crank_n_c_in_axes1_x = m->crank_n_c_in_axes1_x[i];
-        const real crank_n_c_x = crank_n_c_in_axes1_x*(crank_base_frame_yy*v.crank_c_1 -
-            crank_base_frame_yx*v.crank_s_1);
-        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
-        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
-        const real crank_n_c_y = -crank_n_c_in_axes1_x*(crank_base_frame_xy*v.crank_c_1 -
-            crank_base_frame_xx*v.crank_s_1);
-        /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real crank_Hk_a_1_z = crank_n_c_y*v.crank_q_x - crank_n_c_x*v.crank_q_y;
-        /* (crank-n_c) direction of the constraint force */
-        o[0*count + k] = crank_n_c_x;
-        o[1*count + k] = crank_n_c_y;
-        /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = crank_Hk_a_1_z;
-        o[4*count + k] = crank_n_c_x + (crank_n_c_y + crank_Hk_a_1_z);
-        const real crank_root_1_t = m->crank_root_1_t[i];
-        o[3*count + k] = UNLESS(magnitude(v.crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
-    }
+    values_crank v;
+    stage_crank_X(m, w, i, j, s, X, &v);
+    /* (crank-n_c) direction of the constraint force */
+    const real crank_n_c_x = m->crank_n_c_in_axes1_x[i]*(m->crank_base_frame_yy[i]*v.crank_c_1
+        - m->crank_base_frame_yx[i]*v.crank_s_1);
+    const real crank_n_c_y =
+        -m->crank_n_c_in_axes1_x[i]*(m->crank_base_frame_xy[i]*v.crank_c_1 -
+        m->crank_base_frame_xx[i]*v.crank_s_1);
+    /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
+    const real crank_Hk_a_1_z = crank_n_c_y*v.crank_q_x - crank_n_c_x*v.crank_q_y;
+    /* (crank-n_c) */
+    o[0*count + k] = crank_n_c_x;
+    o[1*count + k] = crank_n_c_y;
+    /* (crank-Hk_a_1) */
+    o[2*count + k] = crank_Hk_a_1_z;
+    o[4*count + k] = crank_n_c_x + (crank_n_c_y + crank_Hk_a_1_z);
+    o[3*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
+        TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
 }
 
-INLINE void Hk_place_crank(size_t w, size_t count, const real *o, size_t first, real *Hk, verdict
-    *t)
+INLINE void Hk_place_crank(size_t w, size_t k, size_t at, size_t count, const real *o, real *Hk,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        Hk[0*w + k] = o[0*count + first + k];
-        Hk[NC*w + k] = o[1*count + first + k];
-        Hk[2*NC*w + k] = o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
+    Hk[0*w + k] = o[0*count + at];
+    Hk[NC*w + k] = o[1*count + at];
+    Hk[2*NC*w + k] = o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
 }
 
-INLINE void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
+APART void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
 {
     real s[2] = {0};
     real o_crank[5*LEGS(LEGS_OF_crank)] = {0};
-    Hk_before(m, 1, X, s);
-    Hk_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), X, o_crank);
-    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        Hk_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, Hk, t);
+    Hk_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
+        Hk_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, o_crank);
+    }
+    for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        Hk_place_crank(1, 0, i, LEGS(LEGS_OF_crank), o_crank, Hk, t);
     }
 }
 
-INLINE void Hk_run_lanes(const prepared *m, const real *X, real *Hk, verdict *t)
+INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, verdict *restrict t)
 {
     real s[2*LANES];
     real o_crank[5*LANES];
-    Hk_before(m, LANES, X, s);
-    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        Hk_legs_crank(m, LANES, leg, 0, s, 1, LANES, X, o_crank);
-        Hk_place_crank(LANES, LANES, o_crank, 0, Hk, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        Hk_before(m, LANES, k, X, s);
+    }
+    for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            Hk_legs_crank(m, LANES, i, k, k, LANES, s, X, o_crank);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            Hk_place_crank(LANES, k, k, LANES, o_crank, Hk, t);
+        }
     }
 }
 
 /* ---- constraint_bias ---- */
-INLINE void constraint_bias_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void constraint_bias_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
 }
 
-INLINE void constraint_bias_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const
-    real *s, size_t states, size_t count, const real *X, const real *V, real *o)
+INLINE void constraint_bias_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k,
+    size_t count, const real *s, const real *X, const real *V, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_crank v;
-        stage_crank_X(m, w, i, j, s, X, &v);
-        stage_crank_constraint_bias_dynamics(w, j, V, &v);
-        /* (crank-rel_o) remainder of: acceleration of the connection point left to the joint
-           accelerations */
-        const real crank_w_1_in_axes1_y = m->crank_w_1_in_axes1_y[i];
-        const real omega_z = V[2*w + j];
-        const real crank_rel_o_in_axes1_x =
-            v.crank_S_dot_in_axes1_y*v.crank_S_dot_in_axes1_y*crank_w_1_in_axes1_y +
-            v.axis_y_crank_axes1_x*v.crank_S_dot_t*omega_z -
-            v.axis_x_crank_axes1_x*v.crank_S_dot_t_2*omega_z;
-        /* (crank-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-           */
-        const real crank_n_c_in_axes1_x = m->crank_n_c_in_axes1_x[i];
-        const real crank_gamma_c1 = crank_n_c_in_axes1_x*crank_rel_o_in_axes1_x;
-        /* (crank-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-           */
-        o[0*count + k] = crank_gamma_c1;
-        o[2*count + k] = crank_gamma_c1;
-        const real crank_root_1_t = m->crank_root_1_t[i];
-        o[1*count + k] = UNLESS(magnitude(v.crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
-    }
+    values_crank v;
+    stage_crank_X(m, w, i, j, s, X, &v);
+    stage_crank_constraint_bias_dynamics(w, j, V, &v);
+    /* (crank-rel_o) remainder of: acceleration of the connection point left to the joint
+       accelerations */
+    const real omega_z = V[2*w + j];
+    const real crank_rel_o_in_axes1_x =
+        v.crank_S_dot_in_axes1_y*v.crank_S_dot_in_axes1_y*m->crank_w_1_in_axes1_y[i] +
+        v.axis_y_crank_axes1_x*v.crank_S_dot_t*omega_z -
+        v.axis_x_crank_axes1_x*v.crank_S_dot_t_2*omega_z;
+    /* (crank-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+       */
+    const real crank_gamma_c1 = m->crank_n_c_in_axes1_x[i]*crank_rel_o_in_axes1_x;
+    /* (crank-gamma_c1) */
+    o[0*count + k] = crank_gamma_c1;
+    o[2*count + k] = crank_gamma_c1;
+    o[1*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
+        TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
 }
 
-INLINE void constraint_bias_place_crank(size_t w, size_t count, const real *o, size_t first, real
-    *constraint_bias, verdict *t)
+INLINE void constraint_bias_place_crank(size_t w, size_t k, size_t at, size_t count, const real
+    *o, real *constraint_bias, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        constraint_bias[0*w + k] = o[0*count + first + k];
-        t->singular[k] += o[1*count + first + k];
-        t->total[k] += o[2*count + first + k];
-    }
+    constraint_bias[0*w + k] = o[0*count + at];
+    t->singular[k] += o[1*count + at];
+    t->total[k] += o[2*count + at];
 }
 
 INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V, real
@@ -2879,850 +2774,789 @@ INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V,
 {
     real s[2] = {0};
     real o_crank[3*LEGS(LEGS_OF_crank)] = {0};
-    constraint_bias_before(m, 1, X, s);
-    constraint_bias_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), X, V, o_crank);
-    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        constraint_bias_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, constraint_bias, t);
+    constraint_bias_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
+        constraint_bias_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, V, o_crank);
+    }
+    for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        constraint_bias_place_crank(1, 0, i, LEGS(LEGS_OF_crank), o_crank, constraint_bias, t);
     }
 }
 
 INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const real *V, real
-    *constraint_bias, verdict *t)
+    *restrict constraint_bias, verdict *restrict t)
 {
     real s[2*LANES];
     real o_crank[3*LANES];
-    constraint_bias_before(m, LANES, X, s);
-    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        constraint_bias_legs_crank(m, LANES, leg, 0, s, 1, LANES, X, V, o_crank);
-        constraint_bias_place_crank(LANES, LANES, o_crank, 0, constraint_bias, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        constraint_bias_before(m, LANES, k, X, s);
+    }
+    for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            constraint_bias_legs_crank(m, LANES, i, k, k, LANES, s, X, V, o_crank);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            constraint_bias_place_crank(LANES, k, k, LANES, o_crank, constraint_bias, t);
+        }
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, real *s)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_V(w, k, V, &v);
-        stage_X(m, w, k, X, &v);
-        /* (a_t) acceleration of the platform origin, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real t_ddot_x = A[0*w + k];
-        const real a_t_x = t_ddot_x - gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real t_ddot_y = A[1*w + k];
-        const real a_t_y = t_ddot_y - gravity_y;
-        /* (f_p) inertia force of the platform less its weight */
-        const real alpha_z = A[2*w + k];
-        const real m_star = m->m_star;
-        const real f_p_x = v.W_p_xx*v.h_star_x + a_t_x*m_star - alpha_z*v.h_star_y;
-        const real f_p_y = v.W_p_xx*v.h_star_y + a_t_y*m_star + alpha_z*v.h_star_x;
-        /* (mu_p) inertia moment of the platform less that of its weight */
-        const real J_star_zz = m->J_star_zz;
-        const real mu_p_z = J_star_zz*alpha_z + a_t_y*v.h_star_x - a_t_x*v.h_star_y;
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-        s[2*w + k] = f_p_x;
-        s[3*w + k] = f_p_y;
-        s[4*w + k] = mu_p_z;
-    }
+    values v;
+    stage_V(w, k, V, &v);
+    stage_X(m, w, k, X, &v);
+    /* (a_t) acceleration of the platform origin, less gravity */
+    const real t_ddot_x = A[0*w + k];
+    const real a_t_x = t_ddot_x - m->gravity_x;
+    const real t_ddot_y = A[1*w + k];
+    const real a_t_y = t_ddot_y - m->gravity_y;
+    /* (f_p) inertia force of the platform less its weight */
+    const real alpha_z = A[2*w + k];
+    const real f_p_x = v.W_p_xx*v.h_star_x + a_t_x*m->m_star - alpha_z*v.h_star_y;
+    const real f_p_y = v.W_p_xx*v.h_star_y + a_t_y*m->m_star + alpha_z*v.h_star_x;
+    /* (mu_p) inertia moment of the platform less that of its weight */
+    const real mu_p_z = m->J_star_zz*alpha_z + a_t_y*v.h_star_x - a_t_x*v.h_star_y;
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
+    s[2*w + k] = f_p_x;
+    s[3*w + k] = f_p_y;
+    s[4*w + k] = mu_p_z;
 }
 
-INLINE void required_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
-    *terms, real *o)
+INLINE void required_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, const real *V, const real *A, real *terms, real
+    *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_crank v;
-        stage_crank_X(m, w, i, j, s, X, &v);
-        stage_crank_A_X(w, j, A, &v);
-        stage_crank_A_V_X(w, j, V, &v);
-        stage_crank_legs_required(m, i, &v);
-        /* (R_a) moment that actuators and external wrench must give */
-        const real crank_R_a_t = v.crank_c_t_2*v.crank_q_x - v.crank_c_t*v.crank_q_y;
-        /* (R_t) force that actuators and external wrench must give */
-        gather(&terms[0*count + k], add, v.crank_c_t);  /* R_t_x_of_legs */
-        gather(&terms[1*count + k], add, v.crank_c_t_2);  /* R_t_y_of_legs */
-        /* (R_a) moment that actuators and external wrench must give */
-        gather(&terms[2*count + k], add, crank_R_a_t);  /* R_a_z_of_legs */
-        /* (crank-w_1) reciprocal vector 1 */
-        o[0*count + k] = v.crank_w_1_x;
-        o[1*count + k] = v.crank_w_1_y;
-        /* (crank-H_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = v.crank_H_a_1_z;
-        /* (crank-n_c) direction of the constraint force */
-        o[3*count + k] = v.crank_n_c_x;
-        o[4*count + k] = v.crank_n_c_y;
-        /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[5*count + k] = v.crank_Hk_a_1_z;
-        const real crank_root_1_t = m->crank_root_1_t[i];
-        o[6*count + k] = UNLESS(magnitude(v.crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
-    }
+    values_crank v;
+    stage_crank_X(m, w, i, j, s, X, &v);
+    stage_crank_A_X(w, j, A, &v);
+    stage_crank_A_V_X(w, j, V, &v);
+    stage_crank_legs_required(m, i, &v);
+    /* (R_a) moment that actuators and external wrench must give */
+    const real crank_R_a_t = v.crank_c_t_2*v.crank_q_x - v.crank_c_t*v.crank_q_y;
+    /* (R_t) force that actuators and external wrench must give */
+    gather(&terms[0*count + k], add, v.crank_c_t);  /* R_t_x_of_legs */
+    gather(&terms[1*count + k], add, v.crank_c_t_2);  /* R_t_y_of_legs */
+    /* (R_a) */
+    gather(&terms[2*count + k], add, crank_R_a_t);  /* R_a_z_of_legs */
+    /* (crank-w_1) reciprocal vector 1 */
+    o[0*count + k] = v.crank_w_1_x;
+    o[1*count + k] = v.crank_w_1_y;
+    /* (crank-H_a_1) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v.crank_H_a_1_z;
+    /* (crank-n_c) direction of the constraint force */
+    o[3*count + k] = v.crank_n_c_x;
+    o[4*count + k] = v.crank_n_c_y;
+    /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
+    o[5*count + k] = v.crank_Hk_a_1_z;
+    o[6*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
+        TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
 }
 
-INLINE void required_place_crank(size_t w, size_t count, const real *o, size_t first, real *H,
-    real *Hk, verdict *t)
+INLINE void required_place_crank(size_t w, size_t k, size_t at, size_t count, const real *o, real
+    *H, real *Hk, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[0*w + k] = o[0*count + first + k];
-        H[NU*w + k] = o[1*count + first + k];
-        H[2*NU*w + k] = o[2*count + first + k];
-        Hk[0*w + k] = o[3*count + first + k];
-        Hk[NC*w + k] = o[4*count + first + k];
-        Hk[2*NC*w + k] = o[5*count + first + k];
-        t->singular[k] += o[6*count + first + k];
-    }
+    H[0*w + k] = o[0*count + at];
+    H[NU*w + k] = o[1*count + at];
+    H[2*NU*w + k] = o[2*count + at];
+    Hk[0*w + k] = o[3*count + at];
+    Hk[NC*w + k] = o[4*count + at];
+    Hk[2*NC*w + k] = o[5*count + at];
+    t->singular[k] += o[6*count + at];
 }
 
-INLINE void required_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
-    *terms, real *o)
+INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, const real *V, const real *A, real *terms, real
+    *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_X(m, w, i, j, s, X, &v);
-        stage_rrr_A_X(w, j, A, &v);
-        stage_rrr_V_X(m, w, i, j, V, &v);
-        stage_rrr_A_V_X(w, j, V, &v);
-        stage_rrr_legs_required(m, i, &v);
-        /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real rrr_c_x = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_x +
-            v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_y;
-        const real rrr_c_y = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_y -
-            v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_x;
-        /* (R_a) moment that actuators and external wrench must give */
-        const real rrr_R_a_t = rrr_c_x*v.rrr_q_y - rrr_c_y*v.rrr_q_x;
-        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_H_a_1_z = v.rrr_q_x*v.rrr_w_1_y - v.rrr_q_y*v.rrr_w_1_x;
-        /* (R_t) force that actuators and external wrench must give */
-        gather(&terms[3*count + k], add, rrr_c_x);  /* R_t_t */
-        gather(&terms[4*count + k], add, rrr_c_y);  /* R_t_t_2 */
-        /* (R_a) moment that actuators and external wrench must give */
-        gather(&terms[2*count + k], add, rrr_R_a_t);  /* R_a_z_of_legs */
-        /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = v.rrr_w_1_x;
-        o[1*count + k] = v.rrr_w_1_y;
-        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = rrr_H_a_1_z;
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        const real rrr_size = m->rrr_size[i];
-        o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
+    values_rrr v;
+    stage_rrr_X(m, w, i, j, s, X, &v);
+    stage_rrr_A_X(w, j, A, &v);
+    stage_rrr_V_X(m, w, i, j, V, &v);
+    stage_rrr_A_V_X(w, j, V, &v);
+    stage_rrr_legs_required(m, i, &v);
+    /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real rrr_c_x = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_x +
+        v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_y;
+    const real rrr_c_y = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_y -
+        v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_x;
+    /* (R_a) */
+    const real rrr_R_a_t = rrr_c_x*v.rrr_q_y - rrr_c_y*v.rrr_q_x;
+    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+    const real rrr_H_a_1_z = v.rrr_q_x*v.rrr_w_1_y - v.rrr_q_y*v.rrr_w_1_x;
+    /* (R_t) */
+    gather(&terms[3*count + k], add, rrr_c_x);  /* R_t_t */
+    gather(&terms[4*count + k], add, rrr_c_y);  /* R_t_t_2 */
+    /* (R_a) */
+    gather(&terms[2*count + k], add, rrr_R_a_t);  /* R_a_z_of_legs */
+    /* (rrr-w_1) reciprocal vector 1 */
+    o[0*count + k] = v.rrr_w_1_x;
+    o[1*count + k] = v.rrr_w_1_y;
+    /* (rrr-H_a_1) */
+    o[2*count + k] = rrr_H_a_1_z;
+    o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
+        + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
+    o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void required_place_rrr(size_t w, size_t count, const real *o, size_t first, real *H,
-    verdict *t)
+INLINE void required_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
+    *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[1*w + k] = o[0*count + first + k];
-        H[(NU + 1)*w + k] = o[1*count + first + k];
-        H[(2*NU + 1)*w + k] = o[2*count + first + k];
-        t->unreachable[k] += o[3*count + first + k];
-        t->singular[k] += o[4*count + first + k];
-    }
+    H[1*w + k] = o[0*count + at];
+    H[(NU + 1)*w + k] = o[1*count + at];
+    H[(2*NU + 1)*w + k] = o[2*count + at];
+    t->unreachable[k] += o[3*count + at];
+    t->singular[k] += o[4*count + at];
 }
 
-INLINE void required_after(size_t w, const real *s, const real *sums, real *required)
+INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (R_t) force that actuators and external wrench must give */
-        const real R_t_t = sums[3*w + k];
-        const real R_t_x_of_legs = sums[0*w + k];
-        const real f_p_x = s[2*w + k];
-        const real R_t_x = R_t_x_of_legs + f_p_x - R_t_t;
-        const real R_t_t_2 = sums[4*w + k];
-        const real R_t_y_of_legs = sums[1*w + k];
-        const real f_p_y = s[3*w + k];
-        const real R_t_y = R_t_y_of_legs + f_p_y - R_t_t_2;
-        /* (R_a) moment that actuators and external wrench must give */
-        const real R_a_z_of_legs = sums[2*w + k];
-        const real mu_p_z = s[4*w + k];
-        const real R_a_z = R_a_z_of_legs + mu_p_z;
-        /* (R_t) force that actuators and external wrench must give */
-        required[0*w + k] = R_t_x;
-        required[1*w + k] = R_t_y;
-        /* (R_a) moment that actuators and external wrench must give */
-        required[2*w + k] = R_a_z;
-    }
+    /* (R_t) */
+    const real R_t_t = sums[3*w + k];
+    const real R_t_x_of_legs = sums[0*w + k];
+    const real f_p_x = s[2*w + k];
+    const real R_t_x = R_t_x_of_legs + f_p_x - R_t_t;
+    const real R_t_t_2 = sums[4*w + k];
+    const real R_t_y_of_legs = sums[1*w + k];
+    const real f_p_y = s[3*w + k];
+    const real R_t_y = R_t_y_of_legs + f_p_y - R_t_t_2;
+    /* (R_a) */
+    const real R_a_z_of_legs = sums[2*w + k];
+    const real mu_p_z = s[4*w + k];
+    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    /* (R_t) */
+    required[0*w + k] = R_t_x;
+    required[1*w + k] = R_t_y;
+    /* (R_a) */
+    required[2*w + k] = R_a_z;
 }
 
-INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, real *Hk, verdict *t)
 {
     real s[5] = {0}, sums[5] = {0};
     real terms_crank[5*LEGS(LEGS_OF_crank)] = {0}, o_crank[7*LEGS(LEGS_OF_crank)] = {0};
     real terms_rrr[5*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    required_before(m, 1, X, V, A, s);
-    required_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), 0, X, V, A, terms_crank, o_crank);
-    required_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, V, A, terms_rrr, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        required_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, H, Hk, t);
+    required_before(m, 1, 0, X, V, A, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
+        required_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), 0, s, X, V, A, terms_crank, o_crank);
+    }
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        required_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, V, A, terms_rrr, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        required_place_crank(1, 0, i, LEGS(LEGS_OF_crank), o_crank, H, Hk, t);
     }
     for (size_t n = 0; n < 5; ++n) {
         sums[n] = total(terms_crank + n*LEGS(LEGS_OF_crank), LEGS_OF_crank);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        required_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, t);
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        required_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
     for (size_t n = 0; n < 5; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
-    required_after(1, s, sums, required);
+    required_after(1, 0, s, sums, required);
 }
 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *required, real *H, real *Hk, verdict *t)
+    real *restrict required, real *restrict H, real *restrict Hk, verdict *restrict t)
 {
     real s[5*LANES], sums[5*LANES];
     real o_crank[7*LANES];
     real o_rrr[5*LANES];
-    required_before(m, LANES, X, V, A, s);
+    for (size_t k = 0; k < LANES; ++k) {
+        required_before(m, LANES, k, X, V, A, s);
+    }
     clear(sums, 5*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        required_legs_crank(m, LANES, leg, 0, s, 1, LANES, 1, X, V, A, sums, o_crank);
-        required_place_crank(LANES, LANES, o_crank, 0, H, Hk, t);
+    for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            required_legs_crank(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_crank);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            required_place_crank(LANES, k, k, LANES, o_crank, H, Hk, t);
+        }
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        required_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, A, sums, o_rrr);
-        required_place_rrr(LANES, LANES, o_rrr, 0, H, t);
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            required_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_rrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            required_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
+        }
     }
-    required_after(LANES, s, sums, required);
+    for (size_t k = 0; k < LANES; ++k) {
+        required_after(LANES, k, s, sums, required);
+    }
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, real
+    *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
 }
 
-INLINE void inverse_kinematics_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, const real *X, real *o)
+INLINE void inverse_kinematics_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t
+    k, size_t count, const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        /* (crank-S) from the base point to the connection point */
-        const real R_xx = s[0*w + j];
-        const real R_yx = s[1*w + j];
-        const real crank_base_point_x = m->crank_base_point_x[i];
-        const real crank_platform_point_x = m->crank_platform_point_x[i];
-        const real crank_platform_point_y = m->crank_platform_point_y[i];
-        const real t_x = X[0*w + j];
-        const real crank_S_x = t_x + R_xx*crank_platform_point_x - crank_base_point_x -
-            R_yx*crank_platform_point_y;
-        const real crank_base_point_y = m->crank_base_point_y[i];
-        const real t_y = X[1*w + j];
-        const real crank_S_y = t_y + R_xx*crank_platform_point_y + R_yx*crank_platform_point_x -
-            crank_base_point_y;
-        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
-        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
-        const real crank_S_in_turn1_x = crank_S_x*crank_base_frame_xx +
-            crank_S_y*crank_base_frame_yx;
-        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
-        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
-        const real crank_S_in_turn1_y = crank_S_x*crank_base_frame_xy +
-            crank_S_y*crank_base_frame_yy;
-        /* (crank-rho2_1) squared amplitude */
-        const real crank_size_t = m->crank_size_t[i];
-        const real crank_rho2_1 = crank_size_t*(crank_S_in_turn1_x*crank_S_in_turn1_x +
-            crank_S_in_turn1_y*crank_S_in_turn1_y);
-        /* (crank-q_1) displacement of joint 1 */
-        const real crank_q_1_t = 1/(root(crank_rho2_1));
-        const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
-        const real crank_q_1 = angle(crank_S_in_turn1_y*crank_platform_joint_offset_x*crank_q_1_t,
-            crank_S_in_turn1_x*crank_platform_joint_offset_x*crank_q_1_t);
-        /* (crank-q_1) displacement of joint 1 */
-        o[0*count + k] = crank_q_1;
-        o[2*count + k] = crank_q_1;
-        const real crank_root_1_t = m->crank_root_1_t[i];
-        o[1*count + k] = UNLESS(magnitude(crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
-    }
+    /* (crank-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_yx = s[1*w + j];
+    const real t_x = X[0*w + j];
+    const real crank_S_x = t_x + R_xx*m->crank_platform_point_x[i] - m->crank_base_point_x[i]
+        - R_yx*m->crank_platform_point_y[i];
+    const real t_y = X[1*w + j];
+    const real crank_S_y = t_y + R_xx*m->crank_platform_point_y[i] +
+        R_yx*m->crank_platform_point_x[i] - m->crank_base_point_y[i];
+    const real crank_S_in_turn1_x = crank_S_x*m->crank_base_frame_xx[i] +
+        crank_S_y*m->crank_base_frame_yx[i];
+    const real crank_S_in_turn1_y = crank_S_x*m->crank_base_frame_xy[i] +
+        crank_S_y*m->crank_base_frame_yy[i];
+    /* (crank-rho2_1) squared amplitude */
+    const real crank_rho2_1 = m->crank_size_t[i]*(crank_S_in_turn1_x*crank_S_in_turn1_x +
+        crank_S_in_turn1_y*crank_S_in_turn1_y);
+    /* (crank-q_1) displacement of joint 1 */
+    const real crank_q_1_t = 1/(root(crank_rho2_1));
+    const real crank_q_1 =
+        angle(crank_S_in_turn1_y*m->crank_platform_joint_offset_x[i]*crank_q_1_t,
+        crank_S_in_turn1_x*m->crank_platform_joint_offset_x[i]*crank_q_1_t);
+    /* (crank-q_1) */
+    o[0*count + k] = crank_q_1;
+    o[2*count + k] = crank_q_1;
+    o[1*count + k] = UNLESS(magnitude(crank_rho2_1) >
+        TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
 }
 
-INLINE void inverse_kinematics_place_crank(size_t w, size_t count, const real *o, size_t first,
-    real *q, verdict *t)
+INLINE void inverse_kinematics_place_crank(size_t w, size_t k, size_t at, size_t count, const real
+    *o, real *q, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        q[0*w + k] = o[0*count + first + k];
-        t->singular[k] += o[1*count + first + k];
-        t->total[k] += o[2*count + first + k];
-    }
+    q[0*w + k] = o[0*count + at];
+    t->singular[k] += o[1*count + at];
+    t->total[k] += o[2*count + at];
 }
 
-INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, const real *X, real *o)
+INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k,
+    size_t count, const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-        /* (rrr-q_1) displacement of joint 1 */
-        const real rrr_q_1 = angle(v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_root_1 +
-            v.rrr_Kd_1*v.rrr_Ks_1), v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 -
-            v.rrr_Ks_1*v.rrr_root_1));
-        /* (rrr-q_2) displacement of joint 2 */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_q_2 =
-            angle(-inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*v.rrr_root_1,
-            inv_rrr_size_t_2*rrr_platform_joint_offset_x*v.rrr_x_2_in_axes1_x);
-        /* (rrr-q_1) displacement of joint 1 */
-        o[0*count + k] = rrr_q_1;
-        /* (rrr-q_2) displacement of joint 2 */
-        o[1*count + k] = rrr_q_2;
-        o[4*count + k] = rrr_q_1 + rrr_q_2;
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
-        o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
+    values_rrr v;
+    stage_rrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
+    /* (rrr-q_1) displacement of joint 1 */
+    const real rrr_q_1 = angle(v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_root_1 +
+        v.rrr_Kd_1*v.rrr_Ks_1), v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 -
+        v.rrr_Ks_1*v.rrr_root_1));
+    /* (rrr-q_2) displacement of joint 2 */
+    const real rrr_q_2 =
+        angle(-m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_root_1,
+        m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_x_2_in_axes1_x);
+    /* (rrr-q_1) */
+    o[0*count + k] = rrr_q_1;
+    /* (rrr-q_2) */
+    o[1*count + k] = rrr_q_2;
+    o[4*count + k] = rrr_q_1 + rrr_q_2;
+    o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
+    o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void inverse_kinematics_place_rrr(size_t w, size_t count, const real *o, size_t first, real
-    *q, verdict *t)
+INLINE void inverse_kinematics_place_rrr(size_t w, size_t k, size_t at, size_t count, const real
+    *o, real *q, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        q[1*w + k] = o[0*count + first + k];
-        q[2*w + k] = o[1*count + first + k];
-        t->unreachable[k] += o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
+    q[1*w + k] = o[0*count + at];
+    q[2*w + k] = o[1*count + at];
+    t->unreachable[k] += o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
 }
 
-INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
+APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
     real s[2] = {0};
     real o_crank[3*LEGS(LEGS_OF_crank)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    inverse_kinematics_before(m, 1, X, s);
-    inverse_kinematics_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), X, o_crank);
-    inverse_kinematics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), X, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        inverse_kinematics_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, q, t);
+    inverse_kinematics_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
+        inverse_kinematics_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, o_crank);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        inverse_kinematics_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, q, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        inverse_kinematics_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        inverse_kinematics_place_crank(1, 0, i, LEGS(LEGS_OF_crank), o_crank, q, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        inverse_kinematics_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, q, t);
     }
 }
 
-INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
+INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
+    verdict *restrict t)
 {
     real s[2*LANES];
     real o_crank[3*LANES];
     real o_rrr[5*LANES];
-    inverse_kinematics_before(m, LANES, X, s);
-    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        inverse_kinematics_legs_crank(m, LANES, leg, 0, s, 1, LANES, X, o_crank);
-        inverse_kinematics_place_crank(LANES, LANES, o_crank, 0, q, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        inverse_kinematics_before(m, LANES, k, X, s);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        inverse_kinematics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, X, o_rrr);
-        inverse_kinematics_place_rrr(LANES, LANES, o_rrr, 0, q, t);
+    for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_legs_crank(m, LANES, i, k, k, LANES, s, X, o_crank);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_place_crank(LANES, k, k, LANES, o_crank, q, t);
+        }
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_legs_rrr(m, LANES, i, k, k, LANES, s, X, o_rrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_place_rrr(LANES, k, k, LANES, o_rrr, q, t);
+        }
     }
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
 }
 
-INLINE void joint_rates_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const
-    real *s, size_t states, size_t count, const real *X, const real *V, real *o)
+INLINE void joint_rates_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k,
+    size_t count, const real *s, const real *X, const real *V, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_crank v;
-        stage_crank_X(m, w, i, j, s, X, &v);
-        /* (crank-S_dot) velocity of the connection point */
-        const real omega_z = V[2*w + j];
-        const real t_dot_x = V[0*w + j];
-        const real crank_S_dot_x = t_dot_x - v.crank_q_y*omega_z;
-        const real t_dot_y = V[1*w + j];
-        const real crank_S_dot_y = t_dot_y + v.crank_q_x*omega_z;
-        /* (crank-qd_1) rate of joint 1 */
-        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
-        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
-        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
-        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
-        const real crank_w_1_in_axes1_y = m->crank_w_1_in_axes1_y[i];
-        const real crank_qd_1 =
-            crank_w_1_in_axes1_y*(crank_S_dot_x*(crank_base_frame_xy*v.crank_c_1 -
-            crank_base_frame_xx*v.crank_s_1) + crank_S_dot_y*(crank_base_frame_yy*v.crank_c_1 -
-            crank_base_frame_yx*v.crank_s_1));
-        /* (crank-qd_1) rate of joint 1 */
-        o[0*count + k] = crank_qd_1;
-        o[2*count + k] = crank_qd_1;
-        const real crank_root_1_t = m->crank_root_1_t[i];
-        o[1*count + k] = UNLESS(magnitude(v.crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
-    }
+    values_crank v;
+    stage_crank_X(m, w, i, j, s, X, &v);
+    /* (crank-S_dot) velocity of the connection point */
+    const real omega_z = V[2*w + j];
+    const real t_dot_x = V[0*w + j];
+    const real crank_S_dot_x = t_dot_x - v.crank_q_y*omega_z;
+    const real t_dot_y = V[1*w + j];
+    const real crank_S_dot_y = t_dot_y + v.crank_q_x*omega_z;
+    /* (crank-qd_1) rate of joint 1 */
+    const real crank_qd_1 =
+        m->crank_w_1_in_axes1_y[i]*(crank_S_dot_x*(m->crank_base_frame_xy[i]*v.crank_c_1 -
+        m->crank_base_frame_xx[i]*v.crank_s_1) +
+        crank_S_dot_y*(m->crank_base_frame_yy[i]*v.crank_c_1 -
+        m->crank_base_frame_yx[i]*v.crank_s_1));
+    /* (crank-qd_1) */
+    o[0*count + k] = crank_qd_1;
+    o[2*count + k] = crank_qd_1;
+    o[1*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
+        TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
 }
 
-INLINE void joint_rates_place_crank(size_t w, size_t count, const real *o, size_t first, real *qd,
-    verdict *t)
+INLINE void joint_rates_place_crank(size_t w, size_t k, size_t at, size_t count, const real *o,
+    real *qd, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        qd[0*w + k] = o[0*count + first + k];
-        t->singular[k] += o[1*count + first + k];
-        t->total[k] += o[2*count + first + k];
-    }
+    qd[0*w + k] = o[0*count + at];
+    t->singular[k] += o[1*count + at];
+    t->total[k] += o[2*count + at];
 }
 
-INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, const real *X, const real *V, real *o)
+INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, const real *s, const real *X, const real *V, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_X(m, w, i, j, s, X, &v);
-        /* (rrr-S_dot) velocity of the connection point */
-        const real omega_z = V[2*w + j];
-        const real t_dot_x = V[0*w + j];
-        const real rrr_S_dot_x = t_dot_x - omega_z*v.rrr_q_y;
-        const real t_dot_y = V[1*w + j];
-        const real rrr_S_dot_y = t_dot_y + omega_z*v.rrr_q_x;
-        /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*v.rrr_qd_1_t_2 -
-            rrr_base_frame_xx*v.rrr_qd_1_t;
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*v.rrr_qd_1_t_2 -
-            rrr_base_frame_yx*v.rrr_qd_1_t;
-        const real rrr_qd_1 = -(axis_x_rrr_axes2_x*rrr_S_dot_x -
-            axis_y_rrr_axes2_x*rrr_S_dot_y)/v.rrr_r_1_in_axes2_y;
-        /* (rrr-qd_2) rate of joint 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_qd_2 = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
-            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*(v.rrr_c_2*v.rrr_r_1_in_axes1_x +
-            v.rrr_r_1_in_axes1_y*v.rrr_s_2));
-        /* (rrr-qd_1) rate of joint 1 */
-        o[0*count + k] = rrr_qd_1;
-        /* (rrr-qd_2) rate of joint 2 */
-        o[1*count + k] = rrr_qd_2;
-        o[4*count + k] = rrr_qd_1 + rrr_qd_2;
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        const real rrr_size = m->rrr_size[i];
-        o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
+    values_rrr v;
+    stage_rrr_X(m, w, i, j, s, X, &v);
+    /* (rrr-S_dot) velocity of the connection point */
+    const real omega_z = V[2*w + j];
+    const real t_dot_x = V[0*w + j];
+    const real rrr_S_dot_x = t_dot_x - omega_z*v.rrr_q_y;
+    const real t_dot_y = V[1*w + j];
+    const real rrr_S_dot_y = t_dot_y + omega_z*v.rrr_q_x;
+    /* (rrr-qd_1) rate of joint 1 */
+    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*v.rrr_qd_1_t_2 -
+        m->rrr_base_frame_xx[i]*v.rrr_qd_1_t;
+    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*v.rrr_qd_1_t_2 -
+        m->rrr_base_frame_yx[i]*v.rrr_qd_1_t;
+    const real rrr_qd_1 = -(axis_x_rrr_axes2_x*rrr_S_dot_x -
+        axis_y_rrr_axes2_x*rrr_S_dot_y)/v.rrr_r_1_in_axes2_y;
+    /* (rrr-qd_2) rate of joint 2 */
+    const real rrr_qd_2 = m->rrr_w_2_in_axes2_y[i]*(axis_x_rrr_axes2_x*rrr_S_dot_y +
+        axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*(v.rrr_c_2*v.rrr_r_1_in_axes1_x +
+        v.rrr_r_1_in_axes1_y*v.rrr_s_2));
+    /* (rrr-qd_1) */
+    o[0*count + k] = rrr_qd_1;
+    /* (rrr-qd_2) */
+    o[1*count + k] = rrr_qd_2;
+    o[4*count + k] = rrr_qd_1 + rrr_qd_2;
+    o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
+        + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
+    o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void joint_rates_place_rrr(size_t w, size_t count, const real *o, size_t first, real *qd,
-    verdict *t)
+INLINE void joint_rates_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
+    *qd, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        qd[1*w + k] = o[0*count + first + k];
-        qd[2*w + k] = o[1*count + first + k];
-        t->unreachable[k] += o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
+    qd[1*w + k] = o[0*count + at];
+    qd[2*w + k] = o[1*count + at];
+    t->unreachable[k] += o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
 }
 
-INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
     real s[2] = {0};
     real o_crank[3*LEGS(LEGS_OF_crank)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    joint_rates_before(m, 1, X, s);
-    joint_rates_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), X, V, o_crank);
-    joint_rates_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), X, V, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        joint_rates_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, qd, t);
+    joint_rates_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
+        joint_rates_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, V, o_crank);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        joint_rates_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, qd, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        joint_rates_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, V, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        joint_rates_place_crank(1, 0, i, LEGS(LEGS_OF_crank), o_crank, qd, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        joint_rates_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, qd, t);
     }
 }
 
-INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
-    verdict *t)
+INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
+    qd, verdict *restrict t)
 {
     real s[2*LANES];
     real o_crank[3*LANES];
     real o_rrr[5*LANES];
-    joint_rates_before(m, LANES, X, s);
-    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        joint_rates_legs_crank(m, LANES, leg, 0, s, 1, LANES, X, V, o_crank);
-        joint_rates_place_crank(LANES, LANES, o_crank, 0, qd, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        joint_rates_before(m, LANES, k, X, s);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        joint_rates_legs_rrr(m, LANES, leg, 0, s, 1, LANES, X, V, o_rrr);
-        joint_rates_place_rrr(LANES, LANES, o_rrr, 0, qd, t);
+    for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_legs_crank(m, LANES, i, k, k, LANES, s, X, V, o_crank);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_place_crank(LANES, k, k, LANES, o_crank, qd, t);
+        }
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_legs_rrr(m, LANES, i, k, k, LANES, s, X, V, o_rrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_place_rrr(LANES, k, k, LANES, o_rrr, qd, t);
+        }
     }
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
+    *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
 }
 
-INLINE void joint_accelerations_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
-    *o)
+INLINE void joint_accelerations_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t
+    k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_crank v;
-        stage_crank_X(m, w, i, j, s, X, &v);
-        stage_crank_A_X(w, j, A, &v);
-        stage_crank_A_V_X(w, j, V, &v);
-        /* (crank-qdd_1) acceleration of joint 1 */
-        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
-        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
-        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
-        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
-        const real crank_w_1_in_axes1_y = m->crank_w_1_in_axes1_y[i];
-        const real crank_qdd_1 =
-            crank_w_1_in_axes1_y*(v.crank_S_ddot_x*(crank_base_frame_xy*v.crank_c_1 -
-            crank_base_frame_xx*v.crank_s_1) + v.crank_S_ddot_y*(crank_base_frame_yy*v.crank_c_1 -
-            crank_base_frame_yx*v.crank_s_1));
-        /* (crank-qdd_1) acceleration of joint 1 */
-        o[0*count + k] = crank_qdd_1;
-        o[2*count + k] = crank_qdd_1;
-        const real crank_root_1_t = m->crank_root_1_t[i];
-        o[1*count + k] = UNLESS(magnitude(v.crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
-    }
+    values_crank v;
+    stage_crank_X(m, w, i, j, s, X, &v);
+    stage_crank_A_X(w, j, A, &v);
+    stage_crank_A_V_X(w, j, V, &v);
+    /* (crank-qdd_1) acceleration of joint 1 */
+    const real crank_qdd_1 =
+        m->crank_w_1_in_axes1_y[i]*(v.crank_S_ddot_x*(m->crank_base_frame_xy[i]*v.crank_c_1 -
+        m->crank_base_frame_xx[i]*v.crank_s_1) +
+        v.crank_S_ddot_y*(m->crank_base_frame_yy[i]*v.crank_c_1 -
+        m->crank_base_frame_yx[i]*v.crank_s_1));
+    /* (crank-qdd_1) */
+    o[0*count + k] = crank_qdd_1;
+    o[2*count + k] = crank_qdd_1;
+    o[1*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
+        TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
 }
 
-INLINE void joint_accelerations_place_crank(size_t w, size_t count, const real *o, size_t first,
+INLINE void joint_accelerations_place_crank(size_t w, size_t k, size_t at, size_t count, const
+    real *o, real *qdd, verdict *t)
+{
+    qdd[0*w + k] = o[0*count + at];
+    t->singular[k] += o[1*count + at];
+    t->total[k] += o[2*count + at];
+}
+
+INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t
+    k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
+{
+    values_rrr v;
+    stage_rrr_X(m, w, i, j, s, X, &v);
+    stage_rrr_A_X(w, j, A, &v);
+    stage_rrr_V_X(m, w, i, j, V, &v);
+    stage_rrr_A_V_X(w, j, V, &v);
+    /* (rrr-qd_1) rate of joint 1 */
+    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*v.rrr_qd_1_t_2 -
+        m->rrr_base_frame_xx[i]*v.rrr_qd_1_t;
+    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*v.rrr_qd_1_t_2 -
+        m->rrr_base_frame_yx[i]*v.rrr_qd_1_t;
+    const real rrr_qd_1 = v.rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*v.rrr_S_dot_x -
+        axis_y_rrr_axes2_x*v.rrr_S_dot_y);
+    /* (rrr-W_1) centripetal tensor of link 1 */
+    const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+    /* (rrr-omega_2) angular velocity of link 2 */
+    const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
+        m->rrr_w_2_in_axes2_y[i]*(axis_x_rrr_axes2_x*v.rrr_S_dot_y +
+        axis_y_rrr_axes2_x*v.rrr_S_dot_x - rrr_qd_1*v.rrr_r_1_in_axes2_x);
+    /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+    const real rrr_bias_in_axes2_x =
+        -rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*m->rrr_platform_joint_offset_x[i] -
+        rrr_W_1_t*v.rrr_c_2*m->rrr_joint2_offset_x[i];
+    /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
+    const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*v.rrr_S_ddot_x - rrr_bias_in_axes2_x -
+        axis_y_rrr_axes2_x*v.rrr_S_ddot_y;
+    const real rrr_rel_in_axes2_y = axis_x_rrr_axes2_x*v.rrr_S_ddot_y +
+        axis_y_rrr_axes2_x*v.rrr_S_ddot_x - rrr_W_1_t*m->rrr_joint2_offset_x[i]*v.rrr_s_2;
+    /* (rrr-qdd_1) acceleration of joint 1 */
+    const real rrr_qdd_1_t = -rrr_rel_in_axes2_x*v.rrr_w_1_in_axes2_x;
+    /* (rrr-qdd_2) acceleration of joint 2 */
+    const real rrr_qdd_2 = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_in_axes2_y +
+        rrr_qdd_1_t*v.rrr_r_1_in_axes2_x);
+    /* (rrr-qdd_1) */
+    o[0*count + k] = -rrr_qdd_1_t;
+    /* (rrr-qdd_2) */
+    o[1*count + k] = rrr_qdd_2;
+    o[4*count + k] = rrr_qdd_1_t + rrr_qdd_2;
+    o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
+        + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
+    o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+}
+
+INLINE void joint_accelerations_place_rrr(size_t w, size_t k, size_t at, size_t count, const real
+    *o, real *qdd, verdict *t)
+{
+    qdd[1*w + k] = o[0*count + at];
+    qdd[2*w + k] = o[1*count + at];
+    t->unreachable[k] += o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
+}
+
+APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        qdd[0*w + k] = o[0*count + first + k];
-        t->singular[k] += o[1*count + first + k];
-        t->total[k] += o[2*count + first + k];
-    }
-}
-
-INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
-    *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_X(m, w, i, j, s, X, &v);
-        stage_rrr_A_X(w, j, A, &v);
-        stage_rrr_V_X(m, w, i, j, V, &v);
-        stage_rrr_A_V_X(w, j, V, &v);
-        /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*v.rrr_qd_1_t_2 -
-            rrr_base_frame_xx*v.rrr_qd_1_t;
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*v.rrr_qd_1_t_2 -
-            rrr_base_frame_yx*v.rrr_qd_1_t;
-        const real rrr_qd_1 = v.rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*v.rrr_S_dot_x -
-            axis_y_rrr_axes2_x*v.rrr_S_dot_y);
-        /* (rrr-W_1) centripetal tensor of link 1 */
-        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
-            rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*v.rrr_S_dot_y +
-            axis_y_rrr_axes2_x*v.rrr_S_dot_x - rrr_qd_1*v.rrr_r_1_in_axes2_x);
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_bias_in_axes2_x =
-            -rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x -
-            rrr_W_1_t*v.rrr_c_2*rrr_joint2_offset_x;
-        /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*v.rrr_S_ddot_x - rrr_bias_in_axes2_x -
-            axis_y_rrr_axes2_x*v.rrr_S_ddot_y;
-        const real rrr_rel_in_axes2_y = axis_x_rrr_axes2_x*v.rrr_S_ddot_y +
-            axis_y_rrr_axes2_x*v.rrr_S_ddot_x - rrr_W_1_t*rrr_joint2_offset_x*v.rrr_s_2;
-        /* (rrr-qdd_1) acceleration of joint 1 */
-        const real rrr_qdd_1_t = -rrr_rel_in_axes2_x*v.rrr_w_1_in_axes2_x;
-        /* (rrr-qdd_2) acceleration of joint 2 */
-        const real rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
-            rrr_qdd_1_t*v.rrr_r_1_in_axes2_x);
-        /* (rrr-qdd_1) acceleration of joint 1 */
-        o[0*count + k] = -rrr_qdd_1_t;
-        /* (rrr-qdd_2) acceleration of joint 2 */
-        o[1*count + k] = rrr_qdd_2;
-        o[4*count + k] = rrr_qdd_1_t + rrr_qdd_2;
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        const real rrr_size = m->rrr_size[i];
-        o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
-}
-
-INLINE void joint_accelerations_place_rrr(size_t w, size_t count, const real *o, size_t first,
-    real *qdd, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        qdd[1*w + k] = o[0*count + first + k];
-        qdd[2*w + k] = o[1*count + first + k];
-        t->unreachable[k] += o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
-}
-
-INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd, verdict *t)
 {
     real s[2] = {0};
     real o_crank[3*LEGS(LEGS_OF_crank)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    joint_accelerations_before(m, 1, X, s);
-    joint_accelerations_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), X, V, A, o_crank);
-    joint_accelerations_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), X, V, A, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        joint_accelerations_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, qdd, t);
+    joint_accelerations_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
+        joint_accelerations_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, V, A, o_crank);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        joint_accelerations_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, qdd, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        joint_accelerations_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, V, A, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        joint_accelerations_place_crank(1, 0, i, LEGS(LEGS_OF_crank), o_crank, qdd, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        joint_accelerations_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, qdd, t);
     }
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *qdd, verdict *t)
+    real *A, real *restrict qdd, verdict *restrict t)
 {
     real s[2*LANES];
     real o_crank[3*LANES];
     real o_rrr[5*LANES];
-    joint_accelerations_before(m, LANES, X, s);
-    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        joint_accelerations_legs_crank(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_crank);
-        joint_accelerations_place_crank(LANES, LANES, o_crank, 0, qdd, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        joint_accelerations_before(m, LANES, k, X, s);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        joint_accelerations_legs_rrr(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_rrr);
-        joint_accelerations_place_rrr(LANES, LANES, o_rrr, 0, qdd, t);
+    for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_legs_crank(m, LANES, i, k, k, LANES, s, X, V, A, o_crank);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_place_crank(LANES, k, k, LANES, o_crank, qdd, t);
+        }
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_legs_rrr(m, LANES, i, k, k, LANES, s, X, V, A, o_rrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_place_rrr(LANES, k, k, LANES, o_rrr, qdd, t);
+        }
     }
 }
 
 /* ---- constraints ---- */
-INLINE void constraints_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void constraints_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
 }
 
-INLINE void constraints_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const
-    real *s, size_t states, size_t count, const real *X, real *o)
+INLINE void constraints_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k,
+    size_t count, const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        /* (crank-S) from the base point to the connection point */
-        const real R_xx = s[0*w + j];
-        const real R_yx = s[1*w + j];
-        const real crank_base_point_x = m->crank_base_point_x[i];
-        const real crank_platform_point_x = m->crank_platform_point_x[i];
-        const real crank_platform_point_y = m->crank_platform_point_y[i];
-        const real t_x = X[0*w + j];
-        const real crank_S_x = t_x + R_xx*crank_platform_point_x - crank_base_point_x -
-            R_yx*crank_platform_point_y;
-        const real crank_base_point_y = m->crank_base_point_y[i];
-        const real t_y = X[1*w + j];
-        const real crank_S_y = t_y + R_xx*crank_platform_point_y + R_yx*crank_platform_point_x -
-            crank_base_point_y;
-        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
-        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
-        const real crank_S_in_turn1_x = crank_S_x*crank_base_frame_xx +
-            crank_S_y*crank_base_frame_yx;
-        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
-        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
-        const real crank_S_in_turn1_y = crank_S_x*crank_base_frame_xy +
-            crank_S_y*crank_base_frame_yy;
-        /* (crank-rho2_1) squared amplitude */
-        const real crank_size_t = m->crank_size_t[i];
-        const real crank_rho2_1 = crank_size_t*(crank_S_in_turn1_x*crank_S_in_turn1_x +
-            crank_S_in_turn1_y*crank_S_in_turn1_y);
-        /* (crank-phi_c1) loop-closure residual along the constraint force */
-        const real crank_phi_c1_t = 1/(root(crank_rho2_1));
-        const real crank_n_c_in_axes1_x = m->crank_n_c_in_axes1_x[i];
-        const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
-        const real crank_phi_c1 =
-            crank_n_c_in_axes1_x*(crank_S_in_turn1_x*crank_S_in_turn1_x*crank_phi_c1_t*crank_platform_joint_offset_x
-            + crank_S_in_turn1_y*crank_S_in_turn1_y*crank_phi_c1_t*crank_platform_joint_offset_x -
-            crank_platform_joint_offset_x);
-        /* (crank-phi_c1) loop-closure residual along the constraint force */
-        o[0*count + k] = crank_phi_c1;
-        o[2*count + k] = crank_phi_c1;
-        const real crank_root_1_t = m->crank_root_1_t[i];
-        o[1*count + k] = UNLESS(magnitude(crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
-    }
+    /* (crank-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_yx = s[1*w + j];
+    const real t_x = X[0*w + j];
+    const real crank_S_x = t_x + R_xx*m->crank_platform_point_x[i] - m->crank_base_point_x[i]
+        - R_yx*m->crank_platform_point_y[i];
+    const real t_y = X[1*w + j];
+    const real crank_S_y = t_y + R_xx*m->crank_platform_point_y[i] +
+        R_yx*m->crank_platform_point_x[i] - m->crank_base_point_y[i];
+    const real crank_S_in_turn1_x = crank_S_x*m->crank_base_frame_xx[i] +
+        crank_S_y*m->crank_base_frame_yx[i];
+    const real crank_S_in_turn1_y = crank_S_x*m->crank_base_frame_xy[i] +
+        crank_S_y*m->crank_base_frame_yy[i];
+    /* (crank-rho2_1) squared amplitude */
+    const real crank_rho2_1 = m->crank_size_t[i]*(crank_S_in_turn1_x*crank_S_in_turn1_x +
+        crank_S_in_turn1_y*crank_S_in_turn1_y);
+    /* (crank-phi_c1) loop-closure residual along the constraint force */
+    const real crank_phi_c1_t = 1/(root(crank_rho2_1));
+    const real crank_phi_c1 =
+        m->crank_n_c_in_axes1_x[i]*(crank_S_in_turn1_x*crank_S_in_turn1_x*crank_phi_c1_t*m->crank_platform_joint_offset_x[i]
+        +
+        crank_S_in_turn1_y*crank_S_in_turn1_y*crank_phi_c1_t*m->crank_platform_joint_offset_x[i]
+        - m->crank_platform_joint_offset_x[i]);
+    /* (crank-phi_c1) */
+    o[0*count + k] = crank_phi_c1;
+    o[2*count + k] = crank_phi_c1;
+    o[1*count + k] = UNLESS(magnitude(crank_rho2_1) >
+        TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
 }
 
-INLINE void constraints_place_crank(size_t w, size_t count, const real *o, size_t first, real
-    *constraints, verdict *t)
+INLINE void constraints_place_crank(size_t w, size_t k, size_t at, size_t count, const real *o,
+    real *constraints, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        constraints[0*w + k] = o[0*count + first + k];
-        t->singular[k] += o[1*count + first + k];
-        t->total[k] += o[2*count + first + k];
-    }
+    constraints[0*w + k] = o[0*count + at];
+    t->singular[k] += o[1*count + at];
+    t->total[k] += o[2*count + at];
 }
 
-INLINE void constraints_run(const prepared *m, const real *X, real *constraints, verdict *t)
+APART void constraints_run(const prepared *m, const real *X, real *constraints, verdict *t)
 {
     real s[2] = {0};
     real o_crank[3*LEGS(LEGS_OF_crank)] = {0};
-    constraints_before(m, 1, X, s);
-    constraints_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), X, o_crank);
-    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        constraints_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, constraints, t);
+    constraints_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
+        constraints_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, o_crank);
+    }
+    for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        constraints_place_crank(1, 0, i, LEGS(LEGS_OF_crank), o_crank, constraints, t);
     }
 }
 
-INLINE void constraints_run_lanes(const prepared *m, const real *X, real *constraints, verdict *t)
+INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restrict constraints,
+    verdict *restrict t)
 {
     real s[2*LANES];
     real o_crank[3*LANES];
-    constraints_before(m, LANES, X, s);
-    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        constraints_legs_crank(m, LANES, leg, 0, s, 1, LANES, X, o_crank);
-        constraints_place_crank(LANES, LANES, o_crank, 0, constraints, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        constraints_before(m, LANES, k, X, s);
+    }
+    for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            constraints_legs_crank(m, LANES, i, k, k, LANES, s, X, o_crank);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            constraints_place_crank(LANES, k, k, LANES, o_crank, constraints, t);
+        }
     }
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
 }
 
-INLINE void legs_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
+INLINE void legs_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_crank v;
-        stage_crank_X(m, w, i, j, s, X, &v);
-        stage_crank_A_X(w, j, A, &v);
-        stage_crank_A_V_X(w, j, V, &v);
-        stage_crank_legs_required(m, i, &v);
-        /* (crank-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        o[0*count + k] = -v.crank_c_t;
-        o[1*count + k] = -v.crank_c_t_2;
-        /* (crank-w_1) reciprocal vector 1 */
-        o[2*count + k] = v.crank_w_1_x;
-        o[3*count + k] = v.crank_w_1_y;
-        /* (crank-n_c) direction of the constraint force */
-        o[4*count + k] = v.crank_n_c_x;
-        o[5*count + k] = v.crank_n_c_y;
-        const real crank_root_1_t = m->crank_root_1_t[i];
-        o[6*count + k] = UNLESS(magnitude(v.crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
-    }
+    values_crank v;
+    stage_crank_X(m, w, i, j, s, X, &v);
+    stage_crank_A_X(w, j, A, &v);
+    stage_crank_A_V_X(w, j, V, &v);
+    stage_crank_legs_required(m, i, &v);
+    /* (crank-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    o[0*count + k] = -v.crank_c_t;
+    o[1*count + k] = -v.crank_c_t_2;
+    /* (crank-w_1) reciprocal vector 1 */
+    o[2*count + k] = v.crank_w_1_x;
+    o[3*count + k] = v.crank_w_1_y;
+    /* (crank-n_c) direction of the constraint force */
+    o[4*count + k] = v.crank_n_c_x;
+    o[5*count + k] = v.crank_n_c_y;
+    o[6*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
+        TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
 }
 
-INLINE void legs_place_crank(size_t w, size_t count, const real *o, size_t first, real *leg_force,
-    real *actuator, real *constraint_direction, verdict *t)
+INLINE void legs_place_crank(size_t w, size_t k, size_t at, size_t count, const real *o, real
+    *leg_force, real *actuator, real *constraint_direction, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        leg_force[0*w + k] = o[0*count + first + k];
-        leg_force[1*w + k] = o[1*count + first + k];
-        actuator[0*w + k] = o[2*count + first + k];
-        actuator[1*w + k] = o[3*count + first + k];
-        constraint_direction[0*w + k] = o[4*count + first + k];
-        constraint_direction[1*w + k] = o[5*count + first + k];
-        t->singular[k] += o[6*count + first + k];
-    }
+    leg_force[0*w + k] = o[0*count + at];
+    leg_force[1*w + k] = o[1*count + at];
+    actuator[0*w + k] = o[2*count + at];
+    actuator[1*w + k] = o[3*count + at];
+    constraint_direction[0*w + k] = o[4*count + at];
+    constraint_direction[1*w + k] = o[5*count + at];
+    t->singular[k] += o[6*count + at];
 }
 
-INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
+INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    const real *s, const real *X, const real *V, const real *A, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_X(m, w, i, j, s, X, &v);
-        stage_rrr_A_X(w, j, A, &v);
-        stage_rrr_V_X(m, w, i, j, V, &v);
-        stage_rrr_A_V_X(w, j, V, &v);
-        stage_rrr_legs_required(m, i, &v);
-        /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
-        const real rrr_link2_mass = m->rrr_link2_mass[i];
-        const real rrr_c_true_in_axes2_x = v.rrr_c_in_axes2_x -
-            v.rrr_acc_2_in_axes2_x*rrr_link2_mass;
-        const real rrr_c_true_in_axes2_y = v.rrr_c_in_axes2_y -
-            v.rrr_acc_2_in_axes2_y*rrr_link2_mass;
-        const real rrr_c_true_x = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x +
-            v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y;
-        const real rrr_c_true_y = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y -
-            v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x;
-        /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
-        o[0*count + k] = rrr_c_true_x;
-        o[1*count + k] = rrr_c_true_y;
-        /* (rrr-w_1) reciprocal vector 1 */
-        o[2*count + k] = v.rrr_w_1_x;
-        o[3*count + k] = v.rrr_w_1_y;
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        const real rrr_size = m->rrr_size[i];
-        o[5*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
+    values_rrr v;
+    stage_rrr_X(m, w, i, j, s, X, &v);
+    stage_rrr_A_X(w, j, A, &v);
+    stage_rrr_V_X(m, w, i, j, V, &v);
+    stage_rrr_A_V_X(w, j, V, &v);
+    stage_rrr_legs_required(m, i, &v);
+    /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
+    const real rrr_c_true_in_axes2_x = v.rrr_c_in_axes2_x -
+        v.rrr_acc_2_in_axes2_x*m->rrr_link2_mass[i];
+    const real rrr_c_true_in_axes2_y = v.rrr_c_in_axes2_y -
+        v.rrr_acc_2_in_axes2_y*m->rrr_link2_mass[i];
+    const real rrr_c_true_x = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x +
+        v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y;
+    const real rrr_c_true_y = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y -
+        v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x;
+    /* (rrr-c_true) */
+    o[0*count + k] = rrr_c_true_x;
+    o[1*count + k] = rrr_c_true_y;
+    /* (rrr-w_1) reciprocal vector 1 */
+    o[2*count + k] = v.rrr_w_1_x;
+    o[3*count + k] = v.rrr_w_1_y;
+    o[5*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
+        + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
+    o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void legs_place_rrr(size_t w, size_t count, const real *o, size_t first, real *leg_force,
-    real *actuator, verdict *t)
+INLINE void legs_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
+    *leg_force, real *actuator, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        leg_force[3*w + k] = o[0*count + first + k];
-        leg_force[(3 + 1)*w + k] = o[1*count + first + k];
-        actuator[3*w + k] = o[2*count + first + k];
-        actuator[(3 + 1)*w + k] = o[3*count + first + k];
-        t->unreachable[k] += o[4*count + first + k];
-        t->singular[k] += o[5*count + first + k];
-    }
+    leg_force[3*w + k] = o[0*count + at];
+    leg_force[(3 + 1)*w + k] = o[1*count + at];
+    actuator[3*w + k] = o[2*count + at];
+    actuator[(3 + 1)*w + k] = o[3*count + at];
+    t->unreachable[k] += o[4*count + at];
+    t->singular[k] += o[5*count + at];
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
@@ -3734,171 +3568,128 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     clear(leg_force, 3*NL);
     clear(actuator, 6);
     clear(constraint_direction, 3*NC);
-    legs_before(m, 1, X, s);
-    legs_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), X, V, A, o_crank);
-    legs_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), X, V, A, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        legs_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, leg_force, actuator, constraint_direction, t);
+    legs_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
+        legs_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, V, A, o_crank);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        legs_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg_force, actuator, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        legs_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, V, A, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        legs_place_crank(1, 0, i, LEGS(LEGS_OF_crank), o_crank, leg_force, actuator, constraint_direction, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        legs_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, leg_force, actuator, t);
     }
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        /* (potential) potential energy */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real m_star = m->m_star;
-        const real t_x = X[0*w + k];
-        const real t_y = X[1*w + k];
-        const real potential_t = gravity_x*(v.R_xx*h_star_in_platform_x + m_star*t_x -
-            v.R_yx*h_star_in_platform_y) + gravity_y*(v.R_xx*h_star_in_platform_y +
-            v.R_yx*h_star_in_platform_x + m_star*t_y);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-        s[2*w + k] = potential_t;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    /* (potential) potential energy */
+    const real t_x = X[0*w + k];
+    const real t_y = X[1*w + k];
+    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x + m->m_star*t_x -
+        v.R_yx*m->h_star_in_platform_y) + m->gravity_y*(v.R_xx*m->h_star_in_platform_y +
+        v.R_yx*m->h_star_in_platform_x + m->m_star*t_y);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
+    s[2*w + k] = potential_t;
 }
 
-INLINE void potential_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void potential_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        /* (crank-S) from the base point to the connection point */
-        const real R_xx = s[0*w + j];
-        const real R_yx = s[1*w + j];
-        const real crank_base_point_x = m->crank_base_point_x[i];
-        const real crank_platform_point_x = m->crank_platform_point_x[i];
-        const real crank_platform_point_y = m->crank_platform_point_y[i];
-        const real t_x = X[0*w + j];
-        const real crank_S_x = t_x + R_xx*crank_platform_point_x - crank_base_point_x -
-            R_yx*crank_platform_point_y;
-        const real crank_base_point_y = m->crank_base_point_y[i];
-        const real t_y = X[1*w + j];
-        const real crank_S_y = t_y + R_xx*crank_platform_point_y + R_yx*crank_platform_point_x -
-            crank_base_point_y;
-        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
-        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
-        const real crank_S_in_turn1_x = crank_S_x*crank_base_frame_xx +
-            crank_S_y*crank_base_frame_yx;
-        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
-        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
-        const real crank_S_in_turn1_y = crank_S_x*crank_base_frame_xy +
-            crank_S_y*crank_base_frame_yy;
-        /* (crank-rho2_1) squared amplitude */
-        const real crank_size_t = m->crank_size_t[i];
-        const real crank_rho2_1 = crank_size_t*(crank_S_in_turn1_x*crank_S_in_turn1_x +
-            crank_S_in_turn1_y*crank_S_in_turn1_y);
-        /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real crank_c_1_t = 1/(root(crank_rho2_1));
-        const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
-        const real crank_c_1 = crank_S_in_turn1_x*crank_c_1_t*crank_platform_joint_offset_x;
-        /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crank_s_1 = crank_S_in_turn1_y*crank_c_1_t*crank_platform_joint_offset_x;
-        /* (potential) potential energy */
-        const real crank_h_1_in_spec1_x = m->crank_h_1_in_spec1_x[i];
-        const real crank_h_1_in_spec1_y = m->crank_h_1_in_spec1_y[i];
-        const real crank_potential_t_3 = crank_c_1*crank_h_1_in_spec1_x -
-            crank_h_1_in_spec1_y*crank_s_1;
-        const real crank_potential_t_4 = crank_c_1*crank_h_1_in_spec1_y +
-            crank_h_1_in_spec1_x*crank_s_1;
-        const real crank_potential_t = m->crank_potential_t[i];
-        const real crank_potential_t_2 = m->crank_potential_t_2[i];
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real crank_potential_t_5 = gravity_x*(crank_potential_t +
-            crank_base_frame_xx*crank_potential_t_3 + crank_base_frame_xy*crank_potential_t_4) +
-            gravity_y*(crank_potential_t_2 + crank_base_frame_yx*crank_potential_t_3 +
-            crank_base_frame_yy*crank_potential_t_4);
-        /* (potential) potential energy */
-        gather(&terms[0*count + k], add, -crank_potential_t_5);  /* potential_of_legs */
-        const real crank_root_1_t = m->crank_root_1_t[i];
-        o[0*count + k] = UNLESS(magnitude(crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
-    }
+    /* (crank-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_yx = s[1*w + j];
+    const real t_x = X[0*w + j];
+    const real crank_S_x = t_x + R_xx*m->crank_platform_point_x[i] - m->crank_base_point_x[i]
+        - R_yx*m->crank_platform_point_y[i];
+    const real t_y = X[1*w + j];
+    const real crank_S_y = t_y + R_xx*m->crank_platform_point_y[i] +
+        R_yx*m->crank_platform_point_x[i] - m->crank_base_point_y[i];
+    const real crank_S_in_turn1_x = crank_S_x*m->crank_base_frame_xx[i] +
+        crank_S_y*m->crank_base_frame_yx[i];
+    const real crank_S_in_turn1_y = crank_S_x*m->crank_base_frame_xy[i] +
+        crank_S_y*m->crank_base_frame_yy[i];
+    /* (crank-rho2_1) squared amplitude */
+    const real crank_rho2_1 = m->crank_size_t[i]*(crank_S_in_turn1_x*crank_S_in_turn1_x +
+        crank_S_in_turn1_y*crank_S_in_turn1_y);
+    /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real crank_c_1_t = 1/(root(crank_rho2_1));
+    const real crank_c_1 = crank_S_in_turn1_x*crank_c_1_t*m->crank_platform_joint_offset_x[i];
+    /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
+    const real crank_s_1 = crank_S_in_turn1_y*crank_c_1_t*m->crank_platform_joint_offset_x[i];
+    /* (potential) */
+    const real crank_potential_t_3 = crank_c_1*m->crank_h_1_in_spec1_x[i] -
+        m->crank_h_1_in_spec1_y[i]*crank_s_1;
+    const real crank_potential_t_4 = crank_c_1*m->crank_h_1_in_spec1_y[i] +
+        m->crank_h_1_in_spec1_x[i]*crank_s_1;
+    const real crank_potential_t_5 = m->gravity_x*(m->crank_potential_t[i] +
+        m->crank_base_frame_xx[i]*crank_potential_t_3 +
+        m->crank_base_frame_xy[i]*crank_potential_t_4) +
+        m->gravity_y*(m->crank_potential_t_2[i] +
+        m->crank_base_frame_yx[i]*crank_potential_t_3 +
+        m->crank_base_frame_yy[i]*crank_potential_t_4);
+    /* (potential) */
+    gather(&terms[0*count + k], add, -crank_potential_t_5);  /* potential_of_legs */
+    o[0*count + k] = UNLESS(magnitude(crank_rho2_1) >
+        TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
 }
 
-INLINE void potential_place_crank(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void potential_place_crank(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o[0*count + first + k];
-    }
+    t->singular[k] += o[0*count + at];
 }
 
-INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real rrr_c_1 = v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 - v.rrr_Ks_1*v.rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_root_1 + v.rrr_Kd_1*v.rrr_Ks_1);
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*v.rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*v.rrr_root_1;
-        /* (potential) potential energy */
-        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
-        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
-        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
-        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-        const real rrr_link1_mass = m->rrr_link1_mass[i];
-        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
-        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
-        const real rrr_potential_t = m->rrr_potential_t[i];
-        const real rrr_potential_t_2 = m->rrr_potential_t_2[i];
-        const real rrr_potential_t_3 = (rrr_c_1*rrr_mu_1_t +
-            rrr_mu_1_t_2*rrr_s_1)*(rrr_h_1_in_spec1_x + rrr_c_2*rrr_h_2_in_spec2_x +
-            rrr_link1_mass*(rrr_c_1*rrr_potential_t + rrr_potential_t_2*rrr_s_1) -
-            rrr_h_2_in_spec2_y*rrr_s_2) + (rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)*(rrr_h_1_in_spec1_y + rrr_c_2*rrr_h_2_in_spec2_y +
-            rrr_h_2_in_spec2_x*rrr_s_2 + rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 -
-            rrr_potential_t*rrr_s_1));
-        /* (potential) potential energy */
-        gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_2 */
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
-        o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
+    values_rrr v;
+    stage_rrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
+    /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real rrr_c_1 = v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 - v.rrr_Ks_1*v.rrr_root_1);
+    /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+    const real rrr_s_1 = v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_root_1 + v.rrr_Kd_1*v.rrr_Ks_1);
+    /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real rrr_c_2 =
+        m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_x_2_in_axes1_x;
+    /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+    const real rrr_s_2 =
+        -m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_root_1;
+    /* (potential) */
+    const real rrr_potential_t_3 = (rrr_c_1*m->rrr_mu_1_t[i] +
+        m->rrr_mu_1_t_2[i]*rrr_s_1)*(m->rrr_h_1_in_spec1_x[i] +
+        rrr_c_2*m->rrr_h_2_in_spec2_x[i] + m->rrr_link1_mass[i]*(rrr_c_1*m->rrr_potential_t[i]
+        + m->rrr_potential_t_2[i]*rrr_s_1) - m->rrr_h_2_in_spec2_y[i]*rrr_s_2) +
+        (rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*rrr_s_1)*(m->rrr_h_1_in_spec1_y[i] +
+        rrr_c_2*m->rrr_h_2_in_spec2_y[i] + m->rrr_h_2_in_spec2_x[i]*rrr_s_2 +
+        m->rrr_link1_mass[i]*(rrr_c_1*m->rrr_potential_t_2[i] -
+        m->rrr_potential_t[i]*rrr_s_1));
+    /* (potential) */
+    gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_2 */
+    o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
+    o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void potential_place_rrr(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void potential_place_rrr(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o[0*count + first + k];
-        t->singular[k] += o[1*count + first + k];
-    }
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
 }
 
-INLINE void potential_after(size_t w, const real *s, const real *sums, real *potential)
+INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (potential) potential energy */
-        const real potential_of_legs = sums[0*w + k];
-        const real potential_t = s[2*w + k];
-        const real potential_t_2 = sums[1*w + k];
-        const real potential_ = potential_of_legs - potential_t - potential_t_2;
-        /* (potential) potential energy */
-        potential[0*w + k] = potential_;
-    }
+    /* (potential) */
+    const real potential_of_legs = sums[0*w + k];
+    const real potential_t = s[2*w + k];
+    const real potential_t_2 = sums[1*w + k];
+    const real potential_ = potential_of_legs - potential_t - potential_t_2;
+    /* (potential) */
+    potential[0*w + k] = potential_;
 }
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
@@ -3906,204 +3697,181 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
     real s[3] = {0}, sums[2] = {0};
     real terms_crank[2*LEGS(LEGS_OF_crank)] = {0}, o_crank[LEGS(LEGS_OF_crank)] = {0};
     real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    potential_before(m, 1, X, s);
-    potential_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), 0, X, terms_crank, o_crank);
-    potential_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        potential_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, t);
+    potential_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
+        potential_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), 0, s, X, terms_crank, o_crank);
+    }
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        potential_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, terms_rrr, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        potential_place_crank(0, i, LEGS(LEGS_OF_crank), o_crank, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         sums[n] = total(terms_crank + n*LEGS(LEGS_OF_crank), LEGS_OF_crank);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        potential_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        potential_place_rrr(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
-    potential_after(1, s, sums, potential);
+    potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
-    verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
+    *lengths, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        const real legs_size = m->legs_size;
-        lengths[1*w + k] = legs_size;
-        t->total[k] += legs_size;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    lengths[1*w + k] = m->legs_size;
+    t->total[k] += m->legs_size;
 }
 
-INLINE void condition_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void condition_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_crank v;
-        stage_crank_X(m, w, i, j, s, X, &v);
-        /* (crank-root_1) amplitude: off the manifold the nearest angle is taken */
-        const real crank_pivot_size = magnitude(v.crank_rho2_1);
-        const real inv_crank_root_1_t = m->inv_crank_root_1_t[i];
-        const real crank_pivot_root = root(crank_pivot_size*inv_crank_root_1_t);
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_in_platform_x = m->b_c_in_platform_x;
-        const real crank_platform_point_x = m->crank_platform_point_x[i];
-        const real crank_spread_t = b_c_in_platform_x - crank_platform_point_x;
-        const real b_c_in_platform_y = m->b_c_in_platform_y;
-        const real crank_platform_point_y = m->crank_platform_point_y[i];
-        const real crank_spread_t_2 = b_c_in_platform_y - crank_platform_point_y;
-        const real crank_spread_t_3 = crank_spread_t*crank_spread_t +
-            crank_spread_t_2*crank_spread_t_2;
-        /* (spread) rms distance of the platform points from their centroid */
-        gather(&terms[0*count + k], add, crank_spread_t_3);  /* spread_crank */
-        /* (crank-w_1) reciprocal vector 1 */
-        o[0*count + k] = v.crank_w_1_x;
-        o[1*count + k] = v.crank_w_1_y;
-        /* (crank-H_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = v.crank_H_a_1_z;
-        /* (crank-n_c) direction of the constraint force */
-        o[3*count + k] = v.crank_n_c_x;
-        o[4*count + k] = v.crank_n_c_y;
-        /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[5*count + k] = v.crank_Hk_a_1_z;
-        /* (crank-root_1) amplitude: off the manifold the nearest angle is taken */
-        o[6*count + k] = crank_pivot_root;
-        o[8*count + k] = (v.crank_w_1_x + (v.crank_w_1_y + v.crank_H_a_1_z)) + ((v.crank_n_c_x +
-            v.crank_n_c_y) + (v.crank_Hk_a_1_z + crank_pivot_root));
-        const real crank_root_1_t = m->crank_root_1_t[i];
-        o[7*count + k] = UNLESS(magnitude(v.crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
-    }
+    values_crank v;
+    stage_crank_X(m, w, i, j, s, X, &v);
+    /* (crank-root_1) amplitude: off the manifold the nearest angle is taken */
+    const real crank_pivot_size = magnitude(v.crank_rho2_1);
+    const real crank_pivot_root = root(crank_pivot_size*m->inv_crank_root_1_t[i]);
+    /* (spread) rms distance of the platform points from their centroid */
+    const real crank_spread_t = m->b_c_in_platform_x - m->crank_platform_point_x[i];
+    const real crank_spread_t_2 = m->b_c_in_platform_y - m->crank_platform_point_y[i];
+    const real crank_spread_t_3 = crank_spread_t*crank_spread_t +
+        crank_spread_t_2*crank_spread_t_2;
+    /* (spread) */
+    gather(&terms[0*count + k], add, crank_spread_t_3);  /* spread_crank */
+    /* (crank-w_1) reciprocal vector 1 */
+    o[0*count + k] = v.crank_w_1_x;
+    o[1*count + k] = v.crank_w_1_y;
+    /* (crank-H_a_1) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v.crank_H_a_1_z;
+    /* (crank-n_c) direction of the constraint force */
+    o[3*count + k] = v.crank_n_c_x;
+    o[4*count + k] = v.crank_n_c_y;
+    /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
+    o[5*count + k] = v.crank_Hk_a_1_z;
+    /* (crank-root_1) */
+    o[6*count + k] = crank_pivot_root;
+    o[8*count + k] = (v.crank_w_1_x + (v.crank_w_1_y + v.crank_H_a_1_z)) + ((v.crank_n_c_x +
+        v.crank_n_c_y) + (v.crank_Hk_a_1_z + crank_pivot_root));
+    o[7*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
+        TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
 }
 
-INLINE void condition_place_crank(size_t w, size_t count, const real *o, size_t first, real *H,
-    real *Hk, real *pivots, verdict *t)
+INLINE void condition_place_crank(size_t w, size_t k, size_t at, size_t count, const real *o, real
+    *H, real *Hk, real *pivots, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[0*w + k] = o[0*count + first + k];
-        H[NU*w + k] = o[1*count + first + k];
-        H[2*NU*w + k] = o[2*count + first + k];
-        Hk[0*w + k] = o[3*count + first + k];
-        Hk[NC*w + k] = o[4*count + first + k];
-        Hk[2*NC*w + k] = o[5*count + first + k];
-        pivots[0*w + k] = o[6*count + first + k];
-        t->singular[k] += o[7*count + first + k];
-        t->total[k] += o[8*count + first + k];
-    }
+    H[0*w + k] = o[0*count + at];
+    H[NU*w + k] = o[1*count + at];
+    H[2*NU*w + k] = o[2*count + at];
+    Hk[0*w + k] = o[3*count + at];
+    Hk[NC*w + k] = o[4*count + at];
+    Hk[2*NC*w + k] = o[5*count + at];
+    pivots[0*w + k] = o[6*count + at];
+    t->singular[k] += o[7*count + at];
+    t->total[k] += o[8*count + at];
 }
 
-INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_X(m, w, i, j, s, X, &v);
-        stage_rrr_H_condition(m, i, &v);
-        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real rrr_pivot_size = magnitude(v.rrr_rho2_1);
-        const real rrr_pivot_size_2 = magnitude(v.rrr_r_1_in_axes2_y);
-        const real inv_rrr_rho2_1_t = m->inv_rrr_rho2_1_t[i];
-        const real inv_rrr_size = m->inv_rrr_size[i];
-        const real rrr_least_pivots = lesser(root(inv_rrr_rho2_1_t*rrr_pivot_size),
-            inv_rrr_size*rrr_pivot_size_2);
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_in_platform_x = m->b_c_in_platform_x;
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_spread_t = b_c_in_platform_x - rrr_platform_point_x;
-        const real b_c_in_platform_y = m->b_c_in_platform_y;
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_spread_t_2 = b_c_in_platform_y - rrr_platform_point_y;
-        const real rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2;
-        /* (spread) rms distance of the platform points from their centroid */
-        gather(&terms[1*count + k], add, rrr_spread_t_3);  /* spread_rrr */
-        /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = v.rrr_w_1_x;
-        o[1*count + k] = v.rrr_w_1_y;
-        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = v.rrr_H_a_1_z;
-        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        o[3*count + k] = rrr_least_pivots;
-        o[4*count + k] = v.rrr_disc_1;
-        o[7*count + k] = (v.rrr_w_1_x + v.rrr_w_1_y) + (v.rrr_H_a_1_z + (rrr_least_pivots +
-            v.rrr_disc_1));
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        const real rrr_size = m->rrr_size[i];
-        o[6*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[5*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
+    values_rrr v;
+    stage_rrr_X(m, w, i, j, s, X, &v);
+    stage_rrr_H_condition(m, i, &v);
+    /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real rrr_pivot_size = magnitude(v.rrr_rho2_1);
+    const real rrr_pivot_size_2 = magnitude(v.rrr_r_1_in_axes2_y);
+    const real rrr_least_pivots = lesser(root(m->inv_rrr_rho2_1_t[i]*rrr_pivot_size),
+        m->inv_rrr_size[i]*rrr_pivot_size_2);
+    /* (spread) */
+    const real rrr_spread_t = m->b_c_in_platform_x - m->rrr_platform_point_x[i];
+    const real rrr_spread_t_2 = m->b_c_in_platform_y - m->rrr_platform_point_y[i];
+    const real rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2;
+    /* (spread) */
+    gather(&terms[1*count + k], add, rrr_spread_t_3);  /* spread_rrr */
+    /* (rrr-w_1) reciprocal vector 1 */
+    o[0*count + k] = v.rrr_w_1_x;
+    o[1*count + k] = v.rrr_w_1_y;
+    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v.rrr_H_a_1_z;
+    /* (rrr-G) */
+    o[3*count + k] = rrr_least_pivots;
+    o[4*count + k] = v.rrr_disc_1;
+    o[7*count + k] = (v.rrr_w_1_x + v.rrr_w_1_y) + (v.rrr_H_a_1_z + (rrr_least_pivots +
+        v.rrr_disc_1));
+    o[6*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
+        + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
+    o[5*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void condition_place_rrr(size_t w, size_t count, const real *o, size_t first, real *H, real
-    *pivots, real *reach, verdict *t)
+INLINE void condition_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
+    *H, real *pivots, real *reach, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[1*w + k] = o[0*count + first + k];
-        H[(NU + 1)*w + k] = o[1*count + first + k];
-        H[(2*NU + 1)*w + k] = o[2*count + first + k];
-        pivots[1*w + k] = o[3*count + first + k];
-        reach[1*w + k] = o[4*count + first + k];
-        t->unreachable[k] += o[5*count + first + k];
-        t->singular[k] += o[6*count + first + k];
-        t->total[k] += o[7*count + first + k];
-    }
+    H[1*w + k] = o[0*count + at];
+    H[(NU + 1)*w + k] = o[1*count + at];
+    H[(2*NU + 1)*w + k] = o[2*count + at];
+    pivots[1*w + k] = o[3*count + at];
+    reach[1*w + k] = o[4*count + at];
+    t->unreachable[k] += o[5*count + at];
+    t->singular[k] += o[6*count + at];
+    t->total[k] += o[7*count + at];
 }
 
-INLINE void condition_after(size_t w, const real *sums, real *lengths, verdict *t)
+INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (spread) rms distance of the platform points from their centroid */
-        const real spread_crank = sums[0*w + k];
-        const real spread_rrr = sums[1*w + k];
-        const real spread_ = root(R(0.5)*spread_crank + R(0.5)*spread_rrr);
-        /* (spread) rms distance of the platform points from their centroid */
-        lengths[0*w + k] = spread_;
-        t->total[k] += spread_;
-    }
+    /* (spread) */
+    const real spread_crank = sums[0*w + k];
+    const real spread_rrr = sums[1*w + k];
+    const real spread_ = root(R(0.5)*spread_crank + R(0.5)*spread_rrr);
+    /* (spread) */
+    lengths[0*w + k] = spread_;
+    t->total[k] += spread_;
 }
 
-INLINE void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
+APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
     *pivots, real *reach, verdict *t)
 {
     real s[2] = {0}, sums[2] = {0};
     real terms_crank[2*LEGS(LEGS_OF_crank)] = {0}, o_crank[9*LEGS(LEGS_OF_crank)] = {0};
     real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[8*LEGS(LEGS_OF_rrr)] = {0};
     clear(reach, NL);
-    condition_before(m, 1, X, s, lengths, t);
-    condition_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), 0, X, terms_crank, o_crank);
-    condition_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        condition_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, H, Hk, pivots, t);
+    condition_before(m, 1, 0, X, s, lengths, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
+        condition_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), 0, s, X, terms_crank, o_crank);
+    }
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        condition_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, terms_rrr, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        condition_place_crank(1, 0, i, LEGS(LEGS_OF_crank), o_crank, H, Hk, pivots, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         sums[n] = total(terms_crank + n*LEGS(LEGS_OF_crank), LEGS_OF_crank);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        condition_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, pivots, reach, t);
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        condition_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, pivots, reach, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
-    condition_after(1, sums, lengths, t);
+    condition_after(1, 0, sums, lengths, t);
 }
 
 /* ---- what users call, as steps over these ---- */
 
-INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
+int fivebar_offset_M(const prepared *m, const real *X, real *M_out)
 {
     verdict why;
     start(1, &why);
@@ -4112,9 +3880,11 @@ INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NV, M_out);
     }
+    return code;
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -4128,7 +3898,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
     deliver(NV*NV, M, M_out);
 }
 
-INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
+int fivebar_offset_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     verdict why;
     start(1, &why);
@@ -4141,9 +3911,11 @@ INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, 
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, Z_out);
     }
+    return code;
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -4158,7 +3930,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
     deliver(NV, Z, Z_out);
 }
 
-INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
+int fivebar_offset_H(const prepared *m, const real *X, real *H_out)
 {
     verdict why;
     start(1, &why);
@@ -4167,9 +3939,11 @@ INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NU, H_out);
     }
+    return code;
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -4183,7 +3957,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
     deliver(NV*NU, H, H_out);
 }
 
-INLINE void Hk_one(const prepared *m, const real *X, real *Hk_out, int *code)
+int fivebar_offset_Hk(const prepared *m, const real *X, real *Hk_out)
 {
     verdict why;
     start(1, &why);
@@ -4192,9 +3966,11 @@ INLINE void Hk_one(const prepared *m, const real *X, real *Hk_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NC, 1, Hk_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NC, Hk_out);
     }
+    return code;
 }
 
 INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
@@ -4208,7 +3984,7 @@ INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
     deliver(NV*NC, Hk, Hk_out);
 }
 
-INLINE void constraints_one(const prepared *m, const real *X, real *constraints_out, int *code)
+int fivebar_offset_constraints(const prepared *m, const real *X, real *constraints_out)
 {
     verdict why;
     start(1, &why);
@@ -4217,9 +3993,11 @@ INLINE void constraints_one(const prepared *m, const real *X, real *constraints_
     if (!is_finite(why.total[0])) {
         check(1, 1, constraints_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, constraints_out);
     }
+    return code;
 }
 
 INLINE void constraints_lanes(const prepared *m, const real *X, real *constraints_out, int *code)
@@ -4233,8 +4011,8 @@ INLINE void constraints_lanes(const prepared *m, const real *X, real *constraint
     deliver(1, constraints, constraints_out);
 }
 
-INLINE void constraint_bias_one(const prepared *m, const real *X, const real *V, real
-    *constraint_bias_out, int *code)
+int fivebar_offset_constraint_bias(const prepared *m, const real *X, const real *V, real
+    *constraint_bias_out)
 {
     verdict why;
     start(1, &why);
@@ -4247,9 +4025,11 @@ INLINE void constraint_bias_one(const prepared *m, const real *X, const real *V,
     if (!is_finite(why.total[0])) {
         check(1, 1, constraint_bias_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, constraint_bias_out);
     }
+    return code;
 }
 
 INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *V, real
@@ -4265,7 +4045,7 @@ INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *
     deliver(1, constraint_bias, constraint_bias_out);
 }
 
-INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out, int *code)
+int fivebar_offset_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
     verdict why;
     start(1, &why);
@@ -4274,9 +4054,11 @@ INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, q_out);
     }
+    return code;
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -4290,8 +4072,7 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
     deliver(NJ, q, q_out);
 }
 
-INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
-    *code)
+int fivebar_offset_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     verdict why;
     start(1, &why);
@@ -4304,9 +4085,11 @@ INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, rea
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, qd_out);
     }
+    return code;
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -4322,8 +4105,8 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
     deliver(NJ, qd, qd_out);
 }
 
-INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out, int *code)
+int fivebar_offset_joint_accelerations(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out)
 {
     verdict why;
     start(1, &why);
@@ -4337,9 +4120,11 @@ INLINE void joint_accelerations_one(const prepared *m, const real *X, const real
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, qdd_out);
     }
+    return code;
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4356,8 +4141,8 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
     deliver(NJ, qdd, qdd_out);
 }
 
-INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
-    *Z_out, real *H_out, int *code)
+int fivebar_offset_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out)
 {
     real Hk[NV*NC] = {0}, constraint_bias[1] = {0};
     verdict why;
@@ -4375,11 +4160,13 @@ INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *
     }
     check(NV*NC, 1, Hk, why.overflow);
     check(1, 1, constraint_bias, why.overflow);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NV, M_out);
         refuse(NV, Z_out);
         refuse(NV*NU, H_out);
     }
+    return code;
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -4450,8 +4237,8 @@ INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real
 static const size_t order_solve_1[] = {0, 1, 2};
 static const real sizes_solve_1[] = {4.0, 4.0, 1.0};
 
-INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *tau_out, real *lambda_out, int *code)
+int fivebar_offset_inverse_dynamics(const prepared *m, const real *X, const real *V, const real
+    *A, const real *wrench, real *tau_out, real *lambda_out)
 {
     real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0},
         beside_1[NV*NV] = {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, work[NV*PADDED(NV)];
@@ -4481,10 +4268,12 @@ INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V
     check(NC, 1, lambda_, why.overflow);
     copy(NU, tau, tau_out);
     copy(NC, lambda_, lambda_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, tau_out);
         refuse(NC, lambda_out);
     }
+    return code;
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -4592,8 +4381,8 @@ INLINE void eliminate_4(size_t w, size_t stride, const size_t *order, const real
 static const size_t order_forward_dynamics_solve_1[] = {0, 1, 3, 2};
 static const real sizes_forward_dynamics_solve_1[] = {4.0, 4.0, 1.0, 0.25};
 
-INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
-    const real *wrench, real *A_out, real *lambda_out, int *code)
+int fivebar_offset_forward_dynamics(const prepared *m, const real *X, const real *V, const real
+    *tau, const real *wrench, real *A_out, real *lambda_out)
 {
     real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0},
         constraint_bias[1] = {0}, times_1[NV] = {0}, add_1[NV] = {0}, subtract_1[NV] = {0},
@@ -4632,10 +4421,12 @@ INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V
     check(NC, 1, lambda_, why.overflow);
     copy(NV, A, A_out);
     copy(NC, lambda_, lambda_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, A_out);
         refuse(NC, lambda_out);
     }
+    return code;
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4674,21 +4465,28 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     deliver(NC, lambda_, lambda_out);
 }
 
-INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
+int fivebar_offset_complete_acceleration(const prepared *m, const real *X, const real *V, const
+    real *A, const real *wrench, real *completed_out)
 {
+    (void)m;
+    (void)X;
+    (void)V;
+    (void)wrench;
     verdict why;
     start(1, &why);
     check(NV, 1, A, why.invalid);
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, completed_out);
     }
+    return code;
 }
 
-INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces_out, int *code)
+int fivebar_offset_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *forces_out)
 {
     static const size_t places_forces[] = {0};
     real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0},
@@ -4728,13 +4526,15 @@ INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, c
     add_forces(NC, 3, 1, places_forces, split_2, constraint_direction, forces);
     check(NL*(NL + NC), 1, forces, why.overflow);
     copy(NL*(NL + NC), forces, forces_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NL*(NL + NC), forces_out);
     }
+    return code;
 }
 
-INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
-    *potential_out, int *code)
+int fivebar_offset_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
+    *potential_out)
 {
     real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
@@ -4752,15 +4552,17 @@ INLINE void energy_one(const prepared *m, const real *X, const real *V, real *ki
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, kinetic_out);
         refuse(1, potential_out);
     }
+    return code;
 }
 
-INLINE void condition_one(const prepared *m, const real *X, const real *length, real *sigma_out,
-    real *legs_out, int *code)
+int fivebar_offset_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
+    const real *length = NULL;
     static const size_t places_divide_rows_1[] = {2};
     real length_in[1], H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] =
         {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NU] = {0};
@@ -4787,15 +4589,18 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
     check(NL, 1, reach, why.overflow);
     copy(NU, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, sigma_out);
         refuse(NL, legs_out);
     }
+    return code;
 }
 
-INLINE void condition_constrained_one(const prepared *m, const real *X, const real *length, real
-    *sigma_out, real *legs_out, int *code)
+int fivebar_offset_condition_constrained(const prepared *m, const real *X, real *sigma_out, real
+    *legs_out)
 {
+    const real *length = NULL;
     static const size_t places_divide_rows_1[] = {2};
     real length_in[1], H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] =
         {0}, beside_1[NV*NV] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] = {0}, sigma[NV] =
@@ -4823,14 +4628,16 @@ INLINE void condition_constrained_one(const prepared *m, const real *X, const re
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, sigma_out);
         refuse(NL, legs_out);
     }
+    return code;
 }
 
-INLINE void manipulability_one(const prepared *m, const real *X, real *measure_out, real
-    *isotropy_out, int *code)
+int fivebar_offset_manipulability(const prepared *m, const real *X, real *measure_out, real
+    *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {2};
     static const size_t places_divide_rows_2[] = {2};
@@ -4879,14 +4686,16 @@ INLINE void manipulability_one(const prepared *m, const real *X, real *measure_o
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, measure_out);
         refuse(1, isotropy_out);
     }
+    return code;
 }
 
-INLINE void singularity_distance_one(const prepared *m, const real *X, real *actuators_out, real
-    *legs_out, int *code)
+int fivebar_offset_singularity_distance(const prepared *m, const real *X, real *actuators_out,
+    real *legs_out)
 {
     static const size_t places_divide_rows_1[] = {2};
     real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
@@ -4917,14 +4726,15 @@ INLINE void singularity_distance_one(const prepared *m, const real *X, real *act
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, actuators_out);
         refuse(1, legs_out);
     }
+    return code;
 }
 
-static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
-    int *code)
+static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
 {
     real q[NJ] = {0}, subtract_1[NU] = {0}, wrap_turns_1[NU] = {0}, constraints[1] = {0},
         negative_1[1] = {0}, gap[3] = {0};
@@ -4951,12 +4761,14 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
     beside(1, NU, 1, wrap_turns_1, negative_1, gap);
     check(3, 1, gap, why.overflow);
     copy(3, gap, gap_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(3, gap_out);
     }
+    return code;
 }
 
-static void slope_one(const prepared *m, const real *X, real *slope_out, int *code)
+static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     real H[NV*NU] = {0}, Hk[NV*NC] = {0}, slope[NV*NV] = {0};
     verdict why;
@@ -4967,9 +4779,11 @@ static void slope_one(const prepared *m, const real *X, real *slope_out, int *co
     beside(NV, NU, NC, H, Hk, slope);
     check(NV*NV, 1, slope, why.overflow);
     copy(NV*NV, slope, slope_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NV, slope_out);
     }
+    return code;
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -4980,12 +4794,12 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    mismatch_one(m, found, q_actuated, gap, &code);
+    code = mismatch_one(m, found, q_actuated, gap);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        slope_one(m, found, slope, &code);
+        code = slope_one(m, found, slope);
         if (code != OK) {
             break;
         }
@@ -4999,7 +4813,7 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            mismatch_one(m, trial, q_actuated, next, &tried);
+            tried = mismatch_one(m, trial, q_actuated, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -5017,8 +4831,8 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 }
 
 
-INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
-    *X_out, int *code)
+int fivebar_offset_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0,
+    real *X_out)
 {
     real X[NQ] = {0};
     verdict why;
@@ -5031,12 +4845,14 @@ INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, co
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
-static void constraint_gap_one(const prepared *m, const real *X, real *gap_out, int *code)
+static int constraint_gap_one(const prepared *m, const real *X, real *gap_out)
 {
     real constraints[1] = {0}, gap[NC] = {0};
     verdict why;
@@ -5048,12 +4864,14 @@ static void constraint_gap_one(const prepared *m, const real *X, real *gap_out, 
     }
     check(NC, 1, gap, why.overflow);
     copy(NC, gap, gap_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NC, gap_out);
     }
+    return code;
 }
 
-static void constraint_slope_one(const prepared *m, const real *X, real *slope_out, int *code)
+static int constraint_slope_one(const prepared *m, const real *X, real *slope_out)
 {
     verdict why;
     start(1, &why);
@@ -5062,9 +4880,11 @@ static void constraint_slope_one(const prepared *m, const real *X, real *slope_o
     if (!is_finite(why.total[0])) {
         check(NV*NC, 1, slope_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NC, slope_out);
     }
+    return code;
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -5075,12 +4895,12 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    constraint_gap_one(m, found, gap, &code);
+    code = constraint_gap_one(m, found, gap);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > MET; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        constraint_slope_one(m, found, slope, &code);
+        code = constraint_slope_one(m, found, slope);
         if (code != OK) {
             break;
         }
@@ -5094,7 +4914,7 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            constraint_gap_one(m, trial, next, &tried);
+            tried = constraint_gap_one(m, trial, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -5112,7 +4932,7 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
 }
 
 
-INLINE void project_one(const prepared *m, const real *X, real *projected_out, int *code)
+int fivebar_offset_project(const prepared *m, const real *X, real *projected_out)
 {
     real projected[NQ] = {0};
     verdict why;
@@ -5121,13 +4941,18 @@ INLINE void project_one(const prepared *m, const real *X, real *projected_out, i
     blame(search_constraint_gap(m, X, projected), &why);
     check(NQ, 1, projected, why.overflow);
     copy(NQ, projected, projected_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, projected_out);
     }
+    return code;
 }
 
-INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
+int fivebar_offset_dissipation(const prepared *m, const real *X, const real *V, real
+    *dissipation_out)
 {
+    (void)m;
+    (void)X;
     real subtract_1[NV] = {0};
     verdict why;
     start(1, &why);
@@ -5138,13 +4963,14 @@ INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, dissipation_out);
     }
+    return code;
 }
 
-INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
-    *code)
+int fivebar_offset_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
     real M[NV*NV] = {0}, momentum[NV] = {0};
     verdict why;
@@ -5158,27 +4984,14 @@ INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, momentum_out);
     }
+    return code;
 }
 
-INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
-    int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], momentum[NV*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    M_run_lanes(m, X, M, &why);
-    product(NV, NV, 1, LANES, M, V, momentum);
-    add_up(NV, momentum, why.total);
-    suspect(&why, code);
-    deliver(NV, momentum, momentum_out);
-}
-
-INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
+int fivebar_offset_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2};
     real q[NJ] = {0}, margins[NJ] = {0};
@@ -5191,28 +5004,14 @@ INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_ou
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, margins_out);
     }
+    return code;
 }
 
-INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
-{
-    static const size_t places_margins[] = {0, 1, 2};
-    real X_in[NQ*LANES], q[NJ*LANES], margins[NJ*LANES];
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < NJ*LANES; ++i) {
-        margins[i] = q[i];
-    }
-    unlimited(NJ, NJ, LANES, places_margins, margins, why.invalid);
-    suspect(&why, code);
-    deliver(NJ, margins, margins_out);
-}
-
-INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
+int fivebar_offset_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
     verdict why;
@@ -5225,28 +5024,14 @@ INLINE void within_limits_one(const prepared *m, const real *X, real *within_out
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, within_out);
     }
+    return code;
 }
 
-INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
-{
-    real X_in[NQ*LANES], q[NJ*LANES], subtract_1[NJ*LANES], within[LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < NJ*LANES; ++i) {
-        subtract_1[i] = q[i] - q[i];
-    }
-    not_negative(NJ, LANES, subtract_1, within, why.invalid);
-    add_up(1, within, why.total);
-    suspect(&why, code);
-    deliver(1, within, within_out);
-}
-
-INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
+int fivebar_offset_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] = {0};
     verdict why;
@@ -5256,26 +5041,14 @@ INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out
     const real *const q = q_of_inverse_kinematics;
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, q_out);
     }
+    return code;
 }
 
-INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
-{
-    real X_in[NQ*LANES], q_of_inverse_kinematics[NJ*LANES];
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
-    const real *const q = q_of_inverse_kinematics;
-    add_up(NU, q, why.total);
-    suspect(&why, code);
-    deliver(NU, q, q_out);
-}
-
-INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
-    *code)
+int fivebar_offset_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd_of_joint_rates[NJ] = {0};
     verdict why;
@@ -5289,28 +5062,15 @@ INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, 
     const real *const qd = qd_of_joint_rates;
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, qd_out);
     }
+    return code;
 }
 
-INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
-    int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], qd_of_joint_rates[NJ*LANES];
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
-    const real *const qd = qd_of_joint_rates;
-    add_up(NU, qd, why.total);
-    suspect(&why, code);
-    deliver(NU, qd, qd_out);
-}
-
-INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out, int *code)
+int fivebar_offset_actuator_accelerations(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] = {0};
     verdict why;
@@ -5325,29 +5085,15 @@ INLINE void actuator_accelerations_one(const prepared *m, const real *X, const r
     const real *const qdd = qdd_of_joint_accelerations;
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, qdd_out);
     }
+    return code;
 }
 
-INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *qdd_out, int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd_of_joint_accelerations[NJ*LANES];
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    A = side_by_side(NV, A, A_in, why.total);
-    joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
-    const real *const qdd = qdd_of_joint_accelerations;
-    add_up(NU, qdd, why.total);
-    suspect(&why, code);
-    deliver(NU, qdd, qdd_out);
-}
-
-INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out, int *code)
+int fivebar_offset_power(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out)
 {
     real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
     verdict why;
@@ -5363,30 +5109,14 @@ INLINE void power_one(const prepared *m, const real *X, const real *V, const rea
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, power_out);
     }
+    return code;
 }
 
-INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out, int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0},
-        power[LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    tau = side_by_side(NU, tau, tau_in, why.total);
-    H_run_lanes(m, X, H, &why);
-    product(NV, NU, 1, LANES, H, tau, times_1);
-    inner(NV, LANES, times_1, V, power);
-    add_up(1, power, why.total);
-    suspect(&why, code);
-    deliver(1, power, power_out);
-}
-
-INLINE void rotation_one(const real *X, real *R_out, int *code)
+int fivebar_offset_rotation(const real *X, real *R_out)
 {
     real R[4] = {0};
     verdict why;
@@ -5396,12 +5126,14 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     rotation_of_angle(X_from_2, R);
     check(4, 1, R, why.overflow);
     copy(4, R, R_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(4, R_out);
     }
+    return code;
 }
 
-INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
+int fivebar_offset_pose(const real *t, const real *R, real *X_out)
 {
     real angle_of_rotation_1[1] = {0}, join_1[3] = {0};
     verdict why;
@@ -5416,12 +5148,14 @@ INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
-INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
+int fivebar_offset_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     verdict why;
     start(1, &why);
@@ -5433,12 +5167,14 @@ INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
     const real *const X_dot = V;
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_dot_out);
     }
+    return code;
 }
 
-INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
+int fivebar_offset_retract(const real *X, const real *step, real *X_moved_out)
 {
     real X_moved[NQ] = {0};
     verdict why;
@@ -5453,12 +5189,14 @@ INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int 
     }
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_moved_out);
     }
+    return code;
 }
 
-INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
+int fivebar_offset_difference(const real *X0, const real *X1, real *step_out)
 {
     static const size_t places_step[] = {2};
     real subtract_1[NQ] = {0}, step[NV] = {0};
@@ -5478,12 +5216,14 @@ INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *
     wrap_turns(1, 1, places_step, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, step_out);
     }
+    return code;
 }
 
-INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
+int fivebar_offset_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     static const size_t places_wrap_turns_1[] = {2};
     real subtract_1[NQ] = {0}, wrap_turns_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
@@ -5510,838 +5250,234 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
     }
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
 /* ---- one state, and batches ---- */
 
-int fivebar_offset_M(const prepared *model, const real *X, real *M)
+size_t fivebar_offset_M_batch(const prepared *m, size_t n, const real *X, real *M, int *status)
 {
-    int code;
-    M_one(model, X, M, &code);
-    return code;
+    SIDE_BY_SIDE(M_lanes(m, X + NQ*i, M + NV*NV*i, codes), fivebar_offset_M(m, X + NQ*j, M +
+        NV*NV*j));
 }
 
-size_t fivebar_offset_M_batch(const prepared *model, size_t n, const real *X, real *M, int
-    *status)
+size_t fivebar_offset_Z_batch(const prepared *m, size_t n, const real *X, const real *V, real *Z,
+    int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = fivebar_offset_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(Z_lanes(m, X + NQ*i, V + NV*i, Z + NV*i, codes), fivebar_offset_Z(m, X + NQ*j, V +
+        NV*j, Z + NV*j));
 }
 
-int fivebar_offset_Z(const prepared *model, const real *X, const real *V, real *Z)
+size_t fivebar_offset_H_batch(const prepared *m, size_t n, const real *X, real *H, int *status)
 {
-    int code;
-    Z_one(model, X, V, Z, &code);
-    return code;
+    SIDE_BY_SIDE(H_lanes(m, X + NQ*i, H + NV*NU*i, codes), fivebar_offset_H(m, X + NQ*j, H +
+        NV*NU*j));
 }
 
-size_t fivebar_offset_Z_batch(const prepared *model, size_t n, const real *X, const real *V, real
-    *Z, int *status)
+size_t fivebar_offset_Hk_batch(const prepared *m, size_t n, const real *X, real *Hk, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = fivebar_offset_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(Hk_lanes(m, X + NQ*i, Hk + NV*NC*i, codes), fivebar_offset_Hk(m, X + NQ*j, Hk +
+        NV*NC*j));
 }
 
-int fivebar_offset_H(const prepared *model, const real *X, real *H)
-{
-    int code;
-    H_one(model, X, H, &code);
-    return code;
-}
-
-size_t fivebar_offset_H_batch(const prepared *model, size_t n, const real *X, real *H, int
-    *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = fivebar_offset_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int fivebar_offset_Hk(const prepared *model, const real *X, real *Hk)
-{
-    int code;
-    Hk_one(model, X, Hk, &code);
-    return code;
-}
-
-size_t fivebar_offset_Hk_batch(const prepared *model, size_t n, const real *X, real *Hk, int
-    *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            Hk_lanes(model, X + NQ*i, Hk + NV*NC*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = fivebar_offset_Hk(model, X + NQ*(i + k), Hk + NV*NC*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int fivebar_offset_constraints(const prepared *model, const real *X, real *residual)
-{
-    int code;
-    constraints_one(model, X, residual, &code);
-    return code;
-}
-
-size_t fivebar_offset_constraints_batch(const prepared *model, size_t n, const real *X, real
+size_t fivebar_offset_constraints_batch(const prepared *m, size_t n, const real *X, real
     *residual, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            constraints_lanes(model, X + NQ*i, residual + NC*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = fivebar_offset_constraints(model, X + NQ*(i + k), residual + NC*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(constraints_lanes(m, X + NQ*i, residual + NC*i, codes), fivebar_offset_constraints(m,
+        X + NQ*j, residual + NC*j));
 }
 
-int fivebar_offset_constraint_bias(const prepared *model, const real *X, const real *V, real
-    *bias)
+size_t fivebar_offset_constraint_bias_batch(const prepared *m, size_t n, const real *X, const real
+    *V, real *bias, int *status)
 {
-    int code;
-    constraint_bias_one(model, X, V, bias, &code);
-    return code;
+    SIDE_BY_SIDE(constraint_bias_lanes(m, X + NQ*i, V + NV*i, bias + NC*i, codes),
+        fivebar_offset_constraint_bias(m, X + NQ*j, V + NV*j, bias + NC*j));
 }
 
-size_t fivebar_offset_constraint_bias_batch(const prepared *model, size_t n, const real *X, const
-    real *V, real *bias, int *status)
+size_t fivebar_offset_inverse_kinematics_batch(const prepared *m, size_t n, const real *X, real
+    *q, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            constraint_bias_lanes(model, X + NQ*i, V + NV*i, bias + NC*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = fivebar_offset_constraint_bias(model, X + NQ*(i + k), V + NV*(i + k), bias + NC*(i +
-                    k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(inverse_kinematics_lanes(m, X + NQ*i, q + NJ*i, codes),
+        fivebar_offset_inverse_kinematics(m, X + NQ*j, q + NJ*j));
 }
 
-int fivebar_offset_inverse_kinematics(const prepared *model, const real *X, real *q)
+size_t fivebar_offset_joint_rates_batch(const prepared *m, size_t n, const real *X, const real *V,
+    real *rates, int *status)
 {
-    int code;
-    inverse_kinematics_one(model, X, q, &code);
-    return code;
+    SIDE_BY_SIDE(joint_rates_lanes(m, X + NQ*i, V + NV*i, rates + NJ*i, codes),
+        fivebar_offset_joint_rates(m, X + NQ*j, V + NV*j, rates + NJ*j));
 }
 
-size_t fivebar_offset_inverse_kinematics_batch(const prepared *model, size_t n, const real *X,
-    real *q, int *status)
+size_t fivebar_offset_joint_accelerations_batch(const prepared *m, size_t n, const real *X, const
+    real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = fivebar_offset_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(joint_accelerations_lanes(m, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i,
+        codes), fivebar_offset_joint_accelerations(m, X + NQ*j, V + NV*j, A + NV*j, accelerations +
+        NJ*j));
 }
 
-int fivebar_offset_joint_rates(const prepared *model, const real *X, const real *V, real *rates)
+size_t fivebar_offset_dynamics_batch(const prepared *m, size_t n, const real *X, const real *V,
+    real *M, real *Z, real *H, int *status)
 {
-    int code;
-    joint_rates_one(model, X, V, rates, &code);
-    return code;
+    SIDE_BY_SIDE(dynamics_lanes(m, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes),
+        fivebar_offset_dynamics(m, X + NQ*j, V + NV*j, M + NV*NV*j, Z + NV*j, H + NV*NU*j));
 }
 
-size_t fivebar_offset_joint_rates_batch(const prepared *model, size_t n, const real *X, const real
-    *V, real *rates, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = fivebar_offset_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int fivebar_offset_joint_accelerations(const prepared *model, const real *X, const real *V, const
-    real *A, real *accelerations)
-{
-    int code;
-    joint_accelerations_one(model, X, V, A, accelerations, &code);
-    return code;
-}
-
-size_t fivebar_offset_joint_accelerations_batch(const prepared *model, size_t n, const real *X,
-    const real *V, const real *A, real *accelerations, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = fivebar_offset_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
-                    k), accelerations + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int fivebar_offset_dynamics(const prepared *model, const real *X, const real *V, real *M, real *Z,
-    real *H)
-{
-    int code;
-    dynamics_one(model, X, V, M, Z, H, &code);
-    return code;
-}
-
-size_t fivebar_offset_dynamics_batch(const prepared *model, size_t n, const real *X, const real
-    *V, real *M, real *Z, real *H, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = fivebar_offset_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z +
-                    NV*(i + k), H + NV*NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int fivebar_offset_inverse_dynamics(const prepared *model, const real *X, const real *V, const
-    real *A, const real *wrench, real *tau, real *lambda)
-{
-    int code;
-    inverse_dynamics_one(model, X, V, A, wrench, tau, lambda, &code);
-    return code;
-}
-
-size_t fivebar_offset_inverse_dynamics_batch(const prepared *model, size_t n, const real *X, const
+size_t fivebar_offset_inverse_dynamics_batch(const prepared *m, size_t n, const real *X, const
     real *V, const real *A, const real *wrench, real *tau, real *lambda, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
-                NU*i, lambda + NC*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = fivebar_offset_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
-                    wrench ? wrench + NW*(i + k) : NULL, tau + NU*(i + k), lambda + NC*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(inverse_dynamics_lanes(m, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i :
+        NULL, tau + NU*i, lambda + NC*i, codes), fivebar_offset_inverse_dynamics(m, X + NQ*j, V +
+        NV*j, A + NV*j, wrench ? wrench + NW*j : NULL, tau + NU*j, lambda + NC*j));
 }
 
-int fivebar_offset_forward_dynamics(const prepared *model, const real *X, const real *V, const
-    real *tau, const real *wrench, real *A, real *lambda)
-{
-    int code;
-    forward_dynamics_one(model, X, V, tau, wrench, A, lambda, &code);
-    return code;
-}
-
-size_t fivebar_offset_forward_dynamics_batch(const prepared *model, size_t n, const real *X, const
+size_t fivebar_offset_forward_dynamics_batch(const prepared *m, size_t n, const real *X, const
     real *V, const real *tau, const real *wrench, real *A, real *lambda, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
-                NV*i, lambda + NC*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = fivebar_offset_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i +
-                    k), wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k), lambda + NC*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(forward_dynamics_lanes(m, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i :
+        NULL, A + NV*i, lambda + NC*i, codes), fivebar_offset_forward_dynamics(m, X + NQ*j, V + NV*j,
+        tau + NU*j, wrench ? wrench + NW*j : NULL, A + NV*j, lambda + NC*j));
 }
 
-int fivebar_offset_complete_acceleration(const prepared *model, const real *X, const real *V,
-    const real *A, const real *wrench, real *completed)
-{
-    int code;
-    (void)model, (void)X, (void)V, (void)wrench;
-    complete_acceleration_one(A, completed, &code);
-    return code;
-}
-
-size_t fivebar_offset_complete_acceleration_batch(const prepared *model, size_t n, const real *X,
+size_t fivebar_offset_complete_acceleration_batch(const prepared *m, size_t n, const real *X,
     const real *V, const real *A, const real *wrench, real *completed, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = fivebar_offset_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i, wrench
-            ? wrench + NW*i : NULL, completed + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(fivebar_offset_complete_acceleration(m, X + NQ*j, V + NV*j, A + NV*j, wrench ? wrench +
+        NW*j : NULL, completed + NV*j));
 }
 
-int fivebar_offset_leg_reactions(const prepared *model, const real *X, const real *V, const real
-    *A, const real *wrench, real *forces)
+size_t fivebar_offset_leg_reactions_batch(const prepared *m, size_t n, const real *X, const real
+    *V, const real *A, const real *wrench, real *forces, int *status)
 {
-    int code;
-    leg_reactions_one(model, X, V, A, wrench, forces, &code);
-    return code;
+    ONE_BY_ONE(fivebar_offset_leg_reactions(m, X + NQ*j, V + NV*j, A + NV*j, wrench ? wrench + NW*j :
+        NULL, forces + 6*j));
 }
 
-size_t fivebar_offset_leg_reactions_batch(const prepared *model, size_t n, const real *X, const
-    real *V, const real *A, const real *wrench, real *forces, int *status)
+size_t fivebar_offset_energy_batch(const prepared *m, size_t n, const real *X, const real *V, real
+    *kinetic, real *potential, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = fivebar_offset_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench
-            + NW*i : NULL, forces + 6*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(fivebar_offset_energy(m, X + NQ*j, V + NV*j, kinetic + j, potential + j));
 }
 
-int fivebar_offset_energy(const prepared *model, const real *X, const real *V, real *kinetic, real
-    *potential)
-{
-    int code;
-    energy_one(model, X, V, kinetic, potential, &code);
-    return code;
-}
-
-size_t fivebar_offset_energy_batch(const prepared *model, size_t n, const real *X, const real *V,
-    real *kinetic, real *potential, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = fivebar_offset_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int fivebar_offset_condition(const prepared *model, const real *X, real *sigma, real *legs)
-{
-    int code;
-    condition_one(model, X, NULL, sigma, legs, &code);
-    return code;
-}
-
-size_t fivebar_offset_condition_batch(const prepared *model, size_t n, const real *X, real *sigma,
+size_t fivebar_offset_condition_batch(const prepared *m, size_t n, const real *X, real *sigma,
     real *legs, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = fivebar_offset_condition(model, X + NQ*i, sigma + 2*i, legs + 2*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(fivebar_offset_condition(m, X + NQ*j, sigma + 2*j, legs + 2*j));
 }
 
-int fivebar_offset_condition_constrained(const prepared *model, const real *X, real *sigma, real
-    *legs)
+size_t fivebar_offset_condition_constrained_batch(const prepared *m, size_t n, const real *X, real
+    *sigma, real *legs, int *status)
 {
-    int code;
-    condition_constrained_one(model, X, NULL, sigma, legs, &code);
-    return code;
+    ONE_BY_ONE(fivebar_offset_condition_constrained(m, X + NQ*j, sigma + 3*j, legs + 2*j));
 }
 
-size_t fivebar_offset_condition_constrained_batch(const prepared *model, size_t n, const real *X,
-    real *sigma, real *legs, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = fivebar_offset_condition_constrained(model, X + NQ*i, sigma + 3*i, legs + 2*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int fivebar_offset_manipulability(const prepared *model, const real *X, real *measure, real
-    *isotropy)
-{
-    int code;
-    manipulability_one(model, X, measure, isotropy, &code);
-    return code;
-}
-
-size_t fivebar_offset_manipulability_batch(const prepared *model, size_t n, const real *X, real
+size_t fivebar_offset_manipulability_batch(const prepared *m, size_t n, const real *X, real
     *measure, real *isotropy, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = fivebar_offset_manipulability(model, X + NQ*i, measure + i, isotropy + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(fivebar_offset_manipulability(m, X + NQ*j, measure + j, isotropy + j));
 }
 
-int fivebar_offset_singularity_distance(const prepared *model, const real *X, real *actuators,
-    real *legs)
+size_t fivebar_offset_singularity_distance_batch(const prepared *m, size_t n, const real *X, real
+    *actuators, real *legs, int *status)
 {
-    int code;
-    singularity_distance_one(model, X, actuators, legs, &code);
-    return code;
+    ONE_BY_ONE(fivebar_offset_singularity_distance(m, X + NQ*j, actuators + j, legs + j));
 }
 
-size_t fivebar_offset_singularity_distance_batch(const prepared *model, size_t n, const real *X,
-    real *actuators, real *legs, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = fivebar_offset_singularity_distance(model, X + NQ*i, actuators + i, legs + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int fivebar_offset_forward_kinematics(const prepared *model, const real *q_actuated, const real
-    *X0, real *X)
-{
-    int code;
-    forward_kinematics_one(model, q_actuated, X0, X, &code);
-    return code;
-}
-
-size_t fivebar_offset_forward_kinematics_batch(const prepared *model, size_t n, const real
+size_t fivebar_offset_forward_kinematics_batch(const prepared *m, size_t n, const real
     *q_actuated, const real *X0, real *X, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = fivebar_offset_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(fivebar_offset_forward_kinematics(m, q_actuated + NU*j, X0 + NQ*j, X + NQ*j));
 }
 
-int fivebar_offset_project(const prepared *model, const real *X, real *projected)
+size_t fivebar_offset_project_batch(const prepared *m, size_t n, const real *X, real *projected,
+    int *status)
 {
-    int code;
-    project_one(model, X, projected, &code);
-    return code;
+    ONE_BY_ONE(fivebar_offset_project(m, X + NQ*j, projected + NQ*j));
 }
 
-size_t fivebar_offset_project_batch(const prepared *model, size_t n, const real *X, real
-    *projected, int *status)
+size_t fivebar_offset_dissipation_batch(const prepared *m, size_t n, const real *X, const real *V,
+    real *dissipation, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = fivebar_offset_project(model, X + NQ*i, projected + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(fivebar_offset_dissipation(m, X + NQ*j, V + NV*j, dissipation + j));
 }
 
-int fivebar_offset_dissipation(const prepared *model, const real *X, const real *V, real
-    *dissipation)
+size_t fivebar_offset_momentum_batch(const prepared *m, size_t n, const real *X, const real *V,
+    real *momentum, int *status)
 {
-    int code;
-    (void)model, (void)X;
-    dissipation_one(V, dissipation, &code);
-    return code;
+    ONE_BY_ONE(fivebar_offset_momentum(m, X + NQ*j, V + NV*j, momentum + NV*j));
 }
 
-size_t fivebar_offset_dissipation_batch(const prepared *model, size_t n, const real *X, const real
-    *V, real *dissipation, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = fivebar_offset_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int fivebar_offset_momentum(const prepared *model, const real *X, const real *V, real *momentum)
-{
-    int code;
-    momentum_one(model, X, V, momentum, &code);
-    return code;
-}
-
-size_t fivebar_offset_momentum_batch(const prepared *model, size_t n, const real *X, const real
-    *V, real *momentum, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = fivebar_offset_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int fivebar_offset_joint_margins(const prepared *model, const real *X, real *margins)
-{
-    int code;
-    joint_margins_one(model, X, margins, &code);
-    return code;
-}
-
-size_t fivebar_offset_joint_margins_batch(const prepared *model, size_t n, const real *X, real
+size_t fivebar_offset_joint_margins_batch(const prepared *m, size_t n, const real *X, real
     *margins, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = fivebar_offset_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(fivebar_offset_joint_margins(m, X + NQ*j, margins + NJ*j));
 }
 
-int fivebar_offset_within_limits(const prepared *model, const real *X, real *within)
-{
-    int code;
-    within_limits_one(model, X, within, &code);
-    return code;
-}
-
-size_t fivebar_offset_within_limits_batch(const prepared *model, size_t n, const real *X, real
+size_t fivebar_offset_within_limits_batch(const prepared *m, size_t n, const real *X, real
     *within, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            within_limits_lanes(model, X + NQ*i, within + i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = fivebar_offset_within_limits(model, X + NQ*(i + k), within + (i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(fivebar_offset_within_limits(m, X + NQ*j, within + j));
 }
 
-int fivebar_offset_actuator_positions(const prepared *model, const real *X, real *q)
+size_t fivebar_offset_actuator_positions_batch(const prepared *m, size_t n, const real *X, real
+    *q, int *status)
 {
-    int code;
-    actuator_positions_one(model, X, q, &code);
-    return code;
+    ONE_BY_ONE(fivebar_offset_actuator_positions(m, X + NQ*j, q + NU*j));
 }
 
-size_t fivebar_offset_actuator_positions_batch(const prepared *model, size_t n, const real *X,
-    real *q, int *status)
+size_t fivebar_offset_actuator_rates_batch(const prepared *m, size_t n, const real *X, const real
+    *V, real *rates, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = fivebar_offset_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(fivebar_offset_actuator_rates(m, X + NQ*j, V + NV*j, rates + NU*j));
 }
 
-int fivebar_offset_actuator_rates(const prepared *model, const real *X, const real *V, real
-    *rates)
-{
-    int code;
-    actuator_rates_one(model, X, V, rates, &code);
-    return code;
-}
-
-size_t fivebar_offset_actuator_rates_batch(const prepared *model, size_t n, const real *X, const
-    real *V, real *rates, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = fivebar_offset_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i +
-                    k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int fivebar_offset_actuator_accelerations(const prepared *model, const real *X, const real *V,
-    const real *A, real *accelerations)
-{
-    int code;
-    actuator_accelerations_one(model, X, V, A, accelerations, &code);
-    return code;
-}
-
-size_t fivebar_offset_actuator_accelerations_batch(const prepared *model, size_t n, const real *X,
+size_t fivebar_offset_actuator_accelerations_batch(const prepared *m, size_t n, const real *X,
     const real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = fivebar_offset_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i
-                    + k), accelerations + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(fivebar_offset_actuator_accelerations(m, X + NQ*j, V + NV*j, A + NV*j, accelerations +
+        NU*j));
 }
 
-int fivebar_offset_power(const prepared *model, const real *X, const real *V, const real *tau,
-    real *power)
+size_t fivebar_offset_power_batch(const prepared *m, size_t n, const real *X, const real *V, const
+    real *tau, real *power, int *status)
 {
-    int code;
-    power_one(model, X, V, tau, power, &code);
-    return code;
-}
-
-size_t fivebar_offset_power_batch(const prepared *model, size_t n, const real *X, const real *V,
-    const real *tau, real *power, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = fivebar_offset_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power +
-                    (i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int fivebar_offset_rotation(const real *X, real *R)
-{
-    int code;
-    rotation_one(X, R, &code);
-    return code;
+    ONE_BY_ONE(fivebar_offset_power(m, X + NQ*j, V + NV*j, tau + NU*j, power + j));
 }
 
 size_t fivebar_offset_rotation_batch(size_t n, const real *X, real *R, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = fivebar_offset_rotation(X + NQ*i, R + 4*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int fivebar_offset_pose(const real *t, const real *R, real *X)
-{
-    int code;
-    pose_one(t, R, X, &code);
-    return code;
+    ONE_BY_ONE(fivebar_offset_rotation(X + NQ*j, R + 4*j));
 }
 
 size_t fivebar_offset_pose_batch(size_t n, const real *t, const real *R, real *X, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = fivebar_offset_pose(t + 2*i, R + 4*i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int fivebar_offset_X_dot(const real *X, const real *V, real *X_dot)
-{
-    int code;
-    X_dot_one(X, V, X_dot, &code);
-    return code;
+    ONE_BY_ONE(fivebar_offset_pose(t + 2*j, R + 4*j, X + NQ*j));
 }
 
 size_t fivebar_offset_X_dot_batch(size_t n, const real *X, const real *V, real *X_dot, int
     *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = fivebar_offset_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int fivebar_offset_retract(const real *X, const real *step, real *X_moved)
-{
-    int code;
-    retract_one(X, step, X_moved, &code);
-    return code;
+    ONE_BY_ONE(fivebar_offset_X_dot(X + NQ*j, V + NV*j, X_dot + NQ*j));
 }
 
 size_t fivebar_offset_retract_batch(size_t n, const real *X, const real *step, real *X_moved, int
     *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = fivebar_offset_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int fivebar_offset_difference(const real *X0, const real *X1, real *step)
-{
-    int code;
-    difference_one(X0, X1, step, &code);
-    return code;
+    ONE_BY_ONE(fivebar_offset_retract(X + NQ*j, step + NV*j, X_moved + NQ*j));
 }
 
 size_t fivebar_offset_difference_batch(size_t n, const real *X0, const real *X1, real *step, int
     *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = fivebar_offset_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int fivebar_offset_interpolate(const real *X0, const real *X1, const real *s, real *X)
-{
-    int code;
-    interpolate_one(X0, X1, s, X, &code);
-    return code;
+    ONE_BY_ONE(fivebar_offset_difference(X0 + NQ*j, X1 + NQ*j, step + NV*j));
 }
 
 size_t fivebar_offset_interpolate_batch(size_t n, const real *X0, const real *X1, const real *s,
     real *X, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = fivebar_offset_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(fivebar_offset_interpolate(X0 + NQ*j, X1 + NQ*j, s + j, X + NQ*j));
 }

@@ -184,13 +184,27 @@ INLINE int sum_is_finite(const real *x, size_t n)
     return is_finite(total(sum, LANES));
 }
 
+/* How many of some numbers are not finite. */
+APART real not_finite(size_t n, const real *x)
+{
+    real count = 0;
+    if (!sum_is_finite(x, n)) {
+        for (size_t i = 0; i < n; ++i) {
+            count += UNLESS(is_finite(x[i]));
+        }
+    }
+    return count;
+}
+
 /* Flag the states with entries that are not finite; the states stand side by side. */
 INLINE void check(size_t size, size_t w, const real *x, real *flags)
 {
-    if (!sum_is_finite(x, size*w)) {
-        for (size_t i = 0; i < size*w; ++i) {
-            flags[i%w] += UNLESS(is_finite(x[i]));
-        }
+    if (w == 1) {
+        flags[0] += not_finite(size, x);
+        return;
+    }
+    for (size_t i = 0; i < size*w; ++i) {
+        flags[i%w] += UNLESS(is_finite(x[i]));
     }
 }
 
@@ -245,18 +259,17 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE int judge(const verdict *t, int *code)
+INLINE int judge(const verdict *t)
 {
-    *code = t->invalid[0] > 0 ? INVALID
+    return t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
         : t->unreachable[0] > 0 ? UNREACHABLE
         : t->singular[0] > 0 ? SINGULAR
         : t->overflow[0] > 0 ? INVALID : OK;
-    return *code;
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
-INLINE void suspect(const verdict *t, int *code)
+APART void suspect(const verdict *t, int *code)
 {
     real flags[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -278,7 +291,7 @@ INLINE void blame(int code, verdict *t)
 }
 
 /* Outputs of an impossible state. */
-INLINE void refuse(size_t size, real *out)
+APART void refuse(size_t size, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
@@ -314,6 +327,32 @@ INLINE size_t record(const int *code, size_t w, int *status)
     }
     return failed;
 }
+
+/* Bodies of batches.  lanes: settles the states from number i on, side by side, in codes; one: settles
+   state j, what fails and what is left too. */
+#define SIDE_BY_SIDE(lanes, one) \
+    size_t failed = 0, w; \
+    for (size_t i = 0; i < n; i += w) { \
+        int codes[LANES] = {INVALID}; \
+        w = LANES > 1 && i + LANES <= n ? LANES : 1; \
+        if (w > 1) { \
+            lanes; \
+        } \
+        for (size_t j = i; j < i + w; ++j) { \
+            if (codes[j - i] != OK) { \
+                codes[j - i] = one; \
+            } \
+        } \
+        failed += record(codes, w, status ? status + i : NULL); \
+    } \
+    return failed
+#define ONE_BY_ONE(one) \
+    size_t failed = 0; \
+    for (size_t j = 0; j < n; ++j) { \
+        const int code = one; \
+        failed += record(&code, 1, status ? status + j : NULL); \
+    } \
+    return failed
 
 /* What the reader of specifications allows; floats have less to offer. */
 #define ROUNDED BY_TYPE(1e-5, 1e-06, 1e-06)  /* lengths and products of unit vectors */
@@ -944,11 +983,11 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
         const real six_r_Sigma_2_in_axes2_xx = six_r_Sigma_2_t_2 - six_r_J_2_in_spec2_xx;
         const real six_r_Sigma_2_in_axes2_yy = six_r_Sigma_2_t_2 - six_r_J_2_in_spec2_yy;
         const real six_r_Sigma_2_in_axes2_zz = six_r_Sigma_2_t_2 - six_r_J_2_in_spec2_zz;
-        /* (h_star) first moment about the platform origin */
+        /* (h_star) */
         const real six_r_h_star_t = six_r_link5_mass*six_r_platform_point_x;
         const real six_r_h_star_t_2 = six_r_link5_mass*six_r_platform_point_y;
         const real six_r_h_star_t_3 = six_r_link5_mass*six_r_platform_point_z;
-        /* (J_star) inertia tensor about the platform origin */
+        /* (J_star) */
         const real six_r_J_star_t = six_r_platform_point_x*six_r_platform_point_x;
         const real six_r_J_star_t_2 = six_r_platform_point_y*six_r_platform_point_y;
         const real six_r_J_star_t_3 = six_r_platform_point_z*six_r_platform_point_z;
@@ -1079,11 +1118,11 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
     }
     /* (m_star) mass of the platform with the gathered masses */
     const real m_star = m_star_of_legs + platform_mass;
-    /* (h_star) first moment about the platform origin */
+    /* (h_star) */
     const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
     const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
     const real h_star_in_platform_z = h_star_in_platform_z_of_legs + h_star_t_3;
-    /* (J_star) inertia tensor about the platform origin */
+    /* (J_star) */
     const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + platform_inertia_xx -
         J_star_t_5;
     const real J_star_in_platform_xy = J_star_in_platform_xy_of_legs + platform_inertia_xy -
@@ -1775,15 +1814,12 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real R_zy = quaternion_wx + quaternion_yz;
     const real R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (h_star) first moment about the platform origin */
-    const real h_star_in_platform_x = m->h_star_in_platform_x;
-    const real h_star_in_platform_y = m->h_star_in_platform_y;
-    const real h_star_in_platform_z = m->h_star_in_platform_z;
-    const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-        R_xz*h_star_in_platform_z;
-    const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-        R_yz*h_star_in_platform_z;
-    const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-        R_zz*h_star_in_platform_z;
+    const real h_star_x = R_xx*m->h_star_in_platform_x + R_xy*m->h_star_in_platform_y +
+        R_xz*m->h_star_in_platform_z;
+    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yy*m->h_star_in_platform_y +
+        R_yz*m->h_star_in_platform_z;
+    const real h_star_z = R_zx*m->h_star_in_platform_x + R_zy*m->h_star_in_platform_y +
+        R_zz*m->h_star_in_platform_z;
     v->quaternion_scale = quaternion_scale;
     v->R_xx = R_xx;
     v->R_xy = R_xy;
@@ -1816,33 +1852,27 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
 INLINE void stage_M_dynamics(const prepared *m, values *v)
 {
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-    const real J_star_t_12 = m->J_star_t_12;
-    const real J_star_t = J_star_in_platform_xy*v->R_xx + J_star_in_platform_yz*v->R_xz -
-        J_star_t_12*v->R_xy;
-    const real J_star_t_2 = J_star_in_platform_xy*v->R_yx + J_star_in_platform_yz*v->R_yz -
-        J_star_t_12*v->R_yy;
-    const real J_star_t_3 = J_star_in_platform_xy*v->R_zx + J_star_in_platform_yz*v->R_zz -
-        J_star_t_12*v->R_zy;
-    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-    const real J_star_t_14 = m->J_star_t_14;
-    const real J_star_t_4 = J_star_t_14*v->R_xz - J_star_in_platform_xz*v->R_xx;
-    const real J_star_t_5 = J_star_t_14*v->R_yz - J_star_in_platform_xz*v->R_yx;
-    const real J_star_t_6 = J_star_t_14*v->R_zz - J_star_in_platform_xz*v->R_zx;
+    const real J_star_t = m->J_star_in_platform_xy*v->R_xx + m->J_star_in_platform_yz*v->R_xz
+        - m->J_star_t_12*v->R_xy;
+    const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
+        m->J_star_in_platform_yz*v->R_yz - m->J_star_t_12*v->R_yy;
+    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx +
+        m->J_star_in_platform_yz*v->R_zz - m->J_star_t_12*v->R_zy;
+    const real J_star_t_4 = m->J_star_t_14*v->R_xz - m->J_star_in_platform_xz*v->R_xx;
+    const real J_star_t_5 = m->J_star_t_14*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
+    const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
-    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-    const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+    const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
     const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
         J_star_t_5*v->R_xz;
     const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
     const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
-    const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+    const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
     const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
         J_star_t_6*v->R_yz;
     const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
-    const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
+    const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
     v->J_star_xx = J_star_xx;
     v->J_star_xy = J_star_xy;
     v->J_star_xz = J_star_xz;
@@ -1860,46 +1890,34 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real omega_x = V[3*w + k];
     const real Z_p_t_5 = v->h_star_x*omega_z - v->h_star_z*omega_x;
     const real Z_p_t_6 = v->h_star_y*omega_x - v->h_star_x*omega_y;
-    const real Z_p_t = m->Z_p_t;
-    const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-    const real Z_p_t_2 = m->Z_p_t_2;
-    const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-    const real Z_p_t_3 = m->Z_p_t_3;
-    const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
+    const real Z_p_x = Z_p_t_6*omega_y - m->Z_p_t - Z_p_t_5*omega_z;
+    const real Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
+    const real Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real gravity_x = m->gravity_x;
-    const real gravity_y = m->gravity_y;
-    const real gravity_z = m->gravity_z;
-    const real g_in_platform_x = v->R_xx*gravity_x + v->R_yx*gravity_y + v->R_zx*gravity_z;
-    const real g_in_platform_y = v->R_xy*gravity_x + v->R_yy*gravity_y + v->R_zy*gravity_z;
-    const real g_in_platform_z = v->R_xz*gravity_x + v->R_yz*gravity_y + v->R_zz*gravity_z;
-    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-    const real Z_q_t = J_star_in_platform_xx*v->omega_in_platform_x +
-        J_star_in_platform_xy*v->omega_in_platform_y +
-        J_star_in_platform_xz*v->omega_in_platform_z;
-    const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-    const real Z_q_t_2 = J_star_in_platform_xy*v->omega_in_platform_x +
-        J_star_in_platform_yy*v->omega_in_platform_y +
-        J_star_in_platform_yz*v->omega_in_platform_z;
-    const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-    const real Z_q_t_3 = J_star_in_platform_xz*v->omega_in_platform_x +
-        J_star_in_platform_yz*v->omega_in_platform_y +
-        J_star_in_platform_zz*v->omega_in_platform_z;
-    const real h_star_in_platform_y = m->h_star_in_platform_y;
-    const real h_star_in_platform_z = m->h_star_in_platform_z;
+    const real g_in_platform_x = v->R_xx*m->gravity_x + v->R_yx*m->gravity_y +
+        v->R_zx*m->gravity_z;
+    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_yy*m->gravity_y +
+        v->R_zy*m->gravity_z;
+    const real g_in_platform_z = v->R_xz*m->gravity_x + v->R_yz*m->gravity_y +
+        v->R_zz*m->gravity_z;
+    const real Z_q_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
+        m->J_star_in_platform_xy*v->omega_in_platform_y +
+        m->J_star_in_platform_xz*v->omega_in_platform_z;
+    const real Z_q_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
+        m->J_star_in_platform_yy*v->omega_in_platform_y +
+        m->J_star_in_platform_yz*v->omega_in_platform_z;
+    const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
+        m->J_star_in_platform_yz*v->omega_in_platform_y +
+        m->J_star_in_platform_zz*v->omega_in_platform_z;
     const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
-        g_in_platform_y*h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
-        g_in_platform_z*h_star_in_platform_y;
-    const real h_star_in_platform_x = m->h_star_in_platform_x;
+        g_in_platform_y*m->h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
+        g_in_platform_z*m->h_star_in_platform_y;
     const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
-        g_in_platform_z*h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
-        g_in_platform_x*h_star_in_platform_z;
+        g_in_platform_z*m->h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
+        g_in_platform_x*m->h_star_in_platform_z;
     const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
-        g_in_platform_x*h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
-        g_in_platform_y*h_star_in_platform_x;
+        g_in_platform_x*m->h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
+        g_in_platform_y*m->h_star_in_platform_x;
     const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
         v->R_xz*Z_q_in_platform_z;
     const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
@@ -1964,52 +1982,40 @@ INLINE void stage_six_r_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real six_r_platform_point_x = m->six_r_platform_point_x[i];
-    const real six_r_platform_point_y = m->six_r_platform_point_y[i];
-    const real six_r_platform_point_z = m->six_r_platform_point_z[i];
-    const real six_r_q_x = R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y +
-        R_xz*six_r_platform_point_z;
+    const real six_r_q_x = R_xx*m->six_r_platform_point_x[i] +
+        R_xy*m->six_r_platform_point_y[i] + R_xz*m->six_r_platform_point_z[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real six_r_q_y = R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y +
-        R_yz*six_r_platform_point_z;
+    const real six_r_q_y = R_yx*m->six_r_platform_point_x[i] +
+        R_yy*m->six_r_platform_point_y[i] + R_yz*m->six_r_platform_point_z[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
-    const real six_r_q_z = R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y +
-        R_zz*six_r_platform_point_z;
+    const real six_r_q_z = R_zx*m->six_r_platform_point_x[i] +
+        R_zy*m->six_r_platform_point_y[i] + R_zz*m->six_r_platform_point_z[i];
     /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
-    const real six_r_base_frame_xy = m->six_r_base_frame_xy[i];
-    const real six_r_base_frame_yy = m->six_r_base_frame_yy[i];
-    const real six_r_base_frame_zy = m->six_r_base_frame_zy[i];
-    const real six_r_platform_joint_axis_platform_x = m->six_r_platform_joint_axis_platform_x[i];
-    const real six_r_platform_joint_axis_platform_y = m->six_r_platform_joint_axis_platform_y[i];
-    const real six_r_platform_joint_axis_platform_z = m->six_r_platform_joint_axis_platform_z[i];
-    const real six_r_n_m1_t = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xy +
-        R_yx*six_r_base_frame_yy + R_zx*six_r_base_frame_zy) +
-        six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xy +
-        R_yy*six_r_base_frame_yy + R_zy*six_r_base_frame_zy) +
-        six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xy +
-        R_yz*six_r_base_frame_yy + R_zz*six_r_base_frame_zy);
-    const real six_r_base_frame_xz = m->six_r_base_frame_xz[i];
-    const real six_r_base_frame_yz = m->six_r_base_frame_yz[i];
-    const real six_r_base_frame_zz = m->six_r_base_frame_zz[i];
-    const real six_r_n_m1_t_2 = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xz
-        + R_yx*six_r_base_frame_yz + R_zx*six_r_base_frame_zz) +
-        six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xz +
-        R_yy*six_r_base_frame_yz + R_zy*six_r_base_frame_zz) +
-        six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xz +
-        R_yz*six_r_base_frame_yz + R_zz*six_r_base_frame_zz);
-    const real six_r_base_frame_xx = m->six_r_base_frame_xx[i];
-    const real six_r_base_frame_yx = m->six_r_base_frame_yx[i];
-    const real six_r_base_frame_zx = m->six_r_base_frame_zx[i];
-    const real six_r_n_m1_t_3 = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xx
-        + R_yx*six_r_base_frame_yx + R_zx*six_r_base_frame_zx) +
-        six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xx +
-        R_yy*six_r_base_frame_yx + R_zy*six_r_base_frame_zx) +
-        six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xx +
-        R_yz*six_r_base_frame_yx + R_zz*six_r_base_frame_zx);
+    const real six_r_n_m1_t =
+        m->six_r_platform_joint_axis_platform_x[i]*(R_xx*m->six_r_base_frame_xy[i] +
+        R_yx*m->six_r_base_frame_yy[i] + R_zx*m->six_r_base_frame_zy[i]) +
+        m->six_r_platform_joint_axis_platform_y[i]*(R_xy*m->six_r_base_frame_xy[i] +
+        R_yy*m->six_r_base_frame_yy[i] + R_zy*m->six_r_base_frame_zy[i]) +
+        m->six_r_platform_joint_axis_platform_z[i]*(R_xz*m->six_r_base_frame_xy[i] +
+        R_yz*m->six_r_base_frame_yy[i] + R_zz*m->six_r_base_frame_zy[i]);
+    const real six_r_n_m1_t_2 =
+        m->six_r_platform_joint_axis_platform_x[i]*(R_xx*m->six_r_base_frame_xz[i] +
+        R_yx*m->six_r_base_frame_yz[i] + R_zx*m->six_r_base_frame_zz[i]) +
+        m->six_r_platform_joint_axis_platform_y[i]*(R_xy*m->six_r_base_frame_xz[i] +
+        R_yy*m->six_r_base_frame_yz[i] + R_zy*m->six_r_base_frame_zz[i]) +
+        m->six_r_platform_joint_axis_platform_z[i]*(R_xz*m->six_r_base_frame_xz[i] +
+        R_yz*m->six_r_base_frame_yz[i] + R_zz*m->six_r_base_frame_zz[i]);
+    const real six_r_n_m1_t_3 =
+        m->six_r_platform_joint_axis_platform_x[i]*(R_xx*m->six_r_base_frame_xx[i] +
+        R_yx*m->six_r_base_frame_yx[i] + R_zx*m->six_r_base_frame_zx[i]) +
+        m->six_r_platform_joint_axis_platform_y[i]*(R_xy*m->six_r_base_frame_xx[i] +
+        R_yy*m->six_r_base_frame_yx[i] + R_zy*m->six_r_base_frame_zx[i]) +
+        m->six_r_platform_joint_axis_platform_z[i]*(R_xz*m->six_r_base_frame_xx[i] +
+        R_yz*m->six_r_base_frame_yx[i] + R_zz*m->six_r_base_frame_zx[i]);
     v->six_r_q_x = six_r_q_x;
     v->six_r_q_y = six_r_q_y;
     v->six_r_q_z = six_r_q_z;
@@ -2030,10 +2036,8 @@ INLINE void stage_six_r_q(const prepared *m, size_t w, size_t i, size_t j, const
     const real six_r_q_4 = joints[place_six_r_q_4[i]*w + j];
     const real six_r_e_2_in_axes5_z = cosine(six_r_q_4);
     const real six_r_h_4_t = sine(six_r_q_4);
-    const real six_r_h_4_in_spec4_y = m->six_r_h_4_in_spec4_y[i];
-    const real six_r_h_4_in_spec4_z = m->six_r_h_4_in_spec4_z[i];
-    const real six_r_h_4_in_spec3_y = six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_y -
-        six_r_h_4_in_spec4_z*six_r_h_4_t;
+    const real six_r_h_4_in_spec3_y = six_r_e_2_in_axes5_z*m->six_r_h_4_in_spec4_y[i] -
+        m->six_r_h_4_in_spec4_z[i]*six_r_h_4_t;
     /* (six_r-c_1) cosine of the angle of joint 1 from its reference direction */
     const real six_r_q_1 = joints[place_six_r_q_1[i]*w + j];
     const real six_r_c_1 = cosine(six_r_q_1);
@@ -2053,18 +2057,16 @@ INLINE void stage_six_r_q(const prepared *m, size_t w, size_t i, size_t j, const
     const real six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2;
     const real six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3;
     /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
-    const real six_r_joint2_offset_x = m->six_r_joint2_offset_x[i];
-    const real six_r_d_2_in_spec2_x = six_r_c_2*six_r_joint2_offset_x;
+    const real six_r_d_2_in_spec2_x = six_r_c_2*m->six_r_joint2_offset_x[i];
     /* (six_r-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real six_r_acc_3_t = m->six_r_acc_3_t[i];
-    const real six_r_acc_3_t_2 = m->six_r_acc_3_t_2[i];
-    const real six_r_g_in_axes1_x = six_r_acc_3_t*six_r_c_1 + six_r_acc_3_t_2*six_r_s_1;
-    const real six_r_g_in_axes1_y = six_r_acc_3_t_2*six_r_c_1 - six_r_acc_3_t*six_r_s_1;
-    const real six_r_g_in_axes1_z = m->six_r_g_in_axes1_z[i];
-    const real six_r_g_in_axes2_x = six_r_c_2*six_r_g_in_axes1_z +
+    const real six_r_g_in_axes1_x = m->six_r_acc_3_t[i]*six_r_c_1 +
+        m->six_r_acc_3_t_2[i]*six_r_s_1;
+    const real six_r_g_in_axes1_y = m->six_r_acc_3_t_2[i]*six_r_c_1 -
+        m->six_r_acc_3_t[i]*six_r_s_1;
+    const real six_r_g_in_axes2_x = six_r_c_2*m->six_r_g_in_axes1_z[i] +
         six_r_g_in_axes1_x*six_r_s_2;
     const real six_r_g_in_axes2_y = six_r_c_2*six_r_g_in_axes1_x -
-        six_r_g_in_axes1_z*six_r_s_2;
+        m->six_r_g_in_axes1_z[i]*six_r_s_2;
     const real six_r_g_in_axes3_x = six_r_g_in_axes2_x*six_r_s_3 -
         six_r_c_3*six_r_g_in_axes2_y;
     const real six_r_g_in_axes3_y = six_r_c_3*six_r_g_in_axes2_x +
@@ -2086,21 +2088,12 @@ INLINE void stage_six_r_q(const prepared *m, size_t w, size_t i, size_t j, const
     const real six_r_S_dot_t_4 = six_r_S_dot_t_2*six_r_s_2 - six_r_S_dot_t*six_r_c_2;
     const real six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_c_4*six_r_s_1;
     const real six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_c_4;
-    const real six_r_base_frame_xx = m->six_r_base_frame_xx[i];
-    const real six_r_base_frame_xy = m->six_r_base_frame_xy[i];
-    const real six_r_base_frame_xz = m->six_r_base_frame_xz[i];
-    const real axis_z_six_r_axes5_x = six_r_S_dot_t_3*six_r_base_frame_xx +
-        six_r_S_dot_t_5*six_r_base_frame_xy + six_r_S_dot_t_6*six_r_base_frame_xz;
-    const real six_r_base_frame_yx = m->six_r_base_frame_yx[i];
-    const real six_r_base_frame_yy = m->six_r_base_frame_yy[i];
-    const real six_r_base_frame_yz = m->six_r_base_frame_yz[i];
-    const real axis_z_six_r_axes5_y = six_r_S_dot_t_3*six_r_base_frame_yx +
-        six_r_S_dot_t_5*six_r_base_frame_yy + six_r_S_dot_t_6*six_r_base_frame_yz;
-    const real six_r_base_frame_zx = m->six_r_base_frame_zx[i];
-    const real six_r_base_frame_zy = m->six_r_base_frame_zy[i];
-    const real six_r_base_frame_zz = m->six_r_base_frame_zz[i];
-    const real axis_z_six_r_axes5_z = six_r_S_dot_t_3*six_r_base_frame_zx +
-        six_r_S_dot_t_5*six_r_base_frame_zy + six_r_S_dot_t_6*six_r_base_frame_zz;
+    const real axis_z_six_r_axes5_x = six_r_S_dot_t_3*m->six_r_base_frame_xx[i] +
+        six_r_S_dot_t_5*m->six_r_base_frame_xy[i] + six_r_S_dot_t_6*m->six_r_base_frame_xz[i];
+    const real axis_z_six_r_axes5_y = six_r_S_dot_t_3*m->six_r_base_frame_yx[i] +
+        six_r_S_dot_t_5*m->six_r_base_frame_yy[i] + six_r_S_dot_t_6*m->six_r_base_frame_yz[i];
+    const real axis_z_six_r_axes5_z = six_r_S_dot_t_3*m->six_r_base_frame_zx[i] +
+        six_r_S_dot_t_5*m->six_r_base_frame_zy[i] + six_r_S_dot_t_6*m->six_r_base_frame_zz[i];
     const real six_r_S_dot_t_7 = six_r_c_4*six_r_c_5;
     const real six_r_S_dot_t_8 = six_r_s_3*six_r_s_5 - six_r_S_dot_t_7*six_r_c_3;
     const real six_r_S_dot_t_9 = -six_r_S_dot_t_7*six_r_s_3 - six_r_c_3*six_r_s_5;
@@ -2108,12 +2101,15 @@ INLINE void stage_six_r_q(const prepared *m, size_t w, size_t i, size_t j, const
     const real six_r_S_dot_t_11 = six_r_S_dot_t_9*six_r_s_2 - six_r_S_dot_t_8*six_r_c_2;
     const real six_r_S_dot_t_12 = six_r_S_dot_t_11*six_r_c_1 - six_r_e_2_in_axes5_y*six_r_s_1;
     const real six_r_S_dot_t_13 = six_r_S_dot_t_11*six_r_s_1 + six_r_c_1*six_r_e_2_in_axes5_y;
-    const real axis_y_six_r_axes5_x = six_r_S_dot_t_10*six_r_base_frame_xx +
-        six_r_S_dot_t_12*six_r_base_frame_xy + six_r_S_dot_t_13*six_r_base_frame_xz;
-    const real axis_y_six_r_axes5_y = six_r_S_dot_t_10*six_r_base_frame_yx +
-        six_r_S_dot_t_12*six_r_base_frame_yy + six_r_S_dot_t_13*six_r_base_frame_yz;
-    const real axis_y_six_r_axes5_z = six_r_S_dot_t_10*six_r_base_frame_zx +
-        six_r_S_dot_t_12*six_r_base_frame_zy + six_r_S_dot_t_13*six_r_base_frame_zz;
+    const real axis_y_six_r_axes5_x = six_r_S_dot_t_10*m->six_r_base_frame_xx[i] +
+        six_r_S_dot_t_12*m->six_r_base_frame_xy[i] +
+        six_r_S_dot_t_13*m->six_r_base_frame_xz[i];
+    const real axis_y_six_r_axes5_y = six_r_S_dot_t_10*m->six_r_base_frame_yx[i] +
+        six_r_S_dot_t_12*m->six_r_base_frame_yy[i] +
+        six_r_S_dot_t_13*m->six_r_base_frame_yz[i];
+    const real axis_y_six_r_axes5_z = six_r_S_dot_t_10*m->six_r_base_frame_zx[i] +
+        six_r_S_dot_t_12*m->six_r_base_frame_zy[i] +
+        six_r_S_dot_t_13*m->six_r_base_frame_zz[i];
     const real axis_x_six_r_axes5_x = axis_y_six_r_axes5_y*axis_z_six_r_axes5_z -
         axis_y_six_r_axes5_z*axis_z_six_r_axes5_y;
     const real axis_x_six_r_axes5_y = axis_y_six_r_axes5_z*axis_z_six_r_axes5_x -
@@ -2121,16 +2117,13 @@ INLINE void stage_six_r_q(const prepared *m, size_t w, size_t i, size_t j, const
     const real axis_x_six_r_axes5_z = axis_y_six_r_axes5_x*axis_z_six_r_axes5_y -
         axis_y_six_r_axes5_y*axis_z_six_r_axes5_x;
     /* (six_r-r_4) from joint 4 to the connection point, along the links */
-    const real six_r_platform_joint_offset_x = m->six_r_platform_joint_offset_x[i];
-    const real six_r_r_4_in_axes4_x = six_r_platform_joint_offset_x*six_r_s_5;
-    const real six_r_joint5_offset_x = m->six_r_joint5_offset_x[i];
-    const real six_r_r_4_in_axes4_z = six_r_joint5_offset_x +
-        six_r_c_5*six_r_platform_joint_offset_x;
+    const real six_r_r_4_in_axes4_x = m->six_r_platform_joint_offset_x[i]*six_r_s_5;
+    const real six_r_r_4_in_axes4_z = m->six_r_joint5_offset_x[i] +
+        six_r_c_5*m->six_r_platform_joint_offset_x[i];
     const real six_r_r_4_in_axes3_x = -six_r_c_4*six_r_r_4_in_axes4_x;
     const real six_r_r_4_in_axes3_z = six_r_r_4_in_axes4_x*six_r_s_4;
     /* (six_r-r_3) from joint 3 to the connection point, along the links */
-    const real six_r_joint4_offset_x = m->six_r_joint4_offset_x[i];
-    const real six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z;
+    const real six_r_r_3_in_axes3_y = m->six_r_joint4_offset_x[i] + six_r_r_4_in_axes4_z;
     const real six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*six_r_s_3 -
         six_r_c_3*six_r_r_4_in_axes3_x;
     const real six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4;
@@ -2142,9 +2135,8 @@ INLINE void stage_six_r_q(const prepared *m, size_t w, size_t i, size_t j, const
     const real six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_t_3 -
         six_r_r_3_in_axes3_y*six_r_s_5;
     /* (six_r-r_2) from joint 2 to the connection point, along the links */
-    const real six_r_joint3_offset_x = m->six_r_joint3_offset_x[i];
-    const real six_r_r_2_in_axes2_x = six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_y +
-        six_r_r_4_in_axes3_x*six_r_s_3;
+    const real six_r_r_2_in_axes2_x = m->six_r_joint3_offset_x[i] +
+        six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*six_r_s_3;
     const real six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y +
         six_r_r_2_in_axes2_x*six_r_s_2;
     const real six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y;
@@ -2155,8 +2147,8 @@ INLINE void stage_six_r_q(const prepared *m, size_t w, size_t i, size_t j, const
     const real six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_2 + six_r_r_2_t_3*six_r_s_5;
     const real six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t_3 - six_r_r_2_t_2*six_r_s_5;
     /* (six_r-r_1) from joint 1 to the connection point, along the links */
-    const real six_r_r_1_in_axes1_z = six_r_joint2_offset_x + six_r_c_2*six_r_r_2_in_axes2_x -
-        six_r_r_3_in_axes2_y*six_r_s_2;
+    const real six_r_r_1_in_axes1_z = m->six_r_joint2_offset_x[i] +
+        six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2;
     const real six_r_r_1_t = six_r_c_2*six_r_r_1_in_axes1_z + six_r_r_2_in_axes1_x*six_r_s_2;
     const real six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x -
         six_r_r_1_in_axes1_z*six_r_s_2;
@@ -2166,7 +2158,7 @@ INLINE void stage_six_r_q(const prepared *m, size_t w, size_t i, size_t j, const
     const real six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_r_1_t_3*six_r_s_4;
     const real six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_4 + six_r_r_1_t_5*six_r_s_5;
     const real six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_5 - six_r_r_1_t_4*six_r_s_5;
-    /* (six_r-v_1) velocity of the connection point per rate of joint 1 */
+    /* (six_r-v_1) */
     const real six_r_v_1_t_3 = six_r_c_4*six_r_v_1_t;
     const real six_r_e_1_in_axes5_z = six_r_s_4*six_r_v_1_t;
     const real six_r_e_1_in_axes5_x = six_r_c_5*six_r_v_1_t_2 - six_r_s_5*six_r_v_1_t_3;
@@ -2196,24 +2188,24 @@ INLINE void stage_six_r_q(const prepared *m, size_t w, size_t i, size_t j, const
     const real six_r_v_4_in_axes5_z = six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_x -
         six_r_r_4_in_axes4_z*six_r_s_5) + six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z +
         six_r_r_4_in_axes4_x*six_r_s_5);
-    /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
-    const real six_r_d_4_in_axes5_x = six_r_c_5*six_r_joint4_offset_x;
-    const real six_r_d_5_in_axes5_x = six_r_c_5*six_r_joint5_offset_x;
-    const real six_r_bias_t = six_r_joint2_offset_x*six_r_s_2;
+    /* (six_r-bias) */
+    const real six_r_d_4_in_axes5_x = six_r_c_5*m->six_r_joint4_offset_x[i];
+    const real six_r_d_5_in_axes5_x = six_r_c_5*m->six_r_joint5_offset_x[i];
+    const real six_r_bias_t = m->six_r_joint2_offset_x[i]*six_r_s_2;
     const real six_r_bias_t_2 = six_r_bias_t*six_r_c_3 + six_r_d_2_in_spec2_x*six_r_s_3;
     const real six_r_bias_t_3 = six_r_c_3*six_r_d_2_in_spec2_x - six_r_bias_t*six_r_s_3;
     const real six_r_bias_t_4 = six_r_bias_t_2*six_r_c_4;
     const real six_r_d_2_in_axes5_z = six_r_bias_t_2*six_r_s_4;
     const real six_r_d_2_in_axes5_x = six_r_bias_t_3*six_r_c_5 - six_r_bias_t_4*six_r_s_5;
     const real six_r_d_2_in_axes5_y = -six_r_bias_t_3*six_r_s_5 - six_r_bias_t_4*six_r_c_5;
-    const real six_r_bias_t_5 = six_r_joint3_offset_x*six_r_s_3;
-    const real six_r_bias_t_6 = six_r_c_3*six_r_joint3_offset_x;
+    const real six_r_bias_t_5 = m->six_r_joint3_offset_x[i]*six_r_s_3;
+    const real six_r_bias_t_6 = six_r_c_3*m->six_r_joint3_offset_x[i];
     const real six_r_bias_t_7 = six_r_bias_t_5*six_r_c_4;
     const real six_r_d_3_in_axes5_z = six_r_bias_t_5*six_r_s_4;
     const real six_r_d_3_in_axes5_x = six_r_bias_t_6*six_r_c_5 - six_r_bias_t_7*six_r_s_5;
     const real six_r_d_3_in_axes5_y = -six_r_bias_t_6*six_r_s_5 - six_r_bias_t_7*six_r_c_5;
-    const real six_r_bias_t_8 = six_r_joint4_offset_x*six_r_s_5;
-    const real six_r_bias_t_9 = six_r_joint5_offset_x*six_r_s_5;
+    const real six_r_bias_t_8 = m->six_r_joint4_offset_x[i]*six_r_s_5;
+    const real six_r_bias_t_9 = m->six_r_joint5_offset_x[i]*six_r_s_5;
     v->six_r_e_2_in_axes5_z = six_r_e_2_in_axes5_z;
     v->six_r_h_4_t = six_r_h_4_t;
     v->six_r_h_4_in_spec3_y = six_r_h_4_in_spec3_y;
@@ -2369,20 +2361,17 @@ INLINE void stage_six_r_X_q(const prepared *m, size_t i, values_six_r *v)
         v->six_r_e_1_in_axes5_z*six_r_n_m2_in_axes5_z;
     const real six_r_w_1_t_4 = v->six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
         v->six_r_c_4*six_r_n_m2_in_axes5_z;
-    const real six_r_size = m->six_r_size[i];
-    const real six_r_w_1_t_5 = six_r_size*six_r_w_1_t;
-    const real six_r_w_1_t_6 = six_r_size*six_r_w_1_t_3;
-    const real six_r_w_1_t_7 = six_r_size*six_r_w_1_t_2;
-    const real six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4;
-    const real six_r_w_1_t_9 = six_r_size*(-v->six_r_c_5*six_r_n_m2_in_axes5_z -
+    const real six_r_w_1_t_5 = m->six_r_size[i]*six_r_w_1_t;
+    const real six_r_w_1_t_6 = m->six_r_size[i]*six_r_w_1_t_3;
+    const real six_r_w_1_t_7 = m->six_r_size[i]*six_r_w_1_t_2;
+    const real six_r_w_1_t_8 = m->six_r_size[i]*six_r_w_1_t_4;
+    const real six_r_w_1_t_9 = m->six_r_size[i]*(-v->six_r_c_5*six_r_n_m2_in_axes5_z -
         six_r_n_m1_in_axes5_y*v->six_r_s_5);
-    const real six_r_w_1_t_10 = six_r_end_p1_in_axes5_z*v->six_r_s_5*six_r_size;
-    const real six_r_w_1_t_11 = six_r_n_m2_in_axes5_z*six_r_size;
-    const real six_r_size_t = m->six_r_size_t[i];
-    const real six_r_w_1_t_12 = root(six_r_size_t + six_r_w_1_t_11*six_r_w_1_t_11);
+    const real six_r_w_1_t_10 = six_r_end_p1_in_axes5_z*v->six_r_s_5*m->six_r_size[i];
+    const real six_r_w_1_t_11 = six_r_n_m2_in_axes5_z*m->six_r_size[i];
+    const real six_r_w_1_t_12 = root(m->six_r_size_t[i] + six_r_w_1_t_11*six_r_w_1_t_11);
     const real inv_six_r_w_1_t_12 = 1/six_r_w_1_t_12;
-    const real six_r_platform_joint_offset_x = m->six_r_platform_joint_offset_x[i];
-    const real six_r_w_1_t_13 = inv_six_r_w_1_t_12*six_r_platform_joint_offset_x;
+    const real six_r_w_1_t_13 = inv_six_r_w_1_t_12*m->six_r_platform_joint_offset_x[i];
     const real six_r_w_1_t_14 = inv_six_r_w_1_t_12*six_r_w_1_t_11;
     const real six_r_w_1_t_15 = six_r_w_1_t_10*six_r_w_1_t_14;
     const real six_r_w_1_t_16 = six_r_w_1_t_13*six_r_w_1_t_15;
@@ -2591,21 +2580,12 @@ INLINE void stage_six_r_H_condition(const prepared *m, size_t i, values_six_r *v
     const real six_r_w_2_t_4 = v->six_r_s_2*six_r_w_2_t_2 - v->six_r_c_2*six_r_w_2_t;
     const real six_r_w_2_t_5 = v->six_r_c_1*six_r_w_2_t_4 - v->six_r_c_4*v->six_r_s_1;
     const real six_r_w_2_t_6 = v->six_r_c_1*v->six_r_c_4 + v->six_r_s_1*six_r_w_2_t_4;
-    const real six_r_base_frame_xx = m->six_r_base_frame_xx[i];
-    const real six_r_base_frame_xy = m->six_r_base_frame_xy[i];
-    const real six_r_base_frame_xz = m->six_r_base_frame_xz[i];
-    const real axis_z_six_r_axes5_x = six_r_base_frame_xx*six_r_w_2_t_3 +
-        six_r_base_frame_xy*six_r_w_2_t_5 + six_r_base_frame_xz*six_r_w_2_t_6;
-    const real six_r_base_frame_yx = m->six_r_base_frame_yx[i];
-    const real six_r_base_frame_yy = m->six_r_base_frame_yy[i];
-    const real six_r_base_frame_yz = m->six_r_base_frame_yz[i];
-    const real axis_z_six_r_axes5_y = six_r_base_frame_yx*six_r_w_2_t_3 +
-        six_r_base_frame_yy*six_r_w_2_t_5 + six_r_base_frame_yz*six_r_w_2_t_6;
-    const real six_r_base_frame_zx = m->six_r_base_frame_zx[i];
-    const real six_r_base_frame_zy = m->six_r_base_frame_zy[i];
-    const real six_r_base_frame_zz = m->six_r_base_frame_zz[i];
-    const real axis_z_six_r_axes5_z = six_r_base_frame_zx*six_r_w_2_t_3 +
-        six_r_base_frame_zy*six_r_w_2_t_5 + six_r_base_frame_zz*six_r_w_2_t_6;
+    const real axis_z_six_r_axes5_x = m->six_r_base_frame_xx[i]*six_r_w_2_t_3 +
+        m->six_r_base_frame_xy[i]*six_r_w_2_t_5 + m->six_r_base_frame_xz[i]*six_r_w_2_t_6;
+    const real axis_z_six_r_axes5_y = m->six_r_base_frame_yx[i]*six_r_w_2_t_3 +
+        m->six_r_base_frame_yy[i]*six_r_w_2_t_5 + m->six_r_base_frame_yz[i]*six_r_w_2_t_6;
+    const real axis_z_six_r_axes5_z = m->six_r_base_frame_zx[i]*six_r_w_2_t_3 +
+        m->six_r_base_frame_zy[i]*six_r_w_2_t_5 + m->six_r_base_frame_zz[i]*six_r_w_2_t_6;
     const real six_r_w_2_t_7 = v->six_r_c_4*v->six_r_c_5;
     const real six_r_w_2_t_8 = v->six_r_s_3*v->six_r_s_5 - v->six_r_c_3*six_r_w_2_t_7;
     const real six_r_w_2_t_9 = -v->six_r_c_3*v->six_r_s_5 - v->six_r_s_3*six_r_w_2_t_7;
@@ -2615,12 +2595,12 @@ INLINE void stage_six_r_H_condition(const prepared *m, size_t i, values_six_r *v
         v->six_r_e_2_in_axes5_y*v->six_r_s_1;
     const real six_r_w_2_t_13 = v->six_r_c_1*v->six_r_e_2_in_axes5_y +
         v->six_r_s_1*six_r_w_2_t_11;
-    const real axis_y_six_r_axes5_x = six_r_base_frame_xx*six_r_w_2_t_10 +
-        six_r_base_frame_xy*six_r_w_2_t_12 + six_r_base_frame_xz*six_r_w_2_t_13;
-    const real axis_y_six_r_axes5_y = six_r_base_frame_yx*six_r_w_2_t_10 +
-        six_r_base_frame_yy*six_r_w_2_t_12 + six_r_base_frame_yz*six_r_w_2_t_13;
-    const real axis_y_six_r_axes5_z = six_r_base_frame_zx*six_r_w_2_t_10 +
-        six_r_base_frame_zy*six_r_w_2_t_12 + six_r_base_frame_zz*six_r_w_2_t_13;
+    const real axis_y_six_r_axes5_x = m->six_r_base_frame_xx[i]*six_r_w_2_t_10 +
+        m->six_r_base_frame_xy[i]*six_r_w_2_t_12 + m->six_r_base_frame_xz[i]*six_r_w_2_t_13;
+    const real axis_y_six_r_axes5_y = m->six_r_base_frame_yx[i]*six_r_w_2_t_10 +
+        m->six_r_base_frame_yy[i]*six_r_w_2_t_12 + m->six_r_base_frame_yz[i]*six_r_w_2_t_13;
+    const real axis_y_six_r_axes5_z = m->six_r_base_frame_zx[i]*six_r_w_2_t_10 +
+        m->six_r_base_frame_zy[i]*six_r_w_2_t_12 + m->six_r_base_frame_zz[i]*six_r_w_2_t_13;
     const real axis_x_six_r_axes5_x = axis_y_six_r_axes5_y*axis_z_six_r_axes5_z -
         axis_y_six_r_axes5_z*axis_z_six_r_axes5_y;
     const real axis_x_six_r_axes5_y = axis_y_six_r_axes5_z*axis_z_six_r_axes5_x -
@@ -2641,11 +2621,10 @@ INLINE void stage_six_r_H_condition(const prepared *m, size_t i, values_six_r *v
     const real six_r_w_2_z = axis_x_six_r_axes5_z*six_r_w_2_in_axes5_x +
         axis_y_six_r_axes5_z*six_r_w_2_in_axes5_y + axis_z_six_r_axes5_z*six_r_w_2_in_axes5_z;
     /* (six_r-m1_w_2) moment part 1 of reciprocal wrench 2 */
-    const real six_r_size = m->six_r_size[i];
-    const real six_r_m1_w_2 = six_r_size*(v->inv_six_r_w_1_t_67*v->six_r_w_1_t_71 -
+    const real six_r_m1_w_2 = m->six_r_size[i]*(v->inv_six_r_w_1_t_67*v->six_r_w_1_t_71 -
         v->inv_six_r_w_1_t_79*v->six_r_w_1_t_77*six_r_w_2_t_14);
     /* (six_r-m2_w_2) moment part 2 of reciprocal wrench 2 */
-    const real six_r_m2_w_2 = six_r_size*(v->inv_six_r_w_1_t_67*v->six_r_w_1_t_72 -
+    const real six_r_m2_w_2 = m->six_r_size[i]*(v->inv_six_r_w_1_t_67*v->six_r_w_1_t_72 -
         v->inv_six_r_w_1_t_79*v->six_r_w_1_t_78*six_r_w_2_t_14);
     /* (six_r-o_2) moment part of reciprocal wrench 2 */
     const real six_r_o_2_x = six_r_m1_w_2*(axis_y_six_r_axes5_x*v->six_r_n_m1_in_axes5_y -
@@ -2680,31 +2659,24 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t w, size_t i, size_t
 {
     static const size_t place_six_r_q_5[] = {4, 9, 14, 19, 24, 29, 4, 4};
     /* (six_r-h_4) first moment of link 4 about the origin of link 4 */
-    const real six_r_h_4_in_spec4_y = m->six_r_h_4_in_spec4_y[i];
-    const real six_r_h_4_in_spec4_z = m->six_r_h_4_in_spec4_z[i];
-    const real six_r_h_4_in_spec2_z = v->six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_z +
-        six_r_h_4_in_spec4_y*v->six_r_h_4_t;
+    const real six_r_h_4_in_spec2_z = v->six_r_e_2_in_axes5_z*m->six_r_h_4_in_spec4_z[i] +
+        m->six_r_h_4_in_spec4_y[i]*v->six_r_h_4_t;
     /* (six_r-J_5) inertia tensor of link 5 about the connection point */
     const real six_r_q_5 = joints[place_six_r_q_5[i]*w + j];
     const real six_r_e_4_in_axes5_x = cosine(six_r_q_5);
     const real six_r_J_5_t = sine(six_r_q_5);
-    const real six_r_J_5_in_spec5_xz = m->six_r_J_5_in_spec5_xz[i];
-    const real six_r_J_5_in_spec5_yz = m->six_r_J_5_in_spec5_yz[i];
-    const real six_r_J_5_in_axes4_yz = six_r_J_5_in_spec5_xz*six_r_e_4_in_axes5_x -
-        six_r_J_5_in_spec5_yz*six_r_J_5_t;
+    const real six_r_J_5_in_axes4_yz = m->six_r_J_5_in_spec5_xz[i]*six_r_e_4_in_axes5_x -
+        m->six_r_J_5_in_spec5_yz[i]*six_r_J_5_t;
     /* (six_r-S_dot) velocity of the connection point */
     const real six_r_e_2_in_axes5_y = six_r_e_4_in_axes5_x*v->six_r_h_4_t;
     /* (six_r-r_4) from joint 4 to the connection point, along the links */
-    const real six_r_platform_joint_offset_x = m->six_r_platform_joint_offset_x[i];
-    const real six_r_r_4_in_axes4_x = six_r_J_5_t*six_r_platform_joint_offset_x;
-    const real six_r_joint5_offset_x = m->six_r_joint5_offset_x[i];
-    const real six_r_r_4_in_axes4_z = six_r_joint5_offset_x +
-        six_r_e_4_in_axes5_x*six_r_platform_joint_offset_x;
+    const real six_r_r_4_in_axes4_x = six_r_J_5_t*m->six_r_platform_joint_offset_x[i];
+    const real six_r_r_4_in_axes4_z = m->six_r_joint5_offset_x[i] +
+        six_r_e_4_in_axes5_x*m->six_r_platform_joint_offset_x[i];
     const real six_r_r_4_in_axes3_x = -v->six_r_e_2_in_axes5_z*six_r_r_4_in_axes4_x;
     const real six_r_r_4_in_axes3_z = v->six_r_h_4_t*six_r_r_4_in_axes4_x;
     /* (six_r-r_3) from joint 3 to the connection point, along the links */
-    const real six_r_joint4_offset_x = m->six_r_joint4_offset_x[i];
-    const real six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z;
+    const real six_r_r_3_in_axes3_y = m->six_r_joint4_offset_x[i] + six_r_r_4_in_axes4_z;
     const real six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*v->six_r_s_3 -
         v->six_r_c_3*six_r_r_4_in_axes3_x;
     const real six_r_r_3_t = v->six_r_h_4_t*six_r_r_4_in_axes3_z;
@@ -2716,8 +2688,7 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t w, size_t i, size_t
     const real six_r_r_3_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_3_t_3 -
         six_r_J_5_t*six_r_r_3_in_axes3_y;
     /* (six_r-r_2) from joint 2 to the connection point, along the links */
-    const real six_r_joint3_offset_x = m->six_r_joint3_offset_x[i];
-    const real six_r_r_2_in_axes2_x = six_r_joint3_offset_x +
+    const real six_r_r_2_in_axes2_x = m->six_r_joint3_offset_x[i] +
         v->six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*v->six_r_s_3;
     const real six_r_r_2_in_axes1_x = v->six_r_c_2*six_r_r_3_in_axes2_y +
         six_r_r_2_in_axes2_x*v->six_r_s_2;
@@ -2732,8 +2703,7 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t w, size_t i, size_t
     const real six_r_r_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_2_t_3 -
         six_r_J_5_t*six_r_r_2_t_2;
     /* (six_r-r_1) from joint 1 to the connection point, along the links */
-    const real six_r_joint2_offset_x = m->six_r_joint2_offset_x[i];
-    const real six_r_r_1_in_axes1_z = six_r_joint2_offset_x +
+    const real six_r_r_1_in_axes1_z = m->six_r_joint2_offset_x[i] +
         v->six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*v->six_r_s_2;
     const real six_r_r_1_t = v->six_r_c_2*six_r_r_1_in_axes1_z +
         six_r_r_2_in_axes1_x*v->six_r_s_2;
@@ -2781,101 +2751,83 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t w, size_t i, size_t
         six_r_e_4_in_axes5_x*(six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_x -
         six_r_J_5_t*six_r_r_4_in_axes4_z);
     /* (six_r-D_3_5) inertia of joint 5 along joint 3 */
-    const real six_r_J_5_in_spec5_zz = m->six_r_J_5_in_spec5_zz[i];
-    const real six_r_D_3_5 = six_r_J_5_in_spec5_xz*six_r_e_2_in_axes5_x +
-        six_r_J_5_in_spec5_yz*six_r_e_2_in_axes5_y +
-        six_r_J_5_in_spec5_zz*v->six_r_e_2_in_axes5_z;
+    const real six_r_D_3_5 = m->six_r_J_5_in_spec5_xz[i]*six_r_e_2_in_axes5_x +
+        m->six_r_J_5_in_spec5_yz[i]*six_r_e_2_in_axes5_y +
+        m->six_r_J_5_in_spec5_zz[i]*v->six_r_e_2_in_axes5_z;
     /* (six_r-D_1_5) inertia of joint 5 along joint 1 */
-    const real six_r_D_1_5 = six_r_J_5_in_spec5_xz*six_r_e_1_in_axes5_x +
-        six_r_J_5_in_spec5_yz*six_r_e_1_in_axes5_y +
-        six_r_J_5_in_spec5_zz*six_r_e_1_in_axes5_z;
+    const real six_r_D_1_5 = m->six_r_J_5_in_spec5_xz[i]*six_r_e_1_in_axes5_x +
+        m->six_r_J_5_in_spec5_yz[i]*six_r_e_1_in_axes5_y +
+        m->six_r_J_5_in_spec5_zz[i]*six_r_e_1_in_axes5_z;
     /* (six_r-Jc_4) inertia tensor of the links from 4 outwards about joint 4, that of the last link
        about the connection point */
-    const real six_r_J_5_in_spec5_xy = m->six_r_J_5_in_spec5_xy[i];
-    const real six_r_Jc_4_t = six_r_J_5_in_spec5_xy*six_r_J_5_t;
-    const real six_r_Jc_4_t_2 = six_r_J_5_in_spec5_xy*six_r_e_4_in_axes5_x;
-    const real six_r_J_5_in_spec5_xx = m->six_r_J_5_in_spec5_xx[i];
-    const real six_r_Jc_4_t_3 = six_r_Jc_4_t_2 + six_r_J_5_in_spec5_xx*six_r_J_5_t;
-    const real six_r_J_5_in_spec5_yy = m->six_r_J_5_in_spec5_yy[i];
-    const real six_r_Jc_4_t_4 = six_r_Jc_4_t + six_r_J_5_in_spec5_yy*six_r_e_4_in_axes5_x;
-    const real six_r_J_4_in_spec4_yy = m->six_r_J_4_in_spec4_yy[i];
-    const real six_r_Jc_4_in_axes4_xx = six_r_J_4_in_spec4_yy + six_r_J_5_t*six_r_Jc_4_t_3 +
-        six_r_Jc_4_t_4*six_r_e_4_in_axes5_x;
-    const real six_r_J_4_in_spec4_yz = m->six_r_J_4_in_spec4_yz[i];
-    const real six_r_Jc_4_in_axes4_xy = six_r_J_4_in_spec4_yz +
-        six_r_J_5_in_spec5_xz*six_r_J_5_t + six_r_J_5_in_spec5_yz*six_r_e_4_in_axes5_x;
-    const real six_r_J_4_in_spec4_xy = m->six_r_J_4_in_spec4_xy[i];
-    const real six_r_Jc_4_in_axes4_xz = six_r_J_4_in_spec4_xy +
+    const real six_r_Jc_4_t = m->six_r_J_5_in_spec5_xy[i]*six_r_J_5_t;
+    const real six_r_Jc_4_t_2 = m->six_r_J_5_in_spec5_xy[i]*six_r_e_4_in_axes5_x;
+    const real six_r_Jc_4_t_3 = six_r_Jc_4_t_2 + m->six_r_J_5_in_spec5_xx[i]*six_r_J_5_t;
+    const real six_r_Jc_4_t_4 = six_r_Jc_4_t +
+        m->six_r_J_5_in_spec5_yy[i]*six_r_e_4_in_axes5_x;
+    const real six_r_Jc_4_in_axes4_xx = m->six_r_J_4_in_spec4_yy[i] +
+        six_r_J_5_t*six_r_Jc_4_t_3 + six_r_Jc_4_t_4*six_r_e_4_in_axes5_x;
+    const real six_r_Jc_4_in_axes4_xy = m->six_r_J_4_in_spec4_yz[i] +
+        m->six_r_J_5_in_spec5_xz[i]*six_r_J_5_t +
+        m->six_r_J_5_in_spec5_yz[i]*six_r_e_4_in_axes5_x;
+    const real six_r_Jc_4_in_axes4_xz = m->six_r_J_4_in_spec4_xy[i] +
         six_r_Jc_4_t_3*six_r_e_4_in_axes5_x - six_r_J_5_t*six_r_Jc_4_t_4;
-    const real six_r_J_4_in_spec4_xz = m->six_r_J_4_in_spec4_xz[i];
-    const real six_r_Jc_4_in_axes4_yz = six_r_J_4_in_spec4_xz + six_r_J_5_in_axes4_yz;
-    const real six_r_J_4_in_spec4_xx = m->six_r_J_4_in_spec4_xx[i];
-    const real six_r_Jc_4_in_axes4_zz = six_r_J_4_in_spec4_xx +
-        six_r_e_4_in_axes5_x*(six_r_J_5_in_spec5_xx*six_r_e_4_in_axes5_x - six_r_Jc_4_t) -
-        six_r_J_5_t*(six_r_Jc_4_t_2 - six_r_J_5_in_spec5_yy*six_r_J_5_t);
+    const real six_r_Jc_4_in_axes4_yz = m->six_r_J_4_in_spec4_xz[i] + six_r_J_5_in_axes4_yz;
+    const real six_r_Jc_4_in_axes4_zz = m->six_r_J_4_in_spec4_xx[i] +
+        six_r_e_4_in_axes5_x*(m->six_r_J_5_in_spec5_xx[i]*six_r_e_4_in_axes5_x - six_r_Jc_4_t)
+        - six_r_J_5_t*(six_r_Jc_4_t_2 - m->six_r_J_5_in_spec5_yy[i]*six_r_J_5_t);
     const real six_r_Jc_4_in_axes3_xy = six_r_Jc_4_in_axes4_yz*v->six_r_h_4_t -
         six_r_Jc_4_in_axes4_xz*v->six_r_e_2_in_axes5_z;
     const real six_r_Jc_4_in_axes3_yz = six_r_Jc_4_in_axes4_xz*v->six_r_h_4_t +
         six_r_Jc_4_in_axes4_yz*v->six_r_e_2_in_axes5_z;
     /* (six_r-L_c_4_3) moment about joint 3 that accelerates joint 4, per unit */
-    const real six_r_L_c_4_3_t = v->six_r_h_4_in_spec3_y*six_r_joint4_offset_x;
-    const real six_r_L_c_4_3_t_2 = -six_r_h_4_in_spec2_z*six_r_joint4_offset_x;
+    const real six_r_L_c_4_3_t = v->six_r_h_4_in_spec3_y*m->six_r_joint4_offset_x[i];
+    const real six_r_L_c_4_3_t_2 = -six_r_h_4_in_spec2_z*m->six_r_joint4_offset_x[i];
     const real six_r_L_c_4_3_in_axes3_x = six_r_Jc_4_in_axes3_xy + six_r_L_c_4_3_t;
     const real six_r_L_c_4_3_in_axes3_z = six_r_Jc_4_in_axes3_yz + six_r_L_c_4_3_t_2;
     /* (six_r-L_c_4_2) moment about joint 2 that accelerates joint 4, per unit */
     const real six_r_L_c_4_2_in_axes2_y = six_r_Jc_4_in_axes4_zz*v->six_r_s_3 -
-        six_r_L_c_4_3_in_axes3_x*v->six_r_c_3 - v->six_r_h_4_in_spec3_y*six_r_joint3_offset_x;
+        six_r_L_c_4_3_in_axes3_x*v->six_r_c_3 -
+        v->six_r_h_4_in_spec3_y*m->six_r_joint3_offset_x[i];
     const real six_r_L_c_4_2_in_axes2_z = six_r_L_c_4_3_in_axes3_z -
-        v->six_r_c_3*six_r_h_4_in_spec2_z*six_r_joint3_offset_x;
+        v->six_r_c_3*six_r_h_4_in_spec2_z*m->six_r_joint3_offset_x[i];
     const real six_r_L_c_4_2_in_axes1_z = v->six_r_c_2*(six_r_Jc_4_in_axes4_zz*v->six_r_c_3 +
         six_r_L_c_4_3_in_axes3_x*v->six_r_s_3) - six_r_L_c_4_2_in_axes2_y*v->six_r_s_2;
     /* (six_r-hc_3) first moment of the links from 3 outwards */
-    const real six_r_h_3_in_spec3_y = m->six_r_h_3_in_spec3_y[i];
-    const real six_r_hc_3_in_axes3_x = -six_r_h_3_in_spec3_y - v->six_r_h_4_in_spec3_y;
-    const real six_r_h_3_in_spec3_z = m->six_r_h_3_in_spec3_z[i];
-    const real six_r_hc_3_in_axes3_z = six_r_h_3_in_spec3_z + six_r_h_4_in_spec2_z;
-    const real six_r_hc_3_in_axes3_y = m->six_r_hc_3_in_axes3_y[i];
-    const real six_r_hc_3_in_axes2_x = v->six_r_c_3*six_r_hc_3_in_axes3_y +
+    const real six_r_hc_3_in_axes3_x = -m->six_r_h_3_in_spec3_y[i] - v->six_r_h_4_in_spec3_y;
+    const real six_r_hc_3_in_axes3_z = m->six_r_h_3_in_spec3_z[i] + six_r_h_4_in_spec2_z;
+    const real six_r_hc_3_in_axes2_x = v->six_r_c_3*m->six_r_hc_3_in_axes3_y[i] +
         six_r_hc_3_in_axes3_x*v->six_r_s_3;
     /* (six_r-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link
        about the connection point */
     const real six_r_Jc_3_t = six_r_Jc_4_in_axes4_xy*v->six_r_h_4_t;
     const real six_r_Jc_3_t_4 = six_r_Jc_4_in_axes4_xx*v->six_r_e_2_in_axes5_z - six_r_Jc_3_t;
     const real six_r_Jc_3_t_5 = six_r_Jc_4_in_axes4_xy*v->six_r_e_2_in_axes5_z;
-    const real six_r_Jc_4_in_axes4_yy = m->six_r_Jc_4_in_axes4_yy[i];
-    const real six_r_Jc_3_t_6 = six_r_Jc_3_t_5 - six_r_Jc_4_in_axes4_yy*v->six_r_h_4_t;
-    const real six_r_J_3_in_spec3_yy = m->six_r_J_3_in_spec3_yy[i];
-    const real six_r_Jc_3_t_3 = m->six_r_Jc_3_t_3[i];
-    const real six_r_Jc_3_in_axes3_xx = six_r_J_3_in_spec3_yy + six_r_Jc_3_t_3 +
+    const real six_r_Jc_3_t_6 = six_r_Jc_3_t_5 - m->six_r_Jc_4_in_axes4_yy[i]*v->six_r_h_4_t;
+    const real six_r_Jc_3_in_axes3_xx = m->six_r_J_3_in_spec3_yy[i] + m->six_r_Jc_3_t_3[i] +
         six_r_Jc_3_t_4*v->six_r_e_2_in_axes5_z - six_r_Jc_3_t_6*v->six_r_h_4_t;
-    const real six_r_J_3_in_spec3_xy = m->six_r_J_3_in_spec3_xy[i];
     const real six_r_Jc_3_in_axes3_xy = six_r_Jc_4_in_axes3_xy + six_r_L_c_4_3_t -
-        six_r_J_3_in_spec3_xy;
-    const real six_r_J_3_in_spec3_yz = m->six_r_J_3_in_spec3_yz[i];
-    const real six_r_Jc_3_in_axes3_xz = -six_r_J_3_in_spec3_yz - six_r_Jc_3_t_4*v->six_r_h_4_t
-        - six_r_Jc_3_t_6*v->six_r_e_2_in_axes5_z;
-    const real six_r_J_3_in_spec3_xx = m->six_r_J_3_in_spec3_xx[i];
-    const real six_r_Jc_3_t_2 = m->six_r_Jc_3_t_2[i];
-    const real six_r_Jc_3_in_axes3_yy = six_r_J_3_in_spec3_xx + six_r_Jc_3_t_3 +
-        six_r_Jc_4_in_axes4_zz - 2*six_r_Jc_3_t_2;
-    const real six_r_J_3_in_spec3_xz = m->six_r_J_3_in_spec3_xz[i];
-    const real six_r_Jc_3_in_axes3_yz = six_r_J_3_in_spec3_xz + six_r_Jc_4_in_axes3_yz +
+        m->six_r_J_3_in_spec3_xy[i];
+    const real six_r_Jc_3_in_axes3_xz = -m->six_r_J_3_in_spec3_yz[i] -
+        six_r_Jc_3_t_4*v->six_r_h_4_t - six_r_Jc_3_t_6*v->six_r_e_2_in_axes5_z;
+    const real six_r_Jc_3_in_axes3_yy = m->six_r_J_3_in_spec3_xx[i] + m->six_r_Jc_3_t_3[i] +
+        six_r_Jc_4_in_axes4_zz - 2*m->six_r_Jc_3_t_2[i];
+    const real six_r_Jc_3_in_axes3_yz = m->six_r_J_3_in_spec3_xz[i] + six_r_Jc_4_in_axes3_yz +
         six_r_L_c_4_3_t_2;
-    const real six_r_J_3_in_spec3_zz = m->six_r_J_3_in_spec3_zz[i];
-    const real six_r_Jc_3_in_axes3_zz = six_r_J_3_in_spec3_zz + six_r_Jc_3_t_3 +
+    const real six_r_Jc_3_in_axes3_zz = m->six_r_J_3_in_spec3_zz[i] + m->six_r_Jc_3_t_3[i] +
         v->six_r_e_2_in_axes5_z*(six_r_Jc_3_t +
-        six_r_Jc_4_in_axes4_yy*v->six_r_e_2_in_axes5_z) + v->six_r_h_4_t*(six_r_Jc_3_t_5 +
-        six_r_Jc_4_in_axes4_xx*v->six_r_h_4_t);
+        m->six_r_Jc_4_in_axes4_yy[i]*v->six_r_e_2_in_axes5_z) + v->six_r_h_4_t*(six_r_Jc_3_t_5
+        + six_r_Jc_4_in_axes4_xx*v->six_r_h_4_t);
     const real six_r_Jc_3_in_axes2_yz = six_r_Jc_3_in_axes3_yz*v->six_r_s_3 -
         six_r_Jc_3_in_axes3_xz*v->six_r_c_3;
     const real six_r_Jc_3_in_axes2_xz = six_r_Jc_3_in_axes3_xz*v->six_r_s_3 +
         six_r_Jc_3_in_axes3_yz*v->six_r_c_3;
     /* (six_r-P_c_3) force that accelerates joint 3, per unit */
     const real six_r_P_c_3_in_axes2_x = v->six_r_c_3*six_r_hc_3_in_axes3_x -
-        six_r_hc_3_in_axes3_y*v->six_r_s_3;
+        m->six_r_hc_3_in_axes3_y[i]*v->six_r_s_3;
     /* (six_r-L_c_3_2) moment about joint 2 that accelerates joint 3, per unit */
     const real six_r_L_c_3_2_in_axes2_z = six_r_Jc_3_in_axes3_zz +
-        six_r_hc_3_in_axes2_x*six_r_joint3_offset_x;
+        six_r_hc_3_in_axes2_x*m->six_r_joint3_offset_x[i];
     const real six_r_L_c_3_2_in_axes1_z = six_r_Jc_3_in_axes2_xz*v->six_r_c_2 -
         six_r_Jc_3_in_axes2_yz*v->six_r_s_2;
     /* (six_r-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
@@ -2884,44 +2836,36 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t w, size_t i, size_t
     const real six_r_Jc_2_t_3 = six_r_Jc_3_in_axes3_xy*v->six_r_c_3;
     const real six_r_Jc_2_t_4 = six_r_Jc_2_t_3 + six_r_Jc_3_in_axes3_xx*v->six_r_s_3;
     const real six_r_Jc_2_t_5 = six_r_Jc_2_t_2 + six_r_Jc_3_in_axes3_yy*v->six_r_c_3;
-    const real six_r_Jc_2_t = m->six_r_Jc_2_t[i];
-    const real six_r_Jc_2_t_6 = six_r_joint3_offset_x*(six_r_Jc_2_t + six_r_hc_3_in_axes2_x);
+    const real six_r_Jc_2_t_6 = m->six_r_joint3_offset_x[i]*(m->six_r_Jc_2_t[i] +
+        six_r_hc_3_in_axes2_x);
     const real six_r_Jc_2_t_7 = 2*six_r_Jc_2_t_6;
-    const real six_r_J_2_in_spec2_xy = m->six_r_J_2_in_spec2_xy[i];
-    const real six_r_Jc_2_in_axes2_xy = six_r_J_2_in_spec2_xy + six_r_Jc_2_t_5*v->six_r_s_3 +
-        six_r_P_c_3_in_axes2_x*six_r_joint3_offset_x - six_r_Jc_2_t_4*v->six_r_c_3;
-    const real six_r_J_2_in_spec2_zz = m->six_r_J_2_in_spec2_zz[i];
-    const real six_r_Jc_2_in_axes2_zz = six_r_J_2_in_spec2_zz + six_r_Jc_2_t_7 +
+    const real six_r_Jc_2_in_axes2_xy = m->six_r_J_2_in_spec2_xy[i] +
+        six_r_Jc_2_t_5*v->six_r_s_3 + six_r_P_c_3_in_axes2_x*m->six_r_joint3_offset_x[i] -
+        six_r_Jc_2_t_4*v->six_r_c_3;
+    const real six_r_Jc_2_in_axes2_zz = m->six_r_J_2_in_spec2_zz[i] + six_r_Jc_2_t_7 +
         six_r_Jc_3_in_axes3_zz;
-    const real six_r_J_2_in_spec2_xz = m->six_r_J_2_in_spec2_xz[i];
-    const real six_r_J_2_in_spec2_yz = m->six_r_J_2_in_spec2_yz[i];
-    const real six_r_Jc_2_in_axes1_yz = v->six_r_c_2*(six_r_J_2_in_spec2_xz +
-        six_r_Jc_3_in_axes2_xz - six_r_hc_3_in_axes3_z*six_r_joint3_offset_x) -
-        v->six_r_s_2*(six_r_J_2_in_spec2_yz + six_r_Jc_3_in_axes2_yz);
-    const real six_r_J_2_in_spec2_xx = m->six_r_J_2_in_spec2_xx[i];
-    const real six_r_J_2_in_spec2_yy = m->six_r_J_2_in_spec2_yy[i];
-    const real six_r_Jc_2_in_axes1_zz = v->six_r_c_2*(v->six_r_c_2*(six_r_J_2_in_spec2_xx +
-        six_r_Jc_2_t_7 + six_r_Jc_2_t_4*v->six_r_s_3 + six_r_Jc_2_t_5*v->six_r_c_3 -
-        2*six_r_Jc_2_t_6) - six_r_Jc_2_in_axes2_xy*v->six_r_s_2) -
+    const real six_r_Jc_2_in_axes1_yz = v->six_r_c_2*(m->six_r_J_2_in_spec2_xz[i] +
+        six_r_Jc_3_in_axes2_xz - six_r_hc_3_in_axes3_z*m->six_r_joint3_offset_x[i]) -
+        v->six_r_s_2*(m->six_r_J_2_in_spec2_yz[i] + six_r_Jc_3_in_axes2_yz);
+    const real six_r_Jc_2_in_axes1_zz =
+        v->six_r_c_2*(v->six_r_c_2*(m->six_r_J_2_in_spec2_xx[i] + six_r_Jc_2_t_7 +
+        six_r_Jc_2_t_4*v->six_r_s_3 + six_r_Jc_2_t_5*v->six_r_c_3 - 2*six_r_Jc_2_t_6) -
+        six_r_Jc_2_in_axes2_xy*v->six_r_s_2) -
         v->six_r_s_2*(six_r_Jc_2_in_axes2_xy*v->six_r_c_2 -
-        v->six_r_s_2*(six_r_J_2_in_spec2_yy + six_r_Jc_2_t_7 +
+        v->six_r_s_2*(m->six_r_J_2_in_spec2_yy[i] + six_r_Jc_2_t_7 +
         v->six_r_c_3*(six_r_Jc_3_in_axes3_xx*v->six_r_c_3 - six_r_Jc_2_t_2) -
         v->six_r_s_3*(six_r_Jc_2_t_3 - six_r_Jc_3_in_axes3_yy*v->six_r_s_3)));
     /* (six_r-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link
        about the connection point */
-    const real six_r_J_1_in_spec1_xx = m->six_r_J_1_in_spec1_xx[i];
-    const real six_r_Jc_1_in_axes1_zz = six_r_J_1_in_spec1_xx + six_r_Jc_2_in_axes1_zz;
+    const real six_r_Jc_1_in_axes1_zz = m->six_r_J_1_in_spec1_xx[i] + six_r_Jc_2_in_axes1_zz;
     /* (six_r-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
        inertia and weight */
-    const real six_r_h_5_in_spec5_y = m->six_r_h_5_in_spec5_y[i];
-    const real six_r_h_5_in_spec5_z = m->six_r_h_5_in_spec5_z[i];
-    const real six_r_d_Gamma_3_t = six_r_e_2_in_axes5_y*six_r_h_5_in_spec5_z -
-        v->six_r_e_2_in_axes5_z*six_r_h_5_in_spec5_y;
-    const real six_r_h_5_in_spec5_x = m->six_r_h_5_in_spec5_x[i];
-    const real six_r_d_Gamma_3_t_2 = six_r_e_2_in_axes5_x*six_r_h_5_in_spec5_z -
-        v->six_r_e_2_in_axes5_z*six_r_h_5_in_spec5_x;
-    const real six_r_d_Gamma_3_t_3 = six_r_e_2_in_axes5_x*six_r_h_5_in_spec5_y -
-        six_r_e_2_in_axes5_y*six_r_h_5_in_spec5_x;
+    const real six_r_d_Gamma_3_t = six_r_e_2_in_axes5_y*m->six_r_h_5_in_spec5_z[i] -
+        v->six_r_e_2_in_axes5_z*m->six_r_h_5_in_spec5_y[i];
+    const real six_r_d_Gamma_3_t_2 = six_r_e_2_in_axes5_x*m->six_r_h_5_in_spec5_z[i] -
+        v->six_r_e_2_in_axes5_z*m->six_r_h_5_in_spec5_x[i];
+    const real six_r_d_Gamma_3_t_3 = six_r_e_2_in_axes5_x*m->six_r_h_5_in_spec5_y[i] -
+        six_r_e_2_in_axes5_y*m->six_r_h_5_in_spec5_x[i];
     v->six_r_e_4_in_axes5_x = six_r_e_4_in_axes5_x;
     v->six_r_J_5_t = six_r_J_5_t;
     v->six_r_J_5_in_axes4_yz = six_r_J_5_in_axes4_yz;
@@ -2968,15 +2912,13 @@ INLINE void stage_six_r_Z_dynamics(const prepared *m, size_t w, size_t i, size_t
     const real six_r_u_1_y = omega_z*v->six_r_S_dot_t_14 - omega_x*v->six_r_S_dot_t_16;
     const real six_r_u_1_z = omega_x*v->six_r_S_dot_t_15 - omega_y*v->six_r_S_dot_t_14;
     /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
-    const real six_r_joint2_offset_x = m->six_r_joint2_offset_x[i];
-    const real six_r_bias_t_3 = six_r_joint2_offset_x*v->six_r_s_2;
+    const real six_r_bias_t_3 = m->six_r_joint2_offset_x[i]*v->six_r_s_2;
     const real six_r_bias_t_4 = six_r_bias_t_3*v->six_r_c_3 +
         v->six_r_d_2_in_spec2_x*v->six_r_s_3;
     const real six_r_bias_t_5 = v->six_r_c_3*v->six_r_d_2_in_spec2_x -
         six_r_bias_t_3*v->six_r_s_3;
-    const real six_r_joint3_offset_x = m->six_r_joint3_offset_x[i];
-    const real six_r_bias_t_10 = six_r_joint3_offset_x*v->six_r_s_3;
-    const real six_r_bias_t_11 = v->six_r_c_3*six_r_joint3_offset_x;
+    const real six_r_bias_t_10 = m->six_r_joint3_offset_x[i]*v->six_r_s_3;
+    const real six_r_bias_t_11 = v->six_r_c_3*m->six_r_joint3_offset_x[i];
     v->six_r_u_1_x = six_r_u_1_x;
     v->six_r_u_1_y = six_r_u_1_y;
     v->six_r_u_1_z = six_r_u_1_z;
@@ -3025,12 +2967,11 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
         v->axis_z_six_r_axes5_z*six_r_w_2_in_axes5_z;
     /* (six_r-m1_w_2) moment part 1 of reciprocal wrench 2 */
     const real six_r_m1_w_2_t = v->inv_six_r_w_1_t_79*v->six_r_w_1_t_77;
-    const real six_r_size = m->six_r_size[i];
-    const real six_r_m1_w_2 = six_r_size*(v->inv_six_r_w_1_t_67*v->six_r_w_1_t_71 -
+    const real six_r_m1_w_2 = m->six_r_size[i]*(v->inv_six_r_w_1_t_67*v->six_r_w_1_t_71 -
         six_r_m1_w_2_t*six_r_w_2_t_4);
     /* (six_r-m2_w_2) moment part 2 of reciprocal wrench 2 */
     const real six_r_m2_w_2_t = v->inv_six_r_w_1_t_79*v->six_r_w_1_t_78;
-    const real six_r_m2_w_2 = six_r_size*(v->inv_six_r_w_1_t_67*v->six_r_w_1_t_72 -
+    const real six_r_m2_w_2 = m->six_r_size[i]*(v->inv_six_r_w_1_t_67*v->six_r_w_1_t_72 -
         six_r_m2_w_2_t*six_r_w_2_t_4);
     /* (six_r-o_2) moment part of reciprocal wrench 2 */
     const real six_r_o_2_t = six_r_m1_w_2*v->six_r_n_m2_in_axes5_z;
@@ -3038,8 +2979,8 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     const real six_r_o_2_in_axes5_y = six_r_m1_w_2*v->six_r_n_m1_in_axes5_y -
         v->six_r_end_p1_in_axes5_z*six_r_m2_w_2;
     /* (six_r-qd_1) rate of joint 1 */
-    const real six_r_qd_1_t = v->six_r_eta_1*six_r_size;
-    const real six_r_qd_1_t_2 = v->six_r_eta_2_t*six_r_size;
+    const real six_r_qd_1_t = v->six_r_eta_1*m->six_r_size[i];
+    const real six_r_qd_1_t_2 = v->six_r_eta_2_t*m->six_r_size[i];
     const real six_r_qd_1_t_3 = v->inv_six_r_w_1_t_79*(v->six_r_S_dot_in_axes5_y*six_r_w_2_t_2
         + six_r_m2_w_2_t*six_r_qd_1_t_2 - v->six_r_S_dot_in_axes5_x*six_r_w_2_t -
         v->six_r_S_dot_in_axes5_z*six_r_w_2_t_3 - six_r_m1_w_2_t*six_r_qd_1_t);
@@ -3184,22 +3125,23 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     const real six_r_bias_t_16 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y;
     const real six_r_bias_t_17 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z;
     const real six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y;
-    const real six_r_platform_joint_offset_x = m->six_r_platform_joint_offset_x[i];
     const real six_r_bias_in_axes5_x = six_r_W_1_in_axes5_xy*v->six_r_d_2_in_axes5_y +
         six_r_W_1_in_axes5_xz*v->six_r_d_2_in_axes5_z +
         v->six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
         v->six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) -
-        six_r_W_5_t_3*six_r_platform_joint_offset_x - v->six_r_bias_t_8*(six_r_W_3_in_axes5_xy
-        - six_r_beta_3_in_axes4_y) - v->six_r_bias_t_9*(six_r_W_4_in_axes5_xy -
-        six_r_beta_4_in_axes4_y) - v->six_r_d_2_in_axes5_x*(six_r_bias_t_13 + six_r_bias_t_14)
-        - v->six_r_d_3_in_axes5_x*(six_r_bias_t_16 + six_r_bias_t_17) -
+        six_r_W_5_t_3*m->six_r_platform_joint_offset_x[i] -
+        v->six_r_bias_t_8*(six_r_W_3_in_axes5_xy - six_r_beta_3_in_axes4_y) -
+        v->six_r_bias_t_9*(six_r_W_4_in_axes5_xy - six_r_beta_4_in_axes4_y) -
+        v->six_r_d_2_in_axes5_x*(six_r_bias_t_13 + six_r_bias_t_14) -
+        v->six_r_d_3_in_axes5_x*(six_r_bias_t_16 + six_r_bias_t_17) -
         v->six_r_d_4_in_axes5_x*(six_r_bias_t_10 +
         six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) -
         v->six_r_d_5_in_axes5_x*(six_r_W_5_t + six_r_bias_t_10);
     const real six_r_bias_in_axes5_y = six_r_W_1_in_axes5_xy*v->six_r_d_2_in_axes5_x +
         six_r_W_1_in_axes5_yz*v->six_r_d_2_in_axes5_z +
         six_r_bias_t_18*v->six_r_d_5_in_axes5_x +
-        six_r_bias_t_18*six_r_platform_joint_offset_x + v->six_r_bias_t_8*(six_r_bias_t_10 +
+        six_r_bias_t_18*m->six_r_platform_joint_offset_x[i] +
+        v->six_r_bias_t_8*(six_r_bias_t_10 +
         six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) +
         v->six_r_bias_t_9*(six_r_bias_t_10 + six_r_bias_t_11) +
         v->six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
@@ -3214,8 +3156,8 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
         v->six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*v->six_r_c_5 +
         six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) +
         v->six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
-        six_r_beta_4_in_axes5_y) + six_r_platform_joint_offset_x*(six_r_W_5_in_axes5_xz -
-        six_r_beta_5_in_axes5_y) - v->six_r_bias_t_8*(six_r_beta_4_t +
+        six_r_beta_4_in_axes5_y) + m->six_r_platform_joint_offset_x[i]*(six_r_W_5_in_axes5_xz
+        - six_r_beta_5_in_axes5_y) - v->six_r_bias_t_8*(six_r_beta_4_t +
         six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - six_r_beta_3_t*v->six_r_s_5) -
         v->six_r_bias_t_9*(six_r_beta_4_in_axes5_x +
         six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y) -
@@ -3258,8 +3200,8 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     /* (six_r-etad_2) acceleration with which the joints turn along moment direction 2 */
     const real six_r_etad_2 = six_r_nu_2 - v->six_r_etad_2_t;
     /* (six_r-qdd_1) acceleration of joint 1 */
-    const real six_r_qdd_1_t = six_r_etad_1*six_r_size;
-    const real six_r_qdd_1_t_2 = six_r_etad_2*six_r_size;
+    const real six_r_qdd_1_t = six_r_etad_1*m->six_r_size[i];
+    const real six_r_qdd_1_t_2 = six_r_etad_2*m->six_r_size[i];
     const real six_r_qdd_1_t_3 = v->inv_six_r_w_1_t_79*(six_r_m1_w_2_t*six_r_qdd_1_t +
         six_r_m2_w_2_t*six_r_qdd_1_t_2 + six_r_rel_in_axes5_x*six_r_w_2_t +
         six_r_rel_in_axes5_z*six_r_w_2_t_3 - six_r_rel_in_axes5_y*six_r_w_2_t_2);
@@ -3333,42 +3275,39 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     /* (six_r-a_o_3) acceleration of the origin of joint 3 */
     const real six_r_a_o_3_t = six_r_omega_1_in_axes2_y*six_r_omega_1_in_axes2_y;
     const real six_r_a_o_3_t_2 = six_r_qd_1_t_4*six_r_qd_1_t_4;
-    const real six_r_joint3_offset_x = m->six_r_joint3_offset_x[i];
-    const real six_r_a_o_3_in_axes2_x = -six_r_joint3_offset_x*(six_r_a_o_3_t +
+    const real six_r_a_o_3_in_axes2_x = -m->six_r_joint3_offset_x[i]*(six_r_a_o_3_t +
         six_r_a_o_3_t_2);
-    const real six_r_a_o_3_in_axes2_y = six_r_B_2_in_axes2_yx*six_r_joint3_offset_x;
-    const real six_r_a_o_3_in_axes2_z = six_r_B_2_in_axes2_zx*six_r_joint3_offset_x;
+    const real six_r_a_o_3_in_axes2_y = six_r_B_2_in_axes2_yx*m->six_r_joint3_offset_x[i];
+    const real six_r_a_o_3_in_axes2_z = six_r_B_2_in_axes2_zx*m->six_r_joint3_offset_x[i];
     const real six_r_a_o_3_in_axes3_x = six_r_a_o_3_in_axes2_x*v->six_r_s_3 -
         six_r_a_o_3_in_axes2_y*v->six_r_c_3;
     const real six_r_a_o_3_in_axes3_y = six_r_a_o_3_in_axes2_x*v->six_r_c_3 +
         six_r_a_o_3_in_axes2_y*v->six_r_s_3;
     /* (six_r-a_o_4) acceleration of the origin of joint 4 */
-    const real six_r_joint4_offset_x = m->six_r_joint4_offset_x[i];
     const real six_r_a_o_4_in_axes3_x = six_r_a_o_3_in_axes3_x +
-        six_r_B_3_in_axes3_xy*six_r_joint4_offset_x;
+        six_r_B_3_in_axes3_xy*m->six_r_joint4_offset_x[i];
     const real six_r_a_o_4_in_axes3_y = six_r_a_o_3_in_axes3_y -
-        six_r_W_3_t_3*six_r_joint4_offset_x;
+        six_r_W_3_t_3*m->six_r_joint4_offset_x[i];
     const real six_r_a_o_4_in_axes3_z = six_r_a_o_3_in_axes2_z +
-        six_r_B_3_in_axes3_zy*six_r_joint4_offset_x;
+        six_r_B_3_in_axes3_zy*m->six_r_joint4_offset_x[i];
     /* (six_r-acc_3) acceleration of the reference point of link 3, less gravity */
     const real six_r_acc_3_in_axes3_x = six_r_a_o_3_in_axes3_x - v->six_r_g_in_axes3_x;
     const real six_r_acc_3_in_axes3_y = six_r_a_o_3_in_axes3_y - v->six_r_g_in_axes3_y;
     const real six_r_acc_3_in_axes3_z = six_r_a_o_3_in_axes2_z - v->six_r_g_in_axes1_y;
     /* (six_r-f_3) inertia force of link 3 less its weight */
     const real six_r_f_3_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y;
-    const real six_r_h_3_in_spec3_x = m->six_r_h_3_in_spec3_x[i];
-    const real six_r_h_3_in_spec3_y = m->six_r_h_3_in_spec3_y[i];
-    const real six_r_h_3_in_spec3_z = m->six_r_h_3_in_spec3_z[i];
-    const real six_r_link3_mass = m->six_r_link3_mass[i];
-    const real six_r_f_3_in_axes3_x = six_r_B_3_in_axes3_xy*six_r_h_3_in_spec3_x +
-        six_r_B_3_in_axes3_xz*six_r_h_3_in_spec3_z + six_r_acc_3_in_axes3_x*six_r_link3_mass +
-        six_r_h_3_in_spec3_y*(six_r_W_3_t_2 + six_r_f_3_t);
-    const real six_r_f_3_in_axes3_y = six_r_B_3_in_axes3_yz*six_r_h_3_in_spec3_z +
-        six_r_acc_3_in_axes3_y*six_r_link3_mass - six_r_B_3_in_axes3_yx*six_r_h_3_in_spec3_y -
-        six_r_W_3_t_3*six_r_h_3_in_spec3_x;
-    const real six_r_f_3_in_axes3_z = six_r_B_3_in_axes3_zy*six_r_h_3_in_spec3_x +
-        six_r_acc_3_in_axes3_z*six_r_link3_mass - six_r_B_3_in_axes3_zx*six_r_h_3_in_spec3_y -
-        six_r_h_3_in_spec3_z*(six_r_W_3_t + six_r_f_3_t);
+    const real six_r_f_3_in_axes3_x = six_r_B_3_in_axes3_xy*m->six_r_h_3_in_spec3_x[i] +
+        six_r_B_3_in_axes3_xz*m->six_r_h_3_in_spec3_z[i] +
+        six_r_acc_3_in_axes3_x*m->six_r_link3_mass[i] +
+        m->six_r_h_3_in_spec3_y[i]*(six_r_W_3_t_2 + six_r_f_3_t);
+    const real six_r_f_3_in_axes3_y = six_r_B_3_in_axes3_yz*m->six_r_h_3_in_spec3_z[i] +
+        six_r_acc_3_in_axes3_y*m->six_r_link3_mass[i] -
+        six_r_B_3_in_axes3_yx*m->six_r_h_3_in_spec3_y[i] -
+        six_r_W_3_t_3*m->six_r_h_3_in_spec3_x[i];
+    const real six_r_f_3_in_axes3_z = six_r_B_3_in_axes3_zy*m->six_r_h_3_in_spec3_x[i] +
+        six_r_acc_3_in_axes3_z*m->six_r_link3_mass[i] -
+        six_r_B_3_in_axes3_zx*m->six_r_h_3_in_spec3_y[i] -
+        m->six_r_h_3_in_spec3_z[i]*(six_r_W_3_t + six_r_f_3_t);
     /* (six_r-acc_4) acceleration of the reference point of link 4, less gravity */
     const real six_r_acc_4_in_axes4_x = six_r_a_o_4_in_axes3_z*v->six_r_s_4 +
         v->six_r_c_4*v->six_r_g_in_axes3_x - six_r_a_o_4_in_axes3_x*v->six_r_c_4 -
@@ -3380,92 +3319,76 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     /* (six_r-f_4) inertia force of link 4 less its weight */
     const real six_r_f_4_t = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x;
     const real six_r_f_4_t_2 = six_r_omega_4_in_axes4_z*six_r_omega_4_in_axes4_z;
-    const real six_r_h_4_in_spec4_x = m->six_r_h_4_in_spec4_x[i];
-    const real six_r_h_4_in_spec4_y = m->six_r_h_4_in_spec4_y[i];
-    const real six_r_h_4_in_spec4_z = m->six_r_h_4_in_spec4_z[i];
-    const real six_r_link4_mass = m->six_r_link4_mass[i];
-    const real six_r_f_4_in_axes4_x = six_r_B_4_in_axes4_xy*six_r_h_4_in_spec4_z +
-        six_r_B_4_in_axes4_xz*six_r_h_4_in_spec4_x + six_r_acc_4_in_axes4_x*six_r_link4_mass -
-        six_r_h_4_in_spec4_y*(six_r_bias_t_10 + six_r_f_4_t_2);
-    const real six_r_f_4_in_axes4_y = six_r_B_4_in_axes4_yx*six_r_h_4_in_spec4_y +
-        six_r_B_4_in_axes4_yz*six_r_h_4_in_spec4_x + six_r_acc_4_in_axes4_y*six_r_link4_mass -
-        six_r_h_4_in_spec4_z*(six_r_f_4_t + six_r_f_4_t_2);
-    const real six_r_f_4_in_axes4_z = six_r_B_4_in_axes4_zx*six_r_h_4_in_spec4_y +
-        six_r_B_4_in_axes4_zy*six_r_h_4_in_spec4_z + six_r_acc_4_in_axes4_z*six_r_link4_mass -
-        six_r_h_4_in_spec4_x*(six_r_bias_t_10 + six_r_f_4_t);
+    const real six_r_f_4_in_axes4_x = six_r_B_4_in_axes4_xy*m->six_r_h_4_in_spec4_z[i] +
+        six_r_B_4_in_axes4_xz*m->six_r_h_4_in_spec4_x[i] +
+        six_r_acc_4_in_axes4_x*m->six_r_link4_mass[i] -
+        m->six_r_h_4_in_spec4_y[i]*(six_r_bias_t_10 + six_r_f_4_t_2);
+    const real six_r_f_4_in_axes4_y = six_r_B_4_in_axes4_yx*m->six_r_h_4_in_spec4_y[i] +
+        six_r_B_4_in_axes4_yz*m->six_r_h_4_in_spec4_x[i] +
+        six_r_acc_4_in_axes4_y*m->six_r_link4_mass[i] -
+        m->six_r_h_4_in_spec4_z[i]*(six_r_f_4_t + six_r_f_4_t_2);
+    const real six_r_f_4_in_axes4_z = six_r_B_4_in_axes4_zx*m->six_r_h_4_in_spec4_y[i] +
+        six_r_B_4_in_axes4_zy*m->six_r_h_4_in_spec4_z[i] +
+        six_r_acc_4_in_axes4_z*m->six_r_link4_mass[i] -
+        m->six_r_h_4_in_spec4_x[i]*(six_r_bias_t_10 + six_r_f_4_t);
     const real six_r_f_4_in_axes3_x = six_r_f_4_in_axes4_y*v->six_r_s_4 -
         v->six_r_c_4*six_r_f_4_in_axes4_x;
     const real six_r_f_4_in_axes3_z = v->six_r_c_4*six_r_f_4_in_axes4_y +
         six_r_f_4_in_axes4_x*v->six_r_s_4;
     /* (six_r-acc_5) acceleration of the reference point of link 5, less gravity */
-    const real gravity_x = m->gravity_x;
-    const real gravity_y = m->gravity_y;
-    const real gravity_z = m->gravity_z;
     const real six_r_acc_5_in_axes5_x = six_r_S_ddot_in_axes5_x -
-        v->axis_x_six_r_axes5_x*gravity_x - v->axis_x_six_r_axes5_y*gravity_y -
-        v->axis_x_six_r_axes5_z*gravity_z;
+        v->axis_x_six_r_axes5_x*m->gravity_x - v->axis_x_six_r_axes5_y*m->gravity_y -
+        v->axis_x_six_r_axes5_z*m->gravity_z;
     const real six_r_acc_5_in_axes5_y = six_r_S_ddot_in_axes5_y -
-        v->axis_y_six_r_axes5_x*gravity_x - v->axis_y_six_r_axes5_y*gravity_y -
-        v->axis_y_six_r_axes5_z*gravity_z;
+        v->axis_y_six_r_axes5_x*m->gravity_x - v->axis_y_six_r_axes5_y*m->gravity_y -
+        v->axis_y_six_r_axes5_z*m->gravity_z;
     const real six_r_acc_5_in_axes5_z = six_r_S_ddot_in_axes5_z -
-        v->axis_z_six_r_axes5_x*gravity_x - v->axis_z_six_r_axes5_y*gravity_y -
-        v->axis_z_six_r_axes5_z*gravity_z;
+        v->axis_z_six_r_axes5_x*m->gravity_x - v->axis_z_six_r_axes5_y*m->gravity_y -
+        v->axis_z_six_r_axes5_z*m->gravity_z;
     /* (six_r-mu_5) inertia moment of the links that turn with link 5, about their reference points */
-    const real six_r_J_5_in_spec5_xy = m->six_r_J_5_in_spec5_xy[i];
-    const real six_r_J_5_in_spec5_xz = m->six_r_J_5_in_spec5_xz[i];
-    const real six_r_J_5_in_spec5_yz = m->six_r_J_5_in_spec5_yz[i];
-    const real six_r_Sigma_5_in_axes5_yy = m->six_r_Sigma_5_in_axes5_yy[i];
-    const real six_r_Sigma_5_in_axes5_zz = m->six_r_Sigma_5_in_axes5_zz[i];
-    const real six_r_h_5_in_spec5_y = m->six_r_h_5_in_spec5_y[i];
-    const real six_r_h_5_in_spec5_z = m->six_r_h_5_in_spec5_z[i];
-    const real six_r_mu_5_in_axes5_x = six_r_B_5_in_axes5_yx*six_r_J_5_in_spec5_xz +
-        six_r_B_5_in_axes5_zy*six_r_Sigma_5_in_axes5_yy + six_r_J_5_in_spec5_yz*(six_r_W_5_t -
-        six_r_W_5_t_2) + six_r_acc_5_in_axes5_z*six_r_h_5_in_spec5_y -
-        six_r_B_5_in_axes5_yz*six_r_Sigma_5_in_axes5_zz -
-        six_r_B_5_in_axes5_zx*six_r_J_5_in_spec5_xy -
-        six_r_acc_5_in_axes5_y*six_r_h_5_in_spec5_z;
-    const real six_r_Sigma_5_in_axes5_xx = m->six_r_Sigma_5_in_axes5_xx[i];
-    const real six_r_h_5_in_spec5_x = m->six_r_h_5_in_spec5_x[i];
-    const real six_r_mu_5_in_axes5_y = six_r_B_5_in_axes5_xz*six_r_Sigma_5_in_axes5_zz +
-        six_r_B_5_in_axes5_zy*six_r_J_5_in_spec5_xy +
-        six_r_acc_5_in_axes5_x*six_r_h_5_in_spec5_z -
-        six_r_B_5_in_axes5_xy*six_r_J_5_in_spec5_yz -
-        six_r_B_5_in_axes5_zx*six_r_Sigma_5_in_axes5_xx -
-        six_r_J_5_in_spec5_xz*(six_r_bias_t_11 - six_r_W_5_t_2) -
-        six_r_acc_5_in_axes5_z*six_r_h_5_in_spec5_x;
-    const real six_r_mu_5_in_axes5_z = six_r_B_5_in_axes5_xz*six_r_J_5_in_spec5_yz +
-        six_r_B_5_in_axes5_yx*six_r_Sigma_5_in_axes5_xx +
-        six_r_J_5_in_spec5_xy*(six_r_bias_t_11 - six_r_W_5_t) +
-        six_r_acc_5_in_axes5_y*six_r_h_5_in_spec5_x -
-        six_r_B_5_in_axes5_xy*six_r_Sigma_5_in_axes5_yy -
-        six_r_B_5_in_axes5_yz*six_r_J_5_in_spec5_xz -
-        six_r_acc_5_in_axes5_x*six_r_h_5_in_spec5_y;
+    const real six_r_mu_5_in_axes5_x = six_r_B_5_in_axes5_yx*m->six_r_J_5_in_spec5_xz[i] +
+        six_r_B_5_in_axes5_zy*m->six_r_Sigma_5_in_axes5_yy[i] +
+        m->six_r_J_5_in_spec5_yz[i]*(six_r_W_5_t - six_r_W_5_t_2) +
+        six_r_acc_5_in_axes5_z*m->six_r_h_5_in_spec5_y[i] -
+        six_r_B_5_in_axes5_yz*m->six_r_Sigma_5_in_axes5_zz[i] -
+        six_r_B_5_in_axes5_zx*m->six_r_J_5_in_spec5_xy[i] -
+        six_r_acc_5_in_axes5_y*m->six_r_h_5_in_spec5_z[i];
+    const real six_r_mu_5_in_axes5_y = six_r_B_5_in_axes5_xz*m->six_r_Sigma_5_in_axes5_zz[i] +
+        six_r_B_5_in_axes5_zy*m->six_r_J_5_in_spec5_xy[i] +
+        six_r_acc_5_in_axes5_x*m->six_r_h_5_in_spec5_z[i] -
+        six_r_B_5_in_axes5_xy*m->six_r_J_5_in_spec5_yz[i] -
+        six_r_B_5_in_axes5_zx*m->six_r_Sigma_5_in_axes5_xx[i] -
+        m->six_r_J_5_in_spec5_xz[i]*(six_r_bias_t_11 - six_r_W_5_t_2) -
+        six_r_acc_5_in_axes5_z*m->six_r_h_5_in_spec5_x[i];
+    const real six_r_mu_5_in_axes5_z = six_r_B_5_in_axes5_xz*m->six_r_J_5_in_spec5_yz[i] +
+        six_r_B_5_in_axes5_yx*m->six_r_Sigma_5_in_axes5_xx[i] +
+        m->six_r_J_5_in_spec5_xy[i]*(six_r_bias_t_11 - six_r_W_5_t) +
+        six_r_acc_5_in_axes5_y*m->six_r_h_5_in_spec5_x[i] -
+        six_r_B_5_in_axes5_xy*m->six_r_Sigma_5_in_axes5_yy[i] -
+        six_r_B_5_in_axes5_yz*m->six_r_J_5_in_spec5_xz[i] -
+        six_r_acc_5_in_axes5_x*m->six_r_h_5_in_spec5_y[i];
     /* (six_r-mu_4) inertia moment of the links that turn with link 4, about their reference points */
-    const real six_r_J_4_in_spec4_xy = m->six_r_J_4_in_spec4_xy[i];
-    const real six_r_J_4_in_spec4_xz = m->six_r_J_4_in_spec4_xz[i];
-    const real six_r_J_4_in_spec4_yz = m->six_r_J_4_in_spec4_yz[i];
-    const real six_r_Sigma_4_in_axes4_yy = m->six_r_Sigma_4_in_axes4_yy[i];
-    const real six_r_Sigma_4_in_axes4_zz = m->six_r_Sigma_4_in_axes4_zz[i];
-    const real six_r_mu_4_in_axes4_x = six_r_B_4_in_axes4_yx*six_r_J_4_in_spec4_xy +
-        six_r_B_4_in_axes4_zy*six_r_Sigma_4_in_axes4_yy +
-        six_r_J_4_in_spec4_xz*(six_r_bias_t_10 - six_r_f_4_t_2) +
-        six_r_acc_4_in_axes4_z*six_r_h_4_in_spec4_z -
-        six_r_B_4_in_axes4_yz*six_r_Sigma_4_in_axes4_zz -
-        six_r_B_4_in_axes4_zx*six_r_J_4_in_spec4_yz -
-        six_r_acc_4_in_axes4_y*six_r_h_4_in_spec4_x;
-    const real six_r_Sigma_4_in_axes4_xx = m->six_r_Sigma_4_in_axes4_xx[i];
-    const real six_r_mu_4_in_axes4_y = six_r_B_4_in_axes4_xz*six_r_Sigma_4_in_axes4_zz +
-        six_r_B_4_in_axes4_zy*six_r_J_4_in_spec4_yz +
-        six_r_acc_4_in_axes4_x*six_r_h_4_in_spec4_x -
-        six_r_B_4_in_axes4_xy*six_r_J_4_in_spec4_xz -
-        six_r_B_4_in_axes4_zx*six_r_Sigma_4_in_axes4_xx - six_r_J_4_in_spec4_xy*(six_r_f_4_t -
-        six_r_f_4_t_2) - six_r_acc_4_in_axes4_z*six_r_h_4_in_spec4_y;
-    const real six_r_mu_4_in_axes4_z = six_r_B_4_in_axes4_xz*six_r_J_4_in_spec4_xz +
-        six_r_B_4_in_axes4_yx*six_r_Sigma_4_in_axes4_xx + six_r_J_4_in_spec4_yz*(six_r_f_4_t -
-        six_r_bias_t_10) + six_r_acc_4_in_axes4_y*six_r_h_4_in_spec4_y -
-        six_r_B_4_in_axes4_xy*six_r_Sigma_4_in_axes4_yy -
-        six_r_B_4_in_axes4_yz*six_r_J_4_in_spec4_xy -
-        six_r_acc_4_in_axes4_x*six_r_h_4_in_spec4_z;
+    const real six_r_mu_4_in_axes4_x = six_r_B_4_in_axes4_yx*m->six_r_J_4_in_spec4_xy[i] +
+        six_r_B_4_in_axes4_zy*m->six_r_Sigma_4_in_axes4_yy[i] +
+        m->six_r_J_4_in_spec4_xz[i]*(six_r_bias_t_10 - six_r_f_4_t_2) +
+        six_r_acc_4_in_axes4_z*m->six_r_h_4_in_spec4_z[i] -
+        six_r_B_4_in_axes4_yz*m->six_r_Sigma_4_in_axes4_zz[i] -
+        six_r_B_4_in_axes4_zx*m->six_r_J_4_in_spec4_yz[i] -
+        six_r_acc_4_in_axes4_y*m->six_r_h_4_in_spec4_x[i];
+    const real six_r_mu_4_in_axes4_y = six_r_B_4_in_axes4_xz*m->six_r_Sigma_4_in_axes4_zz[i] +
+        six_r_B_4_in_axes4_zy*m->six_r_J_4_in_spec4_yz[i] +
+        six_r_acc_4_in_axes4_x*m->six_r_h_4_in_spec4_x[i] -
+        six_r_B_4_in_axes4_xy*m->six_r_J_4_in_spec4_xz[i] -
+        six_r_B_4_in_axes4_zx*m->six_r_Sigma_4_in_axes4_xx[i] -
+        m->six_r_J_4_in_spec4_xy[i]*(six_r_f_4_t - six_r_f_4_t_2) -
+        six_r_acc_4_in_axes4_z*m->six_r_h_4_in_spec4_y[i];
+    const real six_r_mu_4_in_axes4_z = six_r_B_4_in_axes4_xz*m->six_r_J_4_in_spec4_xz[i] +
+        six_r_B_4_in_axes4_yx*m->six_r_Sigma_4_in_axes4_xx[i] +
+        m->six_r_J_4_in_spec4_yz[i]*(six_r_f_4_t - six_r_bias_t_10) +
+        six_r_acc_4_in_axes4_y*m->six_r_h_4_in_spec4_y[i] -
+        six_r_B_4_in_axes4_xy*m->six_r_Sigma_4_in_axes4_yy[i] -
+        six_r_B_4_in_axes4_yz*m->six_r_J_4_in_spec4_xy[i] -
+        six_r_acc_4_in_axes4_x*m->six_r_h_4_in_spec4_z[i];
     /* (six_r-N_4) moment about joint 4 of the links from 4 outwards, the force at the connection
        point left out */
     const real six_r_N_4_in_axes4_x = six_r_mu_4_in_axes4_x +
@@ -3474,89 +3397,77 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     const real six_r_N_4_in_axes4_z = six_r_mu_4_in_axes4_z +
         v->six_r_c_5*six_r_mu_5_in_axes5_x - six_r_mu_5_in_axes5_y*v->six_r_s_5;
     /* (six_r-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-    const real six_r_J_3_in_spec3_xy = m->six_r_J_3_in_spec3_xy[i];
-    const real six_r_J_3_in_spec3_xz = m->six_r_J_3_in_spec3_xz[i];
-    const real six_r_J_3_in_spec3_yz = m->six_r_J_3_in_spec3_yz[i];
-    const real six_r_Sigma_3_in_axes3_yy = m->six_r_Sigma_3_in_axes3_yy[i];
-    const real six_r_Sigma_3_in_axes3_zz = m->six_r_Sigma_3_in_axes3_zz[i];
-    const real six_r_mu_3_in_axes3_x = six_r_B_3_in_axes3_zx*six_r_J_3_in_spec3_xy +
-        six_r_B_3_in_axes3_zy*six_r_Sigma_3_in_axes3_yy + six_r_J_3_in_spec3_xz*(six_r_f_3_t -
-        six_r_W_3_t_2) + six_r_acc_3_in_axes3_z*six_r_h_3_in_spec3_x -
-        six_r_B_3_in_axes3_yx*six_r_J_3_in_spec3_yz -
-        six_r_B_3_in_axes3_yz*six_r_Sigma_3_in_axes3_zz -
-        six_r_acc_3_in_axes3_y*six_r_h_3_in_spec3_z;
-    const real six_r_Sigma_3_in_axes3_xx = m->six_r_Sigma_3_in_axes3_xx[i];
-    const real six_r_mu_3_in_axes3_y = six_r_B_3_in_axes3_xz*six_r_Sigma_3_in_axes3_zz +
-        six_r_J_3_in_spec3_yz*(six_r_W_3_t - six_r_W_3_t_2) +
-        six_r_acc_3_in_axes3_x*six_r_h_3_in_spec3_z +
-        six_r_acc_3_in_axes3_z*six_r_h_3_in_spec3_y -
-        six_r_B_3_in_axes3_xy*six_r_J_3_in_spec3_xz -
-        six_r_B_3_in_axes3_zx*six_r_Sigma_3_in_axes3_xx -
-        six_r_B_3_in_axes3_zy*six_r_J_3_in_spec3_xy;
-    const real six_r_mu_3_in_axes3_z = six_r_B_3_in_axes3_xz*six_r_J_3_in_spec3_xz +
-        six_r_B_3_in_axes3_yx*six_r_Sigma_3_in_axes3_xx +
-        six_r_B_3_in_axes3_yz*six_r_J_3_in_spec3_yz -
-        six_r_B_3_in_axes3_xy*six_r_Sigma_3_in_axes3_yy - six_r_J_3_in_spec3_xy*(six_r_W_3_t -
-        six_r_f_3_t) - six_r_acc_3_in_axes3_x*six_r_h_3_in_spec3_x -
-        six_r_acc_3_in_axes3_y*six_r_h_3_in_spec3_y;
+    const real six_r_mu_3_in_axes3_x = six_r_B_3_in_axes3_zx*m->six_r_J_3_in_spec3_xy[i] +
+        six_r_B_3_in_axes3_zy*m->six_r_Sigma_3_in_axes3_yy[i] +
+        m->six_r_J_3_in_spec3_xz[i]*(six_r_f_3_t - six_r_W_3_t_2) +
+        six_r_acc_3_in_axes3_z*m->six_r_h_3_in_spec3_x[i] -
+        six_r_B_3_in_axes3_yx*m->six_r_J_3_in_spec3_yz[i] -
+        six_r_B_3_in_axes3_yz*m->six_r_Sigma_3_in_axes3_zz[i] -
+        six_r_acc_3_in_axes3_y*m->six_r_h_3_in_spec3_z[i];
+    const real six_r_mu_3_in_axes3_y = six_r_B_3_in_axes3_xz*m->six_r_Sigma_3_in_axes3_zz[i] +
+        m->six_r_J_3_in_spec3_yz[i]*(six_r_W_3_t - six_r_W_3_t_2) +
+        six_r_acc_3_in_axes3_x*m->six_r_h_3_in_spec3_z[i] +
+        six_r_acc_3_in_axes3_z*m->six_r_h_3_in_spec3_y[i] -
+        six_r_B_3_in_axes3_xy*m->six_r_J_3_in_spec3_xz[i] -
+        six_r_B_3_in_axes3_zx*m->six_r_Sigma_3_in_axes3_xx[i] -
+        six_r_B_3_in_axes3_zy*m->six_r_J_3_in_spec3_xy[i];
+    const real six_r_mu_3_in_axes3_z = six_r_B_3_in_axes3_xz*m->six_r_J_3_in_spec3_xz[i] +
+        six_r_B_3_in_axes3_yx*m->six_r_Sigma_3_in_axes3_xx[i] +
+        six_r_B_3_in_axes3_yz*m->six_r_J_3_in_spec3_yz[i] -
+        six_r_B_3_in_axes3_xy*m->six_r_Sigma_3_in_axes3_yy[i] -
+        m->six_r_J_3_in_spec3_xy[i]*(six_r_W_3_t - six_r_f_3_t) -
+        six_r_acc_3_in_axes3_x*m->six_r_h_3_in_spec3_x[i] -
+        six_r_acc_3_in_axes3_y*m->six_r_h_3_in_spec3_y[i];
     /* (six_r-N_3) moment about joint 3 of the links from 3 outwards, the force at the connection
        point left out */
     const real six_r_N_3_in_axes3_x = six_r_mu_3_in_axes3_x +
-        six_r_N_4_in_axes4_y*v->six_r_s_4 + six_r_f_4_in_axes3_z*six_r_joint4_offset_x -
+        six_r_N_4_in_axes4_y*v->six_r_s_4 + six_r_f_4_in_axes3_z*m->six_r_joint4_offset_x[i] -
         six_r_N_4_in_axes4_x*v->six_r_c_4;
     const real six_r_N_3_in_axes3_y = six_r_N_4_in_axes4_z + six_r_mu_3_in_axes3_y;
     const real six_r_N_3_in_axes3_z = six_r_mu_3_in_axes3_z +
         six_r_N_4_in_axes4_x*v->six_r_s_4 + six_r_N_4_in_axes4_y*v->six_r_c_4 -
-        six_r_f_4_in_axes3_x*six_r_joint4_offset_x;
+        six_r_f_4_in_axes3_x*m->six_r_joint4_offset_x[i];
     /* (six_r-T_3) inertia force of the links from 3 outwards, the last link left out */
     const real six_r_T_3_in_axes3_x = six_r_f_3_in_axes3_x + six_r_f_4_in_axes3_x;
     const real six_r_T_3_in_axes3_y = six_r_f_3_in_axes3_y + six_r_f_4_in_axes4_z;
     const real six_r_T_3_in_axes3_z = six_r_f_3_in_axes3_z + six_r_f_4_in_axes3_z;
     /* (six_r-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real six_r_mu_2_t = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_x;
-    const real six_r_J_2_in_spec2_xy = m->six_r_J_2_in_spec2_xy[i];
-    const real six_r_J_2_in_spec2_xz = m->six_r_J_2_in_spec2_xz[i];
-    const real six_r_J_2_in_spec2_yz = m->six_r_J_2_in_spec2_yz[i];
-    const real six_r_Sigma_2_in_axes2_yy = m->six_r_Sigma_2_in_axes2_yy[i];
-    const real six_r_Sigma_2_in_axes2_zz = m->six_r_Sigma_2_in_axes2_zz[i];
-    const real six_r_h_2_in_spec2_y = m->six_r_h_2_in_spec2_y[i];
-    const real six_r_h_2_in_spec2_z = m->six_r_h_2_in_spec2_z[i];
-    const real six_r_mu_2_in_axes2_x = six_r_B_2_in_axes2_yx*six_r_J_2_in_spec2_xz +
-        six_r_B_2_in_axes2_zy*six_r_Sigma_2_in_axes2_yy + six_r_J_2_in_spec2_yz*(six_r_a_o_3_t
-        - six_r_a_o_3_t_2) + v->six_r_g_in_axes2_y*six_r_h_2_in_spec2_z -
-        six_r_B_2_in_axes2_zx*six_r_J_2_in_spec2_xy -
-        six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_t -
-        v->six_r_g_in_axes1_y*six_r_h_2_in_spec2_y;
-    const real six_r_Sigma_2_in_axes2_xx = m->six_r_Sigma_2_in_axes2_xx[i];
-    const real six_r_h_2_in_spec2_x = m->six_r_h_2_in_spec2_x[i];
-    const real six_r_mu_2_in_axes2_y = six_r_B_2_in_axes2_zy*six_r_J_2_in_spec2_xy +
-        six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_in_axes2_y +
-        v->six_r_g_in_axes1_y*six_r_h_2_in_spec2_x -
-        six_r_B_2_in_axes2_xy*six_r_J_2_in_spec2_yz -
-        six_r_B_2_in_axes2_zx*six_r_Sigma_2_in_axes2_xx - six_r_J_2_in_spec2_xz*(six_r_mu_2_t
-        - six_r_a_o_3_t_2) - v->six_r_g_in_axes2_x*six_r_h_2_in_spec2_z;
-    const real six_r_mu_2_in_axes2_z = six_r_B_2_in_axes2_yx*six_r_Sigma_2_in_axes2_xx +
-        six_r_J_2_in_spec2_xy*(six_r_mu_2_t - six_r_a_o_3_t) +
-        six_r_J_2_in_spec2_yz*six_r_alpha_1_in_axes2_y +
-        v->six_r_g_in_axes2_x*six_r_h_2_in_spec2_y -
-        six_r_B_2_in_axes2_xy*six_r_Sigma_2_in_axes2_yy -
-        six_r_J_2_in_spec2_xz*six_r_alpha_1_t - v->six_r_g_in_axes2_y*six_r_h_2_in_spec2_x;
+    const real six_r_mu_2_in_axes2_x = six_r_B_2_in_axes2_yx*m->six_r_J_2_in_spec2_xz[i] +
+        six_r_B_2_in_axes2_zy*m->six_r_Sigma_2_in_axes2_yy[i] +
+        m->six_r_J_2_in_spec2_yz[i]*(six_r_a_o_3_t - six_r_a_o_3_t_2) +
+        v->six_r_g_in_axes2_y*m->six_r_h_2_in_spec2_z[i] -
+        six_r_B_2_in_axes2_zx*m->six_r_J_2_in_spec2_xy[i] -
+        m->six_r_Sigma_2_in_axes2_zz[i]*six_r_alpha_1_t -
+        v->six_r_g_in_axes1_y*m->six_r_h_2_in_spec2_y[i];
+    const real six_r_mu_2_in_axes2_y = six_r_B_2_in_axes2_zy*m->six_r_J_2_in_spec2_xy[i] +
+        m->six_r_Sigma_2_in_axes2_zz[i]*six_r_alpha_1_in_axes2_y +
+        v->six_r_g_in_axes1_y*m->six_r_h_2_in_spec2_x[i] -
+        six_r_B_2_in_axes2_xy*m->six_r_J_2_in_spec2_yz[i] -
+        six_r_B_2_in_axes2_zx*m->six_r_Sigma_2_in_axes2_xx[i] -
+        m->six_r_J_2_in_spec2_xz[i]*(six_r_mu_2_t - six_r_a_o_3_t_2) -
+        v->six_r_g_in_axes2_x*m->six_r_h_2_in_spec2_z[i];
+    const real six_r_mu_2_in_axes2_z = six_r_B_2_in_axes2_yx*m->six_r_Sigma_2_in_axes2_xx[i] +
+        m->six_r_J_2_in_spec2_xy[i]*(six_r_mu_2_t - six_r_a_o_3_t) +
+        m->six_r_J_2_in_spec2_yz[i]*six_r_alpha_1_in_axes2_y +
+        v->six_r_g_in_axes2_x*m->six_r_h_2_in_spec2_y[i] -
+        six_r_B_2_in_axes2_xy*m->six_r_Sigma_2_in_axes2_yy[i] -
+        m->six_r_J_2_in_spec2_xz[i]*six_r_alpha_1_t -
+        v->six_r_g_in_axes2_y*m->six_r_h_2_in_spec2_x[i];
     /* (six_r-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection
        point left out */
     const real six_r_N_2_in_axes2_x = six_r_mu_2_in_axes2_x +
         six_r_N_3_in_axes3_x*v->six_r_s_3 + six_r_N_3_in_axes3_y*v->six_r_c_3;
     const real six_r_N_2_in_axes2_y = six_r_mu_2_in_axes2_y +
         six_r_N_3_in_axes3_y*v->six_r_s_3 - six_r_N_3_in_axes3_x*v->six_r_c_3 -
-        six_r_T_3_in_axes3_z*six_r_joint3_offset_x;
+        six_r_T_3_in_axes3_z*m->six_r_joint3_offset_x[i];
     const real six_r_N_2_in_axes2_z = six_r_N_3_in_axes3_z + six_r_mu_2_in_axes2_z -
-        six_r_joint3_offset_x*(six_r_T_3_in_axes3_x*v->six_r_c_3 -
+        m->six_r_joint3_offset_x[i]*(six_r_T_3_in_axes3_x*v->six_r_c_3 -
         six_r_T_3_in_axes3_y*v->six_r_s_3);
     /* (six_r-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-    const real six_r_J_1_in_spec1_xx = m->six_r_J_1_in_spec1_xx[i];
-    const real six_r_h_1_in_spec1_y = m->six_r_h_1_in_spec1_y[i];
-    const real six_r_h_1_in_spec1_z = m->six_r_h_1_in_spec1_z[i];
-    const real six_r_mu_1_in_axes1_z = v->six_r_g_in_axes1_x*six_r_h_1_in_spec1_z -
-        six_r_J_1_in_spec1_xx*six_r_qdd_1_t_5 - v->six_r_g_in_axes1_y*six_r_h_1_in_spec1_y;
+    const real six_r_mu_1_in_axes1_z = v->six_r_g_in_axes1_x*m->six_r_h_1_in_spec1_z[i] -
+        m->six_r_J_1_in_spec1_xx[i]*six_r_qdd_1_t_5 -
+        v->six_r_g_in_axes1_y*m->six_r_h_1_in_spec1_y[i];
     /* (six_r-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection
        point left out */
     const real six_r_N_1_in_axes1_z = six_r_mu_1_in_axes1_z +
@@ -3574,12 +3485,12 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     const real six_r_G_m1_t_5 = v->inv_six_r_w_1_t_79*(six_r_N_3_in_axes3_z +
         six_r_G_m1_t*v->six_r_w_1_t_25 + six_r_G_m1_t_3*v->six_r_w_1_t_61 +
         six_r_G_m1_t_4*v->six_r_w_1_t_73 - six_r_G_m1_t_2*v->six_r_w_1_t_44);
-    const real six_r_G_m1_t_6 = six_r_size*(six_r_G_m1_t_2*v->six_r_w_1_t_31 +
+    const real six_r_G_m1_t_6 = m->six_r_size[i]*(six_r_G_m1_t_2*v->six_r_w_1_t_31 +
         six_r_G_m1_t_3*v->six_r_w_1_t_53 + six_r_G_m1_t_4*v->six_r_w_1_t_71 -
         six_r_G_m1_t_5*six_r_m1_w_2_t);
     /* (six_r-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along
        all degrees of freedom */
-    const real six_r_G_m2_t = six_r_size*(six_r_G_m1_t_2*v->six_r_w_1_t_32 +
+    const real six_r_G_m2_t = m->six_r_size[i]*(six_r_G_m1_t_2*v->six_r_w_1_t_32 +
         six_r_G_m1_t_3*v->six_r_w_1_t_54 + six_r_G_m1_t_4*v->six_r_w_1_t_72 -
         six_r_G_m1_t*v->six_r_w_1_t_14 - six_r_G_m1_t_5*six_r_m2_w_2_t);
     /* (six_r-G_m) moment at the connection point that balances the leg's inertia and weight along all
@@ -3590,20 +3501,20 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     /* (six_r-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real six_r_c_in_axes5_x = six_r_G_m1_t_3*v->six_r_w_1_t_50 +
-        six_r_G_m1_t_4*v->six_r_w_1_t_68 + six_r_W_5_t_3*six_r_h_5_in_spec5_x -
-        six_r_B_5_in_axes5_xy*six_r_h_5_in_spec5_y -
-        six_r_B_5_in_axes5_xz*six_r_h_5_in_spec5_z - six_r_G_m1_t_5*six_r_w_2_t;
+        six_r_G_m1_t_4*v->six_r_w_1_t_68 + six_r_W_5_t_3*m->six_r_h_5_in_spec5_x[i] -
+        six_r_B_5_in_axes5_xy*m->six_r_h_5_in_spec5_y[i] -
+        six_r_B_5_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] - six_r_G_m1_t_5*six_r_w_2_t;
     const real six_r_c_in_axes5_y = six_r_G_m1_t_5*six_r_w_2_t_2 +
-        six_r_h_5_in_spec5_y*(six_r_W_5_t_2 + six_r_bias_t_11) -
-        six_r_B_5_in_axes5_yx*six_r_h_5_in_spec5_x -
-        six_r_B_5_in_axes5_yz*six_r_h_5_in_spec5_z - six_r_G_m1_t*v->six_r_w_1_t_13 -
+        m->six_r_h_5_in_spec5_y[i]*(six_r_W_5_t_2 + six_r_bias_t_11) -
+        six_r_B_5_in_axes5_yx*m->six_r_h_5_in_spec5_x[i] -
+        six_r_B_5_in_axes5_yz*m->six_r_h_5_in_spec5_z[i] - six_r_G_m1_t*v->six_r_w_1_t_13 -
         six_r_G_m1_t_2*v->six_r_w_1_t_29 - six_r_G_m1_t_3*v->six_r_w_1_t_51 -
         six_r_G_m1_t_4*v->six_r_w_1_t_69;
     const real six_r_c_in_axes5_z = six_r_G_m1_t_2*v->six_r_w_1_t_30 +
         six_r_G_m1_t_3*v->six_r_w_1_t_52 + six_r_G_m1_t_4*v->six_r_w_1_t_70 +
-        six_r_h_5_in_spec5_z*(six_r_W_5_t + six_r_bias_t_11) -
-        six_r_B_5_in_axes5_zx*six_r_h_5_in_spec5_x -
-        six_r_B_5_in_axes5_zy*six_r_h_5_in_spec5_y - six_r_G_m1_t_5*six_r_w_2_t_3;
+        m->six_r_h_5_in_spec5_z[i]*(six_r_W_5_t + six_r_bias_t_11) -
+        six_r_B_5_in_axes5_zx*m->six_r_h_5_in_spec5_x[i] -
+        six_r_B_5_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] - six_r_G_m1_t_5*six_r_w_2_t_3;
     /* (six_r-c_m) moment of the leg on the platform without actuation */
     const real six_r_c_m_in_axes5_z = six_r_G_m2_t*v->six_r_n_m2_in_axes5_z;
     v->six_r_w_2_x = six_r_w_2_x;
@@ -3624,172 +3535,152 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
 }
 
 /* ---- closure_six_r ---- */
-INLINE void closure_six_r_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void closure_six_r_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void closure_six_r_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, const
-    real *s, size_t states, size_t count, const real *X, const real *joints, real *o)
+INLINE void closure_six_r_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k,
+    size_t count, const real *s, const real *X, const real *joints, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_six_r v;
-        stage_six_r_X(m, w, i, j, s, &v);
-        stage_six_r_q(m, w, i, j, joints, &v);
-        stage_six_r_X_q(m, i, &v);
-        /* (six_r-S) from the base point to the connection point */
-        const real R_xx = s[0*w + j];
-        const real R_xy = s[1*w + j];
-        const real R_xz = s[2*w + j];
-        const real six_r_base_point_x = m->six_r_base_point_x[i];
-        const real six_r_platform_point_x = m->six_r_platform_point_x[i];
-        const real six_r_platform_point_y = m->six_r_platform_point_y[i];
-        const real six_r_platform_point_z = m->six_r_platform_point_z[i];
-        const real t_x = X[0*w + j];
-        const real six_r_S_x = t_x + R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y +
-            R_xz*six_r_platform_point_z - six_r_base_point_x;
-        const real R_yx = s[3*w + j];
-        const real R_yy = s[4*w + j];
-        const real R_yz = s[5*w + j];
-        const real six_r_base_point_y = m->six_r_base_point_y[i];
-        const real t_y = X[1*w + j];
-        const real six_r_S_y = t_y + R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y +
-            R_yz*six_r_platform_point_z - six_r_base_point_y;
-        const real R_zx = s[6*w + j];
-        const real R_zy = s[7*w + j];
-        const real R_zz = s[8*w + j];
-        const real six_r_base_point_z = m->six_r_base_point_z[i];
-        const real t_z = X[2*w + j];
-        const real six_r_S_z = t_z + R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y +
-            R_zz*six_r_platform_point_z - six_r_base_point_z;
-        /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real six_r_end_p1_in_axes5_y = v.six_r_c_5*v.six_r_n_m1_t_10 -
-            v.six_r_n_m1_t_9*v.six_r_s_5;
-        const real six_r_n_m1_t_11 = v.six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y -
-            v.six_r_e_1_in_axes5_y*v.six_r_n_m1_in_axes5_y;
-        const real six_r_n_m1_t_12 = v.six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y -
-            v.six_r_e_2_in_axes5_y*v.six_r_n_m1_in_axes5_y;
-        const real six_r_n_m1_in_axes4_z = -v.six_r_c_5*six_r_end_p1_in_axes5_y -
-            v.six_r_n_m1_in_axes5_y*v.six_r_s_5;
-        /* (six_r-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real six_r_n_m2_t = v.six_r_e_1_in_axes5_y*v.six_r_end_p1_in_axes5_z -
-            v.six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y;
-        const real six_r_n_m2_t_2 = v.six_r_e_2_in_axes5_y*v.six_r_end_p1_in_axes5_z -
-            v.six_r_c_4*six_r_end_p1_in_axes5_y;
-        const real six_r_n_m2_in_axes4_z = v.six_r_end_p1_in_axes5_z*v.six_r_s_5;
-        /* (six_r-gap) from the connection point as the links reach it to the platform's */
-        const real six_r_base_frame_xy = m->six_r_base_frame_xy[i];
-        const real six_r_base_frame_yy = m->six_r_base_frame_yy[i];
-        const real six_r_base_frame_zy = m->six_r_base_frame_zy[i];
-        const real six_r_gap_t = six_r_S_x*six_r_base_frame_xy + six_r_S_y*six_r_base_frame_yy +
-            six_r_S_z*six_r_base_frame_zy;
-        const real six_r_base_frame_xz = m->six_r_base_frame_xz[i];
-        const real six_r_base_frame_yz = m->six_r_base_frame_yz[i];
-        const real six_r_base_frame_zz = m->six_r_base_frame_zz[i];
-        const real six_r_gap_t_2 = six_r_S_x*six_r_base_frame_xz + six_r_S_y*six_r_base_frame_yz +
-            six_r_S_z*six_r_base_frame_zz;
-        const real six_r_base_frame_xx = m->six_r_base_frame_xx[i];
-        const real six_r_base_frame_yx = m->six_r_base_frame_yx[i];
-        const real six_r_base_frame_zx = m->six_r_base_frame_zx[i];
-        const real six_r_gap_t_3 = six_r_S_x*six_r_base_frame_xx + six_r_S_y*six_r_base_frame_yx +
-            six_r_S_z*six_r_base_frame_zx;
-        const real six_r_gap_t_4 = v.six_r_c_1*six_r_gap_t + six_r_gap_t_2*v.six_r_s_1;
-        const real six_r_gap_t_5 = v.six_r_c_1*six_r_gap_t_2 - six_r_gap_t*v.six_r_s_1;
-        const real six_r_gap_t_6 = v.six_r_c_2*six_r_gap_t_3 + six_r_gap_t_4*v.six_r_s_2;
-        const real six_r_gap_t_7 = v.six_r_c_2*six_r_gap_t_4 - six_r_gap_t_3*v.six_r_s_2;
-        const real six_r_gap_t_8 = six_r_gap_t_6*v.six_r_s_3 - v.six_r_c_3*six_r_gap_t_7;
-        const real six_r_gap_t_9 = v.six_r_c_3*six_r_gap_t_6 + six_r_gap_t_7*v.six_r_s_3;
-        const real six_r_gap_t_10 = six_r_gap_t_5*v.six_r_s_4 - v.six_r_c_4*six_r_gap_t_8;
-        const real six_r_gap_in_axes5_x = v.six_r_c_5*six_r_gap_t_9 + six_r_gap_t_10*v.six_r_s_5 -
-            v.six_r_r_1_in_axes5_x;
-        const real six_r_gap_in_axes5_y = v.six_r_c_5*six_r_gap_t_10 - v.six_r_r_1_in_axes5_y -
-            six_r_gap_t_9*v.six_r_s_5;
-        const real six_r_gap_in_axes5_z = v.six_r_c_4*six_r_gap_t_5 + six_r_gap_t_8*v.six_r_s_4 -
-            v.six_r_r_1_in_axes5_z;
-        /* (six_r-gap) from the connection point as the links reach it to the platform's */
-        o[0*count + k] = six_r_gap_in_axes5_x;
-        o[1*count + k] = six_r_gap_in_axes5_y;
-        o[2*count + k] = six_r_gap_in_axes5_z;
-        /* (six_r-v_1) velocity of the connection point per rate of joint 1 */
-        o[3*count + k] = v.six_r_v_1_in_axes5_x;
-        o[4*count + k] = v.six_r_v_1_in_axes5_y;
-        o[5*count + k] = v.six_r_v_1_in_axes5_z;
-        /* (six_r-v_2) velocity of the connection point per rate of joint 2 */
-        o[6*count + k] = v.six_r_v_2_in_axes5_x;
-        o[7*count + k] = v.six_r_v_2_in_axes5_y;
-        o[8*count + k] = v.six_r_v_2_in_axes5_z;
-        /* (six_r-v_3) velocity of the connection point per rate of joint 3 */
-        o[9*count + k] = v.six_r_v_3_in_axes5_x;
-        o[10*count + k] = v.six_r_v_3_in_axes5_y;
-        o[11*count + k] = v.six_r_v_3_in_axes5_z;
-        /* (six_r-v_4) velocity of the connection point per rate of joint 4 */
-        o[12*count + k] = v.six_r_v_4_in_axes5_z;
-        /* (six_r-v_5) velocity of the connection point per rate of joint 5 */
-        const real six_r_platform_joint_offset_x = m->six_r_platform_joint_offset_x[i];
-        o[13*count + k] = six_r_platform_joint_offset_x;
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        o[14*count + k] = -v.six_r_end_p1_in_axes5_z;
-        /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
-        o[15*count + k] = -six_r_n_m1_t_11;
-        o[16*count + k] = -six_r_n_m1_t_12;
-        o[17*count + k] = -six_r_n_m1_t_12;
-        o[18*count + k] = six_r_n_m1_in_axes4_z;
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        o[19*count + k] = -v.six_r_n_m1_in_axes5_y;
-        /* (six_r-n_m2) direction 2 of the moment that the platform joint transmits */
-        o[20*count + k] = -six_r_n_m2_t;
-        o[21*count + k] = -six_r_n_m2_t_2;
-        o[22*count + k] = -six_r_n_m2_t_2;
-        o[23*count + k] = six_r_n_m2_in_axes4_z;
-        o[24*count + k] = six_r_end_p1_in_axes5_y;
-    }
+    values_six_r v;
+    stage_six_r_X(m, w, i, j, s, &v);
+    stage_six_r_q(m, w, i, j, joints, &v);
+    stage_six_r_X_q(m, i, &v);
+    /* (six_r-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real t_x = X[0*w + j];
+    const real six_r_S_x = t_x + R_xx*m->six_r_platform_point_x[i] +
+        R_xy*m->six_r_platform_point_y[i] + R_xz*m->six_r_platform_point_z[i] -
+        m->six_r_base_point_x[i];
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real t_y = X[1*w + j];
+    const real six_r_S_y = t_y + R_yx*m->six_r_platform_point_x[i] +
+        R_yy*m->six_r_platform_point_y[i] + R_yz*m->six_r_platform_point_z[i] -
+        m->six_r_base_point_y[i];
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real t_z = X[2*w + j];
+    const real six_r_S_z = t_z + R_zx*m->six_r_platform_point_x[i] +
+        R_zy*m->six_r_platform_point_y[i] + R_zz*m->six_r_platform_point_z[i] -
+        m->six_r_base_point_z[i];
+    /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
+    const real six_r_end_p1_in_axes5_y = v.six_r_c_5*v.six_r_n_m1_t_10 -
+        v.six_r_n_m1_t_9*v.six_r_s_5;
+    const real six_r_n_m1_t_11 = v.six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y -
+        v.six_r_e_1_in_axes5_y*v.six_r_n_m1_in_axes5_y;
+    const real six_r_n_m1_t_12 = v.six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y -
+        v.six_r_e_2_in_axes5_y*v.six_r_n_m1_in_axes5_y;
+    const real six_r_n_m1_in_axes4_z = -v.six_r_c_5*six_r_end_p1_in_axes5_y -
+        v.six_r_n_m1_in_axes5_y*v.six_r_s_5;
+    /* (six_r-n_m2) direction 2 of the moment that the platform joint transmits */
+    const real six_r_n_m2_t = v.six_r_e_1_in_axes5_y*v.six_r_end_p1_in_axes5_z -
+        v.six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y;
+    const real six_r_n_m2_t_2 = v.six_r_e_2_in_axes5_y*v.six_r_end_p1_in_axes5_z -
+        v.six_r_c_4*six_r_end_p1_in_axes5_y;
+    const real six_r_n_m2_in_axes4_z = v.six_r_end_p1_in_axes5_z*v.six_r_s_5;
+    /* (six_r-gap) from the connection point as the links reach it to the platform's */
+    const real six_r_gap_t = six_r_S_x*m->six_r_base_frame_xy[i] +
+        six_r_S_y*m->six_r_base_frame_yy[i] + six_r_S_z*m->six_r_base_frame_zy[i];
+    const real six_r_gap_t_2 = six_r_S_x*m->six_r_base_frame_xz[i] +
+        six_r_S_y*m->six_r_base_frame_yz[i] + six_r_S_z*m->six_r_base_frame_zz[i];
+    const real six_r_gap_t_3 = six_r_S_x*m->six_r_base_frame_xx[i] +
+        six_r_S_y*m->six_r_base_frame_yx[i] + six_r_S_z*m->six_r_base_frame_zx[i];
+    const real six_r_gap_t_4 = v.six_r_c_1*six_r_gap_t + six_r_gap_t_2*v.six_r_s_1;
+    const real six_r_gap_t_5 = v.six_r_c_1*six_r_gap_t_2 - six_r_gap_t*v.six_r_s_1;
+    const real six_r_gap_t_6 = v.six_r_c_2*six_r_gap_t_3 + six_r_gap_t_4*v.six_r_s_2;
+    const real six_r_gap_t_7 = v.six_r_c_2*six_r_gap_t_4 - six_r_gap_t_3*v.six_r_s_2;
+    const real six_r_gap_t_8 = six_r_gap_t_6*v.six_r_s_3 - v.six_r_c_3*six_r_gap_t_7;
+    const real six_r_gap_t_9 = v.six_r_c_3*six_r_gap_t_6 + six_r_gap_t_7*v.six_r_s_3;
+    const real six_r_gap_t_10 = six_r_gap_t_5*v.six_r_s_4 - v.six_r_c_4*six_r_gap_t_8;
+    const real six_r_gap_in_axes5_x = v.six_r_c_5*six_r_gap_t_9 + six_r_gap_t_10*v.six_r_s_5 -
+        v.six_r_r_1_in_axes5_x;
+    const real six_r_gap_in_axes5_y = v.six_r_c_5*six_r_gap_t_10 - v.six_r_r_1_in_axes5_y -
+        six_r_gap_t_9*v.six_r_s_5;
+    const real six_r_gap_in_axes5_z = v.six_r_c_4*six_r_gap_t_5 + six_r_gap_t_8*v.six_r_s_4 -
+        v.six_r_r_1_in_axes5_z;
+    /* (six_r-gap) */
+    o[0*count + k] = six_r_gap_in_axes5_x;
+    o[1*count + k] = six_r_gap_in_axes5_y;
+    o[2*count + k] = six_r_gap_in_axes5_z;
+    /* (six_r-v_1) velocity of the connection point per rate of joint 1 */
+    o[3*count + k] = v.six_r_v_1_in_axes5_x;
+    o[4*count + k] = v.six_r_v_1_in_axes5_y;
+    o[5*count + k] = v.six_r_v_1_in_axes5_z;
+    /* (six_r-v_2) velocity of the connection point per rate of joint 2 */
+    o[6*count + k] = v.six_r_v_2_in_axes5_x;
+    o[7*count + k] = v.six_r_v_2_in_axes5_y;
+    o[8*count + k] = v.six_r_v_2_in_axes5_z;
+    /* (six_r-v_3) velocity of the connection point per rate of joint 3 */
+    o[9*count + k] = v.six_r_v_3_in_axes5_x;
+    o[10*count + k] = v.six_r_v_3_in_axes5_y;
+    o[11*count + k] = v.six_r_v_3_in_axes5_z;
+    /* (six_r-v_4) velocity of the connection point per rate of joint 4 */
+    o[12*count + k] = v.six_r_v_4_in_axes5_z;
+    /* (six_r-v_5) velocity of the connection point per rate of joint 5 */
+    o[13*count + k] = m->six_r_platform_joint_offset_x[i];
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    o[14*count + k] = -v.six_r_end_p1_in_axes5_z;
+    /* (six_r-n_m1) */
+    o[15*count + k] = -six_r_n_m1_t_11;
+    o[16*count + k] = -six_r_n_m1_t_12;
+    o[17*count + k] = -six_r_n_m1_t_12;
+    o[18*count + k] = six_r_n_m1_in_axes4_z;
+    /* (legs_size) */
+    o[19*count + k] = -v.six_r_n_m1_in_axes5_y;
+    /* (six_r-n_m2) */
+    o[20*count + k] = -six_r_n_m2_t;
+    o[21*count + k] = -six_r_n_m2_t_2;
+    o[22*count + k] = -six_r_n_m2_t_2;
+    o[23*count + k] = six_r_n_m2_in_axes4_z;
+    o[24*count + k] = six_r_end_p1_in_axes5_y;
 }
 
-INLINE void closure_six_r_place_six_r(size_t w, size_t count, const real *o, size_t leg, size_t
-    first, real *gap_six_r, real *jacobian_six_r)
+INLINE void closure_six_r_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t count, const
+    real *o, real *gap_six_r, real *jacobian_six_r)
 {
-    for (size_t k = 0; k < w; ++k) {
-        gap_six_r[5*leg*w + k] = o[0*count + first + k];
-        gap_six_r[(5*leg + 1)*w + k] = o[1*count + first + k];
-        gap_six_r[(5*leg + 2)*w + k] = o[2*count + first + k];
-        jacobian_six_r[25*leg*w + k] = o[3*count + first + k];
-        jacobian_six_r[(25*leg + 5)*w + k] = o[4*count + first + k];
-        jacobian_six_r[(25*leg + 10)*w + k] = o[5*count + first + k];
-        jacobian_six_r[(25*leg + 1)*w + k] = o[6*count + first + k];
-        jacobian_six_r[(25*leg + 6)*w + k] = o[7*count + first + k];
-        jacobian_six_r[(25*leg + 11)*w + k] = o[8*count + first + k];
-        jacobian_six_r[(25*leg + 2)*w + k] = o[9*count + first + k];
-        jacobian_six_r[(25*leg + 7)*w + k] = o[10*count + first + k];
-        jacobian_six_r[(25*leg + 12)*w + k] = o[11*count + first + k];
-        jacobian_six_r[(25*leg + 13)*w + k] = o[12*count + first + k];
-        jacobian_six_r[(25*leg + 9)*w + k] = o[13*count + first + k];
-        gap_six_r[(5*leg + 3)*w + k] = o[14*count + first + k];
-        jacobian_six_r[(25*leg + 15)*w + k] = o[15*count + first + k];
-        jacobian_six_r[(25*leg + 16)*w + k] = o[16*count + first + k];
-        jacobian_six_r[(25*leg + 17)*w + k] = o[17*count + first + k];
-        jacobian_six_r[(25*leg + 18)*w + k] = o[18*count + first + k];
-        gap_six_r[(5*leg + 4)*w + k] = o[19*count + first + k];
-        jacobian_six_r[(25*leg + 20)*w + k] = o[20*count + first + k];
-        jacobian_six_r[(25*leg + 21)*w + k] = o[21*count + first + k];
-        jacobian_six_r[(25*leg + 22)*w + k] = o[22*count + first + k];
-        jacobian_six_r[(25*leg + 23)*w + k] = o[23*count + first + k];
-        jacobian_six_r[(25*leg + 24)*w + k] = o[24*count + first + k];
-    }
+    gap_six_r[5*i*w + k] = o[0*count + at];
+    gap_six_r[(5*i + 1)*w + k] = o[1*count + at];
+    gap_six_r[(5*i + 2)*w + k] = o[2*count + at];
+    jacobian_six_r[25*i*w + k] = o[3*count + at];
+    jacobian_six_r[(25*i + 5)*w + k] = o[4*count + at];
+    jacobian_six_r[(25*i + 10)*w + k] = o[5*count + at];
+    jacobian_six_r[(25*i + 1)*w + k] = o[6*count + at];
+    jacobian_six_r[(25*i + 6)*w + k] = o[7*count + at];
+    jacobian_six_r[(25*i + 11)*w + k] = o[8*count + at];
+    jacobian_six_r[(25*i + 2)*w + k] = o[9*count + at];
+    jacobian_six_r[(25*i + 7)*w + k] = o[10*count + at];
+    jacobian_six_r[(25*i + 12)*w + k] = o[11*count + at];
+    jacobian_six_r[(25*i + 13)*w + k] = o[12*count + at];
+    jacobian_six_r[(25*i + 9)*w + k] = o[13*count + at];
+    gap_six_r[(5*i + 3)*w + k] = o[14*count + at];
+    jacobian_six_r[(25*i + 15)*w + k] = o[15*count + at];
+    jacobian_six_r[(25*i + 16)*w + k] = o[16*count + at];
+    jacobian_six_r[(25*i + 17)*w + k] = o[17*count + at];
+    jacobian_six_r[(25*i + 18)*w + k] = o[18*count + at];
+    gap_six_r[(5*i + 4)*w + k] = o[19*count + at];
+    jacobian_six_r[(25*i + 20)*w + k] = o[20*count + at];
+    jacobian_six_r[(25*i + 21)*w + k] = o[21*count + at];
+    jacobian_six_r[(25*i + 22)*w + k] = o[22*count + at];
+    jacobian_six_r[(25*i + 23)*w + k] = o[23*count + at];
+    jacobian_six_r[(25*i + 24)*w + k] = o[24*count + at];
 }
 
 INLINE void closure_six_r_run(const prepared *m, const real *X, const real *joints, real
@@ -3798,10 +3689,12 @@ INLINE void closure_six_r_run(const prepared *m, const real *X, const real *join
     real s[9] = {0};
     real o_six_r[25*LEGS(LEGS_OF_six_r)] = {0};
     clear(jacobian_six_r, 150);
-    closure_six_r_before(m, 1, X, s, t);
-    closure_six_r_legs_six_r(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_six_r), X, joints, o_six_r);
-    for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
-        closure_six_r_place_six_r(1, LEGS(LEGS_OF_six_r), o_six_r, leg, leg, gap_six_r, jacobian_six_r);
+    closure_six_r_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
+        closure_six_r_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), s, X, joints, o_six_r);
+    }
+    for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
+        closure_six_r_place_six_r(1, i, 0, i, LEGS(LEGS_OF_six_r), o_six_r, gap_six_r, jacobian_six_r);
     }
 }
 
@@ -3817,12 +3710,11 @@ static int close_six_r(const prepared *m, const real *X, real *q)
     real gap[GAPS] = {0}, jacobian[SLOPES] = {0}, step[STEPS], size = 1;
     for (int steps = 0; steps < 60 && size > STEADY; ++steps) {
         verdict why, *const t = &why;
-        int code;
         start(1, t);
         closure_six_r_run(m, X, q, gap, jacobian, t);
         check(GAPS, 1, gap, t->overflow);
         check(SLOPES, 1, jacobian, t->overflow);
-        if (judge(t, &code) != OK) {
+        if (judge(t) != OK) {
             return 0;
         }
         size = newton_step(LEGS, ROWS, N, gap, jacobian, step);
@@ -3865,3661 +3757,3549 @@ static void close_loops(const prepared *m, size_t w, const real *X, const real *
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s,
-    verdict *t)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        stage_V_X(w, k, V, &v);
-        stage_M_dynamics(m, &v);
-        stage_Z_dynamics(m, w, k, V, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = v.h_star_x;
-        s[10*w + k] = v.h_star_y;
-        s[11*w + k] = v.h_star_z;
-        s[12*w + k] = v.J_star_xx;
-        s[13*w + k] = v.J_star_xy;
-        s[14*w + k] = v.J_star_xz;
-        s[15*w + k] = v.J_star_yy;
-        s[16*w + k] = v.J_star_yz;
-        s[17*w + k] = v.J_star_zz;
-        s[18*w + k] = v.Z_p_x;
-        s[19*w + k] = v.Z_p_y;
-        s[20*w + k] = v.Z_p_z;
-        s[21*w + k] = v.Z_q_x;
-        s[22*w + k] = v.Z_q_y;
-        s[23*w + k] = v.Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    stage_V_X(w, k, V, &v);
+    stage_M_dynamics(m, &v);
+    stage_Z_dynamics(m, w, k, V, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = v.h_star_x;
+    s[10*w + k] = v.h_star_y;
+    s[11*w + k] = v.h_star_z;
+    s[12*w + k] = v.J_star_xx;
+    s[13*w + k] = v.J_star_xy;
+    s[14*w + k] = v.J_star_xz;
+    s[15*w + k] = v.J_star_yy;
+    s[16*w + k] = v.J_star_yz;
+    s[17*w + k] = v.J_star_zz;
+    s[18*w + k] = v.Z_p_x;
+    s[19*w + k] = v.Z_p_y;
+    s[20*w + k] = v.Z_p_z;
+    s[21*w + k] = v.Z_q_x;
+    s[22*w + k] = v.Z_q_y;
+    s[23*w + k] = v.Z_q_z;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *V, const real *joints, real *terms, real
-    *o)
+INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *V, const real *joints, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_six_r v;
-        stage_six_r_X(m, w, i, j, s, &v);
-        stage_six_r_q(m, w, i, j, joints, &v);
-        stage_six_r_V_X(w, j, V, &v);
-        stage_six_r_X_q(m, i, &v);
-        stage_six_r_M_dynamics(m, w, i, j, joints, &v);
-        stage_six_r_Z_dynamics(m, w, i, j, V, &v);
-        /* (six_r-S_dot) velocity of the connection point */
-        const real six_r_S_dot_t = v.six_r_c_3*v.six_r_h_4_t;
-        const real six_r_S_dot_t_2 = v.six_r_h_4_t*v.six_r_s_3;
-        const real six_r_S_dot_t_3 = six_r_S_dot_t*v.six_r_s_2 + six_r_S_dot_t_2*v.six_r_c_2;
-        const real six_r_S_dot_t_4 = six_r_S_dot_t_2*v.six_r_s_2 - six_r_S_dot_t*v.six_r_c_2;
-        const real six_r_S_dot_t_5 = six_r_S_dot_t_4*v.six_r_c_1 -
-            v.six_r_e_2_in_axes5_z*v.six_r_s_1;
-        const real six_r_S_dot_t_6 = six_r_S_dot_t_4*v.six_r_s_1 +
-            v.six_r_c_1*v.six_r_e_2_in_axes5_z;
-        const real six_r_base_frame_xx = m->six_r_base_frame_xx[i];
-        const real six_r_base_frame_xy = m->six_r_base_frame_xy[i];
-        const real six_r_base_frame_xz = m->six_r_base_frame_xz[i];
-        const real axis_z_six_r_axes5_x = six_r_S_dot_t_3*six_r_base_frame_xx +
-            six_r_S_dot_t_5*six_r_base_frame_xy + six_r_S_dot_t_6*six_r_base_frame_xz;
-        const real six_r_base_frame_yx = m->six_r_base_frame_yx[i];
-        const real six_r_base_frame_yy = m->six_r_base_frame_yy[i];
-        const real six_r_base_frame_yz = m->six_r_base_frame_yz[i];
-        const real axis_z_six_r_axes5_y = six_r_S_dot_t_3*six_r_base_frame_yx +
-            six_r_S_dot_t_5*six_r_base_frame_yy + six_r_S_dot_t_6*six_r_base_frame_yz;
-        const real six_r_base_frame_zx = m->six_r_base_frame_zx[i];
-        const real six_r_base_frame_zy = m->six_r_base_frame_zy[i];
-        const real six_r_base_frame_zz = m->six_r_base_frame_zz[i];
-        const real axis_z_six_r_axes5_z = six_r_S_dot_t_3*six_r_base_frame_zx +
-            six_r_S_dot_t_5*six_r_base_frame_zy + six_r_S_dot_t_6*six_r_base_frame_zz;
-        const real six_r_S_dot_t_7 = v.six_r_e_2_in_axes5_z*v.six_r_e_4_in_axes5_x;
-        const real six_r_S_dot_t_8 = v.six_r_J_5_t*v.six_r_s_3 - six_r_S_dot_t_7*v.six_r_c_3;
-        const real six_r_S_dot_t_9 = -v.six_r_J_5_t*v.six_r_c_3 - six_r_S_dot_t_7*v.six_r_s_3;
-        const real six_r_S_dot_t_10 = six_r_S_dot_t_8*v.six_r_s_2 + six_r_S_dot_t_9*v.six_r_c_2;
-        const real six_r_S_dot_t_11 = six_r_S_dot_t_9*v.six_r_s_2 - six_r_S_dot_t_8*v.six_r_c_2;
-        const real six_r_S_dot_t_12 = six_r_S_dot_t_11*v.six_r_c_1 -
-            v.six_r_e_2_in_axes5_y*v.six_r_s_1;
-        const real six_r_S_dot_t_13 = six_r_S_dot_t_11*v.six_r_s_1 +
-            v.six_r_c_1*v.six_r_e_2_in_axes5_y;
-        const real axis_y_six_r_axes5_x = six_r_S_dot_t_10*six_r_base_frame_xx +
-            six_r_S_dot_t_12*six_r_base_frame_xy + six_r_S_dot_t_13*six_r_base_frame_xz;
-        const real axis_y_six_r_axes5_y = six_r_S_dot_t_10*six_r_base_frame_yx +
-            six_r_S_dot_t_12*six_r_base_frame_yy + six_r_S_dot_t_13*six_r_base_frame_yz;
-        const real axis_y_six_r_axes5_z = six_r_S_dot_t_10*six_r_base_frame_zx +
-            six_r_S_dot_t_12*six_r_base_frame_zy + six_r_S_dot_t_13*six_r_base_frame_zz;
-        const real axis_x_six_r_axes5_x = axis_y_six_r_axes5_y*axis_z_six_r_axes5_z -
-            axis_y_six_r_axes5_z*axis_z_six_r_axes5_y;
-        const real axis_x_six_r_axes5_y = axis_y_six_r_axes5_z*axis_z_six_r_axes5_x -
-            axis_y_six_r_axes5_x*axis_z_six_r_axes5_z;
-        const real axis_x_six_r_axes5_z = axis_y_six_r_axes5_x*axis_z_six_r_axes5_y -
-            axis_y_six_r_axes5_y*axis_z_six_r_axes5_x;
-        const real six_r_S_dot_in_axes5_x = axis_x_six_r_axes5_x*v.six_r_S_dot_x +
-            axis_x_six_r_axes5_y*v.six_r_S_dot_y + axis_x_six_r_axes5_z*v.six_r_S_dot_z;
-        const real six_r_S_dot_in_axes5_y = axis_y_six_r_axes5_x*v.six_r_S_dot_x +
-            axis_y_six_r_axes5_y*v.six_r_S_dot_y + axis_y_six_r_axes5_z*v.six_r_S_dot_z;
-        const real six_r_S_dot_in_axes5_z = axis_z_six_r_axes5_x*v.six_r_S_dot_x +
-            axis_z_six_r_axes5_y*v.six_r_S_dot_y + axis_z_six_r_axes5_z*v.six_r_S_dot_z;
-        /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real six_r_n_m1_t_10 = v.six_r_h_4_t*v.six_r_n_m1_t_5 -
-            v.six_r_e_2_in_axes5_z*v.six_r_n_m1_t_8;
-        const real six_r_n_m1_in_axes5_y = v.six_r_J_5_t*six_r_n_m1_t_10 +
-            v.six_r_e_4_in_axes5_x*v.six_r_n_m1_t_9;
-        const real six_r_end_p1_in_axes5_y = v.six_r_e_4_in_axes5_x*six_r_n_m1_t_10 -
-            v.six_r_J_5_t*v.six_r_n_m1_t_9;
-        const real six_r_n_m1_x = axis_y_six_r_axes5_x*six_r_n_m1_in_axes5_y -
-            axis_x_six_r_axes5_x*six_r_end_p1_in_axes5_y;
-        const real six_r_n_m1_y = axis_y_six_r_axes5_y*six_r_n_m1_in_axes5_y -
-            axis_x_six_r_axes5_y*six_r_end_p1_in_axes5_y;
-        const real six_r_n_m1_z = axis_y_six_r_axes5_z*six_r_n_m1_in_axes5_y -
-            axis_x_six_r_axes5_z*six_r_end_p1_in_axes5_y;
-        /* (six_r-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real six_r_end_p1_in_axes5_z = v.six_r_e_2_in_axes5_z*v.six_r_n_m1_t_5 +
-            v.six_r_h_4_t*v.six_r_n_m1_t_8;
-        const real six_r_n_m2_x = axis_z_six_r_axes5_x*six_r_end_p1_in_axes5_y -
-            axis_y_six_r_axes5_x*six_r_end_p1_in_axes5_z;
-        const real six_r_n_m2_y = axis_z_six_r_axes5_y*six_r_end_p1_in_axes5_y -
-            axis_y_six_r_axes5_y*six_r_end_p1_in_axes5_z;
-        const real six_r_n_m2_z = axis_z_six_r_axes5_z*six_r_end_p1_in_axes5_y -
-            axis_y_six_r_axes5_z*six_r_end_p1_in_axes5_z;
-        /* (six_r-w_1) force part of reciprocal wrench 1 */
-        const real six_r_w_1_t = v.six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y -
-            v.six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_w_1_t_2 = v.six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y -
-            v.six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_w_1_t_3 = v.six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
-            v.six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y;
-        const real six_r_w_1_t_4 = v.six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
-            v.six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y;
-        const real six_r_size = m->six_r_size[i];
-        const real six_r_w_1_t_5 = six_r_size*six_r_w_1_t;
-        const real six_r_w_1_t_6 = six_r_size*six_r_w_1_t_3;
-        const real six_r_w_1_t_7 = six_r_size*six_r_w_1_t_2;
-        const real six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4;
-        const real six_r_w_1_t_9 = six_r_size*(-v.six_r_J_5_t*six_r_n_m1_in_axes5_y -
-            v.six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y);
-        const real six_r_w_1_t_10 = v.six_r_J_5_t*six_r_end_p1_in_axes5_z*six_r_size;
-        const real six_r_w_1_t_11 = six_r_end_p1_in_axes5_y*six_r_size;
-        const real six_r_size_t = m->six_r_size_t[i];
-        const real six_r_w_1_t_12 = root(six_r_size_t + six_r_w_1_t_11*six_r_w_1_t_11);
-        const real inv_six_r_w_1_t_12 = 1/six_r_w_1_t_12;
-        const real six_r_platform_joint_offset_x = m->six_r_platform_joint_offset_x[i];
-        const real six_r_w_1_t_13 = inv_six_r_w_1_t_12*six_r_platform_joint_offset_x;
-        const real six_r_w_1_t_14 = inv_six_r_w_1_t_12*six_r_w_1_t_11;
-        const real six_r_w_1_t_15 = six_r_w_1_t_10*six_r_w_1_t_14;
-        const real six_r_w_1_t_16 = six_r_w_1_t_13*six_r_w_1_t_15;
-        const real six_r_w_1_t_17 = six_r_w_1_t_10 - six_r_w_1_t_14*six_r_w_1_t_15;
-        const real six_r_w_1_t_18 = v.six_r_v_1_in_axes5_y*six_r_w_1_t_13 -
-            six_r_w_1_t_14*six_r_w_1_t_6;
-        const real six_r_w_1_t_19 = v.six_r_v_1_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_18;
-        const real six_r_w_1_t_20 = six_r_w_1_t_6 + six_r_w_1_t_14*six_r_w_1_t_18;
-        const real six_r_w_1_t_21 = six_r_w_1_t_14*six_r_w_1_t_8;
-        const real six_r_w_1_t_22 = v.six_r_v_2_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_21;
-        const real six_r_w_1_t_23 = v.six_r_v_2_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_22;
-        const real six_r_w_1_t_24 = six_r_w_1_t_8 + six_r_w_1_t_14*six_r_w_1_t_22;
-        const real six_r_w_1_t_25 = six_r_w_1_t_21 - v.six_r_v_3_in_axes5_y*six_r_w_1_t_13;
-        const real six_r_w_1_t_26 = v.six_r_v_3_in_axes5_y + six_r_w_1_t_13*six_r_w_1_t_25;
-        const real six_r_w_1_t_27 = six_r_w_1_t_8 - six_r_w_1_t_14*six_r_w_1_t_25;
-        const real six_r_w_1_t_28 = root(v.six_r_v_4_in_axes5_z*v.six_r_v_4_in_axes5_z +
-            six_r_w_1_t_16*six_r_w_1_t_16 + six_r_w_1_t_17*six_r_w_1_t_17 +
-            six_r_w_1_t_9*six_r_w_1_t_9);
-        const real inv_six_r_w_1_t_28 = 1/six_r_w_1_t_28;
-        const real six_r_w_1_t_29 = inv_six_r_w_1_t_28*six_r_w_1_t_16;
-        const real six_r_w_1_t_30 = inv_six_r_w_1_t_28*v.six_r_v_4_in_axes5_z;
-        const real six_r_w_1_t_31 = inv_six_r_w_1_t_28*six_r_w_1_t_9;
-        const real six_r_w_1_t_32 = inv_six_r_w_1_t_28*six_r_w_1_t_17;
-        const real six_r_w_1_t_33 = six_r_w_1_t_19*six_r_w_1_t_29 + six_r_w_1_t_20*six_r_w_1_t_32
-            + six_r_w_1_t_31*six_r_w_1_t_5 - v.six_r_v_1_in_axes5_z*six_r_w_1_t_30;
-        const real six_r_w_1_t_34 = six_r_w_1_t_29*six_r_w_1_t_33 - six_r_w_1_t_19;
-        const real six_r_w_1_t_35 = v.six_r_v_1_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_33;
-        const real six_r_w_1_t_36 = six_r_w_1_t_31*six_r_w_1_t_33 - six_r_w_1_t_5;
-        const real six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_33 - six_r_w_1_t_20;
-        const real six_r_w_1_t_38 = six_r_w_1_t_31*six_r_w_1_t_7;
-        const real six_r_w_1_t_39 = six_r_w_1_t_38 + six_r_w_1_t_23*six_r_w_1_t_29 +
-            six_r_w_1_t_24*six_r_w_1_t_32 - v.six_r_v_2_in_axes5_z*six_r_w_1_t_30;
-        const real six_r_w_1_t_40 = six_r_w_1_t_29*six_r_w_1_t_39 - six_r_w_1_t_23;
-        const real six_r_w_1_t_41 = v.six_r_v_2_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_39;
-        const real six_r_w_1_t_42 = six_r_w_1_t_31*six_r_w_1_t_39 - six_r_w_1_t_7;
-        const real six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_39 - six_r_w_1_t_24;
-        const real six_r_w_1_t_44 = six_r_w_1_t_38 + six_r_w_1_t_26*six_r_w_1_t_29 +
-            six_r_w_1_t_27*six_r_w_1_t_32 - v.six_r_v_3_in_axes5_z*six_r_w_1_t_30;
-        const real six_r_w_1_t_45 = six_r_w_1_t_29*six_r_w_1_t_44 - six_r_w_1_t_26;
-        const real six_r_w_1_t_46 = v.six_r_v_3_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_44;
-        const real six_r_w_1_t_47 = six_r_w_1_t_31*six_r_w_1_t_44 - six_r_w_1_t_7;
-        const real six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_44 - six_r_w_1_t_27;
-        const real six_r_w_1_t_49 = root(v.six_r_v_1_in_axes5_x*v.six_r_v_1_in_axes5_x +
-            six_r_w_1_t_34*six_r_w_1_t_34 + six_r_w_1_t_35*six_r_w_1_t_35 +
-            six_r_w_1_t_36*six_r_w_1_t_36 + six_r_w_1_t_37*six_r_w_1_t_37);
-        const real inv_six_r_w_1_t_49 = 1/six_r_w_1_t_49;
-        const real six_r_w_1_t_50 = inv_six_r_w_1_t_49*v.six_r_v_1_in_axes5_x;
-        const real six_r_w_1_t_51 = inv_six_r_w_1_t_49*six_r_w_1_t_34;
-        const real six_r_w_1_t_52 = inv_six_r_w_1_t_49*six_r_w_1_t_35;
-        const real six_r_w_1_t_53 = inv_six_r_w_1_t_49*six_r_w_1_t_36;
-        const real six_r_w_1_t_54 = inv_six_r_w_1_t_49*six_r_w_1_t_37;
-        const real six_r_w_1_t_55 = v.six_r_v_2_in_axes5_x*six_r_w_1_t_50 +
-            six_r_w_1_t_40*six_r_w_1_t_51 + six_r_w_1_t_41*six_r_w_1_t_52 +
-            six_r_w_1_t_42*six_r_w_1_t_53 + six_r_w_1_t_43*six_r_w_1_t_54;
-        const real six_r_w_1_t_56 = v.six_r_v_2_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_55;
-        const real six_r_w_1_t_57 = six_r_w_1_t_40 - six_r_w_1_t_51*six_r_w_1_t_55;
-        const real six_r_w_1_t_58 = six_r_w_1_t_41 - six_r_w_1_t_52*six_r_w_1_t_55;
-        const real six_r_w_1_t_59 = six_r_w_1_t_42 - six_r_w_1_t_53*six_r_w_1_t_55;
-        const real six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_55;
-        const real six_r_w_1_t_61 = v.six_r_v_3_in_axes5_x*six_r_w_1_t_50 +
-            six_r_w_1_t_45*six_r_w_1_t_51 + six_r_w_1_t_46*six_r_w_1_t_52 +
-            six_r_w_1_t_47*six_r_w_1_t_53 + six_r_w_1_t_48*six_r_w_1_t_54;
-        const real six_r_w_1_t_62 = v.six_r_v_3_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_61;
-        const real six_r_w_1_t_63 = six_r_w_1_t_45 - six_r_w_1_t_51*six_r_w_1_t_61;
-        const real six_r_w_1_t_64 = six_r_w_1_t_46 - six_r_w_1_t_52*six_r_w_1_t_61;
-        const real six_r_w_1_t_65 = six_r_w_1_t_47 - six_r_w_1_t_53*six_r_w_1_t_61;
-        const real six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_61;
-        const real six_r_w_1_t_67 = root(six_r_w_1_t_56*six_r_w_1_t_56 +
-            six_r_w_1_t_57*six_r_w_1_t_57 + six_r_w_1_t_58*six_r_w_1_t_58 +
-            six_r_w_1_t_59*six_r_w_1_t_59 + six_r_w_1_t_60*six_r_w_1_t_60);
-        const real inv_six_r_w_1_t_67 = 1/six_r_w_1_t_67;
-        const real six_r_w_1_t_68 = inv_six_r_w_1_t_67*six_r_w_1_t_56;
-        const real six_r_w_1_t_69 = inv_six_r_w_1_t_67*six_r_w_1_t_57;
-        const real six_r_w_1_t_70 = inv_six_r_w_1_t_67*six_r_w_1_t_58;
-        const real six_r_w_1_t_71 = inv_six_r_w_1_t_67*six_r_w_1_t_59;
-        const real six_r_w_1_t_72 = inv_six_r_w_1_t_67*six_r_w_1_t_60;
-        const real six_r_w_1_t_73 = six_r_w_1_t_62*six_r_w_1_t_68 + six_r_w_1_t_63*six_r_w_1_t_69
-            + six_r_w_1_t_64*six_r_w_1_t_70 + six_r_w_1_t_65*six_r_w_1_t_71 +
-            six_r_w_1_t_66*six_r_w_1_t_72;
-        const real six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_73;
-        const real six_r_w_1_t_75 = six_r_w_1_t_63 - six_r_w_1_t_69*six_r_w_1_t_73;
-        const real six_r_w_1_t_76 = six_r_w_1_t_64 - six_r_w_1_t_70*six_r_w_1_t_73;
-        const real six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_73;
-        const real six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_73;
-        const real six_r_w_1_t_79 = root(six_r_w_1_t_74*six_r_w_1_t_74 +
-            six_r_w_1_t_75*six_r_w_1_t_75 + six_r_w_1_t_76*six_r_w_1_t_76 +
-            six_r_w_1_t_77*six_r_w_1_t_77 + six_r_w_1_t_78*six_r_w_1_t_78);
-        const real inv_six_r_w_1_t_79 = 1/six_r_w_1_t_79;
-        const real six_r_w_1_t_80 = inv_six_r_w_1_t_79*six_r_w_1_t_74;
-        const real six_r_w_1_t_81 = inv_six_r_w_1_t_79*six_r_w_1_t_75;
-        const real six_r_w_1_t_82 = inv_six_r_w_1_t_79*six_r_w_1_t_76;
-        const real six_r_w_1_t_83 = inv_six_r_w_1_t_49*inv_six_r_w_1_t_67*six_r_w_1_t_55;
-        const real six_r_w_1_t_84 = inv_six_r_w_1_t_79*(inv_six_r_w_1_t_49*six_r_w_1_t_61 -
-            six_r_w_1_t_73*six_r_w_1_t_83);
-        const real six_r_w_1_in_axes5_x = inv_six_r_w_1_t_49*six_r_w_1_t_50 -
-            six_r_w_1_t_68*six_r_w_1_t_83 - six_r_w_1_t_80*six_r_w_1_t_84;
-        const real six_r_w_1_in_axes5_y = six_r_w_1_t_69*six_r_w_1_t_83 +
-            six_r_w_1_t_81*six_r_w_1_t_84 - inv_six_r_w_1_t_49*six_r_w_1_t_51;
-        const real six_r_w_1_in_axes5_z = inv_six_r_w_1_t_49*six_r_w_1_t_52 -
-            six_r_w_1_t_70*six_r_w_1_t_83 - six_r_w_1_t_82*six_r_w_1_t_84;
-        /* (six_r-m1_w_1) moment part 1 of reciprocal wrench 1 */
-        const real six_r_m1_w_1_t = inv_six_r_w_1_t_79*six_r_w_1_t_77;
-        const real six_r_m1_w_1_t_2 = six_r_size*(six_r_m1_w_1_t*six_r_w_1_t_84 +
-            six_r_w_1_t_71*six_r_w_1_t_83 - inv_six_r_w_1_t_49*six_r_w_1_t_53);
-        /* (six_r-m2_w_1) moment part 2 of reciprocal wrench 1 */
-        const real six_r_m2_w_1_t = inv_six_r_w_1_t_79*six_r_w_1_t_78;
-        const real six_r_m2_w_1_t_2 = six_r_size*(six_r_m2_w_1_t*six_r_w_1_t_84 +
-            six_r_w_1_t_72*six_r_w_1_t_83 - inv_six_r_w_1_t_49*six_r_w_1_t_54);
-        /* (six_r-w_2) force part of reciprocal wrench 2 */
-        const real six_r_w_2_t = inv_six_r_w_1_t_67*inv_six_r_w_1_t_79*six_r_w_1_t_73;
-        const real six_r_w_2_in_axes5_x = inv_six_r_w_1_t_67*six_r_w_1_t_68 -
-            six_r_w_1_t_80*six_r_w_2_t;
-        const real six_r_w_2_in_axes5_y = six_r_w_1_t_81*six_r_w_2_t -
-            inv_six_r_w_1_t_67*six_r_w_1_t_69;
-        const real six_r_w_2_in_axes5_z = inv_six_r_w_1_t_67*six_r_w_1_t_70 -
-            six_r_w_1_t_82*six_r_w_2_t;
-        const real six_r_w_2_x = axis_x_six_r_axes5_x*six_r_w_2_in_axes5_x +
-            axis_y_six_r_axes5_x*six_r_w_2_in_axes5_y + axis_z_six_r_axes5_x*six_r_w_2_in_axes5_z;
-        const real six_r_w_2_y = axis_x_six_r_axes5_y*six_r_w_2_in_axes5_x +
-            axis_y_six_r_axes5_y*six_r_w_2_in_axes5_y + axis_z_six_r_axes5_y*six_r_w_2_in_axes5_z;
-        const real six_r_w_2_z = axis_x_six_r_axes5_z*six_r_w_2_in_axes5_x +
-            axis_y_six_r_axes5_z*six_r_w_2_in_axes5_y + axis_z_six_r_axes5_z*six_r_w_2_in_axes5_z;
-        /* (six_r-m1_w_2) moment part 1 of reciprocal wrench 2 */
-        const real six_r_m1_w_2 = six_r_size*(inv_six_r_w_1_t_67*six_r_w_1_t_71 -
-            six_r_m1_w_1_t*six_r_w_2_t);
-        /* (six_r-m2_w_2) moment part 2 of reciprocal wrench 2 */
-        const real six_r_m2_w_2 = six_r_size*(inv_six_r_w_1_t_67*six_r_w_1_t_72 -
-            six_r_m2_w_1_t*six_r_w_2_t);
-        /* (six_r-w_3) force part of reciprocal wrench 3 */
-        const real six_r_w_3_in_axes5_x = inv_six_r_w_1_t_79*six_r_w_1_t_80;
-        const real six_r_w_3_t = inv_six_r_w_1_t_79*six_r_w_1_t_81;
-        const real six_r_w_3_in_axes5_z = inv_six_r_w_1_t_79*six_r_w_1_t_82;
-        /* (six_r-m1_w_3) moment part 1 of reciprocal wrench 3 */
-        const real six_r_m1_w_3 = inv_six_r_w_1_t_79*six_r_m1_w_1_t*six_r_size;
-        /* (six_r-m2_w_3) moment part 2 of reciprocal wrench 3 */
-        const real six_r_m2_w_3 = inv_six_r_w_1_t_79*six_r_m2_w_1_t*six_r_size;
-        /* (six_r-w_4) force part of reciprocal wrench 4 */
-        const real six_r_w_4_t = inv_six_r_w_1_t_28*inv_six_r_w_1_t_49*six_r_w_1_t_33;
-        const real six_r_w_4_t_2 = inv_six_r_w_1_t_67*(inv_six_r_w_1_t_28*six_r_w_1_t_39 -
-            six_r_w_1_t_55*six_r_w_4_t);
-        const real six_r_w_4_t_3 = inv_six_r_w_1_t_79*(six_r_w_1_t_61*six_r_w_4_t +
-            six_r_w_1_t_73*six_r_w_4_t_2 - inv_six_r_w_1_t_28*six_r_w_1_t_44);
-        const real six_r_w_4_in_axes5_x = six_r_w_1_t_50*six_r_w_4_t +
-            six_r_w_1_t_68*six_r_w_4_t_2 - six_r_w_1_t_80*six_r_w_4_t_3;
-        const real six_r_w_4_in_axes5_y = six_r_w_1_t_81*six_r_w_4_t_3 -
-            inv_six_r_w_1_t_28*six_r_w_1_t_29 - six_r_w_1_t_51*six_r_w_4_t -
-            six_r_w_1_t_69*six_r_w_4_t_2;
-        const real six_r_w_4_in_axes5_z = inv_six_r_w_1_t_28*six_r_w_1_t_30 +
-            six_r_w_1_t_52*six_r_w_4_t + six_r_w_1_t_70*six_r_w_4_t_2 -
-            six_r_w_1_t_82*six_r_w_4_t_3;
-        /* (six_r-m1_w_4) moment part 1 of reciprocal wrench 4 */
-        const real six_r_m1_w_4 = six_r_size*(inv_six_r_w_1_t_28*six_r_w_1_t_31 +
-            six_r_w_1_t_53*six_r_w_4_t + six_r_w_1_t_71*six_r_w_4_t_2 -
-            six_r_m1_w_1_t*six_r_w_4_t_3);
-        /* (six_r-m2_w_4) moment part 2 of reciprocal wrench 4 */
-        const real six_r_m2_w_4 = six_r_size*(inv_six_r_w_1_t_28*six_r_w_1_t_32 +
-            six_r_w_1_t_54*six_r_w_4_t + six_r_w_1_t_72*six_r_w_4_t_2 -
-            six_r_m2_w_1_t*six_r_w_4_t_3);
-        /* (six_r-w_5) force part of reciprocal wrench 5 */
-        const real six_r_w_5_t = inv_six_r_w_1_t_12*inv_six_r_w_1_t_28*six_r_w_1_t_15;
-        const real six_r_w_5_t_2 = inv_six_r_w_1_t_49*(inv_six_r_w_1_t_12*six_r_w_1_t_18 +
-            six_r_w_1_t_33*six_r_w_5_t);
-        const real six_r_w_5_t_3 = inv_six_r_w_1_t_67*(inv_six_r_w_1_t_12*six_r_w_1_t_22 +
-            six_r_w_1_t_39*six_r_w_5_t - six_r_w_1_t_55*six_r_w_5_t_2);
-        const real six_r_w_5_t_4 = inv_six_r_w_1_t_79*(inv_six_r_w_1_t_12*six_r_w_1_t_25 +
-            six_r_w_1_t_61*six_r_w_5_t_2 + six_r_w_1_t_73*six_r_w_5_t_3 -
-            six_r_w_1_t_44*six_r_w_5_t);
-        const real six_r_w_5_t_5 = six_r_w_1_t_50*six_r_w_5_t_2 + six_r_w_1_t_68*six_r_w_5_t_3 -
-            six_r_w_1_t_80*six_r_w_5_t_4;
-        const real six_r_w_5_in_axes5_y = inv_six_r_w_1_t_12*six_r_w_1_t_13 +
-            six_r_w_1_t_29*six_r_w_5_t + six_r_w_1_t_51*six_r_w_5_t_2 +
-            six_r_w_1_t_69*six_r_w_5_t_3 - six_r_w_1_t_81*six_r_w_5_t_4;
-        const real six_r_w_5_in_axes5_z = six_r_w_1_t_82*six_r_w_5_t_4 -
-            six_r_w_1_t_30*six_r_w_5_t - six_r_w_1_t_52*six_r_w_5_t_2 -
-            six_r_w_1_t_70*six_r_w_5_t_3;
-        /* (six_r-m1_w_5) moment part 1 of reciprocal wrench 5 */
-        const real six_r_m1_w_5_t = six_r_size*(six_r_w_1_t_31*six_r_w_5_t +
-            six_r_w_1_t_53*six_r_w_5_t_2 + six_r_w_1_t_71*six_r_w_5_t_3 -
-            six_r_m1_w_1_t*six_r_w_5_t_4);
-        /* (six_r-m2_w_5) moment part 2 of reciprocal wrench 5 */
-        const real six_r_m2_w_5_t = six_r_size*(six_r_w_1_t_32*six_r_w_5_t +
-            six_r_w_1_t_54*six_r_w_5_t_2 + six_r_w_1_t_72*six_r_w_5_t_3 -
-            inv_six_r_w_1_t_12*six_r_w_1_t_14 - six_r_m2_w_1_t*six_r_w_5_t_4);
-        /* (six_r-o_1) moment part of reciprocal wrench 1 */
-        const real six_r_o_1_in_axes5_x = six_r_end_p1_in_axes5_y*six_r_m1_w_1_t_2;
-        const real six_r_o_1_t = six_r_end_p1_in_axes5_y*six_r_m2_w_1_t_2;
-        const real six_r_o_1_in_axes5_y = six_r_end_p1_in_axes5_z*six_r_m2_w_1_t_2 -
-            six_r_m1_w_1_t_2*six_r_n_m1_in_axes5_y;
-        /* (six_r-o_2) moment part of reciprocal wrench 2 */
-        const real six_r_o_2_t = six_r_end_p1_in_axes5_y*six_r_m1_w_2;
-        const real six_r_o_2_in_axes5_z = six_r_end_p1_in_axes5_y*six_r_m2_w_2;
-        const real six_r_o_2_in_axes5_y = six_r_m1_w_2*six_r_n_m1_in_axes5_y -
-            six_r_end_p1_in_axes5_z*six_r_m2_w_2;
-        const real six_r_o_2_x = six_r_m1_w_2*six_r_n_m1_x + six_r_m2_w_2*six_r_n_m2_x;
-        const real six_r_o_2_y = six_r_m1_w_2*six_r_n_m1_y + six_r_m2_w_2*six_r_n_m2_y;
-        const real six_r_o_2_z = six_r_m1_w_2*six_r_n_m1_z + six_r_m2_w_2*six_r_n_m2_z;
-        /* (six_r-o_3) moment part of reciprocal wrench 3 */
-        const real six_r_o_3_t = six_r_end_p1_in_axes5_y*six_r_m1_w_3;
-        const real six_r_o_3_in_axes5_z = six_r_end_p1_in_axes5_y*six_r_m2_w_3;
-        const real six_r_o_3_in_axes5_y = six_r_m1_w_3*six_r_n_m1_in_axes5_y -
-            six_r_end_p1_in_axes5_z*six_r_m2_w_3;
-        /* (six_r-o_4) moment part of reciprocal wrench 4 */
-        const real six_r_o_4_t = six_r_end_p1_in_axes5_y*six_r_m1_w_4;
-        const real six_r_o_4_in_axes5_z = six_r_end_p1_in_axes5_y*six_r_m2_w_4;
-        const real six_r_o_4_in_axes5_y = six_r_m1_w_4*six_r_n_m1_in_axes5_y -
-            six_r_end_p1_in_axes5_z*six_r_m2_w_4;
-        /* (six_r-o_5) moment part of reciprocal wrench 5 */
-        const real six_r_o_5_in_axes5_x = six_r_end_p1_in_axes5_y*six_r_m1_w_5_t;
-        const real six_r_o_5_t = six_r_end_p1_in_axes5_y*six_r_m2_w_5_t;
-        const real six_r_o_5_in_axes5_y = six_r_end_p1_in_axes5_z*six_r_m2_w_5_t -
-            six_r_m1_w_5_t*six_r_n_m1_in_axes5_y;
-        /* (six_r-eta_1) rate at which the joints turn along moment direction 1 */
-        const real omega_x = V[3*w + j];
-        const real omega_y = V[4*w + j];
-        const real omega_z = V[5*w + j];
-        const real six_r_eta_1 = omega_x*six_r_n_m1_x + omega_y*six_r_n_m1_y +
-            omega_z*six_r_n_m1_z;
-        /* (six_r-eta_2) rate at which the joints turn along moment direction 2 */
-        const real six_r_eta_2 = omega_x*six_r_n_m2_x + omega_y*six_r_n_m2_y +
-            omega_z*six_r_n_m2_z;
-        /* (six_r-qd_1) rate of joint 1 */
-        const real six_r_qd_1_t = six_r_eta_1*six_r_size;
-        const real six_r_qd_1_t_2 = six_r_eta_2*six_r_size;
-        const real six_r_qd_1_t_3 = inv_six_r_w_1_t_79*(six_r_S_dot_in_axes5_x*six_r_w_1_t_80 +
-            six_r_S_dot_in_axes5_z*six_r_w_1_t_82 + six_r_m1_w_1_t*six_r_qd_1_t +
-            six_r_m2_w_1_t*six_r_qd_1_t_2 - six_r_S_dot_in_axes5_y*six_r_w_1_t_81);
-        const real six_r_qd_1_t_4 = inv_six_r_w_1_t_67*(six_r_S_dot_in_axes5_x*six_r_w_1_t_68 +
-            six_r_S_dot_in_axes5_z*six_r_w_1_t_70 + six_r_qd_1_t*six_r_w_1_t_71 +
-            six_r_qd_1_t_2*six_r_w_1_t_72 - six_r_S_dot_in_axes5_y*six_r_w_1_t_69 -
-            six_r_qd_1_t_3*six_r_w_1_t_73);
-        const real six_r_qd_1_t_5 = inv_six_r_w_1_t_49*(six_r_S_dot_in_axes5_y*six_r_w_1_t_51 +
-            six_r_qd_1_t_3*six_r_w_1_t_61 + six_r_qd_1_t_4*six_r_w_1_t_55 -
-            six_r_S_dot_in_axes5_x*six_r_w_1_t_50 - six_r_S_dot_in_axes5_z*six_r_w_1_t_52 -
-            six_r_qd_1_t*six_r_w_1_t_53 - six_r_qd_1_t_2*six_r_w_1_t_54);
-        /* (six_r-qd_4) rate of joint 4 */
-        const real six_r_qd_4 = inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_z*six_r_w_1_t_30 +
-            six_r_qd_1_t*six_r_w_1_t_31 + six_r_qd_1_t_2*six_r_w_1_t_32 +
-            six_r_qd_1_t_3*six_r_w_1_t_44 + six_r_qd_1_t_4*six_r_w_1_t_39 -
-            six_r_S_dot_in_axes5_y*six_r_w_1_t_29 - six_r_qd_1_t_5*six_r_w_1_t_33);
-        /* (six_r-qd_5) rate of joint 5 */
-        const real six_r_qd_5 = inv_six_r_w_1_t_12*(six_r_S_dot_in_axes5_y*six_r_w_1_t_13 +
-            six_r_qd_1_t_2*six_r_w_1_t_14 + six_r_qd_1_t_3*six_r_w_1_t_25 +
-            six_r_qd_1_t_5*six_r_w_1_t_18 - six_r_qd_1_t_4*six_r_w_1_t_22 -
-            six_r_qd_4*six_r_w_1_t_15);
-        /* (six_r-omega_1) angular velocity of link 1 */
-        const real six_r_omega_1_in_axes2_x = -v.six_r_c_2*six_r_qd_1_t_5;
-        const real six_r_omega_1_in_axes2_y = six_r_qd_1_t_5*v.six_r_s_2;
-        const real six_r_omega_1_t = v.six_r_e_1_in_axes5_x*six_r_qd_1_t_5;
-        const real six_r_omega_1_t_2 = v.six_r_e_1_in_axes5_y*six_r_qd_1_t_5;
-        const real six_r_omega_1_t_3 = v.six_r_e_1_in_axes5_z*six_r_qd_1_t_5;
-        /* (six_r-W_1) centripetal tensor of link 1 */
-        const real six_r_W_1_in_axes5_xy = six_r_omega_1_t*six_r_omega_1_t_2;
-        const real six_r_W_1_in_axes5_xz = six_r_omega_1_t*six_r_omega_1_t_3;
-        const real six_r_W_1_in_axes5_yz = six_r_omega_1_t_2*six_r_omega_1_t_3;
-        /* (six_r-omega_2) angular velocity of link 2 */
-        const real six_r_omega_2_in_axes3_x = six_r_omega_1_in_axes2_x*v.six_r_s_3 -
-            v.six_r_c_3*six_r_omega_1_in_axes2_y;
-        const real six_r_omega_2_in_axes3_y = v.six_r_c_3*six_r_omega_1_in_axes2_x +
-            six_r_omega_1_in_axes2_y*v.six_r_s_3;
-        const real six_r_omega_2_in_axes5_x = v.six_r_e_2_in_axes5_x*six_r_qd_1_t_4 -
-            six_r_omega_1_t;
-        const real six_r_omega_2_in_axes5_y = v.six_r_e_2_in_axes5_y*six_r_qd_1_t_4 -
-            six_r_omega_1_t_2;
-        const real six_r_omega_2_in_axes5_z = v.six_r_e_2_in_axes5_z*six_r_qd_1_t_4 -
-            six_r_omega_1_t_3;
-        /* (six_r-W_2) centripetal tensor of link 2 */
-        const real six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_4;
-        const real six_r_W_2_in_axes2_xy = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_y;
-        const real six_r_W_2_in_axes5_xy = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_y;
-        const real six_r_W_2_in_axes5_xz = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_z;
-        const real six_r_W_2_in_axes5_yz = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_z;
-        /* (six_r-omega_3) angular velocity of link 3 */
-        const real six_r_omega_3_in_axes3_z = six_r_qd_1_t_3 + six_r_qd_1_t_4;
-        const real six_r_omega_3_in_axes4_x = v.six_r_h_4_t*six_r_omega_3_in_axes3_z -
-            v.six_r_e_2_in_axes5_z*six_r_omega_2_in_axes3_x;
-        const real six_r_omega_3_in_axes4_y = v.six_r_e_2_in_axes5_z*six_r_omega_3_in_axes3_z +
-            v.six_r_h_4_t*six_r_omega_2_in_axes3_x;
-        const real six_r_omega_3_t = v.six_r_J_5_t*six_r_omega_3_in_axes4_x;
-        const real six_r_omega_3_t_2 = v.six_r_e_4_in_axes5_x*six_r_omega_3_in_axes4_x;
-        const real six_r_omega_3_in_axes5_x = six_r_omega_3_t +
-            v.six_r_e_4_in_axes5_x*six_r_omega_2_in_axes3_y;
-        const real six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 -
-            v.six_r_J_5_t*six_r_omega_2_in_axes3_y;
-        /* (six_r-W_3) centripetal tensor of link 3 */
-        const real six_r_W_3_t = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_x;
-        const real six_r_W_3_t_2 = six_r_omega_3_in_axes3_z*six_r_omega_3_in_axes3_z;
-        const real six_r_W_3_in_axes3_xy = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_y;
-        const real six_r_W_3_in_axes3_xz = six_r_omega_2_in_axes3_x*six_r_omega_3_in_axes3_z;
-        const real six_r_W_3_t_3 = six_r_W_3_t + six_r_W_3_t_2;
-        const real six_r_W_3_in_axes3_yz = six_r_omega_2_in_axes3_y*six_r_omega_3_in_axes3_z;
-        const real six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y;
-        /* (six_r-omega_4) angular velocity of link 4 */
-        const real six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y + six_r_qd_4;
-        const real six_r_omega_4_in_axes5_x = six_r_omega_3_t +
-            v.six_r_e_4_in_axes5_x*six_r_omega_4_in_axes4_z;
-        const real six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 -
-            v.six_r_J_5_t*six_r_omega_4_in_axes4_z;
-        /* (six_r-W_4) centripetal tensor of link 4 */
-        const real six_r_W_4_in_axes4_xy = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_y;
-        const real six_r_W_4_in_axes4_xz = six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes4_z;
-        const real six_r_W_4_in_axes4_yz = six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes4_z;
-        const real six_r_W_4_in_axes5_xy = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_y;
-        /* (six_r-omega_5) angular velocity of link 5 */
-        const real six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_y + six_r_qd_5;
-        /* (six_r-W_5) centripetal tensor of link 5 */
-        const real six_r_W_5_t = six_r_omega_4_in_axes5_y*six_r_omega_4_in_axes5_y;
-        const real six_r_W_5_t_2 = six_r_omega_5_in_axes5_z*six_r_omega_5_in_axes5_z;
-        const real six_r_W_5_t_3 = six_r_W_5_t + six_r_W_5_t_2;
-        const real six_r_W_5_in_axes5_xz = six_r_omega_4_in_axes5_x*six_r_omega_5_in_axes5_z;
-        const real six_r_W_5_in_axes5_yz = six_r_omega_4_in_axes5_y*six_r_omega_5_in_axes5_z;
-        /* (six_r-u_1) centripetal acceleration of the connection point */
-        const real six_r_u_1_in_axes5_x = axis_x_six_r_axes5_x*v.six_r_u_1_x +
-            axis_x_six_r_axes5_y*v.six_r_u_1_y + axis_x_six_r_axes5_z*v.six_r_u_1_z;
-        const real six_r_u_1_in_axes5_y = axis_y_six_r_axes5_x*v.six_r_u_1_x +
-            axis_y_six_r_axes5_y*v.six_r_u_1_y + axis_y_six_r_axes5_z*v.six_r_u_1_z;
-        const real six_r_u_1_in_axes5_z = axis_z_six_r_axes5_x*v.six_r_u_1_x +
-            axis_z_six_r_axes5_y*v.six_r_u_1_y + axis_z_six_r_axes5_z*v.six_r_u_1_z;
-        /* (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_4;
-        const real six_r_zeta_2_in_axes3_x = six_r_W_2_in_axes2_yz*v.six_r_s_3 -
-            v.six_r_c_3*six_r_zeta_2_in_axes2_y;
-        const real six_r_zeta_2_in_axes3_y = six_r_W_2_in_axes2_yz*v.six_r_c_3 +
-            v.six_r_s_3*six_r_zeta_2_in_axes2_y;
-        const real six_r_zeta_2_t = v.six_r_e_2_in_axes5_z*six_r_zeta_2_in_axes3_x;
-        const real six_r_zeta_2_in_axes5_z = v.six_r_h_4_t*six_r_zeta_2_in_axes3_x;
-        const real six_r_zeta_2_in_axes5_x = v.six_r_e_4_in_axes5_x*six_r_zeta_2_in_axes3_y -
-            v.six_r_J_5_t*six_r_zeta_2_t;
-        const real six_r_zeta_2_in_axes5_y = -v.six_r_J_5_t*six_r_zeta_2_in_axes3_y -
-            v.six_r_e_4_in_axes5_x*six_r_zeta_2_t;
-        /* (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real six_r_zeta_3_in_axes3_x = six_r_omega_2_in_axes3_y*six_r_qd_1_t_3;
-        const real six_r_zeta_3_t = six_r_omega_2_in_axes3_x*six_r_qd_1_t_3;
-        /* (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real six_r_beta_3_in_axes3_x = six_r_zeta_2_in_axes3_x + six_r_zeta_3_in_axes3_x;
-        const real six_r_beta_3_in_axes3_y = six_r_zeta_2_in_axes3_y - six_r_zeta_3_t;
-        const real six_r_beta_3_t = six_r_beta_3_in_axes3_x*v.six_r_e_2_in_axes5_z;
-        const real six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*v.six_r_h_4_t;
-        /* (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
-        const real six_r_zeta_4_in_axes4_x = six_r_omega_3_in_axes4_y*six_r_qd_4;
-        const real six_r_zeta_4_t = six_r_omega_3_in_axes4_x*six_r_qd_4;
-        /* (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations */
-        const real six_r_beta_4_in_axes4_x = six_r_zeta_4_in_axes4_x - six_r_beta_3_t;
-        const real six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y - six_r_zeta_4_t;
-        const real six_r_beta_4_t = six_r_beta_3_in_axes3_y*v.six_r_e_4_in_axes5_x;
-        const real six_r_beta_4_in_axes5_x = six_r_beta_4_t +
-            v.six_r_J_5_t*six_r_beta_4_in_axes4_x;
-        const real six_r_beta_4_t_2 = v.six_r_J_5_t*six_r_beta_3_in_axes3_y;
-        const real six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*v.six_r_e_4_in_axes5_x -
-            six_r_beta_4_t_2;
-        /* (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5 */
-        const real six_r_zeta_5_in_axes5_x = six_r_omega_4_in_axes5_y*six_r_qd_5;
-        const real six_r_zeta_5_t = six_r_omega_4_in_axes5_x*six_r_qd_5;
-        /* (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations */
-        const real six_r_beta_5_in_axes5_x = six_r_beta_4_in_axes5_x + six_r_zeta_5_in_axes5_x;
-        const real six_r_beta_5_in_axes5_y = six_r_beta_4_in_axes5_y - six_r_zeta_5_t;
-        /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
-        const real six_r_bias_t = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y;
-        const real six_r_bias_t_2 = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x;
-        const real six_r_bias_t_6 = v.six_r_bias_t_4*v.six_r_e_2_in_axes5_z;
-        const real six_r_d_2_in_axes5_z = v.six_r_bias_t_4*v.six_r_h_4_t;
-        const real six_r_d_2_in_axes5_x = v.six_r_bias_t_5*v.six_r_e_4_in_axes5_x -
-            v.six_r_J_5_t*six_r_bias_t_6;
-        const real six_r_d_2_in_axes5_y = -v.six_r_J_5_t*v.six_r_bias_t_5 -
-            six_r_bias_t_6*v.six_r_e_4_in_axes5_x;
-        const real six_r_bias_t_7 = six_r_omega_1_t*six_r_omega_1_t;
-        const real six_r_bias_t_8 = six_r_omega_1_t_2*six_r_omega_1_t_2;
-        const real six_r_bias_t_9 = six_r_omega_1_t_3*six_r_omega_1_t_3;
-        const real six_r_bias_t_12 = v.six_r_bias_t_10*v.six_r_e_2_in_axes5_z;
-        const real six_r_d_3_in_axes5_z = v.six_r_bias_t_10*v.six_r_h_4_t;
-        const real six_r_d_3_in_axes5_x = v.six_r_bias_t_11*v.six_r_e_4_in_axes5_x -
-            v.six_r_J_5_t*six_r_bias_t_12;
-        const real six_r_d_3_in_axes5_y = -v.six_r_J_5_t*v.six_r_bias_t_11 -
-            six_r_bias_t_12*v.six_r_e_4_in_axes5_x;
-        const real six_r_bias_t_13 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x;
-        const real six_r_bias_t_14 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y;
-        const real six_r_bias_t_15 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z;
-        const real six_r_joint4_offset_x = m->six_r_joint4_offset_x[i];
-        const real six_r_d_4_in_axes5_x = v.six_r_e_4_in_axes5_x*six_r_joint4_offset_x;
-        const real six_r_bias_t_16 = v.six_r_J_5_t*six_r_joint4_offset_x;
-        const real six_r_joint5_offset_x = m->six_r_joint5_offset_x[i];
-        const real six_r_d_5_in_axes5_x = v.six_r_e_4_in_axes5_x*six_r_joint5_offset_x;
-        const real six_r_bias_t_17 = v.six_r_J_5_t*six_r_joint5_offset_x;
-        const real six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y;
-        const real six_r_bias_in_axes5_x = six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_y +
-            six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_z +
-            six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
-            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) -
-            six_r_W_5_t_3*six_r_platform_joint_offset_x - six_r_bias_t_16*(six_r_W_3_in_axes5_xy -
-            six_r_beta_3_in_axes4_y) - six_r_bias_t_17*(six_r_W_4_in_axes5_xy -
-            six_r_beta_4_in_axes4_y) - six_r_d_2_in_axes5_x*(six_r_bias_t_8 + six_r_bias_t_9) -
-            six_r_d_3_in_axes5_x*(six_r_bias_t_14 + six_r_bias_t_15) -
-            six_r_d_4_in_axes5_x*(six_r_bias_t +
-            six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) - six_r_d_5_in_axes5_x*(six_r_W_5_t
-            + six_r_bias_t);
-        const real six_r_bias_in_axes5_y = six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_x +
-            six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_z + six_r_bias_t_16*(six_r_bias_t +
-            six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) + six_r_bias_t_17*(six_r_bias_t +
-            six_r_bias_t_2) + six_r_bias_t_18*six_r_d_5_in_axes5_x +
-            six_r_bias_t_18*six_r_platform_joint_offset_x +
-            six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
-            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
-            six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_y) -
-            six_r_d_2_in_axes5_y*(six_r_bias_t_7 + six_r_bias_t_9) -
-            six_r_d_3_in_axes5_y*(six_r_bias_t_13 + six_r_bias_t_15);
-        const real six_r_bias_in_axes5_z = six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_x +
-            six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_y +
-            six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
-            six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
-            six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*v.six_r_e_4_in_axes5_x +
-            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) +
-            six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
-            six_r_beta_4_in_axes5_y) + six_r_platform_joint_offset_x*(six_r_W_5_in_axes5_xz -
-            six_r_beta_5_in_axes5_y) - six_r_bias_t_16*(six_r_beta_4_t +
-            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - v.six_r_J_5_t*six_r_beta_3_t) -
-            six_r_bias_t_17*(six_r_beta_4_in_axes5_x +
-            six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y) -
-            six_r_d_2_in_axes5_z*(six_r_bias_t_7 + six_r_bias_t_8) -
-            six_r_d_3_in_axes5_z*(six_r_bias_t_13 + six_r_bias_t_14);
-        /* (six_r-rel_o) remainder of: acceleration of the connection point left to the joint
-           accelerations */
-        const real six_r_rel_o_in_axes5_x = six_r_u_1_in_axes5_x - six_r_bias_in_axes5_x;
-        const real six_r_rel_o_in_axes5_y = six_r_u_1_in_axes5_y - six_r_bias_in_axes5_y;
-        const real six_r_rel_o_in_axes5_z = six_r_u_1_in_axes5_z - six_r_bias_in_axes5_z;
-        /* (six_r-nd_m1) rate of moment direction 1 */
-        const real six_r_omega_in_axes5_x = axis_x_six_r_axes5_x*omega_x +
-            axis_x_six_r_axes5_y*omega_y + axis_x_six_r_axes5_z*omega_z;
-        const real six_r_omega_in_axes5_y = axis_y_six_r_axes5_x*omega_x +
-            axis_y_six_r_axes5_y*omega_y + axis_y_six_r_axes5_z*omega_z;
-        const real six_r_omega_in_axes5_z = axis_z_six_r_axes5_x*omega_x +
-            axis_z_six_r_axes5_y*omega_y + axis_z_six_r_axes5_z*omega_z;
-        const real six_r_nd_m1_t = six_r_n_m1_in_axes5_y*six_r_omega_in_axes5_z -
-            six_r_end_p1_in_axes5_z*six_r_omega_in_axes5_x;
-        const real six_r_nd_m1_in_axes5_x = -six_r_nd_m1_t -
-            six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_x;
-        const real six_r_nd_m1_in_axes5_y = six_r_end_p1_in_axes5_z*six_r_omega_in_axes5_y -
-            six_r_end_p1_in_axes5_y*six_r_omega_in_axes5_z -
-            six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y;
-        /* (six_r-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real six_r_nu_1_t = six_r_end_p1_in_axes5_y*six_r_omega_4_in_axes5_y;
-        const real six_r_nu_1_t_2 = six_r_beta_5_in_axes5_x*six_r_end_p1_in_axes5_y -
-            six_r_beta_5_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_nu_1_t_3 = six_r_omega_4_in_axes5_x - six_r_omega_in_axes5_x;
-        const real six_r_nu_1_t_4 = six_r_omega_4_in_axes5_y - six_r_omega_in_axes5_y;
-        const real six_r_nu_1_t_5 = six_r_omega_5_in_axes5_z - six_r_omega_in_axes5_z;
-        const real six_r_nu_1_t_6 = six_r_nd_m1_in_axes5_x*six_r_nu_1_t_3 +
-            six_r_nd_m1_in_axes5_y*six_r_nu_1_t_4 + six_r_nu_1_t_5*(six_r_nu_1_t +
-            six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x);
-        const real six_r_nu_1 = six_r_nu_1_t_2 - six_r_nu_1_t_6;
-        /* (six_r-nd_m2) rate of moment direction 2 */
-        const real six_r_nd_m2_in_axes5_y = six_r_n_m1_in_axes5_y*six_r_omega_in_axes5_y -
-            six_r_end_p1_in_axes5_y*six_r_omega_in_axes5_x -
-            six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y;
-        const real six_r_nd_m2_in_axes5_z = six_r_nd_m1_t -
-            six_r_n_m1_in_axes5_y*six_r_omega_5_in_axes5_z;
-        /* (six_r-nu_2) bias of the angular acceleration along moment direction 2 */
-        const real six_r_nu_2_t = six_r_beta_5_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_beta_4_in_axes4_y*six_r_end_p1_in_axes5_y;
-        const real six_r_nu_2_t_2 = six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 +
-            six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 + six_r_nu_1_t_3*(six_r_nu_1_t +
-            six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z);
-        const real six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2;
-        /* (six_r-qdd_1_o) remainder of: acceleration of joint 1 */
-        const real six_r_qdd_1_o_t = six_r_nu_1*six_r_size;
-        const real six_r_qdd_1_o_t_2 = six_r_nu_2*six_r_size;
-        const real six_r_qdd_1_o_t_3 = inv_six_r_w_1_t_79*(six_r_m1_w_1_t*six_r_qdd_1_o_t +
-            six_r_m2_w_1_t*six_r_qdd_1_o_t_2 + six_r_rel_o_in_axes5_x*six_r_w_1_t_80 +
-            six_r_rel_o_in_axes5_z*six_r_w_1_t_82 - six_r_rel_o_in_axes5_y*six_r_w_1_t_81);
-        const real six_r_qdd_1_o_t_4 = inv_six_r_w_1_t_67*(six_r_qdd_1_o_t*six_r_w_1_t_71 +
-            six_r_qdd_1_o_t_2*six_r_w_1_t_72 + six_r_rel_o_in_axes5_x*six_r_w_1_t_68 +
-            six_r_rel_o_in_axes5_z*six_r_w_1_t_70 - six_r_qdd_1_o_t_3*six_r_w_1_t_73 -
-            six_r_rel_o_in_axes5_y*six_r_w_1_t_69);
-        const real six_r_qdd_1_o_t_5 = inv_six_r_w_1_t_49*(six_r_qdd_1_o_t_3*six_r_w_1_t_61 +
-            six_r_qdd_1_o_t_4*six_r_w_1_t_55 + six_r_rel_o_in_axes5_y*six_r_w_1_t_51 -
-            six_r_qdd_1_o_t*six_r_w_1_t_53 - six_r_qdd_1_o_t_2*six_r_w_1_t_54 -
-            six_r_rel_o_in_axes5_x*six_r_w_1_t_50 - six_r_rel_o_in_axes5_z*six_r_w_1_t_52);
-        /* (six_r-qdd_4_o) remainder of: acceleration of joint 4 */
-        const real six_r_qdd_4_o = inv_six_r_w_1_t_28*(six_r_qdd_1_o_t*six_r_w_1_t_31 +
-            six_r_qdd_1_o_t_2*six_r_w_1_t_32 + six_r_qdd_1_o_t_3*six_r_w_1_t_44 +
-            six_r_qdd_1_o_t_4*six_r_w_1_t_39 + six_r_rel_o_in_axes5_z*six_r_w_1_t_30 -
-            six_r_qdd_1_o_t_5*six_r_w_1_t_33 - six_r_rel_o_in_axes5_y*six_r_w_1_t_29);
-        /* (six_r-alpha_1_o) remainder of: angular acceleration of link 1 */
-        const real six_r_alpha_1_o_t = v.six_r_c_2*six_r_qdd_1_o_t_5;
-        const real six_r_alpha_1_o_in_axes2_y = six_r_qdd_1_o_t_5*v.six_r_s_2;
-        /* (six_r-alpha_2_o) remainder of: angular acceleration of link 2 */
-        const real six_r_alpha_2_o_in_axes2_x = six_r_W_2_in_axes2_yz - six_r_alpha_1_o_t;
-        const real six_r_alpha_2_o_in_axes2_y = six_r_alpha_1_o_in_axes2_y +
-            six_r_zeta_2_in_axes2_y;
-        /* (six_r-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real six_r_B_2_o_in_axes2_xy = six_r_W_2_in_axes2_xy - six_r_qdd_1_o_t_4;
-        const real six_r_B_2_o_in_axes2_yx = six_r_W_2_in_axes2_xy + six_r_qdd_1_o_t_4;
-        const real six_r_B_2_o_in_axes2_zx = -six_r_alpha_2_o_in_axes2_y -
-            six_r_zeta_2_in_axes2_y;
-        const real six_r_B_2_o_in_axes2_zy = six_r_W_2_in_axes2_yz + six_r_alpha_2_o_in_axes2_x;
-        /* (six_r-alpha_3_o) remainder of: angular acceleration of link 3 */
-        const real six_r_alpha_3_o_in_axes3_x = six_r_zeta_3_in_axes3_x +
-            six_r_alpha_2_o_in_axes2_x*v.six_r_s_3 - six_r_alpha_2_o_in_axes2_y*v.six_r_c_3;
-        const real six_r_alpha_3_o_in_axes3_y = six_r_alpha_2_o_in_axes2_x*v.six_r_c_3 +
-            six_r_alpha_2_o_in_axes2_y*v.six_r_s_3 - six_r_zeta_3_t;
-        const real six_r_alpha_3_o_in_axes3_z = six_r_qdd_1_o_t_3 + six_r_qdd_1_o_t_4;
-        /* (six_r-B_3_o) remainder of the acceleration tensor of link 3 */
-        const real six_r_B_3_o_in_axes3_xy = six_r_W_3_in_axes3_xy - six_r_alpha_3_o_in_axes3_z;
-        const real six_r_B_3_o_in_axes3_xz = six_r_W_3_in_axes3_xz + six_r_alpha_3_o_in_axes3_y;
-        const real six_r_B_3_o_in_axes3_yx = six_r_W_3_in_axes3_xy + six_r_alpha_3_o_in_axes3_z;
-        const real six_r_B_3_o_in_axes3_yz = six_r_W_3_in_axes3_yz - six_r_alpha_3_o_in_axes3_x;
-        const real six_r_B_3_o_in_axes3_zx = six_r_W_3_in_axes3_xz - six_r_alpha_3_o_in_axes3_y;
-        const real six_r_B_3_o_in_axes3_zy = six_r_W_3_in_axes3_yz + six_r_alpha_3_o_in_axes3_x;
-        /* (six_r-alpha_4_o) remainder of: angular acceleration of link 4 */
-        const real six_r_alpha_4_o_in_axes4_x = six_r_zeta_4_in_axes4_x +
-            six_r_alpha_3_o_in_axes3_z*v.six_r_h_4_t -
-            six_r_alpha_3_o_in_axes3_x*v.six_r_e_2_in_axes5_z;
-        const real six_r_alpha_4_o_in_axes4_y = six_r_alpha_3_o_in_axes3_x*v.six_r_h_4_t +
-            six_r_alpha_3_o_in_axes3_z*v.six_r_e_2_in_axes5_z - six_r_zeta_4_t;
-        const real six_r_alpha_4_o_in_axes4_z = six_r_alpha_3_o_in_axes3_y + six_r_qdd_4_o;
-        /* (six_r-B_4_o) remainder of the acceleration tensor of link 4 */
-        const real six_r_B_4_o_in_axes4_xy = six_r_W_4_in_axes4_xy - six_r_alpha_4_o_in_axes4_z;
-        const real six_r_B_4_o_in_axes4_xz = six_r_W_4_in_axes4_xz + six_r_alpha_4_o_in_axes4_y;
-        const real six_r_B_4_o_in_axes4_yx = six_r_W_4_in_axes4_xy + six_r_alpha_4_o_in_axes4_z;
-        const real six_r_B_4_o_in_axes4_yz = six_r_W_4_in_axes4_yz - six_r_alpha_4_o_in_axes4_x;
-        const real six_r_B_4_o_in_axes4_zx = six_r_W_4_in_axes4_xz - six_r_alpha_4_o_in_axes4_y;
-        const real six_r_B_4_o_in_axes4_zy = six_r_W_4_in_axes4_yz + six_r_alpha_4_o_in_axes4_x;
-        /* (six_r-dalpha_alpha_5) coefficient of the acceleration in: angular acceleration of link 5 */
-        const real six_r_dalpha_alpha_5_in_axes5_xx = v.six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_x
-            - v.six_r_e_2_in_axes5_x*six_r_o_2_t - v.six_r_e_2_in_axes5_x*six_r_o_3_t -
-            v.six_r_e_4_in_axes5_x*six_r_o_4_t;
-        const real six_r_dalpha_alpha_5_in_axes5_xy = v.six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_y
-            + v.six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_y +
-            v.six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_y +
-            v.six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_y;
-        const real six_r_dalpha_alpha_5_in_axes5_xz = v.six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_z
-            + v.six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_z +
-            v.six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_z - v.six_r_e_1_in_axes5_x*six_r_o_1_t;
-        const real six_r_dalpha_alpha_5_in_axes5_yx = v.six_r_J_5_t*six_r_o_4_t +
-            v.six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_x - v.six_r_e_2_in_axes5_y*six_r_o_2_t -
-            v.six_r_e_2_in_axes5_y*six_r_o_3_t;
-        const real six_r_dalpha_alpha_5_in_axes5_yy = v.six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_y
-            + v.six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_y +
-            v.six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_y - v.six_r_J_5_t*six_r_o_4_in_axes5_y;
-        const real six_r_dalpha_alpha_5_in_axes5_yz = v.six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_z
-            + v.six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_z - v.six_r_J_5_t*six_r_o_4_in_axes5_z -
-            v.six_r_e_1_in_axes5_y*six_r_o_1_t;
-        const real six_r_dalpha_alpha_5_in_axes5_zx = six_r_o_5_in_axes5_x +
-            v.six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_x - v.six_r_e_2_in_axes5_z*six_r_o_2_t -
-            v.six_r_e_2_in_axes5_z*six_r_o_3_t;
-        const real six_r_dalpha_alpha_5_in_axes5_zy = six_r_o_5_in_axes5_y +
-            v.six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_y +
-            v.six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_y +
-            v.six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_y;
-        const real six_r_dalpha_alpha_5_in_axes5_zz = v.six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_z
-            + v.six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_z - six_r_o_5_t -
-            v.six_r_e_1_in_axes5_z*six_r_o_1_t;
-        /* (six_r-d_alpha_5) coefficient of the acceleration in: angular acceleration of link 5 */
-        const real six_r_d_alpha_5_in_axes5_xz = v.six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_z +
-            v.six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_z +
-            v.six_r_e_2_in_axes5_x*six_r_w_3_in_axes5_z +
-            v.six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_z;
-        const real six_r_d_alpha_5_in_axes5_yz = v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_z +
-            v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_z +
-            v.six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_z - v.six_r_J_5_t*six_r_w_4_in_axes5_z;
-        const real six_r_d_alpha_5_in_axes5_zy = six_r_w_5_in_axes5_y +
-            v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_y +
-            v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_y - v.six_r_e_2_in_axes5_z*six_r_w_3_t;
-        const real six_r_d_alpha_5_in_axes5_zz = six_r_w_5_in_axes5_z +
-            v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_z +
-            v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_z +
-            v.six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_z;
-        /* (six_r-alpha_5_o) remainder of: angular acceleration of link 5 */
-        const real six_r_alpha_5_o_in_axes5_x = six_r_zeta_5_in_axes5_x +
-            v.six_r_J_5_t*six_r_alpha_4_o_in_axes4_x +
-            six_r_alpha_4_o_in_axes4_z*v.six_r_e_4_in_axes5_x;
-        const real six_r_alpha_5_o_in_axes5_y = six_r_alpha_4_o_in_axes4_x*v.six_r_e_4_in_axes5_x
-            - six_r_zeta_5_t - v.six_r_J_5_t*six_r_alpha_4_o_in_axes4_z;
-        const real six_r_alpha_5_o_in_axes5_z = six_r_alpha_4_o_in_axes4_y +
-            inv_six_r_w_1_t_12*(six_r_qdd_1_o_t_2*six_r_w_1_t_14 +
-            six_r_qdd_1_o_t_3*six_r_w_1_t_25 + six_r_qdd_1_o_t_5*six_r_w_1_t_18 +
-            six_r_rel_o_in_axes5_y*six_r_w_1_t_13 - six_r_qdd_1_o_t_4*six_r_w_1_t_22 -
-            six_r_qdd_4_o*six_r_w_1_t_15);
-        /* (six_r-B_5_o) remainder of the acceleration tensor of link 5 */
-        const real six_r_B_5_o_in_axes5_xy = six_r_W_4_in_axes5_xy - six_r_alpha_5_o_in_axes5_z;
-        const real six_r_B_5_o_in_axes5_xz = six_r_W_5_in_axes5_xz + six_r_alpha_5_o_in_axes5_y;
-        const real six_r_B_5_o_in_axes5_yx = six_r_W_4_in_axes5_xy + six_r_alpha_5_o_in_axes5_z;
-        const real six_r_B_5_o_in_axes5_yz = six_r_W_5_in_axes5_yz - six_r_alpha_5_o_in_axes5_x;
-        const real six_r_B_5_o_in_axes5_zx = six_r_W_5_in_axes5_xz - six_r_alpha_5_o_in_axes5_y;
-        const real six_r_B_5_o_in_axes5_zy = six_r_W_5_in_axes5_yz + six_r_alpha_5_o_in_axes5_x;
-        /* (six_r-a_o_3_o) remainder of: acceleration of the origin of joint 3 */
-        const real six_r_a_o_3_o_t = six_r_omega_1_in_axes2_y*six_r_omega_1_in_axes2_y;
-        const real six_r_a_o_3_o_t_2 = six_r_qd_1_t_4*six_r_qd_1_t_4;
-        const real six_r_joint3_offset_x = m->six_r_joint3_offset_x[i];
-        const real six_r_a_o_3_o_in_axes2_x = -six_r_joint3_offset_x*(six_r_a_o_3_o_t +
-            six_r_a_o_3_o_t_2);
-        const real six_r_a_o_3_o_in_axes2_y = six_r_B_2_o_in_axes2_yx*six_r_joint3_offset_x;
-        const real six_r_a_o_3_o_in_axes2_z = six_r_B_2_o_in_axes2_zx*six_r_joint3_offset_x;
-        const real six_r_a_o_3_o_in_axes3_x = six_r_a_o_3_o_in_axes2_x*v.six_r_s_3 -
-            six_r_a_o_3_o_in_axes2_y*v.six_r_c_3;
-        const real six_r_a_o_3_o_in_axes3_y = six_r_a_o_3_o_in_axes2_x*v.six_r_c_3 +
-            six_r_a_o_3_o_in_axes2_y*v.six_r_s_3;
-        /* (six_r-a_o_4_o) remainder of: acceleration of the origin of joint 4 */
-        const real six_r_a_o_4_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x +
-            six_r_B_3_o_in_axes3_xy*six_r_joint4_offset_x;
-        const real six_r_a_o_4_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y -
-            six_r_W_3_t_3*six_r_joint4_offset_x;
-        const real six_r_a_o_4_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z +
-            six_r_B_3_o_in_axes3_zy*six_r_joint4_offset_x;
-        /* (six_r-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-        const real six_r_acc_3_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x - v.six_r_g_in_axes3_x;
-        const real six_r_acc_3_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y - v.six_r_g_in_axes3_y;
-        const real six_r_acc_3_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z - v.six_r_g_in_axes1_y;
-        /* (six_r-f_3_o) remainder of: inertia force of link 3 less its weight */
-        const real six_r_f_3_o_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y;
-        const real six_r_h_3_in_spec3_x = m->six_r_h_3_in_spec3_x[i];
-        const real six_r_h_3_in_spec3_y = m->six_r_h_3_in_spec3_y[i];
-        const real six_r_h_3_in_spec3_z = m->six_r_h_3_in_spec3_z[i];
-        const real six_r_link3_mass = m->six_r_link3_mass[i];
-        const real six_r_f_3_o_in_axes3_x = six_r_B_3_o_in_axes3_xy*six_r_h_3_in_spec3_x +
-            six_r_B_3_o_in_axes3_xz*six_r_h_3_in_spec3_z +
-            six_r_acc_3_o_in_axes3_x*six_r_link3_mass + six_r_h_3_in_spec3_y*(six_r_W_3_t_2 +
-            six_r_f_3_o_t);
-        const real six_r_f_3_o_in_axes3_y = six_r_B_3_o_in_axes3_yz*six_r_h_3_in_spec3_z +
-            six_r_acc_3_o_in_axes3_y*six_r_link3_mass -
-            six_r_B_3_o_in_axes3_yx*six_r_h_3_in_spec3_y - six_r_W_3_t_3*six_r_h_3_in_spec3_x;
-        const real six_r_f_3_o_in_axes3_z = six_r_B_3_o_in_axes3_zy*six_r_h_3_in_spec3_x +
-            six_r_acc_3_o_in_axes3_z*six_r_link3_mass -
-            six_r_B_3_o_in_axes3_zx*six_r_h_3_in_spec3_y - six_r_h_3_in_spec3_z*(six_r_W_3_t +
-            six_r_f_3_o_t);
-        /* (six_r-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity */
-        const real six_r_acc_4_o_in_axes4_x = six_r_a_o_4_o_in_axes3_z*v.six_r_h_4_t +
-            v.six_r_e_2_in_axes5_z*v.six_r_g_in_axes3_x -
-            six_r_a_o_4_o_in_axes3_x*v.six_r_e_2_in_axes5_z - v.six_r_g_in_axes1_y*v.six_r_h_4_t;
-        const real six_r_acc_4_o_in_axes4_y = six_r_a_o_4_o_in_axes3_x*v.six_r_h_4_t +
-            six_r_a_o_4_o_in_axes3_z*v.six_r_e_2_in_axes5_z -
-            v.six_r_e_2_in_axes5_z*v.six_r_g_in_axes1_y - v.six_r_g_in_axes3_x*v.six_r_h_4_t;
-        const real six_r_acc_4_o_in_axes4_z = six_r_a_o_4_o_in_axes3_y - v.six_r_g_in_axes3_y;
-        /* (six_r-f_4_o) remainder of: inertia force of link 4 less its weight */
-        const real six_r_f_4_o_t = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x;
-        const real six_r_f_4_o_t_2 = six_r_omega_4_in_axes4_z*six_r_omega_4_in_axes4_z;
-        const real six_r_h_4_in_spec4_x = m->six_r_h_4_in_spec4_x[i];
-        const real six_r_h_4_in_spec4_y = m->six_r_h_4_in_spec4_y[i];
-        const real six_r_h_4_in_spec4_z = m->six_r_h_4_in_spec4_z[i];
-        const real six_r_link4_mass = m->six_r_link4_mass[i];
-        const real six_r_f_4_o_in_axes4_x = six_r_B_4_o_in_axes4_xy*six_r_h_4_in_spec4_z +
-            six_r_B_4_o_in_axes4_xz*six_r_h_4_in_spec4_x +
-            six_r_acc_4_o_in_axes4_x*six_r_link4_mass - six_r_h_4_in_spec4_y*(six_r_bias_t +
-            six_r_f_4_o_t_2);
-        const real six_r_f_4_o_in_axes4_y = six_r_B_4_o_in_axes4_yx*six_r_h_4_in_spec4_y +
-            six_r_B_4_o_in_axes4_yz*six_r_h_4_in_spec4_x +
-            six_r_acc_4_o_in_axes4_y*six_r_link4_mass - six_r_h_4_in_spec4_z*(six_r_f_4_o_t +
-            six_r_f_4_o_t_2);
-        const real six_r_f_4_o_in_axes4_z = six_r_B_4_o_in_axes4_zx*six_r_h_4_in_spec4_y +
-            six_r_B_4_o_in_axes4_zy*six_r_h_4_in_spec4_z +
-            six_r_acc_4_o_in_axes4_z*six_r_link4_mass - six_r_h_4_in_spec4_x*(six_r_bias_t +
-            six_r_f_4_o_t);
-        const real six_r_f_4_o_in_axes3_x = six_r_f_4_o_in_axes4_y*v.six_r_h_4_t -
-            v.six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_x;
-        const real six_r_f_4_o_in_axes3_z = v.six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_y +
-            six_r_f_4_o_in_axes4_x*v.six_r_h_4_t;
-        /* (six_r-acc_5_o) remainder of: acceleration of the reference point of link 5, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real six_r_acc_5_o_in_axes5_x = six_r_u_1_in_axes5_x -
-            axis_x_six_r_axes5_x*gravity_x - axis_x_six_r_axes5_y*gravity_y -
-            axis_x_six_r_axes5_z*gravity_z;
-        const real six_r_acc_5_o_in_axes5_y = six_r_u_1_in_axes5_y -
-            axis_y_six_r_axes5_x*gravity_x - axis_y_six_r_axes5_y*gravity_y -
-            axis_y_six_r_axes5_z*gravity_z;
-        const real six_r_acc_5_o_in_axes5_z = six_r_u_1_in_axes5_z -
-            axis_z_six_r_axes5_x*gravity_x - axis_z_six_r_axes5_y*gravity_y -
-            axis_z_six_r_axes5_z*gravity_z;
-        /* (six_r-d_phi_5) coefficient of the acceleration in: inertia force of link 5 from its turning
-           about its reference point */
-        const real six_r_h_5_in_spec5_y = m->six_r_h_5_in_spec5_y[i];
-        const real six_r_h_5_in_spec5_z = m->six_r_h_5_in_spec5_z[i];
-        const real six_r_d_phi_5_in_axes5_xx =
-            six_r_h_5_in_spec5_z*(v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_x +
-            v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_x +
-            v.six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_x - v.six_r_J_5_t*six_r_w_4_in_axes5_x) -
-            six_r_h_5_in_spec5_y*(v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_x +
-            v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_x +
-            v.six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_x - six_r_w_5_t_5);
-        /* (six_r-mu_5_o) remainder of: inertia moment of the links that turn with link 5, about their
-           reference points */
-        const real six_r_J_5_in_spec5_xy = m->six_r_J_5_in_spec5_xy[i];
-        const real six_r_J_5_in_spec5_xz = m->six_r_J_5_in_spec5_xz[i];
-        const real six_r_J_5_in_spec5_yz = m->six_r_J_5_in_spec5_yz[i];
-        const real six_r_Sigma_5_in_axes5_yy = m->six_r_Sigma_5_in_axes5_yy[i];
-        const real six_r_Sigma_5_in_axes5_zz = m->six_r_Sigma_5_in_axes5_zz[i];
-        const real six_r_mu_5_o_in_axes5_x = six_r_B_5_o_in_axes5_yx*six_r_J_5_in_spec5_xz +
-            six_r_B_5_o_in_axes5_zy*six_r_Sigma_5_in_axes5_yy + six_r_J_5_in_spec5_yz*(six_r_W_5_t
-            - six_r_W_5_t_2) + six_r_acc_5_o_in_axes5_z*six_r_h_5_in_spec5_y -
-            six_r_B_5_o_in_axes5_yz*six_r_Sigma_5_in_axes5_zz -
-            six_r_B_5_o_in_axes5_zx*six_r_J_5_in_spec5_xy -
-            six_r_acc_5_o_in_axes5_y*six_r_h_5_in_spec5_z;
-        const real six_r_Sigma_5_in_axes5_xx = m->six_r_Sigma_5_in_axes5_xx[i];
-        const real six_r_h_5_in_spec5_x = m->six_r_h_5_in_spec5_x[i];
-        const real six_r_mu_5_o_in_axes5_y = six_r_B_5_o_in_axes5_xz*six_r_Sigma_5_in_axes5_zz +
-            six_r_B_5_o_in_axes5_zy*six_r_J_5_in_spec5_xy +
-            six_r_acc_5_o_in_axes5_x*six_r_h_5_in_spec5_z -
-            six_r_B_5_o_in_axes5_xy*six_r_J_5_in_spec5_yz -
-            six_r_B_5_o_in_axes5_zx*six_r_Sigma_5_in_axes5_xx -
-            six_r_J_5_in_spec5_xz*(six_r_bias_t_2 - six_r_W_5_t_2) -
-            six_r_acc_5_o_in_axes5_z*six_r_h_5_in_spec5_x;
-        const real six_r_mu_5_o_in_axes5_z = six_r_B_5_o_in_axes5_xz*six_r_J_5_in_spec5_yz +
-            six_r_B_5_o_in_axes5_yx*six_r_Sigma_5_in_axes5_xx +
-            six_r_J_5_in_spec5_xy*(six_r_bias_t_2 - six_r_W_5_t) +
-            six_r_acc_5_o_in_axes5_y*six_r_h_5_in_spec5_x -
-            six_r_B_5_o_in_axes5_xy*six_r_Sigma_5_in_axes5_yy -
-            six_r_B_5_o_in_axes5_yz*six_r_J_5_in_spec5_xz -
-            six_r_acc_5_o_in_axes5_x*six_r_h_5_in_spec5_y;
-        /* (six_r-dalpha_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal
-           links' inertia and weight */
-        const real six_r_J_5_in_spec5_zz = m->six_r_J_5_in_spec5_zz[i];
-        const real six_r_dalpha_Gamma_5_in_axes5_x = v.six_r_D_1_5*six_r_o_1_in_axes5_x +
-            six_r_J_5_in_spec5_zz*six_r_o_5_in_axes5_x - v.six_r_D_3_5*six_r_o_2_t -
-            v.six_r_D_3_5*six_r_o_3_t - v.six_r_J_5_in_axes4_yz*six_r_o_4_t;
-        const real six_r_dalpha_Gamma_5_in_axes5_y = v.six_r_D_1_5*six_r_o_1_in_axes5_y +
-            v.six_r_D_3_5*six_r_o_2_in_axes5_y + v.six_r_D_3_5*six_r_o_3_in_axes5_y +
-            v.six_r_J_5_in_axes4_yz*six_r_o_4_in_axes5_y +
-            six_r_J_5_in_spec5_zz*six_r_o_5_in_axes5_y;
-        const real six_r_dalpha_Gamma_5_in_axes5_z = v.six_r_D_3_5*six_r_o_2_in_axes5_z +
-            v.six_r_D_3_5*six_r_o_3_in_axes5_z + v.six_r_J_5_in_axes4_yz*six_r_o_4_in_axes5_z -
-            v.six_r_D_1_5*six_r_o_1_t - six_r_J_5_in_spec5_zz*six_r_o_5_t;
-        /* (six_r-d_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal links'
-           inertia and weight */
-        const real six_r_d_Gamma_5_t = inv_six_r_w_1_t_12*six_r_J_5_in_spec5_zz;
-        const real six_r_d_Gamma_5_t_2 = inv_six_r_w_1_t_28*(v.six_r_J_5_in_axes4_yz -
-            six_r_d_Gamma_5_t*six_r_w_1_t_15);
-        const real six_r_d_Gamma_5_t_3 = inv_six_r_w_1_t_49*(v.six_r_D_1_5 +
-            six_r_d_Gamma_5_t_2*six_r_w_1_t_33 - six_r_d_Gamma_5_t*six_r_w_1_t_18);
-        const real six_r_d_Gamma_5_t_4 = inv_six_r_w_1_t_67*(v.six_r_D_3_5 +
-            six_r_d_Gamma_5_t_2*six_r_w_1_t_39 - six_r_d_Gamma_5_t*six_r_w_1_t_22 -
-            six_r_d_Gamma_5_t_3*six_r_w_1_t_55);
-        const real six_r_d_Gamma_5_t_5 = inv_six_r_w_1_t_79*(v.six_r_D_3_5 +
-            six_r_d_Gamma_5_t*six_r_w_1_t_25 + six_r_d_Gamma_5_t_2*six_r_w_1_t_44 -
-            six_r_d_Gamma_5_t_3*six_r_w_1_t_61 - six_r_d_Gamma_5_t_4*six_r_w_1_t_73);
-        const real six_r_d_Gamma_5_in_axes5_z = six_r_d_Gamma_5_t_2*six_r_w_1_t_30 +
-            six_r_d_Gamma_5_t_3*six_r_w_1_t_52 + six_r_d_Gamma_5_t_4*six_r_w_1_t_70 +
-            six_r_d_Gamma_5_t_5*six_r_w_1_t_82;
-        const real six_r_d_Gamma_5_in_axes5_x = six_r_d_Gamma_5_t_3*six_r_w_1_t_50 +
-            six_r_d_Gamma_5_t_4*six_r_w_1_t_68 + six_r_d_Gamma_5_t_5*six_r_w_1_t_80 -
-            six_r_h_5_in_spec5_y;
-        const real six_r_d_Gamma_5_in_axes5_y = six_r_h_5_in_spec5_x +
-            six_r_d_Gamma_5_t*six_r_w_1_t_13 - six_r_d_Gamma_5_t_2*six_r_w_1_t_29 -
-            six_r_d_Gamma_5_t_3*six_r_w_1_t_51 - six_r_d_Gamma_5_t_4*six_r_w_1_t_69 -
-            six_r_d_Gamma_5_t_5*six_r_w_1_t_81;
-        /* (six_r-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their
-           reference points */
-        const real six_r_J_4_in_spec4_xy = m->six_r_J_4_in_spec4_xy[i];
-        const real six_r_J_4_in_spec4_xz = m->six_r_J_4_in_spec4_xz[i];
-        const real six_r_J_4_in_spec4_yz = m->six_r_J_4_in_spec4_yz[i];
-        const real six_r_Sigma_4_in_axes4_yy = m->six_r_Sigma_4_in_axes4_yy[i];
-        const real six_r_Sigma_4_in_axes4_zz = m->six_r_Sigma_4_in_axes4_zz[i];
-        const real six_r_mu_4_o_in_axes4_x = six_r_B_4_o_in_axes4_yx*six_r_J_4_in_spec4_xy +
-            six_r_B_4_o_in_axes4_zy*six_r_Sigma_4_in_axes4_yy +
-            six_r_J_4_in_spec4_xz*(six_r_bias_t - six_r_f_4_o_t_2) +
-            six_r_acc_4_o_in_axes4_z*six_r_h_4_in_spec4_z -
-            six_r_B_4_o_in_axes4_yz*six_r_Sigma_4_in_axes4_zz -
-            six_r_B_4_o_in_axes4_zx*six_r_J_4_in_spec4_yz -
-            six_r_acc_4_o_in_axes4_y*six_r_h_4_in_spec4_x;
-        const real six_r_Sigma_4_in_axes4_xx = m->six_r_Sigma_4_in_axes4_xx[i];
-        const real six_r_mu_4_o_in_axes4_y = six_r_B_4_o_in_axes4_xz*six_r_Sigma_4_in_axes4_zz +
-            six_r_B_4_o_in_axes4_zy*six_r_J_4_in_spec4_yz +
-            six_r_acc_4_o_in_axes4_x*six_r_h_4_in_spec4_x -
-            six_r_B_4_o_in_axes4_xy*six_r_J_4_in_spec4_xz -
-            six_r_B_4_o_in_axes4_zx*six_r_Sigma_4_in_axes4_xx -
-            six_r_J_4_in_spec4_xy*(six_r_f_4_o_t - six_r_f_4_o_t_2) -
-            six_r_acc_4_o_in_axes4_z*six_r_h_4_in_spec4_y;
-        const real six_r_mu_4_o_in_axes4_z = six_r_B_4_o_in_axes4_xz*six_r_J_4_in_spec4_xz +
-            six_r_B_4_o_in_axes4_yx*six_r_Sigma_4_in_axes4_xx +
-            six_r_J_4_in_spec4_yz*(six_r_f_4_o_t - six_r_bias_t) +
-            six_r_acc_4_o_in_axes4_y*six_r_h_4_in_spec4_y -
-            six_r_B_4_o_in_axes4_xy*six_r_Sigma_4_in_axes4_yy -
-            six_r_B_4_o_in_axes4_yz*six_r_J_4_in_spec4_xy -
-            six_r_acc_4_o_in_axes4_x*six_r_h_4_in_spec4_z;
-        /* (six_r-N_4_o) remainder of: moment about joint 4 of the links from 4 outwards, the force at the
-           connection point left out */
-        const real six_r_N_4_o_in_axes4_x = six_r_mu_4_o_in_axes4_x +
-            v.six_r_J_5_t*six_r_mu_5_o_in_axes5_x +
-            v.six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_y;
-        const real six_r_N_4_o_in_axes4_y = six_r_mu_4_o_in_axes4_y + six_r_mu_5_o_in_axes5_z;
-        const real six_r_N_4_o_in_axes4_z = six_r_mu_4_o_in_axes4_z +
-            v.six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_x -
-            v.six_r_J_5_t*six_r_mu_5_o_in_axes5_y;
-        /* (six_r-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal
-           links' inertia and weight */
-        const real six_r_dalpha_Gamma_4_in_axes5_x = v.six_r_J_5_in_axes4_yz*six_r_o_5_in_axes5_x
-            + v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_x -
-            v.six_r_Jc_4_in_axes4_zz*six_r_o_4_t - v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_t -
-            v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_t;
-        const real six_r_dalpha_Gamma_4_in_axes5_y = v.six_r_J_5_in_axes4_yz*six_r_o_5_in_axes5_y
-            + v.six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_y +
-            v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_y +
-            v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_y +
-            v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_y;
-        const real six_r_dalpha_Gamma_4_in_axes5_z = v.six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_z
-            + v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_z +
-            v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_z - v.six_r_J_5_in_axes4_yz*six_r_o_5_t
-            - v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_t;
-        /* (six_r-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
-           inertia and weight */
-        const real six_r_d_Gamma_4_t = inv_six_r_w_1_t_12*v.six_r_J_5_in_axes4_yz;
-        const real six_r_d_Gamma_4_t_2 = inv_six_r_w_1_t_28*(v.six_r_Jc_4_in_axes4_zz -
-            six_r_d_Gamma_4_t*six_r_w_1_t_15);
-        const real six_r_d_Gamma_4_t_3 = inv_six_r_w_1_t_49*(v.six_r_L_c_4_2_in_axes1_z +
-            six_r_d_Gamma_4_t_2*six_r_w_1_t_33 - six_r_d_Gamma_4_t*six_r_w_1_t_18);
-        const real six_r_d_Gamma_4_t_4 = inv_six_r_w_1_t_67*(v.six_r_L_c_4_2_in_axes2_z +
-            six_r_d_Gamma_4_t_2*six_r_w_1_t_39 - six_r_d_Gamma_4_t*six_r_w_1_t_22 -
-            six_r_d_Gamma_4_t_3*six_r_w_1_t_55);
-        const real six_r_d_Gamma_4_t_5 = inv_six_r_w_1_t_79*(v.six_r_L_c_4_3_in_axes3_z +
-            six_r_d_Gamma_4_t*six_r_w_1_t_25 + six_r_d_Gamma_4_t_2*six_r_w_1_t_44 -
-            six_r_d_Gamma_4_t_3*six_r_w_1_t_61 - six_r_d_Gamma_4_t_4*six_r_w_1_t_73);
-        const real six_r_d_Gamma_4_in_axes5_x = six_r_d_Gamma_4_t_3*six_r_w_1_t_50 +
-            six_r_d_Gamma_4_t_4*six_r_w_1_t_68 + six_r_d_Gamma_4_t_5*six_r_w_1_t_80 -
-            v.six_r_J_5_t*six_r_h_5_in_spec5_z;
-        const real six_r_d_Gamma_4_in_axes5_y = six_r_d_Gamma_4_t*six_r_w_1_t_13 -
-            six_r_d_Gamma_4_t_2*six_r_w_1_t_29 - six_r_d_Gamma_4_t_3*six_r_w_1_t_51 -
-            six_r_d_Gamma_4_t_4*six_r_w_1_t_69 - six_r_d_Gamma_4_t_5*six_r_w_1_t_81 -
-            v.six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_z;
-        const real six_r_d_Gamma_4_in_axes5_z = v.six_r_J_5_t*six_r_h_5_in_spec5_x +
-            six_r_d_Gamma_4_t_2*six_r_w_1_t_30 + six_r_d_Gamma_4_t_3*six_r_w_1_t_52 +
-            six_r_d_Gamma_4_t_4*six_r_w_1_t_70 + six_r_d_Gamma_4_t_5*six_r_w_1_t_82 +
-            v.six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_y;
-        /* (six_r-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
-           reference points */
-        const real six_r_J_3_in_spec3_xy = m->six_r_J_3_in_spec3_xy[i];
-        const real six_r_J_3_in_spec3_xz = m->six_r_J_3_in_spec3_xz[i];
-        const real six_r_J_3_in_spec3_yz = m->six_r_J_3_in_spec3_yz[i];
-        const real six_r_Sigma_3_in_axes3_yy = m->six_r_Sigma_3_in_axes3_yy[i];
-        const real six_r_Sigma_3_in_axes3_zz = m->six_r_Sigma_3_in_axes3_zz[i];
-        const real six_r_mu_3_o_in_axes3_x = six_r_B_3_o_in_axes3_zx*six_r_J_3_in_spec3_xy +
-            six_r_B_3_o_in_axes3_zy*six_r_Sigma_3_in_axes3_yy +
-            six_r_J_3_in_spec3_xz*(six_r_f_3_o_t - six_r_W_3_t_2) +
-            six_r_acc_3_o_in_axes3_z*six_r_h_3_in_spec3_x -
-            six_r_B_3_o_in_axes3_yx*six_r_J_3_in_spec3_yz -
-            six_r_B_3_o_in_axes3_yz*six_r_Sigma_3_in_axes3_zz -
-            six_r_acc_3_o_in_axes3_y*six_r_h_3_in_spec3_z;
-        const real six_r_Sigma_3_in_axes3_xx = m->six_r_Sigma_3_in_axes3_xx[i];
-        const real six_r_mu_3_o_in_axes3_y = six_r_B_3_o_in_axes3_xz*six_r_Sigma_3_in_axes3_zz +
-            six_r_J_3_in_spec3_yz*(six_r_W_3_t - six_r_W_3_t_2) +
-            six_r_acc_3_o_in_axes3_x*six_r_h_3_in_spec3_z +
-            six_r_acc_3_o_in_axes3_z*six_r_h_3_in_spec3_y -
-            six_r_B_3_o_in_axes3_xy*six_r_J_3_in_spec3_xz -
-            six_r_B_3_o_in_axes3_zx*six_r_Sigma_3_in_axes3_xx -
-            six_r_B_3_o_in_axes3_zy*six_r_J_3_in_spec3_xy;
-        const real six_r_mu_3_o_in_axes3_z = six_r_B_3_o_in_axes3_xz*six_r_J_3_in_spec3_xz +
-            six_r_B_3_o_in_axes3_yx*six_r_Sigma_3_in_axes3_xx +
-            six_r_B_3_o_in_axes3_yz*six_r_J_3_in_spec3_yz -
-            six_r_B_3_o_in_axes3_xy*six_r_Sigma_3_in_axes3_yy - six_r_J_3_in_spec3_xy*(six_r_W_3_t
-            - six_r_f_3_o_t) - six_r_acc_3_o_in_axes3_x*six_r_h_3_in_spec3_x -
-            six_r_acc_3_o_in_axes3_y*six_r_h_3_in_spec3_y;
-        /* (six_r-N_3_o) remainder of: moment about joint 3 of the links from 3 outwards, the force at the
-           connection point left out */
-        const real six_r_N_3_o_in_axes3_x = six_r_mu_3_o_in_axes3_x +
-            six_r_N_4_o_in_axes4_y*v.six_r_h_4_t + six_r_f_4_o_in_axes3_z*six_r_joint4_offset_x -
-            six_r_N_4_o_in_axes4_x*v.six_r_e_2_in_axes5_z;
-        const real six_r_N_3_o_in_axes3_y = six_r_N_4_o_in_axes4_z + six_r_mu_3_o_in_axes3_y;
-        const real six_r_N_3_o_in_axes3_z = six_r_mu_3_o_in_axes3_z +
-            six_r_N_4_o_in_axes4_x*v.six_r_h_4_t + six_r_N_4_o_in_axes4_y*v.six_r_e_2_in_axes5_z -
-            six_r_f_4_o_in_axes3_x*six_r_joint4_offset_x;
-        /* (six_r-T_3_o) remainder of: inertia force of the links from 3 outwards, the last link left out
-           */
-        const real six_r_T_3_o_in_axes3_x = six_r_f_3_o_in_axes3_x + six_r_f_4_o_in_axes3_x;
-        const real six_r_T_3_o_in_axes3_y = six_r_f_3_o_in_axes3_y + six_r_f_4_o_in_axes4_z;
-        const real six_r_T_3_o_in_axes3_z = six_r_f_3_o_in_axes3_z + six_r_f_4_o_in_axes3_z;
-        /* (six_r-dalpha_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
-           links' inertia and weight */
-        const real six_r_dalpha_Gamma_3_t = v.six_r_D_3_5*six_r_o_5_in_axes5_x;
-        const real six_r_dalpha_Gamma_3_t_2 = v.six_r_D_3_5*six_r_o_5_in_axes5_y;
-        const real six_r_dalpha_Gamma_3_t_3 = v.six_r_D_3_5*six_r_o_5_t;
-        const real six_r_dalpha_Gamma_3_in_axes5_x = six_r_dalpha_Gamma_3_t +
-            v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_x - v.six_r_Jc_3_in_axes3_zz*six_r_o_3_t
-            - v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_t - v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_t;
-        const real six_r_dalpha_Gamma_3_in_axes5_y = six_r_dalpha_Gamma_3_t_2 +
-            v.six_r_Jc_3_in_axes3_zz*six_r_o_3_in_axes5_y +
-            v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_y +
-            v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_in_axes5_y +
-            v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_y;
-        const real six_r_dalpha_Gamma_3_in_axes5_z = v.six_r_Jc_3_in_axes3_zz*six_r_o_3_in_axes5_z
-            + v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_in_axes5_z +
-            v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_z - six_r_dalpha_Gamma_3_t_3 -
-            v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_t;
-        /* (six_r-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-           inertia and weight */
-        const real six_r_d_Gamma_3_t_4 = inv_six_r_w_1_t_12*v.six_r_D_3_5;
-        const real six_r_d_Gamma_3_t_5 = six_r_d_Gamma_3_t_4*six_r_w_1_t_15;
-        const real six_r_d_Gamma_3_t_6 = inv_six_r_w_1_t_28*(v.six_r_L_c_4_3_in_axes3_z -
-            six_r_d_Gamma_3_t_5);
-        const real six_r_d_Gamma_3_t_7 = six_r_d_Gamma_3_t_4*six_r_w_1_t_18;
-        const real six_r_d_Gamma_3_t_8 = inv_six_r_w_1_t_49*(v.six_r_L_c_3_2_in_axes1_z +
-            six_r_d_Gamma_3_t_6*six_r_w_1_t_33 - six_r_d_Gamma_3_t_7);
-        const real six_r_d_Gamma_3_t_9 = six_r_d_Gamma_3_t_4*six_r_w_1_t_22;
-        const real six_r_d_Gamma_3_t_10 = inv_six_r_w_1_t_67*(v.six_r_L_c_3_2_in_axes2_z +
-            six_r_d_Gamma_3_t_6*six_r_w_1_t_39 - six_r_d_Gamma_3_t_9 -
-            six_r_d_Gamma_3_t_8*six_r_w_1_t_55);
-        const real six_r_d_Gamma_3_t_11 = six_r_d_Gamma_3_t_4*six_r_w_1_t_25;
-        const real six_r_d_Gamma_3_t_12 = inv_six_r_w_1_t_79*(v.six_r_Jc_3_in_axes3_zz +
-            six_r_d_Gamma_3_t_11 + six_r_d_Gamma_3_t_6*six_r_w_1_t_44 -
-            six_r_d_Gamma_3_t_10*six_r_w_1_t_73 - six_r_d_Gamma_3_t_8*six_r_w_1_t_61);
-        const real six_r_d_Gamma_3_t_13 = six_r_d_Gamma_3_t_4*six_r_w_1_t_13;
-        const real six_r_d_Gamma_3_in_axes5_x = v.six_r_d_Gamma_3_t +
-            six_r_d_Gamma_3_t_10*six_r_w_1_t_68 + six_r_d_Gamma_3_t_12*six_r_w_1_t_80 +
-            six_r_d_Gamma_3_t_8*six_r_w_1_t_50;
-        const real six_r_d_Gamma_3_in_axes5_y = six_r_d_Gamma_3_t_13 - v.six_r_d_Gamma_3_t_2 -
-            six_r_d_Gamma_3_t_10*six_r_w_1_t_69 - six_r_d_Gamma_3_t_12*six_r_w_1_t_81 -
-            six_r_d_Gamma_3_t_6*six_r_w_1_t_29 - six_r_d_Gamma_3_t_8*six_r_w_1_t_51;
-        const real six_r_d_Gamma_3_in_axes5_z = v.six_r_d_Gamma_3_t_3 +
-            six_r_d_Gamma_3_t_10*six_r_w_1_t_70 + six_r_d_Gamma_3_t_12*six_r_w_1_t_82 +
-            six_r_d_Gamma_3_t_6*six_r_w_1_t_30 + six_r_d_Gamma_3_t_8*six_r_w_1_t_52;
-        /* (six_r-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-           reference points */
-        const real six_r_mu_2_o_t = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_x;
-        const real six_r_J_2_in_spec2_xy = m->six_r_J_2_in_spec2_xy[i];
-        const real six_r_J_2_in_spec2_xz = m->six_r_J_2_in_spec2_xz[i];
-        const real six_r_J_2_in_spec2_yz = m->six_r_J_2_in_spec2_yz[i];
-        const real six_r_Sigma_2_in_axes2_yy = m->six_r_Sigma_2_in_axes2_yy[i];
-        const real six_r_Sigma_2_in_axes2_zz = m->six_r_Sigma_2_in_axes2_zz[i];
-        const real six_r_h_2_in_spec2_y = m->six_r_h_2_in_spec2_y[i];
-        const real six_r_h_2_in_spec2_z = m->six_r_h_2_in_spec2_z[i];
-        const real six_r_mu_2_o_in_axes2_x = six_r_B_2_o_in_axes2_yx*six_r_J_2_in_spec2_xz +
-            six_r_B_2_o_in_axes2_zy*six_r_Sigma_2_in_axes2_yy +
-            six_r_J_2_in_spec2_yz*(six_r_a_o_3_o_t - six_r_a_o_3_o_t_2) +
-            v.six_r_g_in_axes2_y*six_r_h_2_in_spec2_z -
-            six_r_B_2_o_in_axes2_zx*six_r_J_2_in_spec2_xy -
-            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_o_t -
-            v.six_r_g_in_axes1_y*six_r_h_2_in_spec2_y;
-        const real six_r_Sigma_2_in_axes2_xx = m->six_r_Sigma_2_in_axes2_xx[i];
-        const real six_r_h_2_in_spec2_x = m->six_r_h_2_in_spec2_x[i];
-        const real six_r_mu_2_o_in_axes2_y = six_r_B_2_o_in_axes2_zy*six_r_J_2_in_spec2_xy +
-            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_o_in_axes2_y +
-            v.six_r_g_in_axes1_y*six_r_h_2_in_spec2_x -
-            six_r_B_2_o_in_axes2_xy*six_r_J_2_in_spec2_yz -
-            six_r_B_2_o_in_axes2_zx*six_r_Sigma_2_in_axes2_xx -
-            six_r_J_2_in_spec2_xz*(six_r_mu_2_o_t - six_r_a_o_3_o_t_2) -
-            v.six_r_g_in_axes2_x*six_r_h_2_in_spec2_z;
-        const real six_r_mu_2_o_in_axes2_z = six_r_B_2_o_in_axes2_yx*six_r_Sigma_2_in_axes2_xx +
-            six_r_J_2_in_spec2_xy*(six_r_mu_2_o_t - six_r_a_o_3_o_t) +
-            six_r_J_2_in_spec2_yz*six_r_alpha_1_o_in_axes2_y +
-            v.six_r_g_in_axes2_x*six_r_h_2_in_spec2_y -
-            six_r_B_2_o_in_axes2_xy*six_r_Sigma_2_in_axes2_yy -
-            six_r_J_2_in_spec2_xz*six_r_alpha_1_o_t - v.six_r_g_in_axes2_y*six_r_h_2_in_spec2_x;
-        /* (six_r-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
-           connection point left out */
-        const real six_r_N_2_o_in_axes2_x = six_r_mu_2_o_in_axes2_x +
-            six_r_N_3_o_in_axes3_x*v.six_r_s_3 + six_r_N_3_o_in_axes3_y*v.six_r_c_3;
-        const real six_r_N_2_o_in_axes2_y = six_r_mu_2_o_in_axes2_y +
-            six_r_N_3_o_in_axes3_y*v.six_r_s_3 - six_r_N_3_o_in_axes3_x*v.six_r_c_3 -
-            six_r_T_3_o_in_axes3_z*six_r_joint3_offset_x;
-        const real six_r_N_2_o_in_axes2_z = six_r_N_3_o_in_axes3_z + six_r_mu_2_o_in_axes2_z -
-            six_r_joint3_offset_x*(six_r_T_3_o_in_axes3_x*v.six_r_c_3 -
-            six_r_T_3_o_in_axes3_y*v.six_r_s_3);
-        /* (six_r-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
-           links' inertia and weight */
-        const real six_r_dalpha_Gamma_2_in_axes5_x = six_r_dalpha_Gamma_3_t +
-            v.six_r_Jc_2_in_axes1_yz*six_r_o_1_in_axes5_x - v.six_r_Jc_2_in_axes2_zz*six_r_o_2_t -
-            v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_t - v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_t;
-        const real six_r_dalpha_Gamma_2_in_axes5_y = six_r_dalpha_Gamma_3_t_2 +
-            v.six_r_Jc_2_in_axes1_yz*six_r_o_1_in_axes5_y +
-            v.six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_y +
-            v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_y +
-            v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_y;
-        const real six_r_dalpha_Gamma_2_in_axes5_z = v.six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_z
-            + v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_z +
-            v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_z - six_r_dalpha_Gamma_3_t_3 -
-            v.six_r_Jc_2_in_axes1_yz*six_r_o_1_t;
-        /* (six_r-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real six_r_d_Gamma_2_t = inv_six_r_w_1_t_28*(v.six_r_L_c_4_2_in_axes2_z -
-            six_r_d_Gamma_3_t_5);
-        const real six_r_d_Gamma_2_t_2 = inv_six_r_w_1_t_49*(v.six_r_Jc_2_in_axes1_yz +
-            six_r_d_Gamma_2_t*six_r_w_1_t_33 - six_r_d_Gamma_3_t_7);
-        const real six_r_d_Gamma_2_t_3 = inv_six_r_w_1_t_67*(v.six_r_Jc_2_in_axes2_zz +
-            six_r_d_Gamma_2_t*six_r_w_1_t_39 - six_r_d_Gamma_3_t_9 -
-            six_r_d_Gamma_2_t_2*six_r_w_1_t_55);
-        const real six_r_d_Gamma_2_t_4 = inv_six_r_w_1_t_79*(v.six_r_L_c_3_2_in_axes2_z +
-            six_r_d_Gamma_3_t_11 + six_r_d_Gamma_2_t*six_r_w_1_t_44 -
-            six_r_d_Gamma_2_t_2*six_r_w_1_t_61 - six_r_d_Gamma_2_t_3*six_r_w_1_t_73);
-        const real six_r_d_Gamma_2_in_axes5_x = v.six_r_d_Gamma_3_t +
-            six_r_d_Gamma_2_t_2*six_r_w_1_t_50 + six_r_d_Gamma_2_t_3*six_r_w_1_t_68 +
-            six_r_d_Gamma_2_t_4*six_r_w_1_t_80;
-        const real six_r_d_Gamma_2_in_axes5_y = six_r_d_Gamma_3_t_13 - v.six_r_d_Gamma_3_t_2 -
-            six_r_d_Gamma_2_t*six_r_w_1_t_29 - six_r_d_Gamma_2_t_2*six_r_w_1_t_51 -
-            six_r_d_Gamma_2_t_3*six_r_w_1_t_69 - six_r_d_Gamma_2_t_4*six_r_w_1_t_81;
-        const real six_r_d_Gamma_2_in_axes5_z = v.six_r_d_Gamma_3_t_3 +
-            six_r_d_Gamma_2_t*six_r_w_1_t_30 + six_r_d_Gamma_2_t_2*six_r_w_1_t_52 +
-            six_r_d_Gamma_2_t_3*six_r_w_1_t_70 + six_r_d_Gamma_2_t_4*six_r_w_1_t_82;
-        /* (six_r-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-           reference points */
-        const real six_r_J_1_in_spec1_xx = m->six_r_J_1_in_spec1_xx[i];
-        const real six_r_h_1_in_spec1_y = m->six_r_h_1_in_spec1_y[i];
-        const real six_r_h_1_in_spec1_z = m->six_r_h_1_in_spec1_z[i];
-        const real six_r_mu_1_o_in_axes1_z = v.six_r_g_in_axes1_x*six_r_h_1_in_spec1_z -
-            six_r_J_1_in_spec1_xx*six_r_qdd_1_o_t_5 - v.six_r_g_in_axes1_y*six_r_h_1_in_spec1_y;
-        /* (six_r-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
-           connection point left out */
-        const real six_r_N_1_o_in_axes1_z = six_r_mu_1_o_in_axes1_z +
-            six_r_N_2_o_in_axes2_x*v.six_r_c_2 - six_r_N_2_o_in_axes2_y*v.six_r_s_2;
-        /* (six_r-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
-           links' inertia and weight */
-        const real six_r_dalpha_Gamma_1_in_axes5_x = v.six_r_D_1_5*six_r_o_5_in_axes5_x +
-            v.six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_x - v.six_r_Jc_2_in_axes1_yz*six_r_o_2_t -
-            v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_t - v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_t;
-        const real six_r_dalpha_Gamma_1_in_axes5_y = v.six_r_D_1_5*six_r_o_5_in_axes5_y +
-            v.six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_y +
-            v.six_r_Jc_2_in_axes1_yz*six_r_o_2_in_axes5_y +
-            v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_y +
-            v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_y;
-        const real six_r_dalpha_Gamma_1_in_axes5_z = v.six_r_Jc_2_in_axes1_yz*six_r_o_2_in_axes5_z
-            + v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_z +
-            v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_z - v.six_r_D_1_5*six_r_o_5_t -
-            v.six_r_Jc_1_in_axes1_zz*six_r_o_1_t;
-        /* (six_r-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real six_r_d_Gamma_1_t = inv_six_r_w_1_t_12*v.six_r_D_1_5;
-        const real six_r_d_Gamma_1_t_2 = inv_six_r_w_1_t_28*(v.six_r_L_c_4_2_in_axes1_z -
-            six_r_d_Gamma_1_t*six_r_w_1_t_15);
-        const real six_r_d_Gamma_1_t_3 = inv_six_r_w_1_t_49*(v.six_r_Jc_1_in_axes1_zz +
-            six_r_d_Gamma_1_t_2*six_r_w_1_t_33 - six_r_d_Gamma_1_t*six_r_w_1_t_18);
-        const real six_r_d_Gamma_1_t_4 = inv_six_r_w_1_t_67*(v.six_r_Jc_2_in_axes1_yz +
-            six_r_d_Gamma_1_t_2*six_r_w_1_t_39 - six_r_d_Gamma_1_t*six_r_w_1_t_22 -
-            six_r_d_Gamma_1_t_3*six_r_w_1_t_55);
-        const real six_r_d_Gamma_1_t_5 = inv_six_r_w_1_t_79*(v.six_r_L_c_3_2_in_axes1_z +
-            six_r_d_Gamma_1_t*six_r_w_1_t_25 + six_r_d_Gamma_1_t_2*six_r_w_1_t_44 -
-            six_r_d_Gamma_1_t_3*six_r_w_1_t_61 - six_r_d_Gamma_1_t_4*six_r_w_1_t_73);
-        const real six_r_d_Gamma_1_in_axes5_x = six_r_d_Gamma_1_t_3*six_r_w_1_t_50 +
-            six_r_d_Gamma_1_t_4*six_r_w_1_t_68 + six_r_d_Gamma_1_t_5*six_r_w_1_t_80 +
-            v.six_r_e_1_in_axes5_y*six_r_h_5_in_spec5_z -
-            v.six_r_e_1_in_axes5_z*six_r_h_5_in_spec5_y;
-        const real six_r_d_Gamma_1_in_axes5_y = six_r_d_Gamma_1_t*six_r_w_1_t_13 +
-            v.six_r_e_1_in_axes5_z*six_r_h_5_in_spec5_x - six_r_d_Gamma_1_t_2*six_r_w_1_t_29 -
-            six_r_d_Gamma_1_t_3*six_r_w_1_t_51 - six_r_d_Gamma_1_t_4*six_r_w_1_t_69 -
-            six_r_d_Gamma_1_t_5*six_r_w_1_t_81 - v.six_r_e_1_in_axes5_x*six_r_h_5_in_spec5_z;
-        const real six_r_d_Gamma_1_in_axes5_z = six_r_d_Gamma_1_t_2*six_r_w_1_t_30 +
-            six_r_d_Gamma_1_t_3*six_r_w_1_t_52 + six_r_d_Gamma_1_t_4*six_r_w_1_t_70 +
-            six_r_d_Gamma_1_t_5*six_r_w_1_t_82 + v.six_r_e_1_in_axes5_x*six_r_h_5_in_spec5_y -
-            v.six_r_e_1_in_axes5_y*six_r_h_5_in_spec5_x;
-        /* (six_r-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
-           balances the leg's inertia and weight along all degrees of freedom */
-        const real six_r_dalpha_G_m1_in_axes5_x = six_r_dalpha_Gamma_2_in_axes5_x*six_r_m1_w_2 +
-            six_r_dalpha_Gamma_3_in_axes5_x*six_r_m1_w_3 +
-            six_r_dalpha_Gamma_4_in_axes5_x*six_r_m1_w_4 -
-            six_r_dalpha_Gamma_1_in_axes5_x*six_r_m1_w_1_t_2 -
-            six_r_dalpha_Gamma_5_in_axes5_x*six_r_m1_w_5_t;
-        const real six_r_dalpha_G_m1_in_axes5_y = six_r_dalpha_Gamma_2_in_axes5_y*six_r_m1_w_2 +
-            six_r_dalpha_Gamma_3_in_axes5_y*six_r_m1_w_3 +
-            six_r_dalpha_Gamma_4_in_axes5_y*six_r_m1_w_4 -
-            six_r_dalpha_Gamma_1_in_axes5_y*six_r_m1_w_1_t_2 -
-            six_r_dalpha_Gamma_5_in_axes5_y*six_r_m1_w_5_t;
-        const real six_r_dalpha_G_m1_in_axes5_z = six_r_dalpha_Gamma_2_in_axes5_z*six_r_m1_w_2 +
-            six_r_dalpha_Gamma_3_in_axes5_z*six_r_m1_w_3 +
-            six_r_dalpha_Gamma_4_in_axes5_z*six_r_m1_w_4 -
-            six_r_dalpha_Gamma_1_in_axes5_z*six_r_m1_w_1_t_2 -
-            six_r_dalpha_Gamma_5_in_axes5_z*six_r_m1_w_5_t;
-        const real six_r_dalpha_G_m1_y = axis_x_six_r_axes5_y*six_r_dalpha_G_m1_in_axes5_x +
-            axis_y_six_r_axes5_y*six_r_dalpha_G_m1_in_axes5_y +
-            axis_z_six_r_axes5_y*six_r_dalpha_G_m1_in_axes5_z;
-        const real six_r_dalpha_G_m1_z = axis_x_six_r_axes5_z*six_r_dalpha_G_m1_in_axes5_x +
-            axis_y_six_r_axes5_z*six_r_dalpha_G_m1_in_axes5_y +
-            axis_z_six_r_axes5_z*six_r_dalpha_G_m1_in_axes5_z;
-        /* (six_r-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
-           balances the leg's inertia and weight along all degrees of freedom */
-        const real six_r_d_G_m1_in_axes5_x = six_r_d_Gamma_2_in_axes5_x*six_r_m1_w_2 +
-            six_r_d_Gamma_3_in_axes5_x*six_r_m1_w_3 + six_r_d_Gamma_4_in_axes5_x*six_r_m1_w_4 -
-            six_r_d_Gamma_1_in_axes5_x*six_r_m1_w_1_t_2 -
-            six_r_d_Gamma_5_in_axes5_x*six_r_m1_w_5_t;
-        const real six_r_d_G_m1_in_axes5_y = six_r_d_Gamma_2_in_axes5_y*six_r_m1_w_2 +
-            six_r_d_Gamma_3_in_axes5_y*six_r_m1_w_3 + six_r_d_Gamma_4_in_axes5_y*six_r_m1_w_4 -
-            six_r_d_Gamma_1_in_axes5_y*six_r_m1_w_1_t_2 -
-            six_r_d_Gamma_5_in_axes5_y*six_r_m1_w_5_t;
-        const real six_r_d_G_m1_in_axes5_z = six_r_d_Gamma_2_in_axes5_z*six_r_m1_w_2 +
-            six_r_d_Gamma_3_in_axes5_z*six_r_m1_w_3 + six_r_d_Gamma_4_in_axes5_z*six_r_m1_w_4 -
-            six_r_d_Gamma_1_in_axes5_z*six_r_m1_w_1_t_2 -
-            six_r_d_Gamma_5_in_axes5_z*six_r_m1_w_5_t;
-        const real six_r_d_G_m1_x = axis_x_six_r_axes5_x*six_r_d_G_m1_in_axes5_x +
-            axis_y_six_r_axes5_x*six_r_d_G_m1_in_axes5_y +
-            axis_z_six_r_axes5_x*six_r_d_G_m1_in_axes5_z;
-        const real six_r_d_G_m1_y = axis_x_six_r_axes5_y*six_r_d_G_m1_in_axes5_x +
-            axis_y_six_r_axes5_y*six_r_d_G_m1_in_axes5_y +
-            axis_z_six_r_axes5_y*six_r_d_G_m1_in_axes5_z;
-        const real six_r_d_G_m1_z = axis_x_six_r_axes5_z*six_r_d_G_m1_in_axes5_x +
-            axis_y_six_r_axes5_z*six_r_d_G_m1_in_axes5_y +
-            axis_z_six_r_axes5_z*six_r_d_G_m1_in_axes5_z;
-        /* (six_r-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia
-           and weight along all degrees of freedom */
-        const real six_r_G_m1_o_t = inv_six_r_w_1_t_12*six_r_mu_5_o_in_axes5_z;
-        const real six_r_G_m1_o_t_2 = inv_six_r_w_1_t_28*(six_r_G_m1_o_t*six_r_w_1_t_15 -
-            six_r_N_4_o_in_axes4_z);
-        const real six_r_G_m1_o_t_3 = inv_six_r_w_1_t_49*(six_r_G_m1_o_t*six_r_w_1_t_18 +
-            six_r_G_m1_o_t_2*six_r_w_1_t_33 - six_r_N_1_o_in_axes1_z);
-        const real six_r_G_m1_o_t_4 = inv_six_r_w_1_t_67*(six_r_G_m1_o_t*six_r_w_1_t_22 +
-            six_r_G_m1_o_t_2*six_r_w_1_t_39 - six_r_N_2_o_in_axes2_z -
-            six_r_G_m1_o_t_3*six_r_w_1_t_55);
-        const real six_r_G_m1_o_t_5 = inv_six_r_w_1_t_79*(six_r_N_3_o_in_axes3_z +
-            six_r_G_m1_o_t*six_r_w_1_t_25 + six_r_G_m1_o_t_3*six_r_w_1_t_61 +
-            six_r_G_m1_o_t_4*six_r_w_1_t_73 - six_r_G_m1_o_t_2*six_r_w_1_t_44);
-        const real six_r_G_m1_o_t_6 = six_r_size*(six_r_G_m1_o_t_2*six_r_w_1_t_31 +
-            six_r_G_m1_o_t_3*six_r_w_1_t_53 + six_r_G_m1_o_t_4*six_r_w_1_t_71 -
-            six_r_G_m1_o_t_5*six_r_m1_w_1_t);
-        /* (six_r-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
-           balances the leg's inertia and weight along all degrees of freedom */
-        const real six_r_dalpha_G_m2_in_axes5_x = six_r_dalpha_Gamma_2_in_axes5_x*six_r_m2_w_2 +
-            six_r_dalpha_Gamma_3_in_axes5_x*six_r_m2_w_3 +
-            six_r_dalpha_Gamma_4_in_axes5_x*six_r_m2_w_4 -
-            six_r_dalpha_Gamma_1_in_axes5_x*six_r_m2_w_1_t_2 -
-            six_r_dalpha_Gamma_5_in_axes5_x*six_r_m2_w_5_t;
-        const real six_r_dalpha_G_m2_in_axes5_y = six_r_dalpha_Gamma_2_in_axes5_y*six_r_m2_w_2 +
-            six_r_dalpha_Gamma_3_in_axes5_y*six_r_m2_w_3 +
-            six_r_dalpha_Gamma_4_in_axes5_y*six_r_m2_w_4 -
-            six_r_dalpha_Gamma_1_in_axes5_y*six_r_m2_w_1_t_2 -
-            six_r_dalpha_Gamma_5_in_axes5_y*six_r_m2_w_5_t;
-        const real six_r_dalpha_G_m2_in_axes5_z = six_r_dalpha_Gamma_2_in_axes5_z*six_r_m2_w_2 +
-            six_r_dalpha_Gamma_3_in_axes5_z*six_r_m2_w_3 +
-            six_r_dalpha_Gamma_4_in_axes5_z*six_r_m2_w_4 -
-            six_r_dalpha_Gamma_1_in_axes5_z*six_r_m2_w_1_t_2 -
-            six_r_dalpha_Gamma_5_in_axes5_z*six_r_m2_w_5_t;
-        const real six_r_dalpha_G_m2_y = axis_x_six_r_axes5_y*six_r_dalpha_G_m2_in_axes5_x +
-            axis_y_six_r_axes5_y*six_r_dalpha_G_m2_in_axes5_y +
-            axis_z_six_r_axes5_y*six_r_dalpha_G_m2_in_axes5_z;
-        const real six_r_dalpha_G_m2_z = axis_x_six_r_axes5_z*six_r_dalpha_G_m2_in_axes5_x +
-            axis_y_six_r_axes5_z*six_r_dalpha_G_m2_in_axes5_y +
-            axis_z_six_r_axes5_z*six_r_dalpha_G_m2_in_axes5_z;
-        /* (six_r-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
-           balances the leg's inertia and weight along all degrees of freedom */
-        const real six_r_d_G_m2_in_axes5_x = six_r_d_Gamma_2_in_axes5_x*six_r_m2_w_2 +
-            six_r_d_Gamma_3_in_axes5_x*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_x*six_r_m2_w_4 -
-            six_r_d_Gamma_1_in_axes5_x*six_r_m2_w_1_t_2 -
-            six_r_d_Gamma_5_in_axes5_x*six_r_m2_w_5_t;
-        const real six_r_d_G_m2_in_axes5_y = six_r_d_Gamma_2_in_axes5_y*six_r_m2_w_2 +
-            six_r_d_Gamma_3_in_axes5_y*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_y*six_r_m2_w_4 -
-            six_r_d_Gamma_1_in_axes5_y*six_r_m2_w_1_t_2 -
-            six_r_d_Gamma_5_in_axes5_y*six_r_m2_w_5_t;
-        const real six_r_d_G_m2_in_axes5_z = six_r_d_Gamma_2_in_axes5_z*six_r_m2_w_2 +
-            six_r_d_Gamma_3_in_axes5_z*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_z*six_r_m2_w_4 -
-            six_r_d_Gamma_1_in_axes5_z*six_r_m2_w_1_t_2 -
-            six_r_d_Gamma_5_in_axes5_z*six_r_m2_w_5_t;
-        const real six_r_d_G_m2_x = axis_x_six_r_axes5_x*six_r_d_G_m2_in_axes5_x +
-            axis_y_six_r_axes5_x*six_r_d_G_m2_in_axes5_y +
-            axis_z_six_r_axes5_x*six_r_d_G_m2_in_axes5_z;
-        const real six_r_d_G_m2_y = axis_x_six_r_axes5_y*six_r_d_G_m2_in_axes5_x +
-            axis_y_six_r_axes5_y*six_r_d_G_m2_in_axes5_y +
-            axis_z_six_r_axes5_y*six_r_d_G_m2_in_axes5_z;
-        const real six_r_d_G_m2_z = axis_x_six_r_axes5_z*six_r_d_G_m2_in_axes5_x +
-            axis_y_six_r_axes5_z*six_r_d_G_m2_in_axes5_y +
-            axis_z_six_r_axes5_z*six_r_d_G_m2_in_axes5_z;
-        /* (six_r-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia
-           and weight along all degrees of freedom */
-        const real six_r_G_m2_o_t = six_r_size*(six_r_G_m1_o_t_2*six_r_w_1_t_32 +
-            six_r_G_m1_o_t_3*six_r_w_1_t_54 + six_r_G_m1_o_t_4*six_r_w_1_t_72 -
-            six_r_G_m1_o_t*six_r_w_1_t_14 - six_r_G_m1_o_t_5*six_r_m2_w_1_t);
-        /* (six_r-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
-        const real six_r_d_G_m_xx = six_r_d_G_m1_x*six_r_n_m1_x + six_r_d_G_m2_x*six_r_n_m2_x;
-        const real six_r_d_G_m_xy = six_r_d_G_m1_y*six_r_n_m1_x + six_r_d_G_m2_y*six_r_n_m2_x;
-        const real six_r_d_G_m_xz = six_r_d_G_m1_z*six_r_n_m1_x + six_r_d_G_m2_z*six_r_n_m2_x;
-        const real six_r_d_G_m_yx = six_r_d_G_m1_x*six_r_n_m1_y + six_r_d_G_m2_x*six_r_n_m2_y;
-        /* (six_r-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real six_r_G_m_o_in_axes5_x = six_r_G_m1_o_t_6*six_r_end_p1_in_axes5_y;
-        const real six_r_G_m_o_in_axes5_y = six_r_G_m2_o_t*six_r_end_p1_in_axes5_z -
-            six_r_G_m1_o_t_6*six_r_n_m1_in_axes5_y;
-        /* (six_r-dalpha_c) coefficient of the acceleration in: leg force on the platform without
-           actuation and without the mass at the connection point */
-        const real six_r_dalpha_c_in_axes5_xx = six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_t_5 +
-            six_r_dalpha_alpha_5_in_axes5_zx*six_r_h_5_in_spec5_y -
-            six_r_dalpha_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_x -
-            six_r_dalpha_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_x -
-            six_r_dalpha_Gamma_3_in_axes5_x*six_r_w_3_in_axes5_x -
-            six_r_dalpha_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_x -
-            six_r_dalpha_alpha_5_in_axes5_yx*six_r_h_5_in_spec5_z;
-        const real six_r_dalpha_c_in_axes5_xy = six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_t_5 +
-            six_r_dalpha_alpha_5_in_axes5_zy*six_r_h_5_in_spec5_y -
-            six_r_dalpha_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_x -
-            six_r_dalpha_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_x -
-            six_r_dalpha_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_x -
-            six_r_dalpha_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_x -
-            six_r_dalpha_alpha_5_in_axes5_yy*six_r_h_5_in_spec5_z;
-        const real six_r_dalpha_c_in_axes5_xz = six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_t_5 +
-            six_r_dalpha_alpha_5_in_axes5_zz*six_r_h_5_in_spec5_y -
-            six_r_dalpha_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_x -
-            six_r_dalpha_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_x -
-            six_r_dalpha_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_x -
-            six_r_dalpha_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_x -
-            six_r_dalpha_alpha_5_in_axes5_yz*six_r_h_5_in_spec5_z;
-        const real six_r_dalpha_c_in_axes5_yx = six_r_dalpha_Gamma_3_in_axes5_x*six_r_w_3_t +
-            six_r_dalpha_alpha_5_in_axes5_xx*six_r_h_5_in_spec5_z -
-            six_r_dalpha_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_y -
-            six_r_dalpha_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_y -
-            six_r_dalpha_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_y -
-            six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_in_axes5_y -
-            six_r_dalpha_alpha_5_in_axes5_zx*six_r_h_5_in_spec5_x;
-        const real six_r_dalpha_c_in_axes5_yy = six_r_dalpha_Gamma_3_in_axes5_y*six_r_w_3_t +
-            six_r_dalpha_alpha_5_in_axes5_xy*six_r_h_5_in_spec5_z -
-            six_r_dalpha_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_y -
-            six_r_dalpha_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_y -
-            six_r_dalpha_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_y -
-            six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_y -
-            six_r_dalpha_alpha_5_in_axes5_zy*six_r_h_5_in_spec5_x;
-        const real six_r_dalpha_c_in_axes5_yz = six_r_dalpha_Gamma_3_in_axes5_z*six_r_w_3_t +
-            six_r_dalpha_alpha_5_in_axes5_xz*six_r_h_5_in_spec5_z -
-            six_r_dalpha_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_y -
-            six_r_dalpha_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_y -
-            six_r_dalpha_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_y -
-            six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_y -
-            six_r_dalpha_alpha_5_in_axes5_zz*six_r_h_5_in_spec5_x;
-        const real six_r_dalpha_c_in_axes5_zx =
-            six_r_dalpha_alpha_5_in_axes5_yx*six_r_h_5_in_spec5_x -
-            six_r_dalpha_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_z -
-            six_r_dalpha_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_z -
-            six_r_dalpha_Gamma_3_in_axes5_x*six_r_w_3_in_axes5_z -
-            six_r_dalpha_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_z -
-            six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_in_axes5_z -
-            six_r_dalpha_alpha_5_in_axes5_xx*six_r_h_5_in_spec5_y;
-        const real six_r_dalpha_c_in_axes5_zy =
-            six_r_dalpha_alpha_5_in_axes5_yy*six_r_h_5_in_spec5_x -
-            six_r_dalpha_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_z -
-            six_r_dalpha_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_z -
-            six_r_dalpha_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_z -
-            six_r_dalpha_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_z -
-            six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_z -
-            six_r_dalpha_alpha_5_in_axes5_xy*six_r_h_5_in_spec5_y;
-        const real six_r_dalpha_c_in_axes5_zz =
-            six_r_dalpha_alpha_5_in_axes5_yz*six_r_h_5_in_spec5_x -
-            six_r_dalpha_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_z -
-            six_r_dalpha_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_z -
-            six_r_dalpha_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_z -
-            six_r_dalpha_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_z -
-            six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_z -
-            six_r_dalpha_alpha_5_in_axes5_xz*six_r_h_5_in_spec5_y;
-        /* (six_r-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real six_r_d_c_in_axes5_xx = six_r_d_Gamma_5_in_axes5_x*six_r_w_5_t_5 -
-            six_r_d_phi_5_in_axes5_xx - six_r_d_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_x -
-            six_r_d_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_x -
-            six_r_d_Gamma_3_in_axes5_x*six_r_w_3_in_axes5_x -
-            six_r_d_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_x;
-        const real six_r_d_c_in_axes5_xy = six_r_d_Gamma_5_in_axes5_y*six_r_w_5_t_5 +
-            six_r_d_alpha_5_in_axes5_zy*six_r_h_5_in_spec5_y -
-            six_r_d_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_x -
-            six_r_d_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_x -
-            six_r_d_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_x -
-            six_r_d_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_x -
-            six_r_h_5_in_spec5_z*(v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_y +
-            v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_y - v.six_r_J_5_t*six_r_w_4_in_axes5_y -
-            v.six_r_e_2_in_axes5_y*six_r_w_3_t);
-        const real six_r_d_c_in_axes5_xz = six_r_d_Gamma_5_in_axes5_z*six_r_w_5_t_5 +
-            six_r_d_alpha_5_in_axes5_zz*six_r_h_5_in_spec5_y -
-            six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_x -
-            six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_x -
-            six_r_d_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_x -
-            six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_x -
-            six_r_d_alpha_5_in_axes5_yz*six_r_h_5_in_spec5_z;
-        const real six_r_d_c_in_axes5_yy = six_r_d_Gamma_3_in_axes5_y*six_r_w_3_t +
-            six_r_h_5_in_spec5_z*(v.six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_y +
-            v.six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_y +
-            v.six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_y - v.six_r_e_2_in_axes5_x*six_r_w_3_t) -
-            six_r_d_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_y -
-            six_r_d_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_y -
-            six_r_d_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_y -
-            six_r_d_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_y -
-            six_r_d_alpha_5_in_axes5_zy*six_r_h_5_in_spec5_x;
-        const real six_r_d_c_in_axes5_yz = six_r_d_Gamma_3_in_axes5_z*six_r_w_3_t +
-            six_r_d_alpha_5_in_axes5_xz*six_r_h_5_in_spec5_z -
-            six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_y -
-            six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_y -
-            six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_y -
-            six_r_d_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_y -
-            six_r_d_alpha_5_in_axes5_zz*six_r_h_5_in_spec5_x;
-        /* (six_r-c_o) remainder of: leg force on the platform without actuation and without the mass at
-           the connection point */
-        const real six_r_c_o_in_axes5_x = six_r_G_m1_o_t_3*six_r_w_1_t_50 +
-            six_r_G_m1_o_t_4*six_r_w_1_t_68 + six_r_W_5_t_3*six_r_h_5_in_spec5_x -
-            six_r_B_5_o_in_axes5_xy*six_r_h_5_in_spec5_y -
-            six_r_B_5_o_in_axes5_xz*six_r_h_5_in_spec5_z - six_r_G_m1_o_t_5*six_r_w_1_t_80;
-        const real six_r_c_o_in_axes5_y = six_r_G_m1_o_t_5*six_r_w_1_t_81 +
-            six_r_h_5_in_spec5_y*(six_r_W_5_t_2 + six_r_bias_t_2) -
-            six_r_B_5_o_in_axes5_yx*six_r_h_5_in_spec5_x -
-            six_r_B_5_o_in_axes5_yz*six_r_h_5_in_spec5_z - six_r_G_m1_o_t*six_r_w_1_t_13 -
-            six_r_G_m1_o_t_2*six_r_w_1_t_29 - six_r_G_m1_o_t_3*six_r_w_1_t_51 -
-            six_r_G_m1_o_t_4*six_r_w_1_t_69;
-        const real six_r_c_o_in_axes5_z = six_r_G_m1_o_t_2*six_r_w_1_t_30 +
-            six_r_G_m1_o_t_3*six_r_w_1_t_52 + six_r_G_m1_o_t_4*six_r_w_1_t_70 +
-            six_r_h_5_in_spec5_z*(six_r_W_5_t + six_r_bias_t_2) -
-            six_r_B_5_o_in_axes5_zx*six_r_h_5_in_spec5_x -
-            six_r_B_5_o_in_axes5_zy*six_r_h_5_in_spec5_y - six_r_G_m1_o_t_5*six_r_w_1_t_82;
-        /* (six_r-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real six_r_Q_t = six_r_d_c_in_axes5_xx - six_r_d_c_in_axes5_yy;
-        const real six_r_Q_t_2 = R(0.5)*six_r_Q_t;
-        const real six_r_Q_t_3 = six_r_d_c_in_axes5_xx +
-            six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_z +
-            six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_z +
-            six_r_d_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_z +
-            six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_z +
-            six_r_d_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_z +
-            six_r_d_alpha_5_in_axes5_xz*six_r_h_5_in_spec5_y -
-            six_r_d_alpha_5_in_axes5_yz*six_r_h_5_in_spec5_x;
-        const real six_r_Q_t_4 = R(0.5)*six_r_Q_t_3;
-        const real six_r_Q_t_5 = axis_x_six_r_axes5_x*six_r_d_c_in_axes5_xy +
-            axis_z_six_r_axes5_x*six_r_d_c_in_axes5_yz - axis_y_six_r_axes5_x*six_r_Q_t_2;
-        const real six_r_Q_t_6 = axis_x_six_r_axes5_y*six_r_d_c_in_axes5_xy +
-            axis_z_six_r_axes5_y*six_r_d_c_in_axes5_yz - axis_y_six_r_axes5_y*six_r_Q_t_2;
-        const real six_r_Q_t_7 = axis_x_six_r_axes5_z*six_r_d_c_in_axes5_xy +
-            axis_z_six_r_axes5_z*six_r_d_c_in_axes5_yz - axis_y_six_r_axes5_z*six_r_Q_t_2;
-        const real six_r_Q_t_8 = axis_z_six_r_axes5_x*six_r_Q_t_4 -
-            axis_x_six_r_axes5_x*six_r_d_c_in_axes5_xz;
-        const real six_r_Q_t_9 = axis_z_six_r_axes5_y*six_r_Q_t_4 -
-            axis_x_six_r_axes5_y*six_r_d_c_in_axes5_xz;
-        const real six_r_Q_t_10 = axis_z_six_r_axes5_z*six_r_Q_t_4 -
-            axis_x_six_r_axes5_z*six_r_d_c_in_axes5_xz;
-        const real six_r_Q_t_11 = axis_y_six_r_axes5_x*six_r_Q_t_5 -
-            axis_z_six_r_axes5_x*six_r_Q_t_8;
-        const real six_r_Q_xx = -2*six_r_Q_t_11 - six_r_d_c_in_axes5_xx;
-        const real six_r_Q_xy = axis_z_six_r_axes5_x*six_r_Q_t_9 +
-            axis_z_six_r_axes5_y*six_r_Q_t_8 - axis_y_six_r_axes5_x*six_r_Q_t_6 -
-            axis_y_six_r_axes5_y*six_r_Q_t_5;
-        const real six_r_Q_xz = axis_z_six_r_axes5_x*six_r_Q_t_10 +
-            axis_z_six_r_axes5_z*six_r_Q_t_8 - axis_y_six_r_axes5_x*six_r_Q_t_7 -
-            axis_y_six_r_axes5_z*six_r_Q_t_5;
-        const real six_r_Q_t_12 = axis_y_six_r_axes5_y*six_r_Q_t_6 -
-            axis_z_six_r_axes5_y*six_r_Q_t_9;
-        const real six_r_Q_yy = -2*six_r_Q_t_12 - six_r_d_c_in_axes5_xx;
-        const real six_r_Q_yz = axis_z_six_r_axes5_y*six_r_Q_t_10 +
-            axis_z_six_r_axes5_z*six_r_Q_t_9 - axis_y_six_r_axes5_y*six_r_Q_t_7 -
-            axis_y_six_r_axes5_z*six_r_Q_t_6;
-        const real six_r_Q_t_13 = axis_y_six_r_axes5_z*six_r_Q_t_7 -
-            axis_z_six_r_axes5_z*six_r_Q_t_10;
-        const real six_r_Q_zz = -2*six_r_Q_t_13 - six_r_d_c_in_axes5_xx;
-        /* (six_r-c_m_o) remainder of: moment of the leg on the platform without actuation */
-        const real six_r_c_m_o_in_axes5_z = six_r_G_m2_o_t*six_r_end_p1_in_axes5_y;
-        /* (six_r-U) velocity and gravity terms of the leg force */
-        const real six_r_U_x = -axis_x_six_r_axes5_x*six_r_c_o_in_axes5_x -
-            axis_y_six_r_axes5_x*six_r_c_o_in_axes5_y - axis_z_six_r_axes5_x*six_r_c_o_in_axes5_z;
-        const real six_r_U_y = -axis_x_six_r_axes5_y*six_r_c_o_in_axes5_x -
-            axis_y_six_r_axes5_y*six_r_c_o_in_axes5_y - axis_z_six_r_axes5_y*six_r_c_o_in_axes5_z;
-        const real six_r_U_z = -axis_x_six_r_axes5_z*six_r_c_o_in_axes5_x -
-            axis_y_six_r_axes5_z*six_r_c_o_in_axes5_y - axis_z_six_r_axes5_z*six_r_c_o_in_axes5_z;
-        /* (M_ta) coupling block of M */
-        const real six_r_M_ta_t = axis_x_six_r_axes5_x*six_r_dalpha_c_in_axes5_xx +
-            axis_y_six_r_axes5_x*six_r_dalpha_c_in_axes5_yx +
-            axis_z_six_r_axes5_x*six_r_dalpha_c_in_axes5_zx;
-        const real six_r_M_ta_t_2 = axis_x_six_r_axes5_y*six_r_dalpha_c_in_axes5_xx +
-            axis_y_six_r_axes5_y*six_r_dalpha_c_in_axes5_yx +
-            axis_z_six_r_axes5_y*six_r_dalpha_c_in_axes5_zx;
-        const real six_r_M_ta_t_3 = axis_x_six_r_axes5_z*six_r_dalpha_c_in_axes5_xx +
-            axis_y_six_r_axes5_z*six_r_dalpha_c_in_axes5_yx +
-            axis_z_six_r_axes5_z*six_r_dalpha_c_in_axes5_zx;
-        const real six_r_M_ta_t_4 = axis_x_six_r_axes5_x*six_r_dalpha_c_in_axes5_xy +
-            axis_y_six_r_axes5_x*six_r_dalpha_c_in_axes5_yy +
-            axis_z_six_r_axes5_x*six_r_dalpha_c_in_axes5_zy;
-        const real six_r_M_ta_t_5 = axis_x_six_r_axes5_y*six_r_dalpha_c_in_axes5_xy +
-            axis_y_six_r_axes5_y*six_r_dalpha_c_in_axes5_yy +
-            axis_z_six_r_axes5_y*six_r_dalpha_c_in_axes5_zy;
-        const real six_r_M_ta_t_6 = axis_x_six_r_axes5_z*six_r_dalpha_c_in_axes5_xy +
-            axis_y_six_r_axes5_z*six_r_dalpha_c_in_axes5_yy +
-            axis_z_six_r_axes5_z*six_r_dalpha_c_in_axes5_zy;
-        const real six_r_M_ta_t_7 = axis_x_six_r_axes5_x*six_r_dalpha_c_in_axes5_xz +
-            axis_y_six_r_axes5_x*six_r_dalpha_c_in_axes5_yz +
-            axis_z_six_r_axes5_x*six_r_dalpha_c_in_axes5_zz;
-        const real six_r_M_ta_t_8 = axis_x_six_r_axes5_y*six_r_dalpha_c_in_axes5_xz +
-            axis_y_six_r_axes5_y*six_r_dalpha_c_in_axes5_yz +
-            axis_z_six_r_axes5_y*six_r_dalpha_c_in_axes5_zz;
-        const real six_r_M_ta_t_9 = axis_x_six_r_axes5_z*six_r_dalpha_c_in_axes5_xz +
-            axis_y_six_r_axes5_z*six_r_dalpha_c_in_axes5_yz +
-            axis_z_six_r_axes5_z*six_r_dalpha_c_in_axes5_zz;
-        const real six_r_M_ta_t_10 = -six_r_Q_xy*v.six_r_q_z;
-        const real six_r_M_ta_t_11 = six_r_Q_xz*v.six_r_q_y;
-        const real six_r_M_ta_t_12 = six_r_Q_yz*v.six_r_q_x;
-        const real six_r_M_ta_t_13 = six_r_M_ta_t_10 + six_r_M_ta_t_11 -
-            axis_x_six_r_axes5_x*six_r_M_ta_t - axis_y_six_r_axes5_x*six_r_M_ta_t_4 -
-            axis_z_six_r_axes5_x*six_r_M_ta_t_7;
-        const real six_r_M_ta_t_14 = six_r_Q_xx*v.six_r_q_z - axis_x_six_r_axes5_y*six_r_M_ta_t -
-            axis_y_six_r_axes5_y*six_r_M_ta_t_4 - axis_z_six_r_axes5_y*six_r_M_ta_t_7 -
-            six_r_Q_xz*v.six_r_q_x;
-        const real six_r_M_ta_t_15 = six_r_Q_xy*v.six_r_q_x - axis_x_six_r_axes5_z*six_r_M_ta_t -
-            axis_y_six_r_axes5_z*six_r_M_ta_t_4 - axis_z_six_r_axes5_z*six_r_M_ta_t_7 -
-            six_r_Q_xx*v.six_r_q_y;
-        const real six_r_M_ta_t_16 = six_r_Q_yz*v.six_r_q_y - axis_x_six_r_axes5_x*six_r_M_ta_t_2
-            - axis_y_six_r_axes5_x*six_r_M_ta_t_5 - axis_z_six_r_axes5_x*six_r_M_ta_t_8 -
-            six_r_Q_yy*v.six_r_q_z;
-        const real six_r_M_ta_t_17 = six_r_M_ta_t_10 + six_r_M_ta_t_12 +
-            axis_x_six_r_axes5_y*six_r_M_ta_t_2 + axis_y_six_r_axes5_y*six_r_M_ta_t_5 +
-            axis_z_six_r_axes5_y*six_r_M_ta_t_8;
-        const real six_r_M_ta_t_18 = six_r_Q_yy*v.six_r_q_x - axis_x_six_r_axes5_z*six_r_M_ta_t_2
-            - axis_y_six_r_axes5_z*six_r_M_ta_t_5 - axis_z_six_r_axes5_z*six_r_M_ta_t_8 -
-            six_r_Q_xy*v.six_r_q_y;
-        const real six_r_M_ta_t_19 = six_r_Q_zz*v.six_r_q_y - axis_x_six_r_axes5_x*six_r_M_ta_t_3
-            - axis_y_six_r_axes5_x*six_r_M_ta_t_6 - axis_z_six_r_axes5_x*six_r_M_ta_t_9 -
-            six_r_Q_yz*v.six_r_q_z;
-        const real six_r_M_ta_t_20 = six_r_Q_xz*v.six_r_q_z - axis_x_six_r_axes5_y*six_r_M_ta_t_3
-            - axis_y_six_r_axes5_y*six_r_M_ta_t_6 - axis_z_six_r_axes5_y*six_r_M_ta_t_9 -
-            six_r_Q_zz*v.six_r_q_x;
-        const real six_r_M_ta_t_21 = six_r_M_ta_t_12 - six_r_M_ta_t_11 -
-            axis_x_six_r_axes5_z*six_r_M_ta_t_3 - axis_y_six_r_axes5_z*six_r_M_ta_t_6 -
-            axis_z_six_r_axes5_z*six_r_M_ta_t_9;
-        /* (M_aa) rotational block of M */
-        const real six_r_M_aa_t = six_r_M_ta_t_19*v.six_r_q_y + six_r_d_G_m_xz*v.six_r_q_y +
-            six_r_n_m1_x*(axis_x_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_x +
-            axis_y_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_y +
-            axis_z_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_z) +
-            six_r_n_m2_x*(axis_x_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_x +
-            axis_y_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_y +
-            axis_z_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_z) - six_r_M_ta_t_16*v.six_r_q_z -
-            six_r_d_G_m_xy*v.six_r_q_z;
-        const real six_r_M_aa_t_2 = six_r_M_ta_t_17*v.six_r_q_z + six_r_M_ta_t_20*v.six_r_q_y +
-            six_r_d_G_m_xx*v.six_r_q_z + six_r_dalpha_G_m1_y*six_r_n_m1_x +
-            six_r_dalpha_G_m2_y*six_r_n_m2_x - six_r_d_G_m_xz*v.six_r_q_x;
-        const real six_r_M_aa_t_3 = six_r_M_ta_t_21*v.six_r_q_y + six_r_d_G_m_xy*v.six_r_q_x +
-            six_r_dalpha_G_m1_z*six_r_n_m1_x + six_r_dalpha_G_m2_z*six_r_n_m2_x -
-            six_r_M_ta_t_18*v.six_r_q_z - six_r_d_G_m_xx*v.six_r_q_y;
-        const real six_r_M_aa_t_4 = six_r_M_ta_t_14*v.six_r_q_z + six_r_d_G_m_yx*v.six_r_q_z +
-            six_r_dalpha_G_m1_y*six_r_n_m1_y + six_r_dalpha_G_m2_y*six_r_n_m2_y -
-            six_r_M_ta_t_20*v.six_r_q_x - v.six_r_q_x*(six_r_d_G_m1_z*six_r_n_m1_y +
-            six_r_d_G_m2_z*six_r_n_m2_y);
-        const real six_r_M_aa_t_5 = six_r_M_ta_t_15*v.six_r_q_z + six_r_dalpha_G_m1_z*six_r_n_m1_y
-            + six_r_dalpha_G_m2_z*six_r_n_m2_y + v.six_r_q_x*(six_r_d_G_m1_y*six_r_n_m1_y +
-            six_r_d_G_m2_y*six_r_n_m2_y) - six_r_M_ta_t_21*v.six_r_q_x -
-            six_r_d_G_m_yx*v.six_r_q_y;
-        const real six_r_M_aa_t_6 = six_r_M_ta_t_18*v.six_r_q_x + six_r_dalpha_G_m1_z*six_r_n_m1_z
-            + six_r_dalpha_G_m2_z*six_r_n_m2_z + v.six_r_q_x*(six_r_d_G_m1_y*six_r_n_m1_z +
-            six_r_d_G_m2_y*six_r_n_m2_z) - six_r_M_ta_t_15*v.six_r_q_y -
-            v.six_r_q_y*(six_r_d_G_m1_x*six_r_n_m1_z + six_r_d_G_m2_x*six_r_n_m2_z);
-        /* (Z_a) rotational part of Z */
-        const real six_r_Z_a_t = axis_x_six_r_axes5_x*six_r_G_m_o_in_axes5_x +
-            axis_y_six_r_axes5_x*six_r_G_m_o_in_axes5_y + six_r_U_z*v.six_r_q_y -
-            axis_z_six_r_axes5_x*six_r_c_m_o_in_axes5_z - six_r_U_y*v.six_r_q_z;
-        const real six_r_Z_a_t_2 = axis_x_six_r_axes5_y*six_r_G_m_o_in_axes5_x +
-            axis_y_six_r_axes5_y*six_r_G_m_o_in_axes5_y + six_r_U_x*v.six_r_q_z -
-            axis_z_six_r_axes5_y*six_r_c_m_o_in_axes5_z - six_r_U_z*v.six_r_q_x;
-        const real six_r_Z_a_t_3 = axis_x_six_r_axes5_z*six_r_G_m_o_in_axes5_x +
-            axis_y_six_r_axes5_z*six_r_G_m_o_in_axes5_y + six_r_U_y*v.six_r_q_x -
-            axis_z_six_r_axes5_z*six_r_c_m_o_in_axes5_z - six_r_U_x*v.six_r_q_y;
-        /* (six_r-H_a_2) moment of the column's unit force about the platform origin */
-        const real six_r_H_a_2_x = six_r_o_2_x + v.six_r_q_y*six_r_w_2_z -
-            v.six_r_q_z*six_r_w_2_y;
-        const real six_r_H_a_2_y = six_r_o_2_y + v.six_r_q_z*six_r_w_2_x -
-            v.six_r_q_x*six_r_w_2_z;
-        const real six_r_H_a_2_z = six_r_o_2_z + v.six_r_q_x*six_r_w_2_y -
-            v.six_r_q_y*six_r_w_2_x;
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, six_r_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, six_r_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, six_r_Q_xz);  /* M_tt_xz */
-        gather(&terms[3*count + k], add, six_r_Q_yy);  /* M_tt_yy_of_legs */
-        gather(&terms[4*count + k], add, six_r_Q_yz);  /* M_tt_yz */
-        gather(&terms[5*count + k], add, six_r_Q_zz);  /* M_tt_zz_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[6*count + k], add, six_r_M_ta_t_13);  /* M_ta_xx */
-        gather(&terms[7*count + k], add, six_r_M_ta_t_14);  /* M_ta_xy_of_legs */
-        gather(&terms[8*count + k], add, six_r_M_ta_t_15);  /* M_ta_xz_of_legs */
-        gather(&terms[9*count + k], add, six_r_M_ta_t_16);  /* M_ta_yx_of_legs */
-        gather(&terms[10*count + k], add, six_r_M_ta_t_17);  /* M_ta_t */
-        gather(&terms[11*count + k], add, six_r_M_ta_t_18);  /* M_ta_yz_of_legs */
-        gather(&terms[12*count + k], add, six_r_M_ta_t_19);  /* M_ta_zx_of_legs */
-        gather(&terms[13*count + k], add, six_r_M_ta_t_20);  /* M_ta_zy_of_legs */
-        gather(&terms[14*count + k], add, six_r_M_ta_t_21);  /* M_ta_zz */
-        /* (M_aa) rotational block of M */
-        gather(&terms[15*count + k], add, six_r_M_aa_t);  /* M_aa_xx_of_legs */
-        gather(&terms[16*count + k], add, six_r_M_aa_t_2);  /* M_aa_xy_of_legs */
-        gather(&terms[17*count + k], add, six_r_M_aa_t_3);  /* M_aa_xz_of_legs */
-        gather(&terms[18*count + k], add, six_r_M_aa_t_4);  /* M_aa_yy_of_legs */
-        gather(&terms[19*count + k], add, six_r_M_aa_t_5);  /* M_aa_yz_of_legs */
-        gather(&terms[20*count + k], add, six_r_M_aa_t_6);  /* M_aa_zz_of_legs */
-        /* (Z_t) translational part of Z */
-        gather(&terms[21*count + k], add, six_r_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[22*count + k], add, six_r_U_y);  /* Z_t_y_of_legs */
-        gather(&terms[23*count + k], add, six_r_U_z);  /* Z_t_z_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[24*count + k], add, six_r_Z_a_t);  /* Z_a_x_of_legs */
-        gather(&terms[25*count + k], add, six_r_Z_a_t_2);  /* Z_a_y_of_legs */
-        gather(&terms[26*count + k], add, six_r_Z_a_t_3);  /* Z_a_z_of_legs */
-        /* (six_r-w_2) force part of reciprocal wrench 2 */
-        o[0*count + k] = six_r_w_2_x;
-        o[1*count + k] = six_r_w_2_y;
-        o[2*count + k] = six_r_w_2_z;
-        /* (six_r-H_a_2) moment of the column's unit force about the platform origin */
-        o[3*count + k] = six_r_H_a_2_x;
-        o[4*count + k] = six_r_H_a_2_y;
-        o[5*count + k] = six_r_H_a_2_z;
-        o[7*count + k] = (six_r_w_2_x + (six_r_w_2_y + six_r_w_2_z)) + (six_r_H_a_2_x +
-            (six_r_H_a_2_y + six_r_H_a_2_z));
-        o[6*count + k] = UNLESS(magnitude(six_r_w_1_t_12) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_28) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_49) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_67) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_79) > TOLERANCE*six_r_size);
-    }
+    values_six_r v;
+    stage_six_r_X(m, w, i, j, s, &v);
+    stage_six_r_q(m, w, i, j, joints, &v);
+    stage_six_r_V_X(w, j, V, &v);
+    stage_six_r_X_q(m, i, &v);
+    stage_six_r_M_dynamics(m, w, i, j, joints, &v);
+    stage_six_r_Z_dynamics(m, w, i, j, V, &v);
+    /* (six_r-S_dot) velocity of the connection point */
+    const real six_r_S_dot_t = v.six_r_c_3*v.six_r_h_4_t;
+    const real six_r_S_dot_t_2 = v.six_r_h_4_t*v.six_r_s_3;
+    const real six_r_S_dot_t_3 = six_r_S_dot_t*v.six_r_s_2 + six_r_S_dot_t_2*v.six_r_c_2;
+    const real six_r_S_dot_t_4 = six_r_S_dot_t_2*v.six_r_s_2 - six_r_S_dot_t*v.six_r_c_2;
+    const real six_r_S_dot_t_5 = six_r_S_dot_t_4*v.six_r_c_1 -
+        v.six_r_e_2_in_axes5_z*v.six_r_s_1;
+    const real six_r_S_dot_t_6 = six_r_S_dot_t_4*v.six_r_s_1 +
+        v.six_r_c_1*v.six_r_e_2_in_axes5_z;
+    const real axis_z_six_r_axes5_x = six_r_S_dot_t_3*m->six_r_base_frame_xx[i] +
+        six_r_S_dot_t_5*m->six_r_base_frame_xy[i] + six_r_S_dot_t_6*m->six_r_base_frame_xz[i];
+    const real axis_z_six_r_axes5_y = six_r_S_dot_t_3*m->six_r_base_frame_yx[i] +
+        six_r_S_dot_t_5*m->six_r_base_frame_yy[i] + six_r_S_dot_t_6*m->six_r_base_frame_yz[i];
+    const real axis_z_six_r_axes5_z = six_r_S_dot_t_3*m->six_r_base_frame_zx[i] +
+        six_r_S_dot_t_5*m->six_r_base_frame_zy[i] + six_r_S_dot_t_6*m->six_r_base_frame_zz[i];
+    const real six_r_S_dot_t_7 = v.six_r_e_2_in_axes5_z*v.six_r_e_4_in_axes5_x;
+    const real six_r_S_dot_t_8 = v.six_r_J_5_t*v.six_r_s_3 - six_r_S_dot_t_7*v.six_r_c_3;
+    const real six_r_S_dot_t_9 = -v.six_r_J_5_t*v.six_r_c_3 - six_r_S_dot_t_7*v.six_r_s_3;
+    const real six_r_S_dot_t_10 = six_r_S_dot_t_8*v.six_r_s_2 + six_r_S_dot_t_9*v.six_r_c_2;
+    const real six_r_S_dot_t_11 = six_r_S_dot_t_9*v.six_r_s_2 - six_r_S_dot_t_8*v.six_r_c_2;
+    const real six_r_S_dot_t_12 = six_r_S_dot_t_11*v.six_r_c_1 -
+        v.six_r_e_2_in_axes5_y*v.six_r_s_1;
+    const real six_r_S_dot_t_13 = six_r_S_dot_t_11*v.six_r_s_1 +
+        v.six_r_c_1*v.six_r_e_2_in_axes5_y;
+    const real axis_y_six_r_axes5_x = six_r_S_dot_t_10*m->six_r_base_frame_xx[i] +
+        six_r_S_dot_t_12*m->six_r_base_frame_xy[i] +
+        six_r_S_dot_t_13*m->six_r_base_frame_xz[i];
+    const real axis_y_six_r_axes5_y = six_r_S_dot_t_10*m->six_r_base_frame_yx[i] +
+        six_r_S_dot_t_12*m->six_r_base_frame_yy[i] +
+        six_r_S_dot_t_13*m->six_r_base_frame_yz[i];
+    const real axis_y_six_r_axes5_z = six_r_S_dot_t_10*m->six_r_base_frame_zx[i] +
+        six_r_S_dot_t_12*m->six_r_base_frame_zy[i] +
+        six_r_S_dot_t_13*m->six_r_base_frame_zz[i];
+    const real axis_x_six_r_axes5_x = axis_y_six_r_axes5_y*axis_z_six_r_axes5_z -
+        axis_y_six_r_axes5_z*axis_z_six_r_axes5_y;
+    const real axis_x_six_r_axes5_y = axis_y_six_r_axes5_z*axis_z_six_r_axes5_x -
+        axis_y_six_r_axes5_x*axis_z_six_r_axes5_z;
+    const real axis_x_six_r_axes5_z = axis_y_six_r_axes5_x*axis_z_six_r_axes5_y -
+        axis_y_six_r_axes5_y*axis_z_six_r_axes5_x;
+    const real six_r_S_dot_in_axes5_x = axis_x_six_r_axes5_x*v.six_r_S_dot_x +
+        axis_x_six_r_axes5_y*v.six_r_S_dot_y + axis_x_six_r_axes5_z*v.six_r_S_dot_z;
+    const real six_r_S_dot_in_axes5_y = axis_y_six_r_axes5_x*v.six_r_S_dot_x +
+        axis_y_six_r_axes5_y*v.six_r_S_dot_y + axis_y_six_r_axes5_z*v.six_r_S_dot_z;
+    const real six_r_S_dot_in_axes5_z = axis_z_six_r_axes5_x*v.six_r_S_dot_x +
+        axis_z_six_r_axes5_y*v.six_r_S_dot_y + axis_z_six_r_axes5_z*v.six_r_S_dot_z;
+    /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
+    const real six_r_n_m1_t_10 = v.six_r_h_4_t*v.six_r_n_m1_t_5 -
+        v.six_r_e_2_in_axes5_z*v.six_r_n_m1_t_8;
+    const real six_r_n_m1_in_axes5_y = v.six_r_J_5_t*six_r_n_m1_t_10 +
+        v.six_r_e_4_in_axes5_x*v.six_r_n_m1_t_9;
+    const real six_r_end_p1_in_axes5_y = v.six_r_e_4_in_axes5_x*six_r_n_m1_t_10 -
+        v.six_r_J_5_t*v.six_r_n_m1_t_9;
+    const real six_r_n_m1_x = axis_y_six_r_axes5_x*six_r_n_m1_in_axes5_y -
+        axis_x_six_r_axes5_x*six_r_end_p1_in_axes5_y;
+    const real six_r_n_m1_y = axis_y_six_r_axes5_y*six_r_n_m1_in_axes5_y -
+        axis_x_six_r_axes5_y*six_r_end_p1_in_axes5_y;
+    const real six_r_n_m1_z = axis_y_six_r_axes5_z*six_r_n_m1_in_axes5_y -
+        axis_x_six_r_axes5_z*six_r_end_p1_in_axes5_y;
+    /* (six_r-n_m2) direction 2 of the moment that the platform joint transmits */
+    const real six_r_end_p1_in_axes5_z = v.six_r_e_2_in_axes5_z*v.six_r_n_m1_t_5 +
+        v.six_r_h_4_t*v.six_r_n_m1_t_8;
+    const real six_r_n_m2_x = axis_z_six_r_axes5_x*six_r_end_p1_in_axes5_y -
+        axis_y_six_r_axes5_x*six_r_end_p1_in_axes5_z;
+    const real six_r_n_m2_y = axis_z_six_r_axes5_y*six_r_end_p1_in_axes5_y -
+        axis_y_six_r_axes5_y*six_r_end_p1_in_axes5_z;
+    const real six_r_n_m2_z = axis_z_six_r_axes5_z*six_r_end_p1_in_axes5_y -
+        axis_y_six_r_axes5_z*six_r_end_p1_in_axes5_z;
+    /* (six_r-w_1) force part of reciprocal wrench 1 */
+    const real six_r_w_1_t = v.six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y -
+        v.six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y;
+    const real six_r_w_1_t_2 = v.six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y -
+        v.six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y;
+    const real six_r_w_1_t_3 = v.six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
+        v.six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y;
+    const real six_r_w_1_t_4 = v.six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
+        v.six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y;
+    const real six_r_w_1_t_5 = m->six_r_size[i]*six_r_w_1_t;
+    const real six_r_w_1_t_6 = m->six_r_size[i]*six_r_w_1_t_3;
+    const real six_r_w_1_t_7 = m->six_r_size[i]*six_r_w_1_t_2;
+    const real six_r_w_1_t_8 = m->six_r_size[i]*six_r_w_1_t_4;
+    const real six_r_w_1_t_9 = m->six_r_size[i]*(-v.six_r_J_5_t*six_r_n_m1_in_axes5_y -
+        v.six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y);
+    const real six_r_w_1_t_10 = v.six_r_J_5_t*six_r_end_p1_in_axes5_z*m->six_r_size[i];
+    const real six_r_w_1_t_11 = six_r_end_p1_in_axes5_y*m->six_r_size[i];
+    const real six_r_w_1_t_12 = root(m->six_r_size_t[i] + six_r_w_1_t_11*six_r_w_1_t_11);
+    const real inv_six_r_w_1_t_12 = 1/six_r_w_1_t_12;
+    const real six_r_w_1_t_13 = inv_six_r_w_1_t_12*m->six_r_platform_joint_offset_x[i];
+    const real six_r_w_1_t_14 = inv_six_r_w_1_t_12*six_r_w_1_t_11;
+    const real six_r_w_1_t_15 = six_r_w_1_t_10*six_r_w_1_t_14;
+    const real six_r_w_1_t_16 = six_r_w_1_t_13*six_r_w_1_t_15;
+    const real six_r_w_1_t_17 = six_r_w_1_t_10 - six_r_w_1_t_14*six_r_w_1_t_15;
+    const real six_r_w_1_t_18 = v.six_r_v_1_in_axes5_y*six_r_w_1_t_13 -
+        six_r_w_1_t_14*six_r_w_1_t_6;
+    const real six_r_w_1_t_19 = v.six_r_v_1_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_18;
+    const real six_r_w_1_t_20 = six_r_w_1_t_6 + six_r_w_1_t_14*six_r_w_1_t_18;
+    const real six_r_w_1_t_21 = six_r_w_1_t_14*six_r_w_1_t_8;
+    const real six_r_w_1_t_22 = v.six_r_v_2_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_21;
+    const real six_r_w_1_t_23 = v.six_r_v_2_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_22;
+    const real six_r_w_1_t_24 = six_r_w_1_t_8 + six_r_w_1_t_14*six_r_w_1_t_22;
+    const real six_r_w_1_t_25 = six_r_w_1_t_21 - v.six_r_v_3_in_axes5_y*six_r_w_1_t_13;
+    const real six_r_w_1_t_26 = v.six_r_v_3_in_axes5_y + six_r_w_1_t_13*six_r_w_1_t_25;
+    const real six_r_w_1_t_27 = six_r_w_1_t_8 - six_r_w_1_t_14*six_r_w_1_t_25;
+    const real six_r_w_1_t_28 = root(v.six_r_v_4_in_axes5_z*v.six_r_v_4_in_axes5_z +
+        six_r_w_1_t_16*six_r_w_1_t_16 + six_r_w_1_t_17*six_r_w_1_t_17 +
+        six_r_w_1_t_9*six_r_w_1_t_9);
+    const real inv_six_r_w_1_t_28 = 1/six_r_w_1_t_28;
+    const real six_r_w_1_t_29 = inv_six_r_w_1_t_28*six_r_w_1_t_16;
+    const real six_r_w_1_t_30 = inv_six_r_w_1_t_28*v.six_r_v_4_in_axes5_z;
+    const real six_r_w_1_t_31 = inv_six_r_w_1_t_28*six_r_w_1_t_9;
+    const real six_r_w_1_t_32 = inv_six_r_w_1_t_28*six_r_w_1_t_17;
+    const real six_r_w_1_t_33 = six_r_w_1_t_19*six_r_w_1_t_29 + six_r_w_1_t_20*six_r_w_1_t_32
+        + six_r_w_1_t_31*six_r_w_1_t_5 - v.six_r_v_1_in_axes5_z*six_r_w_1_t_30;
+    const real six_r_w_1_t_34 = six_r_w_1_t_29*six_r_w_1_t_33 - six_r_w_1_t_19;
+    const real six_r_w_1_t_35 = v.six_r_v_1_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_33;
+    const real six_r_w_1_t_36 = six_r_w_1_t_31*six_r_w_1_t_33 - six_r_w_1_t_5;
+    const real six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_33 - six_r_w_1_t_20;
+    const real six_r_w_1_t_38 = six_r_w_1_t_31*six_r_w_1_t_7;
+    const real six_r_w_1_t_39 = six_r_w_1_t_38 + six_r_w_1_t_23*six_r_w_1_t_29 +
+        six_r_w_1_t_24*six_r_w_1_t_32 - v.six_r_v_2_in_axes5_z*six_r_w_1_t_30;
+    const real six_r_w_1_t_40 = six_r_w_1_t_29*six_r_w_1_t_39 - six_r_w_1_t_23;
+    const real six_r_w_1_t_41 = v.six_r_v_2_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_39;
+    const real six_r_w_1_t_42 = six_r_w_1_t_31*six_r_w_1_t_39 - six_r_w_1_t_7;
+    const real six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_39 - six_r_w_1_t_24;
+    const real six_r_w_1_t_44 = six_r_w_1_t_38 + six_r_w_1_t_26*six_r_w_1_t_29 +
+        six_r_w_1_t_27*six_r_w_1_t_32 - v.six_r_v_3_in_axes5_z*six_r_w_1_t_30;
+    const real six_r_w_1_t_45 = six_r_w_1_t_29*six_r_w_1_t_44 - six_r_w_1_t_26;
+    const real six_r_w_1_t_46 = v.six_r_v_3_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_44;
+    const real six_r_w_1_t_47 = six_r_w_1_t_31*six_r_w_1_t_44 - six_r_w_1_t_7;
+    const real six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_44 - six_r_w_1_t_27;
+    const real six_r_w_1_t_49 = root(v.six_r_v_1_in_axes5_x*v.six_r_v_1_in_axes5_x +
+        six_r_w_1_t_34*six_r_w_1_t_34 + six_r_w_1_t_35*six_r_w_1_t_35 +
+        six_r_w_1_t_36*six_r_w_1_t_36 + six_r_w_1_t_37*six_r_w_1_t_37);
+    const real inv_six_r_w_1_t_49 = 1/six_r_w_1_t_49;
+    const real six_r_w_1_t_50 = inv_six_r_w_1_t_49*v.six_r_v_1_in_axes5_x;
+    const real six_r_w_1_t_51 = inv_six_r_w_1_t_49*six_r_w_1_t_34;
+    const real six_r_w_1_t_52 = inv_six_r_w_1_t_49*six_r_w_1_t_35;
+    const real six_r_w_1_t_53 = inv_six_r_w_1_t_49*six_r_w_1_t_36;
+    const real six_r_w_1_t_54 = inv_six_r_w_1_t_49*six_r_w_1_t_37;
+    const real six_r_w_1_t_55 = v.six_r_v_2_in_axes5_x*six_r_w_1_t_50 +
+        six_r_w_1_t_40*six_r_w_1_t_51 + six_r_w_1_t_41*six_r_w_1_t_52 +
+        six_r_w_1_t_42*six_r_w_1_t_53 + six_r_w_1_t_43*six_r_w_1_t_54;
+    const real six_r_w_1_t_56 = v.six_r_v_2_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_55;
+    const real six_r_w_1_t_57 = six_r_w_1_t_40 - six_r_w_1_t_51*six_r_w_1_t_55;
+    const real six_r_w_1_t_58 = six_r_w_1_t_41 - six_r_w_1_t_52*six_r_w_1_t_55;
+    const real six_r_w_1_t_59 = six_r_w_1_t_42 - six_r_w_1_t_53*six_r_w_1_t_55;
+    const real six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_55;
+    const real six_r_w_1_t_61 = v.six_r_v_3_in_axes5_x*six_r_w_1_t_50 +
+        six_r_w_1_t_45*six_r_w_1_t_51 + six_r_w_1_t_46*six_r_w_1_t_52 +
+        six_r_w_1_t_47*six_r_w_1_t_53 + six_r_w_1_t_48*six_r_w_1_t_54;
+    const real six_r_w_1_t_62 = v.six_r_v_3_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_61;
+    const real six_r_w_1_t_63 = six_r_w_1_t_45 - six_r_w_1_t_51*six_r_w_1_t_61;
+    const real six_r_w_1_t_64 = six_r_w_1_t_46 - six_r_w_1_t_52*six_r_w_1_t_61;
+    const real six_r_w_1_t_65 = six_r_w_1_t_47 - six_r_w_1_t_53*six_r_w_1_t_61;
+    const real six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_61;
+    const real six_r_w_1_t_67 = root(six_r_w_1_t_56*six_r_w_1_t_56 +
+        six_r_w_1_t_57*six_r_w_1_t_57 + six_r_w_1_t_58*six_r_w_1_t_58 +
+        six_r_w_1_t_59*six_r_w_1_t_59 + six_r_w_1_t_60*six_r_w_1_t_60);
+    const real inv_six_r_w_1_t_67 = 1/six_r_w_1_t_67;
+    const real six_r_w_1_t_68 = inv_six_r_w_1_t_67*six_r_w_1_t_56;
+    const real six_r_w_1_t_69 = inv_six_r_w_1_t_67*six_r_w_1_t_57;
+    const real six_r_w_1_t_70 = inv_six_r_w_1_t_67*six_r_w_1_t_58;
+    const real six_r_w_1_t_71 = inv_six_r_w_1_t_67*six_r_w_1_t_59;
+    const real six_r_w_1_t_72 = inv_six_r_w_1_t_67*six_r_w_1_t_60;
+    const real six_r_w_1_t_73 = six_r_w_1_t_62*six_r_w_1_t_68 + six_r_w_1_t_63*six_r_w_1_t_69
+        + six_r_w_1_t_64*six_r_w_1_t_70 + six_r_w_1_t_65*six_r_w_1_t_71 +
+        six_r_w_1_t_66*six_r_w_1_t_72;
+    const real six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_73;
+    const real six_r_w_1_t_75 = six_r_w_1_t_63 - six_r_w_1_t_69*six_r_w_1_t_73;
+    const real six_r_w_1_t_76 = six_r_w_1_t_64 - six_r_w_1_t_70*six_r_w_1_t_73;
+    const real six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_73;
+    const real six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_73;
+    const real six_r_w_1_t_79 = root(six_r_w_1_t_74*six_r_w_1_t_74 +
+        six_r_w_1_t_75*six_r_w_1_t_75 + six_r_w_1_t_76*six_r_w_1_t_76 +
+        six_r_w_1_t_77*six_r_w_1_t_77 + six_r_w_1_t_78*six_r_w_1_t_78);
+    const real inv_six_r_w_1_t_79 = 1/six_r_w_1_t_79;
+    const real six_r_w_1_t_80 = inv_six_r_w_1_t_79*six_r_w_1_t_74;
+    const real six_r_w_1_t_81 = inv_six_r_w_1_t_79*six_r_w_1_t_75;
+    const real six_r_w_1_t_82 = inv_six_r_w_1_t_79*six_r_w_1_t_76;
+    const real six_r_w_1_t_83 = inv_six_r_w_1_t_49*inv_six_r_w_1_t_67*six_r_w_1_t_55;
+    const real six_r_w_1_t_84 = inv_six_r_w_1_t_79*(inv_six_r_w_1_t_49*six_r_w_1_t_61 -
+        six_r_w_1_t_73*six_r_w_1_t_83);
+    const real six_r_w_1_in_axes5_x = inv_six_r_w_1_t_49*six_r_w_1_t_50 -
+        six_r_w_1_t_68*six_r_w_1_t_83 - six_r_w_1_t_80*six_r_w_1_t_84;
+    const real six_r_w_1_in_axes5_y = six_r_w_1_t_69*six_r_w_1_t_83 +
+        six_r_w_1_t_81*six_r_w_1_t_84 - inv_six_r_w_1_t_49*six_r_w_1_t_51;
+    const real six_r_w_1_in_axes5_z = inv_six_r_w_1_t_49*six_r_w_1_t_52 -
+        six_r_w_1_t_70*six_r_w_1_t_83 - six_r_w_1_t_82*six_r_w_1_t_84;
+    /* (six_r-m1_w_1) moment part 1 of reciprocal wrench 1 */
+    const real six_r_m1_w_1_t = inv_six_r_w_1_t_79*six_r_w_1_t_77;
+    const real six_r_m1_w_1_t_2 = m->six_r_size[i]*(six_r_m1_w_1_t*six_r_w_1_t_84 +
+        six_r_w_1_t_71*six_r_w_1_t_83 - inv_six_r_w_1_t_49*six_r_w_1_t_53);
+    /* (six_r-m2_w_1) moment part 2 of reciprocal wrench 1 */
+    const real six_r_m2_w_1_t = inv_six_r_w_1_t_79*six_r_w_1_t_78;
+    const real six_r_m2_w_1_t_2 = m->six_r_size[i]*(six_r_m2_w_1_t*six_r_w_1_t_84 +
+        six_r_w_1_t_72*six_r_w_1_t_83 - inv_six_r_w_1_t_49*six_r_w_1_t_54);
+    /* (six_r-w_2) force part of reciprocal wrench 2 */
+    const real six_r_w_2_t = inv_six_r_w_1_t_67*inv_six_r_w_1_t_79*six_r_w_1_t_73;
+    const real six_r_w_2_in_axes5_x = inv_six_r_w_1_t_67*six_r_w_1_t_68 -
+        six_r_w_1_t_80*six_r_w_2_t;
+    const real six_r_w_2_in_axes5_y = six_r_w_1_t_81*six_r_w_2_t -
+        inv_six_r_w_1_t_67*six_r_w_1_t_69;
+    const real six_r_w_2_in_axes5_z = inv_six_r_w_1_t_67*six_r_w_1_t_70 -
+        six_r_w_1_t_82*six_r_w_2_t;
+    const real six_r_w_2_x = axis_x_six_r_axes5_x*six_r_w_2_in_axes5_x +
+        axis_y_six_r_axes5_x*six_r_w_2_in_axes5_y + axis_z_six_r_axes5_x*six_r_w_2_in_axes5_z;
+    const real six_r_w_2_y = axis_x_six_r_axes5_y*six_r_w_2_in_axes5_x +
+        axis_y_six_r_axes5_y*six_r_w_2_in_axes5_y + axis_z_six_r_axes5_y*six_r_w_2_in_axes5_z;
+    const real six_r_w_2_z = axis_x_six_r_axes5_z*six_r_w_2_in_axes5_x +
+        axis_y_six_r_axes5_z*six_r_w_2_in_axes5_y + axis_z_six_r_axes5_z*six_r_w_2_in_axes5_z;
+    /* (six_r-m1_w_2) moment part 1 of reciprocal wrench 2 */
+    const real six_r_m1_w_2 = m->six_r_size[i]*(inv_six_r_w_1_t_67*six_r_w_1_t_71 -
+        six_r_m1_w_1_t*six_r_w_2_t);
+    /* (six_r-m2_w_2) moment part 2 of reciprocal wrench 2 */
+    const real six_r_m2_w_2 = m->six_r_size[i]*(inv_six_r_w_1_t_67*six_r_w_1_t_72 -
+        six_r_m2_w_1_t*six_r_w_2_t);
+    /* (six_r-w_3) force part of reciprocal wrench 3 */
+    const real six_r_w_3_in_axes5_x = inv_six_r_w_1_t_79*six_r_w_1_t_80;
+    const real six_r_w_3_t = inv_six_r_w_1_t_79*six_r_w_1_t_81;
+    const real six_r_w_3_in_axes5_z = inv_six_r_w_1_t_79*six_r_w_1_t_82;
+    /* (six_r-m1_w_3) moment part 1 of reciprocal wrench 3 */
+    const real six_r_m1_w_3 = inv_six_r_w_1_t_79*six_r_m1_w_1_t*m->six_r_size[i];
+    /* (six_r-m2_w_3) moment part 2 of reciprocal wrench 3 */
+    const real six_r_m2_w_3 = inv_six_r_w_1_t_79*six_r_m2_w_1_t*m->six_r_size[i];
+    /* (six_r-w_4) force part of reciprocal wrench 4 */
+    const real six_r_w_4_t = inv_six_r_w_1_t_28*inv_six_r_w_1_t_49*six_r_w_1_t_33;
+    const real six_r_w_4_t_2 = inv_six_r_w_1_t_67*(inv_six_r_w_1_t_28*six_r_w_1_t_39 -
+        six_r_w_1_t_55*six_r_w_4_t);
+    const real six_r_w_4_t_3 = inv_six_r_w_1_t_79*(six_r_w_1_t_61*six_r_w_4_t +
+        six_r_w_1_t_73*six_r_w_4_t_2 - inv_six_r_w_1_t_28*six_r_w_1_t_44);
+    const real six_r_w_4_in_axes5_x = six_r_w_1_t_50*six_r_w_4_t +
+        six_r_w_1_t_68*six_r_w_4_t_2 - six_r_w_1_t_80*six_r_w_4_t_3;
+    const real six_r_w_4_in_axes5_y = six_r_w_1_t_81*six_r_w_4_t_3 -
+        inv_six_r_w_1_t_28*six_r_w_1_t_29 - six_r_w_1_t_51*six_r_w_4_t -
+        six_r_w_1_t_69*six_r_w_4_t_2;
+    const real six_r_w_4_in_axes5_z = inv_six_r_w_1_t_28*six_r_w_1_t_30 +
+        six_r_w_1_t_52*six_r_w_4_t + six_r_w_1_t_70*six_r_w_4_t_2 -
+        six_r_w_1_t_82*six_r_w_4_t_3;
+    /* (six_r-m1_w_4) moment part 1 of reciprocal wrench 4 */
+    const real six_r_m1_w_4 = m->six_r_size[i]*(inv_six_r_w_1_t_28*six_r_w_1_t_31 +
+        six_r_w_1_t_53*six_r_w_4_t + six_r_w_1_t_71*six_r_w_4_t_2 -
+        six_r_m1_w_1_t*six_r_w_4_t_3);
+    /* (six_r-m2_w_4) moment part 2 of reciprocal wrench 4 */
+    const real six_r_m2_w_4 = m->six_r_size[i]*(inv_six_r_w_1_t_28*six_r_w_1_t_32 +
+        six_r_w_1_t_54*six_r_w_4_t + six_r_w_1_t_72*six_r_w_4_t_2 -
+        six_r_m2_w_1_t*six_r_w_4_t_3);
+    /* (six_r-w_5) force part of reciprocal wrench 5 */
+    const real six_r_w_5_t = inv_six_r_w_1_t_12*inv_six_r_w_1_t_28*six_r_w_1_t_15;
+    const real six_r_w_5_t_2 = inv_six_r_w_1_t_49*(inv_six_r_w_1_t_12*six_r_w_1_t_18 +
+        six_r_w_1_t_33*six_r_w_5_t);
+    const real six_r_w_5_t_3 = inv_six_r_w_1_t_67*(inv_six_r_w_1_t_12*six_r_w_1_t_22 +
+        six_r_w_1_t_39*six_r_w_5_t - six_r_w_1_t_55*six_r_w_5_t_2);
+    const real six_r_w_5_t_4 = inv_six_r_w_1_t_79*(inv_six_r_w_1_t_12*six_r_w_1_t_25 +
+        six_r_w_1_t_61*six_r_w_5_t_2 + six_r_w_1_t_73*six_r_w_5_t_3 -
+        six_r_w_1_t_44*six_r_w_5_t);
+    const real six_r_w_5_t_5 = six_r_w_1_t_50*six_r_w_5_t_2 + six_r_w_1_t_68*six_r_w_5_t_3 -
+        six_r_w_1_t_80*six_r_w_5_t_4;
+    const real six_r_w_5_in_axes5_y = inv_six_r_w_1_t_12*six_r_w_1_t_13 +
+        six_r_w_1_t_29*six_r_w_5_t + six_r_w_1_t_51*six_r_w_5_t_2 +
+        six_r_w_1_t_69*six_r_w_5_t_3 - six_r_w_1_t_81*six_r_w_5_t_4;
+    const real six_r_w_5_in_axes5_z = six_r_w_1_t_82*six_r_w_5_t_4 -
+        six_r_w_1_t_30*six_r_w_5_t - six_r_w_1_t_52*six_r_w_5_t_2 -
+        six_r_w_1_t_70*six_r_w_5_t_3;
+    /* (six_r-m1_w_5) moment part 1 of reciprocal wrench 5 */
+    const real six_r_m1_w_5_t = m->six_r_size[i]*(six_r_w_1_t_31*six_r_w_5_t +
+        six_r_w_1_t_53*six_r_w_5_t_2 + six_r_w_1_t_71*six_r_w_5_t_3 -
+        six_r_m1_w_1_t*six_r_w_5_t_4);
+    /* (six_r-m2_w_5) moment part 2 of reciprocal wrench 5 */
+    const real six_r_m2_w_5_t = m->six_r_size[i]*(six_r_w_1_t_32*six_r_w_5_t +
+        six_r_w_1_t_54*six_r_w_5_t_2 + six_r_w_1_t_72*six_r_w_5_t_3 -
+        inv_six_r_w_1_t_12*six_r_w_1_t_14 - six_r_m2_w_1_t*six_r_w_5_t_4);
+    /* (six_r-o_1) moment part of reciprocal wrench 1 */
+    const real six_r_o_1_in_axes5_x = six_r_end_p1_in_axes5_y*six_r_m1_w_1_t_2;
+    const real six_r_o_1_t = six_r_end_p1_in_axes5_y*six_r_m2_w_1_t_2;
+    const real six_r_o_1_in_axes5_y = six_r_end_p1_in_axes5_z*six_r_m2_w_1_t_2 -
+        six_r_m1_w_1_t_2*six_r_n_m1_in_axes5_y;
+    /* (six_r-o_2) moment part of reciprocal wrench 2 */
+    const real six_r_o_2_t = six_r_end_p1_in_axes5_y*six_r_m1_w_2;
+    const real six_r_o_2_in_axes5_z = six_r_end_p1_in_axes5_y*six_r_m2_w_2;
+    const real six_r_o_2_in_axes5_y = six_r_m1_w_2*six_r_n_m1_in_axes5_y -
+        six_r_end_p1_in_axes5_z*six_r_m2_w_2;
+    const real six_r_o_2_x = six_r_m1_w_2*six_r_n_m1_x + six_r_m2_w_2*six_r_n_m2_x;
+    const real six_r_o_2_y = six_r_m1_w_2*six_r_n_m1_y + six_r_m2_w_2*six_r_n_m2_y;
+    const real six_r_o_2_z = six_r_m1_w_2*six_r_n_m1_z + six_r_m2_w_2*six_r_n_m2_z;
+    /* (six_r-o_3) moment part of reciprocal wrench 3 */
+    const real six_r_o_3_t = six_r_end_p1_in_axes5_y*six_r_m1_w_3;
+    const real six_r_o_3_in_axes5_z = six_r_end_p1_in_axes5_y*six_r_m2_w_3;
+    const real six_r_o_3_in_axes5_y = six_r_m1_w_3*six_r_n_m1_in_axes5_y -
+        six_r_end_p1_in_axes5_z*six_r_m2_w_3;
+    /* (six_r-o_4) moment part of reciprocal wrench 4 */
+    const real six_r_o_4_t = six_r_end_p1_in_axes5_y*six_r_m1_w_4;
+    const real six_r_o_4_in_axes5_z = six_r_end_p1_in_axes5_y*six_r_m2_w_4;
+    const real six_r_o_4_in_axes5_y = six_r_m1_w_4*six_r_n_m1_in_axes5_y -
+        six_r_end_p1_in_axes5_z*six_r_m2_w_4;
+    /* (six_r-o_5) moment part of reciprocal wrench 5 */
+    const real six_r_o_5_in_axes5_x = six_r_end_p1_in_axes5_y*six_r_m1_w_5_t;
+    const real six_r_o_5_t = six_r_end_p1_in_axes5_y*six_r_m2_w_5_t;
+    const real six_r_o_5_in_axes5_y = six_r_end_p1_in_axes5_z*six_r_m2_w_5_t -
+        six_r_m1_w_5_t*six_r_n_m1_in_axes5_y;
+    /* (six_r-eta_1) rate at which the joints turn along moment direction 1 */
+    const real omega_x = V[3*w + j];
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real six_r_eta_1 = omega_x*six_r_n_m1_x + omega_y*six_r_n_m1_y +
+        omega_z*six_r_n_m1_z;
+    /* (six_r-eta_2) rate at which the joints turn along moment direction 2 */
+    const real six_r_eta_2 = omega_x*six_r_n_m2_x + omega_y*six_r_n_m2_y +
+        omega_z*six_r_n_m2_z;
+    /* (six_r-qd_1) rate of joint 1 */
+    const real six_r_qd_1_t = six_r_eta_1*m->six_r_size[i];
+    const real six_r_qd_1_t_2 = six_r_eta_2*m->six_r_size[i];
+    const real six_r_qd_1_t_3 = inv_six_r_w_1_t_79*(six_r_S_dot_in_axes5_x*six_r_w_1_t_80 +
+        six_r_S_dot_in_axes5_z*six_r_w_1_t_82 + six_r_m1_w_1_t*six_r_qd_1_t +
+        six_r_m2_w_1_t*six_r_qd_1_t_2 - six_r_S_dot_in_axes5_y*six_r_w_1_t_81);
+    const real six_r_qd_1_t_4 = inv_six_r_w_1_t_67*(six_r_S_dot_in_axes5_x*six_r_w_1_t_68 +
+        six_r_S_dot_in_axes5_z*six_r_w_1_t_70 + six_r_qd_1_t*six_r_w_1_t_71 +
+        six_r_qd_1_t_2*six_r_w_1_t_72 - six_r_S_dot_in_axes5_y*six_r_w_1_t_69 -
+        six_r_qd_1_t_3*six_r_w_1_t_73);
+    const real six_r_qd_1_t_5 = inv_six_r_w_1_t_49*(six_r_S_dot_in_axes5_y*six_r_w_1_t_51 +
+        six_r_qd_1_t_3*six_r_w_1_t_61 + six_r_qd_1_t_4*six_r_w_1_t_55 -
+        six_r_S_dot_in_axes5_x*six_r_w_1_t_50 - six_r_S_dot_in_axes5_z*six_r_w_1_t_52 -
+        six_r_qd_1_t*six_r_w_1_t_53 - six_r_qd_1_t_2*six_r_w_1_t_54);
+    /* (six_r-qd_4) rate of joint 4 */
+    const real six_r_qd_4 = inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_z*six_r_w_1_t_30 +
+        six_r_qd_1_t*six_r_w_1_t_31 + six_r_qd_1_t_2*six_r_w_1_t_32 +
+        six_r_qd_1_t_3*six_r_w_1_t_44 + six_r_qd_1_t_4*six_r_w_1_t_39 -
+        six_r_S_dot_in_axes5_y*six_r_w_1_t_29 - six_r_qd_1_t_5*six_r_w_1_t_33);
+    /* (six_r-qd_5) rate of joint 5 */
+    const real six_r_qd_5 = inv_six_r_w_1_t_12*(six_r_S_dot_in_axes5_y*six_r_w_1_t_13 +
+        six_r_qd_1_t_2*six_r_w_1_t_14 + six_r_qd_1_t_3*six_r_w_1_t_25 +
+        six_r_qd_1_t_5*six_r_w_1_t_18 - six_r_qd_1_t_4*six_r_w_1_t_22 -
+        six_r_qd_4*six_r_w_1_t_15);
+    /* (six_r-omega_1) angular velocity of link 1 */
+    const real six_r_omega_1_in_axes2_x = -v.six_r_c_2*six_r_qd_1_t_5;
+    const real six_r_omega_1_in_axes2_y = six_r_qd_1_t_5*v.six_r_s_2;
+    const real six_r_omega_1_t = v.six_r_e_1_in_axes5_x*six_r_qd_1_t_5;
+    const real six_r_omega_1_t_2 = v.six_r_e_1_in_axes5_y*six_r_qd_1_t_5;
+    const real six_r_omega_1_t_3 = v.six_r_e_1_in_axes5_z*six_r_qd_1_t_5;
+    /* (six_r-W_1) centripetal tensor of link 1 */
+    const real six_r_W_1_in_axes5_xy = six_r_omega_1_t*six_r_omega_1_t_2;
+    const real six_r_W_1_in_axes5_xz = six_r_omega_1_t*six_r_omega_1_t_3;
+    const real six_r_W_1_in_axes5_yz = six_r_omega_1_t_2*six_r_omega_1_t_3;
+    /* (six_r-omega_2) angular velocity of link 2 */
+    const real six_r_omega_2_in_axes3_x = six_r_omega_1_in_axes2_x*v.six_r_s_3 -
+        v.six_r_c_3*six_r_omega_1_in_axes2_y;
+    const real six_r_omega_2_in_axes3_y = v.six_r_c_3*six_r_omega_1_in_axes2_x +
+        six_r_omega_1_in_axes2_y*v.six_r_s_3;
+    const real six_r_omega_2_in_axes5_x = v.six_r_e_2_in_axes5_x*six_r_qd_1_t_4 -
+        six_r_omega_1_t;
+    const real six_r_omega_2_in_axes5_y = v.six_r_e_2_in_axes5_y*six_r_qd_1_t_4 -
+        six_r_omega_1_t_2;
+    const real six_r_omega_2_in_axes5_z = v.six_r_e_2_in_axes5_z*six_r_qd_1_t_4 -
+        six_r_omega_1_t_3;
+    /* (six_r-W_2) centripetal tensor of link 2 */
+    const real six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_4;
+    const real six_r_W_2_in_axes2_xy = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_y;
+    const real six_r_W_2_in_axes5_xy = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_y;
+    const real six_r_W_2_in_axes5_xz = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_z;
+    const real six_r_W_2_in_axes5_yz = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_z;
+    /* (six_r-omega_3) angular velocity of link 3 */
+    const real six_r_omega_3_in_axes3_z = six_r_qd_1_t_3 + six_r_qd_1_t_4;
+    const real six_r_omega_3_in_axes4_x = v.six_r_h_4_t*six_r_omega_3_in_axes3_z -
+        v.six_r_e_2_in_axes5_z*six_r_omega_2_in_axes3_x;
+    const real six_r_omega_3_in_axes4_y = v.six_r_e_2_in_axes5_z*six_r_omega_3_in_axes3_z +
+        v.six_r_h_4_t*six_r_omega_2_in_axes3_x;
+    const real six_r_omega_3_t = v.six_r_J_5_t*six_r_omega_3_in_axes4_x;
+    const real six_r_omega_3_t_2 = v.six_r_e_4_in_axes5_x*six_r_omega_3_in_axes4_x;
+    const real six_r_omega_3_in_axes5_x = six_r_omega_3_t +
+        v.six_r_e_4_in_axes5_x*six_r_omega_2_in_axes3_y;
+    const real six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 -
+        v.six_r_J_5_t*six_r_omega_2_in_axes3_y;
+    /* (six_r-W_3) centripetal tensor of link 3 */
+    const real six_r_W_3_t = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_x;
+    const real six_r_W_3_t_2 = six_r_omega_3_in_axes3_z*six_r_omega_3_in_axes3_z;
+    const real six_r_W_3_in_axes3_xy = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_y;
+    const real six_r_W_3_in_axes3_xz = six_r_omega_2_in_axes3_x*six_r_omega_3_in_axes3_z;
+    const real six_r_W_3_t_3 = six_r_W_3_t + six_r_W_3_t_2;
+    const real six_r_W_3_in_axes3_yz = six_r_omega_2_in_axes3_y*six_r_omega_3_in_axes3_z;
+    const real six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y;
+    /* (six_r-omega_4) angular velocity of link 4 */
+    const real six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y + six_r_qd_4;
+    const real six_r_omega_4_in_axes5_x = six_r_omega_3_t +
+        v.six_r_e_4_in_axes5_x*six_r_omega_4_in_axes4_z;
+    const real six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 -
+        v.six_r_J_5_t*six_r_omega_4_in_axes4_z;
+    /* (six_r-W_4) centripetal tensor of link 4 */
+    const real six_r_W_4_in_axes4_xy = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_y;
+    const real six_r_W_4_in_axes4_xz = six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes4_z;
+    const real six_r_W_4_in_axes4_yz = six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes4_z;
+    const real six_r_W_4_in_axes5_xy = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_y;
+    /* (six_r-omega_5) angular velocity of link 5 */
+    const real six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_y + six_r_qd_5;
+    /* (six_r-W_5) centripetal tensor of link 5 */
+    const real six_r_W_5_t = six_r_omega_4_in_axes5_y*six_r_omega_4_in_axes5_y;
+    const real six_r_W_5_t_2 = six_r_omega_5_in_axes5_z*six_r_omega_5_in_axes5_z;
+    const real six_r_W_5_t_3 = six_r_W_5_t + six_r_W_5_t_2;
+    const real six_r_W_5_in_axes5_xz = six_r_omega_4_in_axes5_x*six_r_omega_5_in_axes5_z;
+    const real six_r_W_5_in_axes5_yz = six_r_omega_4_in_axes5_y*six_r_omega_5_in_axes5_z;
+    /* (six_r-u_1) centripetal acceleration of the connection point */
+    const real six_r_u_1_in_axes5_x = axis_x_six_r_axes5_x*v.six_r_u_1_x +
+        axis_x_six_r_axes5_y*v.six_r_u_1_y + axis_x_six_r_axes5_z*v.six_r_u_1_z;
+    const real six_r_u_1_in_axes5_y = axis_y_six_r_axes5_x*v.six_r_u_1_x +
+        axis_y_six_r_axes5_y*v.six_r_u_1_y + axis_y_six_r_axes5_z*v.six_r_u_1_z;
+    const real six_r_u_1_in_axes5_z = axis_z_six_r_axes5_x*v.six_r_u_1_x +
+        axis_z_six_r_axes5_y*v.six_r_u_1_y + axis_z_six_r_axes5_z*v.six_r_u_1_z;
+    /* (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+    const real six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_4;
+    const real six_r_zeta_2_in_axes3_x = six_r_W_2_in_axes2_yz*v.six_r_s_3 -
+        v.six_r_c_3*six_r_zeta_2_in_axes2_y;
+    const real six_r_zeta_2_in_axes3_y = six_r_W_2_in_axes2_yz*v.six_r_c_3 +
+        v.six_r_s_3*six_r_zeta_2_in_axes2_y;
+    const real six_r_zeta_2_t = v.six_r_e_2_in_axes5_z*six_r_zeta_2_in_axes3_x;
+    const real six_r_zeta_2_in_axes5_z = v.six_r_h_4_t*six_r_zeta_2_in_axes3_x;
+    const real six_r_zeta_2_in_axes5_x = v.six_r_e_4_in_axes5_x*six_r_zeta_2_in_axes3_y -
+        v.six_r_J_5_t*six_r_zeta_2_t;
+    const real six_r_zeta_2_in_axes5_y = -v.six_r_J_5_t*six_r_zeta_2_in_axes3_y -
+        v.six_r_e_4_in_axes5_x*six_r_zeta_2_t;
+    /* (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+    const real six_r_zeta_3_in_axes3_x = six_r_omega_2_in_axes3_y*six_r_qd_1_t_3;
+    const real six_r_zeta_3_t = six_r_omega_2_in_axes3_x*six_r_qd_1_t_3;
+    /* (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations */
+    const real six_r_beta_3_in_axes3_x = six_r_zeta_2_in_axes3_x + six_r_zeta_3_in_axes3_x;
+    const real six_r_beta_3_in_axes3_y = six_r_zeta_2_in_axes3_y - six_r_zeta_3_t;
+    const real six_r_beta_3_t = six_r_beta_3_in_axes3_x*v.six_r_e_2_in_axes5_z;
+    const real six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*v.six_r_h_4_t;
+    /* (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
+    const real six_r_zeta_4_in_axes4_x = six_r_omega_3_in_axes4_y*six_r_qd_4;
+    const real six_r_zeta_4_t = six_r_omega_3_in_axes4_x*six_r_qd_4;
+    /* (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations */
+    const real six_r_beta_4_in_axes4_x = six_r_zeta_4_in_axes4_x - six_r_beta_3_t;
+    const real six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y - six_r_zeta_4_t;
+    const real six_r_beta_4_t = six_r_beta_3_in_axes3_y*v.six_r_e_4_in_axes5_x;
+    const real six_r_beta_4_in_axes5_x = six_r_beta_4_t +
+        v.six_r_J_5_t*six_r_beta_4_in_axes4_x;
+    const real six_r_beta_4_t_2 = v.six_r_J_5_t*six_r_beta_3_in_axes3_y;
+    const real six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*v.six_r_e_4_in_axes5_x -
+        six_r_beta_4_t_2;
+    /* (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5 */
+    const real six_r_zeta_5_in_axes5_x = six_r_omega_4_in_axes5_y*six_r_qd_5;
+    const real six_r_zeta_5_t = six_r_omega_4_in_axes5_x*six_r_qd_5;
+    /* (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations */
+    const real six_r_beta_5_in_axes5_x = six_r_beta_4_in_axes5_x + six_r_zeta_5_in_axes5_x;
+    const real six_r_beta_5_in_axes5_y = six_r_beta_4_in_axes5_y - six_r_zeta_5_t;
+    /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
+    const real six_r_bias_t = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y;
+    const real six_r_bias_t_2 = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x;
+    const real six_r_bias_t_6 = v.six_r_bias_t_4*v.six_r_e_2_in_axes5_z;
+    const real six_r_d_2_in_axes5_z = v.six_r_bias_t_4*v.six_r_h_4_t;
+    const real six_r_d_2_in_axes5_x = v.six_r_bias_t_5*v.six_r_e_4_in_axes5_x -
+        v.six_r_J_5_t*six_r_bias_t_6;
+    const real six_r_d_2_in_axes5_y = -v.six_r_J_5_t*v.six_r_bias_t_5 -
+        six_r_bias_t_6*v.six_r_e_4_in_axes5_x;
+    const real six_r_bias_t_7 = six_r_omega_1_t*six_r_omega_1_t;
+    const real six_r_bias_t_8 = six_r_omega_1_t_2*six_r_omega_1_t_2;
+    const real six_r_bias_t_9 = six_r_omega_1_t_3*six_r_omega_1_t_3;
+    const real six_r_bias_t_12 = v.six_r_bias_t_10*v.six_r_e_2_in_axes5_z;
+    const real six_r_d_3_in_axes5_z = v.six_r_bias_t_10*v.six_r_h_4_t;
+    const real six_r_d_3_in_axes5_x = v.six_r_bias_t_11*v.six_r_e_4_in_axes5_x -
+        v.six_r_J_5_t*six_r_bias_t_12;
+    const real six_r_d_3_in_axes5_y = -v.six_r_J_5_t*v.six_r_bias_t_11 -
+        six_r_bias_t_12*v.six_r_e_4_in_axes5_x;
+    const real six_r_bias_t_13 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x;
+    const real six_r_bias_t_14 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y;
+    const real six_r_bias_t_15 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z;
+    const real six_r_d_4_in_axes5_x = v.six_r_e_4_in_axes5_x*m->six_r_joint4_offset_x[i];
+    const real six_r_bias_t_16 = v.six_r_J_5_t*m->six_r_joint4_offset_x[i];
+    const real six_r_d_5_in_axes5_x = v.six_r_e_4_in_axes5_x*m->six_r_joint5_offset_x[i];
+    const real six_r_bias_t_17 = v.six_r_J_5_t*m->six_r_joint5_offset_x[i];
+    const real six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y;
+    const real six_r_bias_in_axes5_x = six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_y +
+        six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_z +
+        six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
+        six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) -
+        six_r_W_5_t_3*m->six_r_platform_joint_offset_x[i] -
+        six_r_bias_t_16*(six_r_W_3_in_axes5_xy - six_r_beta_3_in_axes4_y) -
+        six_r_bias_t_17*(six_r_W_4_in_axes5_xy - six_r_beta_4_in_axes4_y) -
+        six_r_d_2_in_axes5_x*(six_r_bias_t_8 + six_r_bias_t_9) -
+        six_r_d_3_in_axes5_x*(six_r_bias_t_14 + six_r_bias_t_15) -
+        six_r_d_4_in_axes5_x*(six_r_bias_t +
+        six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) - six_r_d_5_in_axes5_x*(six_r_W_5_t
+        + six_r_bias_t);
+    const real six_r_bias_in_axes5_y = six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_x +
+        six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_z + six_r_bias_t_16*(six_r_bias_t +
+        six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) + six_r_bias_t_17*(six_r_bias_t +
+        six_r_bias_t_2) + six_r_bias_t_18*six_r_d_5_in_axes5_x +
+        six_r_bias_t_18*m->six_r_platform_joint_offset_x[i] +
+        six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
+        six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
+        six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_y) -
+        six_r_d_2_in_axes5_y*(six_r_bias_t_7 + six_r_bias_t_9) -
+        six_r_d_3_in_axes5_y*(six_r_bias_t_13 + six_r_bias_t_15);
+    const real six_r_bias_in_axes5_z = six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_x +
+        six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_y +
+        six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
+        six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
+        six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*v.six_r_e_4_in_axes5_x +
+        six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) +
+        six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
+        six_r_beta_4_in_axes5_y) + m->six_r_platform_joint_offset_x[i]*(six_r_W_5_in_axes5_xz
+        - six_r_beta_5_in_axes5_y) - six_r_bias_t_16*(six_r_beta_4_t +
+        six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - v.six_r_J_5_t*six_r_beta_3_t) -
+        six_r_bias_t_17*(six_r_beta_4_in_axes5_x +
+        six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y) -
+        six_r_d_2_in_axes5_z*(six_r_bias_t_7 + six_r_bias_t_8) -
+        six_r_d_3_in_axes5_z*(six_r_bias_t_13 + six_r_bias_t_14);
+    /* (six_r-rel_o) remainder of: acceleration of the connection point left to the joint
+       accelerations */
+    const real six_r_rel_o_in_axes5_x = six_r_u_1_in_axes5_x - six_r_bias_in_axes5_x;
+    const real six_r_rel_o_in_axes5_y = six_r_u_1_in_axes5_y - six_r_bias_in_axes5_y;
+    const real six_r_rel_o_in_axes5_z = six_r_u_1_in_axes5_z - six_r_bias_in_axes5_z;
+    /* (six_r-nd_m1) rate of moment direction 1 */
+    const real six_r_omega_in_axes5_x = axis_x_six_r_axes5_x*omega_x +
+        axis_x_six_r_axes5_y*omega_y + axis_x_six_r_axes5_z*omega_z;
+    const real six_r_omega_in_axes5_y = axis_y_six_r_axes5_x*omega_x +
+        axis_y_six_r_axes5_y*omega_y + axis_y_six_r_axes5_z*omega_z;
+    const real six_r_omega_in_axes5_z = axis_z_six_r_axes5_x*omega_x +
+        axis_z_six_r_axes5_y*omega_y + axis_z_six_r_axes5_z*omega_z;
+    const real six_r_nd_m1_t = six_r_n_m1_in_axes5_y*six_r_omega_in_axes5_z -
+        six_r_end_p1_in_axes5_z*six_r_omega_in_axes5_x;
+    const real six_r_nd_m1_in_axes5_x = -six_r_nd_m1_t -
+        six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_x;
+    const real six_r_nd_m1_in_axes5_y = six_r_end_p1_in_axes5_z*six_r_omega_in_axes5_y -
+        six_r_end_p1_in_axes5_y*six_r_omega_in_axes5_z -
+        six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y;
+    /* (six_r-nu_1) bias of the angular acceleration along moment direction 1 */
+    const real six_r_nu_1_t = six_r_end_p1_in_axes5_y*six_r_omega_4_in_axes5_y;
+    const real six_r_nu_1_t_2 = six_r_beta_5_in_axes5_x*six_r_end_p1_in_axes5_y -
+        six_r_beta_5_in_axes5_y*six_r_n_m1_in_axes5_y;
+    const real six_r_nu_1_t_3 = six_r_omega_4_in_axes5_x - six_r_omega_in_axes5_x;
+    const real six_r_nu_1_t_4 = six_r_omega_4_in_axes5_y - six_r_omega_in_axes5_y;
+    const real six_r_nu_1_t_5 = six_r_omega_5_in_axes5_z - six_r_omega_in_axes5_z;
+    const real six_r_nu_1_t_6 = six_r_nd_m1_in_axes5_x*six_r_nu_1_t_3 +
+        six_r_nd_m1_in_axes5_y*six_r_nu_1_t_4 + six_r_nu_1_t_5*(six_r_nu_1_t +
+        six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x);
+    const real six_r_nu_1 = six_r_nu_1_t_2 - six_r_nu_1_t_6;
+    /* (six_r-nd_m2) rate of moment direction 2 */
+    const real six_r_nd_m2_in_axes5_y = six_r_n_m1_in_axes5_y*six_r_omega_in_axes5_y -
+        six_r_end_p1_in_axes5_y*six_r_omega_in_axes5_x -
+        six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y;
+    const real six_r_nd_m2_in_axes5_z = six_r_nd_m1_t -
+        six_r_n_m1_in_axes5_y*six_r_omega_5_in_axes5_z;
+    /* (six_r-nu_2) bias of the angular acceleration along moment direction 2 */
+    const real six_r_nu_2_t = six_r_beta_5_in_axes5_y*six_r_end_p1_in_axes5_z -
+        six_r_beta_4_in_axes4_y*six_r_end_p1_in_axes5_y;
+    const real six_r_nu_2_t_2 = six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 +
+        six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 + six_r_nu_1_t_3*(six_r_nu_1_t +
+        six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z);
+    const real six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2;
+    /* (six_r-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real six_r_qdd_1_o_t = six_r_nu_1*m->six_r_size[i];
+    const real six_r_qdd_1_o_t_2 = six_r_nu_2*m->six_r_size[i];
+    const real six_r_qdd_1_o_t_3 = inv_six_r_w_1_t_79*(six_r_m1_w_1_t*six_r_qdd_1_o_t +
+        six_r_m2_w_1_t*six_r_qdd_1_o_t_2 + six_r_rel_o_in_axes5_x*six_r_w_1_t_80 +
+        six_r_rel_o_in_axes5_z*six_r_w_1_t_82 - six_r_rel_o_in_axes5_y*six_r_w_1_t_81);
+    const real six_r_qdd_1_o_t_4 = inv_six_r_w_1_t_67*(six_r_qdd_1_o_t*six_r_w_1_t_71 +
+        six_r_qdd_1_o_t_2*six_r_w_1_t_72 + six_r_rel_o_in_axes5_x*six_r_w_1_t_68 +
+        six_r_rel_o_in_axes5_z*six_r_w_1_t_70 - six_r_qdd_1_o_t_3*six_r_w_1_t_73 -
+        six_r_rel_o_in_axes5_y*six_r_w_1_t_69);
+    const real six_r_qdd_1_o_t_5 = inv_six_r_w_1_t_49*(six_r_qdd_1_o_t_3*six_r_w_1_t_61 +
+        six_r_qdd_1_o_t_4*six_r_w_1_t_55 + six_r_rel_o_in_axes5_y*six_r_w_1_t_51 -
+        six_r_qdd_1_o_t*six_r_w_1_t_53 - six_r_qdd_1_o_t_2*six_r_w_1_t_54 -
+        six_r_rel_o_in_axes5_x*six_r_w_1_t_50 - six_r_rel_o_in_axes5_z*six_r_w_1_t_52);
+    /* (six_r-qdd_4_o) remainder of: acceleration of joint 4 */
+    const real six_r_qdd_4_o = inv_six_r_w_1_t_28*(six_r_qdd_1_o_t*six_r_w_1_t_31 +
+        six_r_qdd_1_o_t_2*six_r_w_1_t_32 + six_r_qdd_1_o_t_3*six_r_w_1_t_44 +
+        six_r_qdd_1_o_t_4*six_r_w_1_t_39 + six_r_rel_o_in_axes5_z*six_r_w_1_t_30 -
+        six_r_qdd_1_o_t_5*six_r_w_1_t_33 - six_r_rel_o_in_axes5_y*six_r_w_1_t_29);
+    /* (six_r-alpha_1_o) remainder of: angular acceleration of link 1 */
+    const real six_r_alpha_1_o_t = v.six_r_c_2*six_r_qdd_1_o_t_5;
+    const real six_r_alpha_1_o_in_axes2_y = six_r_qdd_1_o_t_5*v.six_r_s_2;
+    /* (six_r-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real six_r_alpha_2_o_in_axes2_x = six_r_W_2_in_axes2_yz - six_r_alpha_1_o_t;
+    const real six_r_alpha_2_o_in_axes2_y = six_r_alpha_1_o_in_axes2_y +
+        six_r_zeta_2_in_axes2_y;
+    /* (six_r-B_2_o) remainder of the acceleration tensor of link 2 */
+    const real six_r_B_2_o_in_axes2_xy = six_r_W_2_in_axes2_xy - six_r_qdd_1_o_t_4;
+    const real six_r_B_2_o_in_axes2_yx = six_r_W_2_in_axes2_xy + six_r_qdd_1_o_t_4;
+    const real six_r_B_2_o_in_axes2_zx = -six_r_alpha_2_o_in_axes2_y -
+        six_r_zeta_2_in_axes2_y;
+    const real six_r_B_2_o_in_axes2_zy = six_r_W_2_in_axes2_yz + six_r_alpha_2_o_in_axes2_x;
+    /* (six_r-alpha_3_o) remainder of: angular acceleration of link 3 */
+    const real six_r_alpha_3_o_in_axes3_x = six_r_zeta_3_in_axes3_x +
+        six_r_alpha_2_o_in_axes2_x*v.six_r_s_3 - six_r_alpha_2_o_in_axes2_y*v.six_r_c_3;
+    const real six_r_alpha_3_o_in_axes3_y = six_r_alpha_2_o_in_axes2_x*v.six_r_c_3 +
+        six_r_alpha_2_o_in_axes2_y*v.six_r_s_3 - six_r_zeta_3_t;
+    const real six_r_alpha_3_o_in_axes3_z = six_r_qdd_1_o_t_3 + six_r_qdd_1_o_t_4;
+    /* (six_r-B_3_o) remainder of the acceleration tensor of link 3 */
+    const real six_r_B_3_o_in_axes3_xy = six_r_W_3_in_axes3_xy - six_r_alpha_3_o_in_axes3_z;
+    const real six_r_B_3_o_in_axes3_xz = six_r_W_3_in_axes3_xz + six_r_alpha_3_o_in_axes3_y;
+    const real six_r_B_3_o_in_axes3_yx = six_r_W_3_in_axes3_xy + six_r_alpha_3_o_in_axes3_z;
+    const real six_r_B_3_o_in_axes3_yz = six_r_W_3_in_axes3_yz - six_r_alpha_3_o_in_axes3_x;
+    const real six_r_B_3_o_in_axes3_zx = six_r_W_3_in_axes3_xz - six_r_alpha_3_o_in_axes3_y;
+    const real six_r_B_3_o_in_axes3_zy = six_r_W_3_in_axes3_yz + six_r_alpha_3_o_in_axes3_x;
+    /* (six_r-alpha_4_o) remainder of: angular acceleration of link 4 */
+    const real six_r_alpha_4_o_in_axes4_x = six_r_zeta_4_in_axes4_x +
+        six_r_alpha_3_o_in_axes3_z*v.six_r_h_4_t -
+        six_r_alpha_3_o_in_axes3_x*v.six_r_e_2_in_axes5_z;
+    const real six_r_alpha_4_o_in_axes4_y = six_r_alpha_3_o_in_axes3_x*v.six_r_h_4_t +
+        six_r_alpha_3_o_in_axes3_z*v.six_r_e_2_in_axes5_z - six_r_zeta_4_t;
+    const real six_r_alpha_4_o_in_axes4_z = six_r_alpha_3_o_in_axes3_y + six_r_qdd_4_o;
+    /* (six_r-B_4_o) remainder of the acceleration tensor of link 4 */
+    const real six_r_B_4_o_in_axes4_xy = six_r_W_4_in_axes4_xy - six_r_alpha_4_o_in_axes4_z;
+    const real six_r_B_4_o_in_axes4_xz = six_r_W_4_in_axes4_xz + six_r_alpha_4_o_in_axes4_y;
+    const real six_r_B_4_o_in_axes4_yx = six_r_W_4_in_axes4_xy + six_r_alpha_4_o_in_axes4_z;
+    const real six_r_B_4_o_in_axes4_yz = six_r_W_4_in_axes4_yz - six_r_alpha_4_o_in_axes4_x;
+    const real six_r_B_4_o_in_axes4_zx = six_r_W_4_in_axes4_xz - six_r_alpha_4_o_in_axes4_y;
+    const real six_r_B_4_o_in_axes4_zy = six_r_W_4_in_axes4_yz + six_r_alpha_4_o_in_axes4_x;
+    /* (six_r-dalpha_alpha_5) coefficient of the acceleration in: angular acceleration of link 5 */
+    const real six_r_dalpha_alpha_5_in_axes5_xx = v.six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_x
+        - v.six_r_e_2_in_axes5_x*six_r_o_2_t - v.six_r_e_2_in_axes5_x*six_r_o_3_t -
+        v.six_r_e_4_in_axes5_x*six_r_o_4_t;
+    const real six_r_dalpha_alpha_5_in_axes5_xy = v.six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_y
+        + v.six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_y +
+        v.six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_y +
+        v.six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_y;
+    const real six_r_dalpha_alpha_5_in_axes5_xz = v.six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_z
+        + v.six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_z +
+        v.six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_z - v.six_r_e_1_in_axes5_x*six_r_o_1_t;
+    const real six_r_dalpha_alpha_5_in_axes5_yx = v.six_r_J_5_t*six_r_o_4_t +
+        v.six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_x - v.six_r_e_2_in_axes5_y*six_r_o_2_t -
+        v.six_r_e_2_in_axes5_y*six_r_o_3_t;
+    const real six_r_dalpha_alpha_5_in_axes5_yy = v.six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_y
+        + v.six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_y +
+        v.six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_y - v.six_r_J_5_t*six_r_o_4_in_axes5_y;
+    const real six_r_dalpha_alpha_5_in_axes5_yz = v.six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_z
+        + v.six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_z - v.six_r_J_5_t*six_r_o_4_in_axes5_z -
+        v.six_r_e_1_in_axes5_y*six_r_o_1_t;
+    const real six_r_dalpha_alpha_5_in_axes5_zx = six_r_o_5_in_axes5_x +
+        v.six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_x - v.six_r_e_2_in_axes5_z*six_r_o_2_t -
+        v.six_r_e_2_in_axes5_z*six_r_o_3_t;
+    const real six_r_dalpha_alpha_5_in_axes5_zy = six_r_o_5_in_axes5_y +
+        v.six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_y +
+        v.six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_y +
+        v.six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_y;
+    const real six_r_dalpha_alpha_5_in_axes5_zz = v.six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_z
+        + v.six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_z - six_r_o_5_t -
+        v.six_r_e_1_in_axes5_z*six_r_o_1_t;
+    /* (six_r-d_alpha_5) coefficient of the acceleration in: angular acceleration of link 5 */
+    const real six_r_d_alpha_5_in_axes5_xz = v.six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_z +
+        v.six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_z +
+        v.six_r_e_2_in_axes5_x*six_r_w_3_in_axes5_z +
+        v.six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_z;
+    const real six_r_d_alpha_5_in_axes5_yz = v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_z +
+        v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_z +
+        v.six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_z - v.six_r_J_5_t*six_r_w_4_in_axes5_z;
+    const real six_r_d_alpha_5_in_axes5_zy = six_r_w_5_in_axes5_y +
+        v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_y +
+        v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_y - v.six_r_e_2_in_axes5_z*six_r_w_3_t;
+    const real six_r_d_alpha_5_in_axes5_zz = six_r_w_5_in_axes5_z +
+        v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_z +
+        v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_z +
+        v.six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_z;
+    /* (six_r-alpha_5_o) remainder of: angular acceleration of link 5 */
+    const real six_r_alpha_5_o_in_axes5_x = six_r_zeta_5_in_axes5_x +
+        v.six_r_J_5_t*six_r_alpha_4_o_in_axes4_x +
+        six_r_alpha_4_o_in_axes4_z*v.six_r_e_4_in_axes5_x;
+    const real six_r_alpha_5_o_in_axes5_y = six_r_alpha_4_o_in_axes4_x*v.six_r_e_4_in_axes5_x
+        - six_r_zeta_5_t - v.six_r_J_5_t*six_r_alpha_4_o_in_axes4_z;
+    const real six_r_alpha_5_o_in_axes5_z = six_r_alpha_4_o_in_axes4_y +
+        inv_six_r_w_1_t_12*(six_r_qdd_1_o_t_2*six_r_w_1_t_14 +
+        six_r_qdd_1_o_t_3*six_r_w_1_t_25 + six_r_qdd_1_o_t_5*six_r_w_1_t_18 +
+        six_r_rel_o_in_axes5_y*six_r_w_1_t_13 - six_r_qdd_1_o_t_4*six_r_w_1_t_22 -
+        six_r_qdd_4_o*six_r_w_1_t_15);
+    /* (six_r-B_5_o) remainder of the acceleration tensor of link 5 */
+    const real six_r_B_5_o_in_axes5_xy = six_r_W_4_in_axes5_xy - six_r_alpha_5_o_in_axes5_z;
+    const real six_r_B_5_o_in_axes5_xz = six_r_W_5_in_axes5_xz + six_r_alpha_5_o_in_axes5_y;
+    const real six_r_B_5_o_in_axes5_yx = six_r_W_4_in_axes5_xy + six_r_alpha_5_o_in_axes5_z;
+    const real six_r_B_5_o_in_axes5_yz = six_r_W_5_in_axes5_yz - six_r_alpha_5_o_in_axes5_x;
+    const real six_r_B_5_o_in_axes5_zx = six_r_W_5_in_axes5_xz - six_r_alpha_5_o_in_axes5_y;
+    const real six_r_B_5_o_in_axes5_zy = six_r_W_5_in_axes5_yz + six_r_alpha_5_o_in_axes5_x;
+    /* (six_r-a_o_3_o) remainder of: acceleration of the origin of joint 3 */
+    const real six_r_a_o_3_o_t = six_r_omega_1_in_axes2_y*six_r_omega_1_in_axes2_y;
+    const real six_r_a_o_3_o_t_2 = six_r_qd_1_t_4*six_r_qd_1_t_4;
+    const real six_r_a_o_3_o_in_axes2_x = -m->six_r_joint3_offset_x[i]*(six_r_a_o_3_o_t +
+        six_r_a_o_3_o_t_2);
+    const real six_r_a_o_3_o_in_axes2_y = six_r_B_2_o_in_axes2_yx*m->six_r_joint3_offset_x[i];
+    const real six_r_a_o_3_o_in_axes2_z = six_r_B_2_o_in_axes2_zx*m->six_r_joint3_offset_x[i];
+    const real six_r_a_o_3_o_in_axes3_x = six_r_a_o_3_o_in_axes2_x*v.six_r_s_3 -
+        six_r_a_o_3_o_in_axes2_y*v.six_r_c_3;
+    const real six_r_a_o_3_o_in_axes3_y = six_r_a_o_3_o_in_axes2_x*v.six_r_c_3 +
+        six_r_a_o_3_o_in_axes2_y*v.six_r_s_3;
+    /* (six_r-a_o_4_o) remainder of: acceleration of the origin of joint 4 */
+    const real six_r_a_o_4_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x +
+        six_r_B_3_o_in_axes3_xy*m->six_r_joint4_offset_x[i];
+    const real six_r_a_o_4_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y -
+        six_r_W_3_t_3*m->six_r_joint4_offset_x[i];
+    const real six_r_a_o_4_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z +
+        six_r_B_3_o_in_axes3_zy*m->six_r_joint4_offset_x[i];
+    /* (six_r-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
+    const real six_r_acc_3_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x - v.six_r_g_in_axes3_x;
+    const real six_r_acc_3_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y - v.six_r_g_in_axes3_y;
+    const real six_r_acc_3_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z - v.six_r_g_in_axes1_y;
+    /* (six_r-f_3_o) remainder of: inertia force of link 3 less its weight */
+    const real six_r_f_3_o_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y;
+    const real six_r_f_3_o_in_axes3_x = six_r_B_3_o_in_axes3_xy*m->six_r_h_3_in_spec3_x[i] +
+        six_r_B_3_o_in_axes3_xz*m->six_r_h_3_in_spec3_z[i] +
+        six_r_acc_3_o_in_axes3_x*m->six_r_link3_mass[i] +
+        m->six_r_h_3_in_spec3_y[i]*(six_r_W_3_t_2 + six_r_f_3_o_t);
+    const real six_r_f_3_o_in_axes3_y = six_r_B_3_o_in_axes3_yz*m->six_r_h_3_in_spec3_z[i] +
+        six_r_acc_3_o_in_axes3_y*m->six_r_link3_mass[i] -
+        six_r_B_3_o_in_axes3_yx*m->six_r_h_3_in_spec3_y[i] -
+        six_r_W_3_t_3*m->six_r_h_3_in_spec3_x[i];
+    const real six_r_f_3_o_in_axes3_z = six_r_B_3_o_in_axes3_zy*m->six_r_h_3_in_spec3_x[i] +
+        six_r_acc_3_o_in_axes3_z*m->six_r_link3_mass[i] -
+        six_r_B_3_o_in_axes3_zx*m->six_r_h_3_in_spec3_y[i] -
+        m->six_r_h_3_in_spec3_z[i]*(six_r_W_3_t + six_r_f_3_o_t);
+    /* (six_r-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity */
+    const real six_r_acc_4_o_in_axes4_x = six_r_a_o_4_o_in_axes3_z*v.six_r_h_4_t +
+        v.six_r_e_2_in_axes5_z*v.six_r_g_in_axes3_x -
+        six_r_a_o_4_o_in_axes3_x*v.six_r_e_2_in_axes5_z - v.six_r_g_in_axes1_y*v.six_r_h_4_t;
+    const real six_r_acc_4_o_in_axes4_y = six_r_a_o_4_o_in_axes3_x*v.six_r_h_4_t +
+        six_r_a_o_4_o_in_axes3_z*v.six_r_e_2_in_axes5_z -
+        v.six_r_e_2_in_axes5_z*v.six_r_g_in_axes1_y - v.six_r_g_in_axes3_x*v.six_r_h_4_t;
+    const real six_r_acc_4_o_in_axes4_z = six_r_a_o_4_o_in_axes3_y - v.six_r_g_in_axes3_y;
+    /* (six_r-f_4_o) remainder of: inertia force of link 4 less its weight */
+    const real six_r_f_4_o_t = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x;
+    const real six_r_f_4_o_t_2 = six_r_omega_4_in_axes4_z*six_r_omega_4_in_axes4_z;
+    const real six_r_f_4_o_in_axes4_x = six_r_B_4_o_in_axes4_xy*m->six_r_h_4_in_spec4_z[i] +
+        six_r_B_4_o_in_axes4_xz*m->six_r_h_4_in_spec4_x[i] +
+        six_r_acc_4_o_in_axes4_x*m->six_r_link4_mass[i] -
+        m->six_r_h_4_in_spec4_y[i]*(six_r_bias_t + six_r_f_4_o_t_2);
+    const real six_r_f_4_o_in_axes4_y = six_r_B_4_o_in_axes4_yx*m->six_r_h_4_in_spec4_y[i] +
+        six_r_B_4_o_in_axes4_yz*m->six_r_h_4_in_spec4_x[i] +
+        six_r_acc_4_o_in_axes4_y*m->six_r_link4_mass[i] -
+        m->six_r_h_4_in_spec4_z[i]*(six_r_f_4_o_t + six_r_f_4_o_t_2);
+    const real six_r_f_4_o_in_axes4_z = six_r_B_4_o_in_axes4_zx*m->six_r_h_4_in_spec4_y[i] +
+        six_r_B_4_o_in_axes4_zy*m->six_r_h_4_in_spec4_z[i] +
+        six_r_acc_4_o_in_axes4_z*m->six_r_link4_mass[i] -
+        m->six_r_h_4_in_spec4_x[i]*(six_r_bias_t + six_r_f_4_o_t);
+    const real six_r_f_4_o_in_axes3_x = six_r_f_4_o_in_axes4_y*v.six_r_h_4_t -
+        v.six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_x;
+    const real six_r_f_4_o_in_axes3_z = v.six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_y +
+        six_r_f_4_o_in_axes4_x*v.six_r_h_4_t;
+    /* (six_r-acc_5_o) remainder of: acceleration of the reference point of link 5, less gravity */
+    const real six_r_acc_5_o_in_axes5_x = six_r_u_1_in_axes5_x -
+        axis_x_six_r_axes5_x*m->gravity_x - axis_x_six_r_axes5_y*m->gravity_y -
+        axis_x_six_r_axes5_z*m->gravity_z;
+    const real six_r_acc_5_o_in_axes5_y = six_r_u_1_in_axes5_y -
+        axis_y_six_r_axes5_x*m->gravity_x - axis_y_six_r_axes5_y*m->gravity_y -
+        axis_y_six_r_axes5_z*m->gravity_z;
+    const real six_r_acc_5_o_in_axes5_z = six_r_u_1_in_axes5_z -
+        axis_z_six_r_axes5_x*m->gravity_x - axis_z_six_r_axes5_y*m->gravity_y -
+        axis_z_six_r_axes5_z*m->gravity_z;
+    /* (six_r-d_phi_5) coefficient of the acceleration in: inertia force of link 5 from its turning
+       about its reference point */
+    const real six_r_d_phi_5_in_axes5_xx =
+        m->six_r_h_5_in_spec5_z[i]*(v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_x +
+        v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_x +
+        v.six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_x - v.six_r_J_5_t*six_r_w_4_in_axes5_x) -
+        m->six_r_h_5_in_spec5_y[i]*(v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_x +
+        v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_x +
+        v.six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_x - six_r_w_5_t_5);
+    /* (six_r-mu_5_o) remainder of: inertia moment of the links that turn with link 5, about their
+       reference points */
+    const real six_r_mu_5_o_in_axes5_x = six_r_B_5_o_in_axes5_yx*m->six_r_J_5_in_spec5_xz[i] +
+        six_r_B_5_o_in_axes5_zy*m->six_r_Sigma_5_in_axes5_yy[i] +
+        m->six_r_J_5_in_spec5_yz[i]*(six_r_W_5_t - six_r_W_5_t_2) +
+        six_r_acc_5_o_in_axes5_z*m->six_r_h_5_in_spec5_y[i] -
+        six_r_B_5_o_in_axes5_yz*m->six_r_Sigma_5_in_axes5_zz[i] -
+        six_r_B_5_o_in_axes5_zx*m->six_r_J_5_in_spec5_xy[i] -
+        six_r_acc_5_o_in_axes5_y*m->six_r_h_5_in_spec5_z[i];
+    const real six_r_mu_5_o_in_axes5_y =
+        six_r_B_5_o_in_axes5_xz*m->six_r_Sigma_5_in_axes5_zz[i] +
+        six_r_B_5_o_in_axes5_zy*m->six_r_J_5_in_spec5_xy[i] +
+        six_r_acc_5_o_in_axes5_x*m->six_r_h_5_in_spec5_z[i] -
+        six_r_B_5_o_in_axes5_xy*m->six_r_J_5_in_spec5_yz[i] -
+        six_r_B_5_o_in_axes5_zx*m->six_r_Sigma_5_in_axes5_xx[i] -
+        m->six_r_J_5_in_spec5_xz[i]*(six_r_bias_t_2 - six_r_W_5_t_2) -
+        six_r_acc_5_o_in_axes5_z*m->six_r_h_5_in_spec5_x[i];
+    const real six_r_mu_5_o_in_axes5_z = six_r_B_5_o_in_axes5_xz*m->six_r_J_5_in_spec5_yz[i] +
+        six_r_B_5_o_in_axes5_yx*m->six_r_Sigma_5_in_axes5_xx[i] +
+        m->six_r_J_5_in_spec5_xy[i]*(six_r_bias_t_2 - six_r_W_5_t) +
+        six_r_acc_5_o_in_axes5_y*m->six_r_h_5_in_spec5_x[i] -
+        six_r_B_5_o_in_axes5_xy*m->six_r_Sigma_5_in_axes5_yy[i] -
+        six_r_B_5_o_in_axes5_yz*m->six_r_J_5_in_spec5_xz[i] -
+        six_r_acc_5_o_in_axes5_x*m->six_r_h_5_in_spec5_y[i];
+    /* (six_r-dalpha_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal
+       links' inertia and weight */
+    const real six_r_dalpha_Gamma_5_in_axes5_x = v.six_r_D_1_5*six_r_o_1_in_axes5_x +
+        m->six_r_J_5_in_spec5_zz[i]*six_r_o_5_in_axes5_x - v.six_r_D_3_5*six_r_o_2_t -
+        v.six_r_D_3_5*six_r_o_3_t - v.six_r_J_5_in_axes4_yz*six_r_o_4_t;
+    const real six_r_dalpha_Gamma_5_in_axes5_y = v.six_r_D_1_5*six_r_o_1_in_axes5_y +
+        v.six_r_D_3_5*six_r_o_2_in_axes5_y + v.six_r_D_3_5*six_r_o_3_in_axes5_y +
+        v.six_r_J_5_in_axes4_yz*six_r_o_4_in_axes5_y +
+        m->six_r_J_5_in_spec5_zz[i]*six_r_o_5_in_axes5_y;
+    const real six_r_dalpha_Gamma_5_in_axes5_z = v.six_r_D_3_5*six_r_o_2_in_axes5_z +
+        v.six_r_D_3_5*six_r_o_3_in_axes5_z + v.six_r_J_5_in_axes4_yz*six_r_o_4_in_axes5_z -
+        v.six_r_D_1_5*six_r_o_1_t - m->six_r_J_5_in_spec5_zz[i]*six_r_o_5_t;
+    /* (six_r-d_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal links'
+       inertia and weight */
+    const real six_r_d_Gamma_5_t = inv_six_r_w_1_t_12*m->six_r_J_5_in_spec5_zz[i];
+    const real six_r_d_Gamma_5_t_2 = inv_six_r_w_1_t_28*(v.six_r_J_5_in_axes4_yz -
+        six_r_d_Gamma_5_t*six_r_w_1_t_15);
+    const real six_r_d_Gamma_5_t_3 = inv_six_r_w_1_t_49*(v.six_r_D_1_5 +
+        six_r_d_Gamma_5_t_2*six_r_w_1_t_33 - six_r_d_Gamma_5_t*six_r_w_1_t_18);
+    const real six_r_d_Gamma_5_t_4 = inv_six_r_w_1_t_67*(v.six_r_D_3_5 +
+        six_r_d_Gamma_5_t_2*six_r_w_1_t_39 - six_r_d_Gamma_5_t*six_r_w_1_t_22 -
+        six_r_d_Gamma_5_t_3*six_r_w_1_t_55);
+    const real six_r_d_Gamma_5_t_5 = inv_six_r_w_1_t_79*(v.six_r_D_3_5 +
+        six_r_d_Gamma_5_t*six_r_w_1_t_25 + six_r_d_Gamma_5_t_2*six_r_w_1_t_44 -
+        six_r_d_Gamma_5_t_3*six_r_w_1_t_61 - six_r_d_Gamma_5_t_4*six_r_w_1_t_73);
+    const real six_r_d_Gamma_5_in_axes5_z = six_r_d_Gamma_5_t_2*six_r_w_1_t_30 +
+        six_r_d_Gamma_5_t_3*six_r_w_1_t_52 + six_r_d_Gamma_5_t_4*six_r_w_1_t_70 +
+        six_r_d_Gamma_5_t_5*six_r_w_1_t_82;
+    const real six_r_d_Gamma_5_in_axes5_x = six_r_d_Gamma_5_t_3*six_r_w_1_t_50 +
+        six_r_d_Gamma_5_t_4*six_r_w_1_t_68 + six_r_d_Gamma_5_t_5*six_r_w_1_t_80 -
+        m->six_r_h_5_in_spec5_y[i];
+    const real six_r_d_Gamma_5_in_axes5_y = m->six_r_h_5_in_spec5_x[i] +
+        six_r_d_Gamma_5_t*six_r_w_1_t_13 - six_r_d_Gamma_5_t_2*six_r_w_1_t_29 -
+        six_r_d_Gamma_5_t_3*six_r_w_1_t_51 - six_r_d_Gamma_5_t_4*six_r_w_1_t_69 -
+        six_r_d_Gamma_5_t_5*six_r_w_1_t_81;
+    /* (six_r-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their
+       reference points */
+    const real six_r_mu_4_o_in_axes4_x = six_r_B_4_o_in_axes4_yx*m->six_r_J_4_in_spec4_xy[i] +
+        six_r_B_4_o_in_axes4_zy*m->six_r_Sigma_4_in_axes4_yy[i] +
+        m->six_r_J_4_in_spec4_xz[i]*(six_r_bias_t - six_r_f_4_o_t_2) +
+        six_r_acc_4_o_in_axes4_z*m->six_r_h_4_in_spec4_z[i] -
+        six_r_B_4_o_in_axes4_yz*m->six_r_Sigma_4_in_axes4_zz[i] -
+        six_r_B_4_o_in_axes4_zx*m->six_r_J_4_in_spec4_yz[i] -
+        six_r_acc_4_o_in_axes4_y*m->six_r_h_4_in_spec4_x[i];
+    const real six_r_mu_4_o_in_axes4_y =
+        six_r_B_4_o_in_axes4_xz*m->six_r_Sigma_4_in_axes4_zz[i] +
+        six_r_B_4_o_in_axes4_zy*m->six_r_J_4_in_spec4_yz[i] +
+        six_r_acc_4_o_in_axes4_x*m->six_r_h_4_in_spec4_x[i] -
+        six_r_B_4_o_in_axes4_xy*m->six_r_J_4_in_spec4_xz[i] -
+        six_r_B_4_o_in_axes4_zx*m->six_r_Sigma_4_in_axes4_xx[i] -
+        m->six_r_J_4_in_spec4_xy[i]*(six_r_f_4_o_t - six_r_f_4_o_t_2) -
+        six_r_acc_4_o_in_axes4_z*m->six_r_h_4_in_spec4_y[i];
+    const real six_r_mu_4_o_in_axes4_z = six_r_B_4_o_in_axes4_xz*m->six_r_J_4_in_spec4_xz[i] +
+        six_r_B_4_o_in_axes4_yx*m->six_r_Sigma_4_in_axes4_xx[i] +
+        m->six_r_J_4_in_spec4_yz[i]*(six_r_f_4_o_t - six_r_bias_t) +
+        six_r_acc_4_o_in_axes4_y*m->six_r_h_4_in_spec4_y[i] -
+        six_r_B_4_o_in_axes4_xy*m->six_r_Sigma_4_in_axes4_yy[i] -
+        six_r_B_4_o_in_axes4_yz*m->six_r_J_4_in_spec4_xy[i] -
+        six_r_acc_4_o_in_axes4_x*m->six_r_h_4_in_spec4_z[i];
+    /* (six_r-N_4_o) remainder of: moment about joint 4 of the links from 4 outwards, the force at the
+       connection point left out */
+    const real six_r_N_4_o_in_axes4_x = six_r_mu_4_o_in_axes4_x +
+        v.six_r_J_5_t*six_r_mu_5_o_in_axes5_x +
+        v.six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_y;
+    const real six_r_N_4_o_in_axes4_y = six_r_mu_4_o_in_axes4_y + six_r_mu_5_o_in_axes5_z;
+    const real six_r_N_4_o_in_axes4_z = six_r_mu_4_o_in_axes4_z +
+        v.six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_x -
+        v.six_r_J_5_t*six_r_mu_5_o_in_axes5_y;
+    /* (six_r-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal
+       links' inertia and weight */
+    const real six_r_dalpha_Gamma_4_in_axes5_x = v.six_r_J_5_in_axes4_yz*six_r_o_5_in_axes5_x
+        + v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_x -
+        v.six_r_Jc_4_in_axes4_zz*six_r_o_4_t - v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_t -
+        v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_t;
+    const real six_r_dalpha_Gamma_4_in_axes5_y = v.six_r_J_5_in_axes4_yz*six_r_o_5_in_axes5_y
+        + v.six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_y +
+        v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_y +
+        v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_y +
+        v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_y;
+    const real six_r_dalpha_Gamma_4_in_axes5_z = v.six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_z
+        + v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_z +
+        v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_z - v.six_r_J_5_in_axes4_yz*six_r_o_5_t
+        - v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_t;
+    /* (six_r-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
+       inertia and weight */
+    const real six_r_d_Gamma_4_t = inv_six_r_w_1_t_12*v.six_r_J_5_in_axes4_yz;
+    const real six_r_d_Gamma_4_t_2 = inv_six_r_w_1_t_28*(v.six_r_Jc_4_in_axes4_zz -
+        six_r_d_Gamma_4_t*six_r_w_1_t_15);
+    const real six_r_d_Gamma_4_t_3 = inv_six_r_w_1_t_49*(v.six_r_L_c_4_2_in_axes1_z +
+        six_r_d_Gamma_4_t_2*six_r_w_1_t_33 - six_r_d_Gamma_4_t*six_r_w_1_t_18);
+    const real six_r_d_Gamma_4_t_4 = inv_six_r_w_1_t_67*(v.six_r_L_c_4_2_in_axes2_z +
+        six_r_d_Gamma_4_t_2*six_r_w_1_t_39 - six_r_d_Gamma_4_t*six_r_w_1_t_22 -
+        six_r_d_Gamma_4_t_3*six_r_w_1_t_55);
+    const real six_r_d_Gamma_4_t_5 = inv_six_r_w_1_t_79*(v.six_r_L_c_4_3_in_axes3_z +
+        six_r_d_Gamma_4_t*six_r_w_1_t_25 + six_r_d_Gamma_4_t_2*six_r_w_1_t_44 -
+        six_r_d_Gamma_4_t_3*six_r_w_1_t_61 - six_r_d_Gamma_4_t_4*six_r_w_1_t_73);
+    const real six_r_d_Gamma_4_in_axes5_x = six_r_d_Gamma_4_t_3*six_r_w_1_t_50 +
+        six_r_d_Gamma_4_t_4*six_r_w_1_t_68 + six_r_d_Gamma_4_t_5*six_r_w_1_t_80 -
+        v.six_r_J_5_t*m->six_r_h_5_in_spec5_z[i];
+    const real six_r_d_Gamma_4_in_axes5_y = six_r_d_Gamma_4_t*six_r_w_1_t_13 -
+        six_r_d_Gamma_4_t_2*six_r_w_1_t_29 - six_r_d_Gamma_4_t_3*six_r_w_1_t_51 -
+        six_r_d_Gamma_4_t_4*six_r_w_1_t_69 - six_r_d_Gamma_4_t_5*six_r_w_1_t_81 -
+        v.six_r_e_4_in_axes5_x*m->six_r_h_5_in_spec5_z[i];
+    const real six_r_d_Gamma_4_in_axes5_z = v.six_r_J_5_t*m->six_r_h_5_in_spec5_x[i] +
+        six_r_d_Gamma_4_t_2*six_r_w_1_t_30 + six_r_d_Gamma_4_t_3*six_r_w_1_t_52 +
+        six_r_d_Gamma_4_t_4*six_r_w_1_t_70 + six_r_d_Gamma_4_t_5*six_r_w_1_t_82 +
+        v.six_r_e_4_in_axes5_x*m->six_r_h_5_in_spec5_y[i];
+    /* (six_r-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+       reference points */
+    const real six_r_mu_3_o_in_axes3_x = six_r_B_3_o_in_axes3_zx*m->six_r_J_3_in_spec3_xy[i] +
+        six_r_B_3_o_in_axes3_zy*m->six_r_Sigma_3_in_axes3_yy[i] +
+        m->six_r_J_3_in_spec3_xz[i]*(six_r_f_3_o_t - six_r_W_3_t_2) +
+        six_r_acc_3_o_in_axes3_z*m->six_r_h_3_in_spec3_x[i] -
+        six_r_B_3_o_in_axes3_yx*m->six_r_J_3_in_spec3_yz[i] -
+        six_r_B_3_o_in_axes3_yz*m->six_r_Sigma_3_in_axes3_zz[i] -
+        six_r_acc_3_o_in_axes3_y*m->six_r_h_3_in_spec3_z[i];
+    const real six_r_mu_3_o_in_axes3_y =
+        six_r_B_3_o_in_axes3_xz*m->six_r_Sigma_3_in_axes3_zz[i] +
+        m->six_r_J_3_in_spec3_yz[i]*(six_r_W_3_t - six_r_W_3_t_2) +
+        six_r_acc_3_o_in_axes3_x*m->six_r_h_3_in_spec3_z[i] +
+        six_r_acc_3_o_in_axes3_z*m->six_r_h_3_in_spec3_y[i] -
+        six_r_B_3_o_in_axes3_xy*m->six_r_J_3_in_spec3_xz[i] -
+        six_r_B_3_o_in_axes3_zx*m->six_r_Sigma_3_in_axes3_xx[i] -
+        six_r_B_3_o_in_axes3_zy*m->six_r_J_3_in_spec3_xy[i];
+    const real six_r_mu_3_o_in_axes3_z = six_r_B_3_o_in_axes3_xz*m->six_r_J_3_in_spec3_xz[i] +
+        six_r_B_3_o_in_axes3_yx*m->six_r_Sigma_3_in_axes3_xx[i] +
+        six_r_B_3_o_in_axes3_yz*m->six_r_J_3_in_spec3_yz[i] -
+        six_r_B_3_o_in_axes3_xy*m->six_r_Sigma_3_in_axes3_yy[i] -
+        m->six_r_J_3_in_spec3_xy[i]*(six_r_W_3_t - six_r_f_3_o_t) -
+        six_r_acc_3_o_in_axes3_x*m->six_r_h_3_in_spec3_x[i] -
+        six_r_acc_3_o_in_axes3_y*m->six_r_h_3_in_spec3_y[i];
+    /* (six_r-N_3_o) remainder of: moment about joint 3 of the links from 3 outwards, the force at the
+       connection point left out */
+    const real six_r_N_3_o_in_axes3_x = six_r_mu_3_o_in_axes3_x +
+        six_r_N_4_o_in_axes4_y*v.six_r_h_4_t +
+        six_r_f_4_o_in_axes3_z*m->six_r_joint4_offset_x[i] -
+        six_r_N_4_o_in_axes4_x*v.six_r_e_2_in_axes5_z;
+    const real six_r_N_3_o_in_axes3_y = six_r_N_4_o_in_axes4_z + six_r_mu_3_o_in_axes3_y;
+    const real six_r_N_3_o_in_axes3_z = six_r_mu_3_o_in_axes3_z +
+        six_r_N_4_o_in_axes4_x*v.six_r_h_4_t + six_r_N_4_o_in_axes4_y*v.six_r_e_2_in_axes5_z -
+        six_r_f_4_o_in_axes3_x*m->six_r_joint4_offset_x[i];
+    /* (six_r-T_3_o) remainder of: inertia force of the links from 3 outwards, the last link left out
+       */
+    const real six_r_T_3_o_in_axes3_x = six_r_f_3_o_in_axes3_x + six_r_f_4_o_in_axes3_x;
+    const real six_r_T_3_o_in_axes3_y = six_r_f_3_o_in_axes3_y + six_r_f_4_o_in_axes4_z;
+    const real six_r_T_3_o_in_axes3_z = six_r_f_3_o_in_axes3_z + six_r_f_4_o_in_axes3_z;
+    /* (six_r-dalpha_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
+       links' inertia and weight */
+    const real six_r_dalpha_Gamma_3_t = v.six_r_D_3_5*six_r_o_5_in_axes5_x;
+    const real six_r_dalpha_Gamma_3_t_2 = v.six_r_D_3_5*six_r_o_5_in_axes5_y;
+    const real six_r_dalpha_Gamma_3_t_3 = v.six_r_D_3_5*six_r_o_5_t;
+    const real six_r_dalpha_Gamma_3_in_axes5_x = six_r_dalpha_Gamma_3_t +
+        v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_x - v.six_r_Jc_3_in_axes3_zz*six_r_o_3_t
+        - v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_t - v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_t;
+    const real six_r_dalpha_Gamma_3_in_axes5_y = six_r_dalpha_Gamma_3_t_2 +
+        v.six_r_Jc_3_in_axes3_zz*six_r_o_3_in_axes5_y +
+        v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_y +
+        v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_in_axes5_y +
+        v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_y;
+    const real six_r_dalpha_Gamma_3_in_axes5_z = v.six_r_Jc_3_in_axes3_zz*six_r_o_3_in_axes5_z
+        + v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_in_axes5_z +
+        v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_z - six_r_dalpha_Gamma_3_t_3 -
+        v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_t;
+    /* (six_r-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
+       inertia and weight */
+    const real six_r_d_Gamma_3_t_4 = inv_six_r_w_1_t_12*v.six_r_D_3_5;
+    const real six_r_d_Gamma_3_t_5 = six_r_d_Gamma_3_t_4*six_r_w_1_t_15;
+    const real six_r_d_Gamma_3_t_6 = inv_six_r_w_1_t_28*(v.six_r_L_c_4_3_in_axes3_z -
+        six_r_d_Gamma_3_t_5);
+    const real six_r_d_Gamma_3_t_7 = six_r_d_Gamma_3_t_4*six_r_w_1_t_18;
+    const real six_r_d_Gamma_3_t_8 = inv_six_r_w_1_t_49*(v.six_r_L_c_3_2_in_axes1_z +
+        six_r_d_Gamma_3_t_6*six_r_w_1_t_33 - six_r_d_Gamma_3_t_7);
+    const real six_r_d_Gamma_3_t_9 = six_r_d_Gamma_3_t_4*six_r_w_1_t_22;
+    const real six_r_d_Gamma_3_t_10 = inv_six_r_w_1_t_67*(v.six_r_L_c_3_2_in_axes2_z +
+        six_r_d_Gamma_3_t_6*six_r_w_1_t_39 - six_r_d_Gamma_3_t_9 -
+        six_r_d_Gamma_3_t_8*six_r_w_1_t_55);
+    const real six_r_d_Gamma_3_t_11 = six_r_d_Gamma_3_t_4*six_r_w_1_t_25;
+    const real six_r_d_Gamma_3_t_12 = inv_six_r_w_1_t_79*(v.six_r_Jc_3_in_axes3_zz +
+        six_r_d_Gamma_3_t_11 + six_r_d_Gamma_3_t_6*six_r_w_1_t_44 -
+        six_r_d_Gamma_3_t_10*six_r_w_1_t_73 - six_r_d_Gamma_3_t_8*six_r_w_1_t_61);
+    const real six_r_d_Gamma_3_t_13 = six_r_d_Gamma_3_t_4*six_r_w_1_t_13;
+    const real six_r_d_Gamma_3_in_axes5_x = v.six_r_d_Gamma_3_t +
+        six_r_d_Gamma_3_t_10*six_r_w_1_t_68 + six_r_d_Gamma_3_t_12*six_r_w_1_t_80 +
+        six_r_d_Gamma_3_t_8*six_r_w_1_t_50;
+    const real six_r_d_Gamma_3_in_axes5_y = six_r_d_Gamma_3_t_13 - v.six_r_d_Gamma_3_t_2 -
+        six_r_d_Gamma_3_t_10*six_r_w_1_t_69 - six_r_d_Gamma_3_t_12*six_r_w_1_t_81 -
+        six_r_d_Gamma_3_t_6*six_r_w_1_t_29 - six_r_d_Gamma_3_t_8*six_r_w_1_t_51;
+    const real six_r_d_Gamma_3_in_axes5_z = v.six_r_d_Gamma_3_t_3 +
+        six_r_d_Gamma_3_t_10*six_r_w_1_t_70 + six_r_d_Gamma_3_t_12*six_r_w_1_t_82 +
+        six_r_d_Gamma_3_t_6*six_r_w_1_t_30 + six_r_d_Gamma_3_t_8*six_r_w_1_t_52;
+    /* (six_r-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real six_r_mu_2_o_t = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_x;
+    const real six_r_mu_2_o_in_axes2_x = six_r_B_2_o_in_axes2_yx*m->six_r_J_2_in_spec2_xz[i] +
+        six_r_B_2_o_in_axes2_zy*m->six_r_Sigma_2_in_axes2_yy[i] +
+        m->six_r_J_2_in_spec2_yz[i]*(six_r_a_o_3_o_t - six_r_a_o_3_o_t_2) +
+        v.six_r_g_in_axes2_y*m->six_r_h_2_in_spec2_z[i] -
+        six_r_B_2_o_in_axes2_zx*m->six_r_J_2_in_spec2_xy[i] -
+        m->six_r_Sigma_2_in_axes2_zz[i]*six_r_alpha_1_o_t -
+        v.six_r_g_in_axes1_y*m->six_r_h_2_in_spec2_y[i];
+    const real six_r_mu_2_o_in_axes2_y = six_r_B_2_o_in_axes2_zy*m->six_r_J_2_in_spec2_xy[i] +
+        m->six_r_Sigma_2_in_axes2_zz[i]*six_r_alpha_1_o_in_axes2_y +
+        v.six_r_g_in_axes1_y*m->six_r_h_2_in_spec2_x[i] -
+        six_r_B_2_o_in_axes2_xy*m->six_r_J_2_in_spec2_yz[i] -
+        six_r_B_2_o_in_axes2_zx*m->six_r_Sigma_2_in_axes2_xx[i] -
+        m->six_r_J_2_in_spec2_xz[i]*(six_r_mu_2_o_t - six_r_a_o_3_o_t_2) -
+        v.six_r_g_in_axes2_x*m->six_r_h_2_in_spec2_z[i];
+    const real six_r_mu_2_o_in_axes2_z =
+        six_r_B_2_o_in_axes2_yx*m->six_r_Sigma_2_in_axes2_xx[i] +
+        m->six_r_J_2_in_spec2_xy[i]*(six_r_mu_2_o_t - six_r_a_o_3_o_t) +
+        m->six_r_J_2_in_spec2_yz[i]*six_r_alpha_1_o_in_axes2_y +
+        v.six_r_g_in_axes2_x*m->six_r_h_2_in_spec2_y[i] -
+        six_r_B_2_o_in_axes2_xy*m->six_r_Sigma_2_in_axes2_yy[i] -
+        m->six_r_J_2_in_spec2_xz[i]*six_r_alpha_1_o_t -
+        v.six_r_g_in_axes2_y*m->six_r_h_2_in_spec2_x[i];
+    /* (six_r-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+       connection point left out */
+    const real six_r_N_2_o_in_axes2_x = six_r_mu_2_o_in_axes2_x +
+        six_r_N_3_o_in_axes3_x*v.six_r_s_3 + six_r_N_3_o_in_axes3_y*v.six_r_c_3;
+    const real six_r_N_2_o_in_axes2_y = six_r_mu_2_o_in_axes2_y +
+        six_r_N_3_o_in_axes3_y*v.six_r_s_3 - six_r_N_3_o_in_axes3_x*v.six_r_c_3 -
+        six_r_T_3_o_in_axes3_z*m->six_r_joint3_offset_x[i];
+    const real six_r_N_2_o_in_axes2_z = six_r_N_3_o_in_axes3_z + six_r_mu_2_o_in_axes2_z -
+        m->six_r_joint3_offset_x[i]*(six_r_T_3_o_in_axes3_x*v.six_r_c_3 -
+        six_r_T_3_o_in_axes3_y*v.six_r_s_3);
+    /* (six_r-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
+       links' inertia and weight */
+    const real six_r_dalpha_Gamma_2_in_axes5_x = six_r_dalpha_Gamma_3_t +
+        v.six_r_Jc_2_in_axes1_yz*six_r_o_1_in_axes5_x - v.six_r_Jc_2_in_axes2_zz*six_r_o_2_t -
+        v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_t - v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_t;
+    const real six_r_dalpha_Gamma_2_in_axes5_y = six_r_dalpha_Gamma_3_t_2 +
+        v.six_r_Jc_2_in_axes1_yz*six_r_o_1_in_axes5_y +
+        v.six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_y +
+        v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_y +
+        v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_y;
+    const real six_r_dalpha_Gamma_2_in_axes5_z = v.six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_z
+        + v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_z +
+        v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_z - six_r_dalpha_Gamma_3_t_3 -
+        v.six_r_Jc_2_in_axes1_yz*six_r_o_1_t;
+    /* (six_r-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+       inertia and weight */
+    const real six_r_d_Gamma_2_t = inv_six_r_w_1_t_28*(v.six_r_L_c_4_2_in_axes2_z -
+        six_r_d_Gamma_3_t_5);
+    const real six_r_d_Gamma_2_t_2 = inv_six_r_w_1_t_49*(v.six_r_Jc_2_in_axes1_yz +
+        six_r_d_Gamma_2_t*six_r_w_1_t_33 - six_r_d_Gamma_3_t_7);
+    const real six_r_d_Gamma_2_t_3 = inv_six_r_w_1_t_67*(v.six_r_Jc_2_in_axes2_zz +
+        six_r_d_Gamma_2_t*six_r_w_1_t_39 - six_r_d_Gamma_3_t_9 -
+        six_r_d_Gamma_2_t_2*six_r_w_1_t_55);
+    const real six_r_d_Gamma_2_t_4 = inv_six_r_w_1_t_79*(v.six_r_L_c_3_2_in_axes2_z +
+        six_r_d_Gamma_3_t_11 + six_r_d_Gamma_2_t*six_r_w_1_t_44 -
+        six_r_d_Gamma_2_t_2*six_r_w_1_t_61 - six_r_d_Gamma_2_t_3*six_r_w_1_t_73);
+    const real six_r_d_Gamma_2_in_axes5_x = v.six_r_d_Gamma_3_t +
+        six_r_d_Gamma_2_t_2*six_r_w_1_t_50 + six_r_d_Gamma_2_t_3*six_r_w_1_t_68 +
+        six_r_d_Gamma_2_t_4*six_r_w_1_t_80;
+    const real six_r_d_Gamma_2_in_axes5_y = six_r_d_Gamma_3_t_13 - v.six_r_d_Gamma_3_t_2 -
+        six_r_d_Gamma_2_t*six_r_w_1_t_29 - six_r_d_Gamma_2_t_2*six_r_w_1_t_51 -
+        six_r_d_Gamma_2_t_3*six_r_w_1_t_69 - six_r_d_Gamma_2_t_4*six_r_w_1_t_81;
+    const real six_r_d_Gamma_2_in_axes5_z = v.six_r_d_Gamma_3_t_3 +
+        six_r_d_Gamma_2_t*six_r_w_1_t_30 + six_r_d_Gamma_2_t_2*six_r_w_1_t_52 +
+        six_r_d_Gamma_2_t_3*six_r_w_1_t_70 + six_r_d_Gamma_2_t_4*six_r_w_1_t_82;
+    /* (six_r-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
+    const real six_r_mu_1_o_in_axes1_z = v.six_r_g_in_axes1_x*m->six_r_h_1_in_spec1_z[i] -
+        m->six_r_J_1_in_spec1_xx[i]*six_r_qdd_1_o_t_5 -
+        v.six_r_g_in_axes1_y*m->six_r_h_1_in_spec1_y[i];
+    /* (six_r-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+       connection point left out */
+    const real six_r_N_1_o_in_axes1_z = six_r_mu_1_o_in_axes1_z +
+        six_r_N_2_o_in_axes2_x*v.six_r_c_2 - six_r_N_2_o_in_axes2_y*v.six_r_s_2;
+    /* (six_r-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
+       links' inertia and weight */
+    const real six_r_dalpha_Gamma_1_in_axes5_x = v.six_r_D_1_5*six_r_o_5_in_axes5_x +
+        v.six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_x - v.six_r_Jc_2_in_axes1_yz*six_r_o_2_t -
+        v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_t - v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_t;
+    const real six_r_dalpha_Gamma_1_in_axes5_y = v.six_r_D_1_5*six_r_o_5_in_axes5_y +
+        v.six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_y +
+        v.six_r_Jc_2_in_axes1_yz*six_r_o_2_in_axes5_y +
+        v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_y +
+        v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_y;
+    const real six_r_dalpha_Gamma_1_in_axes5_z = v.six_r_Jc_2_in_axes1_yz*six_r_o_2_in_axes5_z
+        + v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_z +
+        v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_z - v.six_r_D_1_5*six_r_o_5_t -
+        v.six_r_Jc_1_in_axes1_zz*six_r_o_1_t;
+    /* (six_r-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+       inertia and weight */
+    const real six_r_d_Gamma_1_t = inv_six_r_w_1_t_12*v.six_r_D_1_5;
+    const real six_r_d_Gamma_1_t_2 = inv_six_r_w_1_t_28*(v.six_r_L_c_4_2_in_axes1_z -
+        six_r_d_Gamma_1_t*six_r_w_1_t_15);
+    const real six_r_d_Gamma_1_t_3 = inv_six_r_w_1_t_49*(v.six_r_Jc_1_in_axes1_zz +
+        six_r_d_Gamma_1_t_2*six_r_w_1_t_33 - six_r_d_Gamma_1_t*six_r_w_1_t_18);
+    const real six_r_d_Gamma_1_t_4 = inv_six_r_w_1_t_67*(v.six_r_Jc_2_in_axes1_yz +
+        six_r_d_Gamma_1_t_2*six_r_w_1_t_39 - six_r_d_Gamma_1_t*six_r_w_1_t_22 -
+        six_r_d_Gamma_1_t_3*six_r_w_1_t_55);
+    const real six_r_d_Gamma_1_t_5 = inv_six_r_w_1_t_79*(v.six_r_L_c_3_2_in_axes1_z +
+        six_r_d_Gamma_1_t*six_r_w_1_t_25 + six_r_d_Gamma_1_t_2*six_r_w_1_t_44 -
+        six_r_d_Gamma_1_t_3*six_r_w_1_t_61 - six_r_d_Gamma_1_t_4*six_r_w_1_t_73);
+    const real six_r_d_Gamma_1_in_axes5_x = six_r_d_Gamma_1_t_3*six_r_w_1_t_50 +
+        six_r_d_Gamma_1_t_4*six_r_w_1_t_68 + six_r_d_Gamma_1_t_5*six_r_w_1_t_80 +
+        v.six_r_e_1_in_axes5_y*m->six_r_h_5_in_spec5_z[i] -
+        v.six_r_e_1_in_axes5_z*m->six_r_h_5_in_spec5_y[i];
+    const real six_r_d_Gamma_1_in_axes5_y = six_r_d_Gamma_1_t*six_r_w_1_t_13 +
+        v.six_r_e_1_in_axes5_z*m->six_r_h_5_in_spec5_x[i] - six_r_d_Gamma_1_t_2*six_r_w_1_t_29
+        - six_r_d_Gamma_1_t_3*six_r_w_1_t_51 - six_r_d_Gamma_1_t_4*six_r_w_1_t_69 -
+        six_r_d_Gamma_1_t_5*six_r_w_1_t_81 -
+        v.six_r_e_1_in_axes5_x*m->six_r_h_5_in_spec5_z[i];
+    const real six_r_d_Gamma_1_in_axes5_z = six_r_d_Gamma_1_t_2*six_r_w_1_t_30 +
+        six_r_d_Gamma_1_t_3*six_r_w_1_t_52 + six_r_d_Gamma_1_t_4*six_r_w_1_t_70 +
+        six_r_d_Gamma_1_t_5*six_r_w_1_t_82 + v.six_r_e_1_in_axes5_x*m->six_r_h_5_in_spec5_y[i]
+        - v.six_r_e_1_in_axes5_y*m->six_r_h_5_in_spec5_x[i];
+    /* (six_r-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
+       balances the leg's inertia and weight along all degrees of freedom */
+    const real six_r_dalpha_G_m1_in_axes5_x = six_r_dalpha_Gamma_2_in_axes5_x*six_r_m1_w_2 +
+        six_r_dalpha_Gamma_3_in_axes5_x*six_r_m1_w_3 +
+        six_r_dalpha_Gamma_4_in_axes5_x*six_r_m1_w_4 -
+        six_r_dalpha_Gamma_1_in_axes5_x*six_r_m1_w_1_t_2 -
+        six_r_dalpha_Gamma_5_in_axes5_x*six_r_m1_w_5_t;
+    const real six_r_dalpha_G_m1_in_axes5_y = six_r_dalpha_Gamma_2_in_axes5_y*six_r_m1_w_2 +
+        six_r_dalpha_Gamma_3_in_axes5_y*six_r_m1_w_3 +
+        six_r_dalpha_Gamma_4_in_axes5_y*six_r_m1_w_4 -
+        six_r_dalpha_Gamma_1_in_axes5_y*six_r_m1_w_1_t_2 -
+        six_r_dalpha_Gamma_5_in_axes5_y*six_r_m1_w_5_t;
+    const real six_r_dalpha_G_m1_in_axes5_z = six_r_dalpha_Gamma_2_in_axes5_z*six_r_m1_w_2 +
+        six_r_dalpha_Gamma_3_in_axes5_z*six_r_m1_w_3 +
+        six_r_dalpha_Gamma_4_in_axes5_z*six_r_m1_w_4 -
+        six_r_dalpha_Gamma_1_in_axes5_z*six_r_m1_w_1_t_2 -
+        six_r_dalpha_Gamma_5_in_axes5_z*six_r_m1_w_5_t;
+    const real six_r_dalpha_G_m1_y = axis_x_six_r_axes5_y*six_r_dalpha_G_m1_in_axes5_x +
+        axis_y_six_r_axes5_y*six_r_dalpha_G_m1_in_axes5_y +
+        axis_z_six_r_axes5_y*six_r_dalpha_G_m1_in_axes5_z;
+    const real six_r_dalpha_G_m1_z = axis_x_six_r_axes5_z*six_r_dalpha_G_m1_in_axes5_x +
+        axis_y_six_r_axes5_z*six_r_dalpha_G_m1_in_axes5_y +
+        axis_z_six_r_axes5_z*six_r_dalpha_G_m1_in_axes5_z;
+    /* (six_r-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
+       balances the leg's inertia and weight along all degrees of freedom */
+    const real six_r_d_G_m1_in_axes5_x = six_r_d_Gamma_2_in_axes5_x*six_r_m1_w_2 +
+        six_r_d_Gamma_3_in_axes5_x*six_r_m1_w_3 + six_r_d_Gamma_4_in_axes5_x*six_r_m1_w_4 -
+        six_r_d_Gamma_1_in_axes5_x*six_r_m1_w_1_t_2 -
+        six_r_d_Gamma_5_in_axes5_x*six_r_m1_w_5_t;
+    const real six_r_d_G_m1_in_axes5_y = six_r_d_Gamma_2_in_axes5_y*six_r_m1_w_2 +
+        six_r_d_Gamma_3_in_axes5_y*six_r_m1_w_3 + six_r_d_Gamma_4_in_axes5_y*six_r_m1_w_4 -
+        six_r_d_Gamma_1_in_axes5_y*six_r_m1_w_1_t_2 -
+        six_r_d_Gamma_5_in_axes5_y*six_r_m1_w_5_t;
+    const real six_r_d_G_m1_in_axes5_z = six_r_d_Gamma_2_in_axes5_z*six_r_m1_w_2 +
+        six_r_d_Gamma_3_in_axes5_z*six_r_m1_w_3 + six_r_d_Gamma_4_in_axes5_z*six_r_m1_w_4 -
+        six_r_d_Gamma_1_in_axes5_z*six_r_m1_w_1_t_2 -
+        six_r_d_Gamma_5_in_axes5_z*six_r_m1_w_5_t;
+    const real six_r_d_G_m1_x = axis_x_six_r_axes5_x*six_r_d_G_m1_in_axes5_x +
+        axis_y_six_r_axes5_x*six_r_d_G_m1_in_axes5_y +
+        axis_z_six_r_axes5_x*six_r_d_G_m1_in_axes5_z;
+    const real six_r_d_G_m1_y = axis_x_six_r_axes5_y*six_r_d_G_m1_in_axes5_x +
+        axis_y_six_r_axes5_y*six_r_d_G_m1_in_axes5_y +
+        axis_z_six_r_axes5_y*six_r_d_G_m1_in_axes5_z;
+    const real six_r_d_G_m1_z = axis_x_six_r_axes5_z*six_r_d_G_m1_in_axes5_x +
+        axis_y_six_r_axes5_z*six_r_d_G_m1_in_axes5_y +
+        axis_z_six_r_axes5_z*six_r_d_G_m1_in_axes5_z;
+    /* (six_r-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia
+       and weight along all degrees of freedom */
+    const real six_r_G_m1_o_t = inv_six_r_w_1_t_12*six_r_mu_5_o_in_axes5_z;
+    const real six_r_G_m1_o_t_2 = inv_six_r_w_1_t_28*(six_r_G_m1_o_t*six_r_w_1_t_15 -
+        six_r_N_4_o_in_axes4_z);
+    const real six_r_G_m1_o_t_3 = inv_six_r_w_1_t_49*(six_r_G_m1_o_t*six_r_w_1_t_18 +
+        six_r_G_m1_o_t_2*six_r_w_1_t_33 - six_r_N_1_o_in_axes1_z);
+    const real six_r_G_m1_o_t_4 = inv_six_r_w_1_t_67*(six_r_G_m1_o_t*six_r_w_1_t_22 +
+        six_r_G_m1_o_t_2*six_r_w_1_t_39 - six_r_N_2_o_in_axes2_z -
+        six_r_G_m1_o_t_3*six_r_w_1_t_55);
+    const real six_r_G_m1_o_t_5 = inv_six_r_w_1_t_79*(six_r_N_3_o_in_axes3_z +
+        six_r_G_m1_o_t*six_r_w_1_t_25 + six_r_G_m1_o_t_3*six_r_w_1_t_61 +
+        six_r_G_m1_o_t_4*six_r_w_1_t_73 - six_r_G_m1_o_t_2*six_r_w_1_t_44);
+    const real six_r_G_m1_o_t_6 = m->six_r_size[i]*(six_r_G_m1_o_t_2*six_r_w_1_t_31 +
+        six_r_G_m1_o_t_3*six_r_w_1_t_53 + six_r_G_m1_o_t_4*six_r_w_1_t_71 -
+        six_r_G_m1_o_t_5*six_r_m1_w_1_t);
+    /* (six_r-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
+       balances the leg's inertia and weight along all degrees of freedom */
+    const real six_r_dalpha_G_m2_in_axes5_x = six_r_dalpha_Gamma_2_in_axes5_x*six_r_m2_w_2 +
+        six_r_dalpha_Gamma_3_in_axes5_x*six_r_m2_w_3 +
+        six_r_dalpha_Gamma_4_in_axes5_x*six_r_m2_w_4 -
+        six_r_dalpha_Gamma_1_in_axes5_x*six_r_m2_w_1_t_2 -
+        six_r_dalpha_Gamma_5_in_axes5_x*six_r_m2_w_5_t;
+    const real six_r_dalpha_G_m2_in_axes5_y = six_r_dalpha_Gamma_2_in_axes5_y*six_r_m2_w_2 +
+        six_r_dalpha_Gamma_3_in_axes5_y*six_r_m2_w_3 +
+        six_r_dalpha_Gamma_4_in_axes5_y*six_r_m2_w_4 -
+        six_r_dalpha_Gamma_1_in_axes5_y*six_r_m2_w_1_t_2 -
+        six_r_dalpha_Gamma_5_in_axes5_y*six_r_m2_w_5_t;
+    const real six_r_dalpha_G_m2_in_axes5_z = six_r_dalpha_Gamma_2_in_axes5_z*six_r_m2_w_2 +
+        six_r_dalpha_Gamma_3_in_axes5_z*six_r_m2_w_3 +
+        six_r_dalpha_Gamma_4_in_axes5_z*six_r_m2_w_4 -
+        six_r_dalpha_Gamma_1_in_axes5_z*six_r_m2_w_1_t_2 -
+        six_r_dalpha_Gamma_5_in_axes5_z*six_r_m2_w_5_t;
+    const real six_r_dalpha_G_m2_y = axis_x_six_r_axes5_y*six_r_dalpha_G_m2_in_axes5_x +
+        axis_y_six_r_axes5_y*six_r_dalpha_G_m2_in_axes5_y +
+        axis_z_six_r_axes5_y*six_r_dalpha_G_m2_in_axes5_z;
+    const real six_r_dalpha_G_m2_z = axis_x_six_r_axes5_z*six_r_dalpha_G_m2_in_axes5_x +
+        axis_y_six_r_axes5_z*six_r_dalpha_G_m2_in_axes5_y +
+        axis_z_six_r_axes5_z*six_r_dalpha_G_m2_in_axes5_z;
+    /* (six_r-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
+       balances the leg's inertia and weight along all degrees of freedom */
+    const real six_r_d_G_m2_in_axes5_x = six_r_d_Gamma_2_in_axes5_x*six_r_m2_w_2 +
+        six_r_d_Gamma_3_in_axes5_x*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_x*six_r_m2_w_4 -
+        six_r_d_Gamma_1_in_axes5_x*six_r_m2_w_1_t_2 -
+        six_r_d_Gamma_5_in_axes5_x*six_r_m2_w_5_t;
+    const real six_r_d_G_m2_in_axes5_y = six_r_d_Gamma_2_in_axes5_y*six_r_m2_w_2 +
+        six_r_d_Gamma_3_in_axes5_y*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_y*six_r_m2_w_4 -
+        six_r_d_Gamma_1_in_axes5_y*six_r_m2_w_1_t_2 -
+        six_r_d_Gamma_5_in_axes5_y*six_r_m2_w_5_t;
+    const real six_r_d_G_m2_in_axes5_z = six_r_d_Gamma_2_in_axes5_z*six_r_m2_w_2 +
+        six_r_d_Gamma_3_in_axes5_z*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_z*six_r_m2_w_4 -
+        six_r_d_Gamma_1_in_axes5_z*six_r_m2_w_1_t_2 -
+        six_r_d_Gamma_5_in_axes5_z*six_r_m2_w_5_t;
+    const real six_r_d_G_m2_x = axis_x_six_r_axes5_x*six_r_d_G_m2_in_axes5_x +
+        axis_y_six_r_axes5_x*six_r_d_G_m2_in_axes5_y +
+        axis_z_six_r_axes5_x*six_r_d_G_m2_in_axes5_z;
+    const real six_r_d_G_m2_y = axis_x_six_r_axes5_y*six_r_d_G_m2_in_axes5_x +
+        axis_y_six_r_axes5_y*six_r_d_G_m2_in_axes5_y +
+        axis_z_six_r_axes5_y*six_r_d_G_m2_in_axes5_z;
+    const real six_r_d_G_m2_z = axis_x_six_r_axes5_z*six_r_d_G_m2_in_axes5_x +
+        axis_y_six_r_axes5_z*six_r_d_G_m2_in_axes5_y +
+        axis_z_six_r_axes5_z*six_r_d_G_m2_in_axes5_z;
+    /* (six_r-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia
+       and weight along all degrees of freedom */
+    const real six_r_G_m2_o_t = m->six_r_size[i]*(six_r_G_m1_o_t_2*six_r_w_1_t_32 +
+        six_r_G_m1_o_t_3*six_r_w_1_t_54 + six_r_G_m1_o_t_4*six_r_w_1_t_72 -
+        six_r_G_m1_o_t*six_r_w_1_t_14 - six_r_G_m1_o_t_5*six_r_m2_w_1_t);
+    /* (six_r-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
+       the leg's inertia and weight along all degrees of freedom */
+    const real six_r_d_G_m_xx = six_r_d_G_m1_x*six_r_n_m1_x + six_r_d_G_m2_x*six_r_n_m2_x;
+    const real six_r_d_G_m_xy = six_r_d_G_m1_y*six_r_n_m1_x + six_r_d_G_m2_y*six_r_n_m2_x;
+    const real six_r_d_G_m_xz = six_r_d_G_m1_z*six_r_n_m1_x + six_r_d_G_m2_z*six_r_n_m2_x;
+    const real six_r_d_G_m_yx = six_r_d_G_m1_x*six_r_n_m1_y + six_r_d_G_m2_x*six_r_n_m2_y;
+    /* (six_r-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real six_r_G_m_o_in_axes5_x = six_r_G_m1_o_t_6*six_r_end_p1_in_axes5_y;
+    const real six_r_G_m_o_in_axes5_y = six_r_G_m2_o_t*six_r_end_p1_in_axes5_z -
+        six_r_G_m1_o_t_6*six_r_n_m1_in_axes5_y;
+    /* (six_r-dalpha_c) coefficient of the acceleration in: leg force on the platform without
+       actuation and without the mass at the connection point */
+    const real six_r_dalpha_c_in_axes5_xx = six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_t_5 +
+        six_r_dalpha_alpha_5_in_axes5_zx*m->six_r_h_5_in_spec5_y[i] -
+        six_r_dalpha_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_x -
+        six_r_dalpha_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_x -
+        six_r_dalpha_Gamma_3_in_axes5_x*six_r_w_3_in_axes5_x -
+        six_r_dalpha_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_x -
+        six_r_dalpha_alpha_5_in_axes5_yx*m->six_r_h_5_in_spec5_z[i];
+    const real six_r_dalpha_c_in_axes5_xy = six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_t_5 +
+        six_r_dalpha_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] -
+        six_r_dalpha_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_x -
+        six_r_dalpha_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_x -
+        six_r_dalpha_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_x -
+        six_r_dalpha_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_x -
+        six_r_dalpha_alpha_5_in_axes5_yy*m->six_r_h_5_in_spec5_z[i];
+    const real six_r_dalpha_c_in_axes5_xz = six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_t_5 +
+        six_r_dalpha_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_y[i] -
+        six_r_dalpha_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_x -
+        six_r_dalpha_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_x -
+        six_r_dalpha_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_x -
+        six_r_dalpha_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_x -
+        six_r_dalpha_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_z[i];
+    const real six_r_dalpha_c_in_axes5_yx = six_r_dalpha_Gamma_3_in_axes5_x*six_r_w_3_t +
+        six_r_dalpha_alpha_5_in_axes5_xx*m->six_r_h_5_in_spec5_z[i] -
+        six_r_dalpha_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_y -
+        six_r_dalpha_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_y -
+        six_r_dalpha_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_y -
+        six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_in_axes5_y -
+        six_r_dalpha_alpha_5_in_axes5_zx*m->six_r_h_5_in_spec5_x[i];
+    const real six_r_dalpha_c_in_axes5_yy = six_r_dalpha_Gamma_3_in_axes5_y*six_r_w_3_t +
+        six_r_dalpha_alpha_5_in_axes5_xy*m->six_r_h_5_in_spec5_z[i] -
+        six_r_dalpha_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_y -
+        six_r_dalpha_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_y -
+        six_r_dalpha_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_y -
+        six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_y -
+        six_r_dalpha_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_x[i];
+    const real six_r_dalpha_c_in_axes5_yz = six_r_dalpha_Gamma_3_in_axes5_z*six_r_w_3_t +
+        six_r_dalpha_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] -
+        six_r_dalpha_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_y -
+        six_r_dalpha_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_y -
+        six_r_dalpha_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_y -
+        six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_y -
+        six_r_dalpha_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_x[i];
+    const real six_r_dalpha_c_in_axes5_zx =
+        six_r_dalpha_alpha_5_in_axes5_yx*m->six_r_h_5_in_spec5_x[i] -
+        six_r_dalpha_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_z -
+        six_r_dalpha_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_z -
+        six_r_dalpha_Gamma_3_in_axes5_x*six_r_w_3_in_axes5_z -
+        six_r_dalpha_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_z -
+        six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_in_axes5_z -
+        six_r_dalpha_alpha_5_in_axes5_xx*m->six_r_h_5_in_spec5_y[i];
+    const real six_r_dalpha_c_in_axes5_zy =
+        six_r_dalpha_alpha_5_in_axes5_yy*m->six_r_h_5_in_spec5_x[i] -
+        six_r_dalpha_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_z -
+        six_r_dalpha_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_z -
+        six_r_dalpha_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_z -
+        six_r_dalpha_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_z -
+        six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_z -
+        six_r_dalpha_alpha_5_in_axes5_xy*m->six_r_h_5_in_spec5_y[i];
+    const real six_r_dalpha_c_in_axes5_zz =
+        six_r_dalpha_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_x[i] -
+        six_r_dalpha_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_z -
+        six_r_dalpha_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_z -
+        six_r_dalpha_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_z -
+        six_r_dalpha_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_z -
+        six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_z -
+        six_r_dalpha_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_y[i];
+    /* (six_r-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real six_r_d_c_in_axes5_xx = six_r_d_Gamma_5_in_axes5_x*six_r_w_5_t_5 -
+        six_r_d_phi_5_in_axes5_xx - six_r_d_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_x -
+        six_r_d_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_x -
+        six_r_d_Gamma_3_in_axes5_x*six_r_w_3_in_axes5_x -
+        six_r_d_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_x;
+    const real six_r_d_c_in_axes5_xy = six_r_d_Gamma_5_in_axes5_y*six_r_w_5_t_5 +
+        six_r_d_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] -
+        six_r_d_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_x -
+        six_r_d_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_x -
+        six_r_d_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_x -
+        six_r_d_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_x -
+        m->six_r_h_5_in_spec5_z[i]*(v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_y +
+        v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_y - v.six_r_J_5_t*six_r_w_4_in_axes5_y -
+        v.six_r_e_2_in_axes5_y*six_r_w_3_t);
+    const real six_r_d_c_in_axes5_xz = six_r_d_Gamma_5_in_axes5_z*six_r_w_5_t_5 +
+        six_r_d_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_y[i] -
+        six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_x -
+        six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_x -
+        six_r_d_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_x -
+        six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_x -
+        six_r_d_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_z[i];
+    const real six_r_d_c_in_axes5_yy = six_r_d_Gamma_3_in_axes5_y*six_r_w_3_t +
+        m->six_r_h_5_in_spec5_z[i]*(v.six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_y +
+        v.six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_y +
+        v.six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_y - v.six_r_e_2_in_axes5_x*six_r_w_3_t) -
+        six_r_d_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_y -
+        six_r_d_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_y -
+        six_r_d_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_y -
+        six_r_d_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_y -
+        six_r_d_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_x[i];
+    const real six_r_d_c_in_axes5_yz = six_r_d_Gamma_3_in_axes5_z*six_r_w_3_t +
+        six_r_d_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] -
+        six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_y -
+        six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_y -
+        six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_y -
+        six_r_d_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_y -
+        six_r_d_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_x[i];
+    /* (six_r-c_o) remainder of: leg force on the platform without actuation and without the mass at
+       the connection point */
+    const real six_r_c_o_in_axes5_x = six_r_G_m1_o_t_3*six_r_w_1_t_50 +
+        six_r_G_m1_o_t_4*six_r_w_1_t_68 + six_r_W_5_t_3*m->six_r_h_5_in_spec5_x[i] -
+        six_r_B_5_o_in_axes5_xy*m->six_r_h_5_in_spec5_y[i] -
+        six_r_B_5_o_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] - six_r_G_m1_o_t_5*six_r_w_1_t_80;
+    const real six_r_c_o_in_axes5_y = six_r_G_m1_o_t_5*six_r_w_1_t_81 +
+        m->six_r_h_5_in_spec5_y[i]*(six_r_W_5_t_2 + six_r_bias_t_2) -
+        six_r_B_5_o_in_axes5_yx*m->six_r_h_5_in_spec5_x[i] -
+        six_r_B_5_o_in_axes5_yz*m->six_r_h_5_in_spec5_z[i] - six_r_G_m1_o_t*six_r_w_1_t_13 -
+        six_r_G_m1_o_t_2*six_r_w_1_t_29 - six_r_G_m1_o_t_3*six_r_w_1_t_51 -
+        six_r_G_m1_o_t_4*six_r_w_1_t_69;
+    const real six_r_c_o_in_axes5_z = six_r_G_m1_o_t_2*six_r_w_1_t_30 +
+        six_r_G_m1_o_t_3*six_r_w_1_t_52 + six_r_G_m1_o_t_4*six_r_w_1_t_70 +
+        m->six_r_h_5_in_spec5_z[i]*(six_r_W_5_t + six_r_bias_t_2) -
+        six_r_B_5_o_in_axes5_zx*m->six_r_h_5_in_spec5_x[i] -
+        six_r_B_5_o_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] - six_r_G_m1_o_t_5*six_r_w_1_t_82;
+    /* (six_r-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real six_r_Q_t = six_r_d_c_in_axes5_xx - six_r_d_c_in_axes5_yy;
+    const real six_r_Q_t_2 = R(0.5)*six_r_Q_t;
+    const real six_r_Q_t_3 = six_r_d_c_in_axes5_xx +
+        six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_z +
+        six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_z +
+        six_r_d_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_z +
+        six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_z +
+        six_r_d_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_z +
+        six_r_d_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_y[i] -
+        six_r_d_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_x[i];
+    const real six_r_Q_t_4 = R(0.5)*six_r_Q_t_3;
+    const real six_r_Q_t_5 = axis_x_six_r_axes5_x*six_r_d_c_in_axes5_xy +
+        axis_z_six_r_axes5_x*six_r_d_c_in_axes5_yz - axis_y_six_r_axes5_x*six_r_Q_t_2;
+    const real six_r_Q_t_6 = axis_x_six_r_axes5_y*six_r_d_c_in_axes5_xy +
+        axis_z_six_r_axes5_y*six_r_d_c_in_axes5_yz - axis_y_six_r_axes5_y*six_r_Q_t_2;
+    const real six_r_Q_t_7 = axis_x_six_r_axes5_z*six_r_d_c_in_axes5_xy +
+        axis_z_six_r_axes5_z*six_r_d_c_in_axes5_yz - axis_y_six_r_axes5_z*six_r_Q_t_2;
+    const real six_r_Q_t_8 = axis_z_six_r_axes5_x*six_r_Q_t_4 -
+        axis_x_six_r_axes5_x*six_r_d_c_in_axes5_xz;
+    const real six_r_Q_t_9 = axis_z_six_r_axes5_y*six_r_Q_t_4 -
+        axis_x_six_r_axes5_y*six_r_d_c_in_axes5_xz;
+    const real six_r_Q_t_10 = axis_z_six_r_axes5_z*six_r_Q_t_4 -
+        axis_x_six_r_axes5_z*six_r_d_c_in_axes5_xz;
+    const real six_r_Q_t_11 = axis_y_six_r_axes5_x*six_r_Q_t_5 -
+        axis_z_six_r_axes5_x*six_r_Q_t_8;
+    const real six_r_Q_xx = -2*six_r_Q_t_11 - six_r_d_c_in_axes5_xx;
+    const real six_r_Q_xy = axis_z_six_r_axes5_x*six_r_Q_t_9 +
+        axis_z_six_r_axes5_y*six_r_Q_t_8 - axis_y_six_r_axes5_x*six_r_Q_t_6 -
+        axis_y_six_r_axes5_y*six_r_Q_t_5;
+    const real six_r_Q_xz = axis_z_six_r_axes5_x*six_r_Q_t_10 +
+        axis_z_six_r_axes5_z*six_r_Q_t_8 - axis_y_six_r_axes5_x*six_r_Q_t_7 -
+        axis_y_six_r_axes5_z*six_r_Q_t_5;
+    const real six_r_Q_t_12 = axis_y_six_r_axes5_y*six_r_Q_t_6 -
+        axis_z_six_r_axes5_y*six_r_Q_t_9;
+    const real six_r_Q_yy = -2*six_r_Q_t_12 - six_r_d_c_in_axes5_xx;
+    const real six_r_Q_yz = axis_z_six_r_axes5_y*six_r_Q_t_10 +
+        axis_z_six_r_axes5_z*six_r_Q_t_9 - axis_y_six_r_axes5_y*six_r_Q_t_7 -
+        axis_y_six_r_axes5_z*six_r_Q_t_6;
+    const real six_r_Q_t_13 = axis_y_six_r_axes5_z*six_r_Q_t_7 -
+        axis_z_six_r_axes5_z*six_r_Q_t_10;
+    const real six_r_Q_zz = -2*six_r_Q_t_13 - six_r_d_c_in_axes5_xx;
+    /* (six_r-c_m_o) remainder of: moment of the leg on the platform without actuation */
+    const real six_r_c_m_o_in_axes5_z = six_r_G_m2_o_t*six_r_end_p1_in_axes5_y;
+    /* (six_r-U) velocity and gravity terms of the leg force */
+    const real six_r_U_x = -axis_x_six_r_axes5_x*six_r_c_o_in_axes5_x -
+        axis_y_six_r_axes5_x*six_r_c_o_in_axes5_y - axis_z_six_r_axes5_x*six_r_c_o_in_axes5_z;
+    const real six_r_U_y = -axis_x_six_r_axes5_y*six_r_c_o_in_axes5_x -
+        axis_y_six_r_axes5_y*six_r_c_o_in_axes5_y - axis_z_six_r_axes5_y*six_r_c_o_in_axes5_z;
+    const real six_r_U_z = -axis_x_six_r_axes5_z*six_r_c_o_in_axes5_x -
+        axis_y_six_r_axes5_z*six_r_c_o_in_axes5_y - axis_z_six_r_axes5_z*six_r_c_o_in_axes5_z;
+    /* (M_ta) coupling block of M */
+    const real six_r_M_ta_t = axis_x_six_r_axes5_x*six_r_dalpha_c_in_axes5_xx +
+        axis_y_six_r_axes5_x*six_r_dalpha_c_in_axes5_yx +
+        axis_z_six_r_axes5_x*six_r_dalpha_c_in_axes5_zx;
+    const real six_r_M_ta_t_2 = axis_x_six_r_axes5_y*six_r_dalpha_c_in_axes5_xx +
+        axis_y_six_r_axes5_y*six_r_dalpha_c_in_axes5_yx +
+        axis_z_six_r_axes5_y*six_r_dalpha_c_in_axes5_zx;
+    const real six_r_M_ta_t_3 = axis_x_six_r_axes5_z*six_r_dalpha_c_in_axes5_xx +
+        axis_y_six_r_axes5_z*six_r_dalpha_c_in_axes5_yx +
+        axis_z_six_r_axes5_z*six_r_dalpha_c_in_axes5_zx;
+    const real six_r_M_ta_t_4 = axis_x_six_r_axes5_x*six_r_dalpha_c_in_axes5_xy +
+        axis_y_six_r_axes5_x*six_r_dalpha_c_in_axes5_yy +
+        axis_z_six_r_axes5_x*six_r_dalpha_c_in_axes5_zy;
+    const real six_r_M_ta_t_5 = axis_x_six_r_axes5_y*six_r_dalpha_c_in_axes5_xy +
+        axis_y_six_r_axes5_y*six_r_dalpha_c_in_axes5_yy +
+        axis_z_six_r_axes5_y*six_r_dalpha_c_in_axes5_zy;
+    const real six_r_M_ta_t_6 = axis_x_six_r_axes5_z*six_r_dalpha_c_in_axes5_xy +
+        axis_y_six_r_axes5_z*six_r_dalpha_c_in_axes5_yy +
+        axis_z_six_r_axes5_z*six_r_dalpha_c_in_axes5_zy;
+    const real six_r_M_ta_t_7 = axis_x_six_r_axes5_x*six_r_dalpha_c_in_axes5_xz +
+        axis_y_six_r_axes5_x*six_r_dalpha_c_in_axes5_yz +
+        axis_z_six_r_axes5_x*six_r_dalpha_c_in_axes5_zz;
+    const real six_r_M_ta_t_8 = axis_x_six_r_axes5_y*six_r_dalpha_c_in_axes5_xz +
+        axis_y_six_r_axes5_y*six_r_dalpha_c_in_axes5_yz +
+        axis_z_six_r_axes5_y*six_r_dalpha_c_in_axes5_zz;
+    const real six_r_M_ta_t_9 = axis_x_six_r_axes5_z*six_r_dalpha_c_in_axes5_xz +
+        axis_y_six_r_axes5_z*six_r_dalpha_c_in_axes5_yz +
+        axis_z_six_r_axes5_z*six_r_dalpha_c_in_axes5_zz;
+    const real six_r_M_ta_t_10 = -six_r_Q_xy*v.six_r_q_z;
+    const real six_r_M_ta_t_11 = six_r_Q_xz*v.six_r_q_y;
+    const real six_r_M_ta_t_12 = six_r_Q_yz*v.six_r_q_x;
+    const real six_r_M_ta_t_13 = six_r_M_ta_t_10 + six_r_M_ta_t_11 -
+        axis_x_six_r_axes5_x*six_r_M_ta_t - axis_y_six_r_axes5_x*six_r_M_ta_t_4 -
+        axis_z_six_r_axes5_x*six_r_M_ta_t_7;
+    const real six_r_M_ta_t_14 = six_r_Q_xx*v.six_r_q_z - axis_x_six_r_axes5_y*six_r_M_ta_t -
+        axis_y_six_r_axes5_y*six_r_M_ta_t_4 - axis_z_six_r_axes5_y*six_r_M_ta_t_7 -
+        six_r_Q_xz*v.six_r_q_x;
+    const real six_r_M_ta_t_15 = six_r_Q_xy*v.six_r_q_x - axis_x_six_r_axes5_z*six_r_M_ta_t -
+        axis_y_six_r_axes5_z*six_r_M_ta_t_4 - axis_z_six_r_axes5_z*six_r_M_ta_t_7 -
+        six_r_Q_xx*v.six_r_q_y;
+    const real six_r_M_ta_t_16 = six_r_Q_yz*v.six_r_q_y - axis_x_six_r_axes5_x*six_r_M_ta_t_2
+        - axis_y_six_r_axes5_x*six_r_M_ta_t_5 - axis_z_six_r_axes5_x*six_r_M_ta_t_8 -
+        six_r_Q_yy*v.six_r_q_z;
+    const real six_r_M_ta_t_17 = six_r_M_ta_t_10 + six_r_M_ta_t_12 +
+        axis_x_six_r_axes5_y*six_r_M_ta_t_2 + axis_y_six_r_axes5_y*six_r_M_ta_t_5 +
+        axis_z_six_r_axes5_y*six_r_M_ta_t_8;
+    const real six_r_M_ta_t_18 = six_r_Q_yy*v.six_r_q_x - axis_x_six_r_axes5_z*six_r_M_ta_t_2
+        - axis_y_six_r_axes5_z*six_r_M_ta_t_5 - axis_z_six_r_axes5_z*six_r_M_ta_t_8 -
+        six_r_Q_xy*v.six_r_q_y;
+    const real six_r_M_ta_t_19 = six_r_Q_zz*v.six_r_q_y - axis_x_six_r_axes5_x*six_r_M_ta_t_3
+        - axis_y_six_r_axes5_x*six_r_M_ta_t_6 - axis_z_six_r_axes5_x*six_r_M_ta_t_9 -
+        six_r_Q_yz*v.six_r_q_z;
+    const real six_r_M_ta_t_20 = six_r_Q_xz*v.six_r_q_z - axis_x_six_r_axes5_y*six_r_M_ta_t_3
+        - axis_y_six_r_axes5_y*six_r_M_ta_t_6 - axis_z_six_r_axes5_y*six_r_M_ta_t_9 -
+        six_r_Q_zz*v.six_r_q_x;
+    const real six_r_M_ta_t_21 = six_r_M_ta_t_12 - six_r_M_ta_t_11 -
+        axis_x_six_r_axes5_z*six_r_M_ta_t_3 - axis_y_six_r_axes5_z*six_r_M_ta_t_6 -
+        axis_z_six_r_axes5_z*six_r_M_ta_t_9;
+    /* (M_aa) rotational block of M */
+    const real six_r_M_aa_t = six_r_M_ta_t_19*v.six_r_q_y + six_r_d_G_m_xz*v.six_r_q_y +
+        six_r_n_m1_x*(axis_x_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_x +
+        axis_y_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_y +
+        axis_z_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_z) +
+        six_r_n_m2_x*(axis_x_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_x +
+        axis_y_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_y +
+        axis_z_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_z) - six_r_M_ta_t_16*v.six_r_q_z -
+        six_r_d_G_m_xy*v.six_r_q_z;
+    const real six_r_M_aa_t_2 = six_r_M_ta_t_17*v.six_r_q_z + six_r_M_ta_t_20*v.six_r_q_y +
+        six_r_d_G_m_xx*v.six_r_q_z + six_r_dalpha_G_m1_y*six_r_n_m1_x +
+        six_r_dalpha_G_m2_y*six_r_n_m2_x - six_r_d_G_m_xz*v.six_r_q_x;
+    const real six_r_M_aa_t_3 = six_r_M_ta_t_21*v.six_r_q_y + six_r_d_G_m_xy*v.six_r_q_x +
+        six_r_dalpha_G_m1_z*six_r_n_m1_x + six_r_dalpha_G_m2_z*six_r_n_m2_x -
+        six_r_M_ta_t_18*v.six_r_q_z - six_r_d_G_m_xx*v.six_r_q_y;
+    const real six_r_M_aa_t_4 = six_r_M_ta_t_14*v.six_r_q_z + six_r_d_G_m_yx*v.six_r_q_z +
+        six_r_dalpha_G_m1_y*six_r_n_m1_y + six_r_dalpha_G_m2_y*six_r_n_m2_y -
+        six_r_M_ta_t_20*v.six_r_q_x - v.six_r_q_x*(six_r_d_G_m1_z*six_r_n_m1_y +
+        six_r_d_G_m2_z*six_r_n_m2_y);
+    const real six_r_M_aa_t_5 = six_r_M_ta_t_15*v.six_r_q_z + six_r_dalpha_G_m1_z*six_r_n_m1_y
+        + six_r_dalpha_G_m2_z*six_r_n_m2_y + v.six_r_q_x*(six_r_d_G_m1_y*six_r_n_m1_y +
+        six_r_d_G_m2_y*six_r_n_m2_y) - six_r_M_ta_t_21*v.six_r_q_x -
+        six_r_d_G_m_yx*v.six_r_q_y;
+    const real six_r_M_aa_t_6 = six_r_M_ta_t_18*v.six_r_q_x + six_r_dalpha_G_m1_z*six_r_n_m1_z
+        + six_r_dalpha_G_m2_z*six_r_n_m2_z + v.six_r_q_x*(six_r_d_G_m1_y*six_r_n_m1_z +
+        six_r_d_G_m2_y*six_r_n_m2_z) - six_r_M_ta_t_15*v.six_r_q_y -
+        v.six_r_q_y*(six_r_d_G_m1_x*six_r_n_m1_z + six_r_d_G_m2_x*six_r_n_m2_z);
+    /* (Z_a) rotational part of Z */
+    const real six_r_Z_a_t = axis_x_six_r_axes5_x*six_r_G_m_o_in_axes5_x +
+        axis_y_six_r_axes5_x*six_r_G_m_o_in_axes5_y + six_r_U_z*v.six_r_q_y -
+        axis_z_six_r_axes5_x*six_r_c_m_o_in_axes5_z - six_r_U_y*v.six_r_q_z;
+    const real six_r_Z_a_t_2 = axis_x_six_r_axes5_y*six_r_G_m_o_in_axes5_x +
+        axis_y_six_r_axes5_y*six_r_G_m_o_in_axes5_y + six_r_U_x*v.six_r_q_z -
+        axis_z_six_r_axes5_y*six_r_c_m_o_in_axes5_z - six_r_U_z*v.six_r_q_x;
+    const real six_r_Z_a_t_3 = axis_x_six_r_axes5_z*six_r_G_m_o_in_axes5_x +
+        axis_y_six_r_axes5_z*six_r_G_m_o_in_axes5_y + six_r_U_y*v.six_r_q_x -
+        axis_z_six_r_axes5_z*six_r_c_m_o_in_axes5_z - six_r_U_x*v.six_r_q_y;
+    /* (six_r-H_a_2) moment of the column's unit force about the platform origin */
+    const real six_r_H_a_2_x = six_r_o_2_x + v.six_r_q_y*six_r_w_2_z -
+        v.six_r_q_z*six_r_w_2_y;
+    const real six_r_H_a_2_y = six_r_o_2_y + v.six_r_q_z*six_r_w_2_x -
+        v.six_r_q_x*six_r_w_2_z;
+    const real six_r_H_a_2_z = six_r_o_2_z + v.six_r_q_x*six_r_w_2_y -
+        v.six_r_q_y*six_r_w_2_x;
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, six_r_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, six_r_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, six_r_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, six_r_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, six_r_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, six_r_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) */
+    gather(&terms[6*count + k], add, six_r_M_ta_t_13);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, six_r_M_ta_t_14);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, six_r_M_ta_t_15);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, six_r_M_ta_t_16);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, six_r_M_ta_t_17);  /* M_ta_t */
+    gather(&terms[11*count + k], add, six_r_M_ta_t_18);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, six_r_M_ta_t_19);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, six_r_M_ta_t_20);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, six_r_M_ta_t_21);  /* M_ta_zz */
+    /* (M_aa) */
+    gather(&terms[15*count + k], add, six_r_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, six_r_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, six_r_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, six_r_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, six_r_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, six_r_M_aa_t_6);  /* M_aa_zz_of_legs */
+    /* (Z_t) translational part of Z */
+    gather(&terms[21*count + k], add, six_r_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[22*count + k], add, six_r_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[23*count + k], add, six_r_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) */
+    gather(&terms[24*count + k], add, six_r_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[25*count + k], add, six_r_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[26*count + k], add, six_r_Z_a_t_3);  /* Z_a_z_of_legs */
+    /* (six_r-w_2) */
+    o[0*count + k] = six_r_w_2_x;
+    o[1*count + k] = six_r_w_2_y;
+    o[2*count + k] = six_r_w_2_z;
+    /* (six_r-H_a_2) */
+    o[3*count + k] = six_r_H_a_2_x;
+    o[4*count + k] = six_r_H_a_2_y;
+    o[5*count + k] = six_r_H_a_2_z;
+    o[7*count + k] = (six_r_w_2_x + (six_r_w_2_y + six_r_w_2_z)) + (six_r_H_a_2_x +
+        (six_r_H_a_2_y + six_r_H_a_2_z));
+    o[6*count + k] = UNLESS(magnitude(six_r_w_1_t_12) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(six_r_w_1_t_28) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(six_r_w_1_t_49) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(six_r_w_1_t_67) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(six_r_w_1_t_79) > TOLERANCE*m->six_r_size[i]);
 }
 
-INLINE void dynamics_place_six_r(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *H, verdict *t)
+INLINE void dynamics_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t count, const real
+    *o, real *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        H[(3*NU + leg)*w + k] = o[3*count + first + k];
-        H[(4*NU + leg)*w + k] = o[4*count + first + k];
-        H[(5*NU + leg)*w + k] = o[5*count + first + k];
-        t->singular[k] += o[6*count + first + k];
-        t->total[k] += o[7*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    H[(3*NU + i)*w + k] = o[3*count + at];
+    H[(4*NU + i)*w + k] = o[4*count + at];
+    H[(5*NU + i)*w + k] = o[5*count + at];
+    t->singular[k] += o[6*count + at];
+    t->total[k] += o[7*count + at];
 }
 
-INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const real *sums, real *M,
-    real *Z, verdict *t)
+INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
+    real *M, real *Z, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (M_tt) translational block of M */
-        const real M_tt_xx_of_legs = sums[0*w + k];
-        const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_xx_of_legs + m_star;
-        const real M_tt_yy_of_legs = sums[3*w + k];
-        const real M_tt_yy = M_tt_yy_of_legs + m_star;
-        const real M_tt_zz_of_legs = sums[5*w + k];
-        const real M_tt_zz = M_tt_zz_of_legs + m_star;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[11*w + k];
-        const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
-        const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[10*w + k];
-        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-        const real M_ta_yx_of_legs = sums[9*w + k];
-        const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-        const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[9*w + k];
-        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
-        const real M_ta_zx_of_legs = sums[12*w + k];
-        const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
-        const real M_ta_zy_of_legs = sums[13*w + k];
-        const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-        /* (M_aa) rotational block of M */
-        const real J_star_xx = s[12*w + k];
-        const real M_aa_xx_of_legs = sums[15*w + k];
-        const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[13*w + k];
-        const real M_aa_xy_of_legs = sums[16*w + k];
-        const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[14*w + k];
-        const real M_aa_xz_of_legs = sums[17*w + k];
-        const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[15*w + k];
-        const real M_aa_yy_of_legs = sums[18*w + k];
-        const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-        const real J_star_yz = s[16*w + k];
-        const real M_aa_yz_of_legs = sums[19*w + k];
-        const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[17*w + k];
-        const real M_aa_zz_of_legs = sums[20*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-        /* (Z_t) translational part of Z */
-        const real Z_p_x = s[18*w + k];
-        const real Z_t_x_of_legs = sums[21*w + k];
-        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[19*w + k];
-        const real Z_t_y_of_legs = sums[22*w + k];
-        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[20*w + k];
-        const real Z_t_z_of_legs = sums[23*w + k];
-        const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-        /* (Z_a) rotational part of Z */
-        const real Z_a_x_of_legs = sums[24*w + k];
-        const real Z_q_x = s[21*w + k];
-        const real Z_a_x = Z_a_x_of_legs + Z_q_x;
-        const real Z_a_y_of_legs = sums[25*w + k];
-        const real Z_q_y = s[22*w + k];
-        const real Z_a_y = Z_a_y_of_legs + Z_q_y;
-        const real Z_a_z_of_legs = sums[26*w + k];
-        const real Z_q_z = s[23*w + k];
-        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
-        /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        const real M_tt_xy = sums[1*w + k];
-        M[1*w + k] = M_tt_xy;
-        M[NV*w + k] = M_tt_xy;
-        const real M_tt_xz = sums[2*w + k];
-        M[2*w + k] = M_tt_xz;
-        M[2*NV*w + k] = M_tt_xz;
-        M[(NV + 1)*w + k] = M_tt_yy;
-        const real M_tt_yz = sums[4*w + k];
-        M[(NV + 2)*w + k] = M_tt_yz;
-        M[(2*NV + 1)*w + k] = M_tt_yz;
-        M[(2*NV + 2)*w + k] = M_tt_zz;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xx = sums[6*w + k];
-        M[3*w + k] = M_ta_xx;
-        M[3*NV*w + k] = M_ta_xx;
-        M[4*w + k] = M_ta_xy;
-        M[4*NV*w + k] = M_ta_xy;
-        M[5*w + k] = M_ta_xz;
-        M[5*NV*w + k] = M_ta_xz;
-        M[(NV + 3)*w + k] = M_ta_yx;
-        M[(3*NV + 1)*w + k] = M_ta_yx;
-        const real M_ta_t = sums[10*w + k];
-        M[(NV + 4)*w + k] = -M_ta_t;
-        M[(4*NV + 1)*w + k] = -M_ta_t;
-        M[(NV + 5)*w + k] = M_ta_yz;
-        M[(5*NV + 1)*w + k] = M_ta_yz;
-        M[(2*NV + 3)*w + k] = M_ta_zx;
-        M[(3*NV + 2)*w + k] = M_ta_zx;
-        M[(2*NV + 4)*w + k] = M_ta_zy;
-        M[(4*NV + 2)*w + k] = M_ta_zy;
-        const real M_ta_zz = sums[14*w + k];
-        M[(2*NV + 5)*w + k] = M_ta_zz;
-        M[(5*NV + 2)*w + k] = M_ta_zz;
-        /* (M_aa) rotational block of M */
-        M[(3*NV + 3)*w + k] = M_aa_xx;
-        M[(3*NV + 4)*w + k] = M_aa_xy;
-        M[(4*NV + 3)*w + k] = M_aa_xy;
-        M[(3*NV + 5)*w + k] = M_aa_xz;
-        M[(5*NV + 3)*w + k] = M_aa_xz;
-        M[(4*NV + 4)*w + k] = M_aa_yy;
-        M[(4*NV + 5)*w + k] = M_aa_yz;
-        M[(5*NV + 4)*w + k] = M_aa_yz;
-        M[(5*NV + 5)*w + k] = M_aa_zz;
-        /* (Z_t) translational part of Z */
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-        Z[2*w + k] = Z_t_z;
-        /* (Z_a) rotational part of Z */
-        Z[3*w + k] = Z_a_x;
-        Z[4*w + k] = Z_a_y;
-        Z[5*w + k] = Z_a_z;
-        t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
-            ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_t) + (M_ta_yz + M_ta_zx)))) +
-            (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
-            ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
-    }
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    /* (M_ta) */
+    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real h_star_z = s[11*w + k];
+    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real h_star_y = s[10*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yx_of_legs = sums[9*w + k];
+    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_yz_of_legs = sums[11*w + k];
+    const real h_star_x = s[9*w + k];
+    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_zx_of_legs = sums[12*w + k];
+    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zy_of_legs = sums[13*w + k];
+    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    /* (M_aa) */
+    const real J_star_xx = s[12*w + k];
+    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
+    const real J_star_xy = s[13*w + k];
+    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
+    const real J_star_xz = s[14*w + k];
+    const real M_aa_xz_of_legs = sums[17*w + k];
+    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
+    const real J_star_yy = s[15*w + k];
+    const real M_aa_yy_of_legs = sums[18*w + k];
+    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
+    const real J_star_yz = s[16*w + k];
+    const real M_aa_yz_of_legs = sums[19*w + k];
+    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
+    const real J_star_zz = s[17*w + k];
+    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
+    /* (Z_t) */
+    const real Z_p_x = s[18*w + k];
+    const real Z_t_x_of_legs = sums[21*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[19*w + k];
+    const real Z_t_y_of_legs = sums[22*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    const real Z_p_z = s[20*w + k];
+    const real Z_t_z_of_legs = sums[23*w + k];
+    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
+    /* (Z_a) */
+    const real Z_a_x_of_legs = sums[24*w + k];
+    const real Z_q_x = s[21*w + k];
+    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_y_of_legs = sums[25*w + k];
+    const real Z_q_y = s[22*w + k];
+    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_z_of_legs = sums[26*w + k];
+    const real Z_q_z = s[23*w + k];
+    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    const real M_tt_xz = sums[2*w + k];
+    M[2*w + k] = M_tt_xz;
+    M[2*NV*w + k] = M_tt_xz;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_yz = sums[4*w + k];
+    M[(NV + 2)*w + k] = M_tt_yz;
+    M[(2*NV + 1)*w + k] = M_tt_yz;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    /* (M_ta) */
+    const real M_ta_xx = sums[6*w + k];
+    M[3*w + k] = M_ta_xx;
+    M[3*NV*w + k] = M_ta_xx;
+    M[4*w + k] = M_ta_xy;
+    M[4*NV*w + k] = M_ta_xy;
+    M[5*w + k] = M_ta_xz;
+    M[5*NV*w + k] = M_ta_xz;
+    M[(NV + 3)*w + k] = M_ta_yx;
+    M[(3*NV + 1)*w + k] = M_ta_yx;
+    const real M_ta_t = sums[10*w + k];
+    M[(NV + 4)*w + k] = -M_ta_t;
+    M[(4*NV + 1)*w + k] = -M_ta_t;
+    M[(NV + 5)*w + k] = M_ta_yz;
+    M[(5*NV + 1)*w + k] = M_ta_yz;
+    M[(2*NV + 3)*w + k] = M_ta_zx;
+    M[(3*NV + 2)*w + k] = M_ta_zx;
+    M[(2*NV + 4)*w + k] = M_ta_zy;
+    M[(4*NV + 2)*w + k] = M_ta_zy;
+    const real M_ta_zz = sums[14*w + k];
+    M[(2*NV + 5)*w + k] = M_ta_zz;
+    M[(5*NV + 2)*w + k] = M_ta_zz;
+    /* (M_aa) */
+    M[(3*NV + 3)*w + k] = M_aa_xx;
+    M[(3*NV + 4)*w + k] = M_aa_xy;
+    M[(4*NV + 3)*w + k] = M_aa_xy;
+    M[(3*NV + 5)*w + k] = M_aa_xz;
+    M[(5*NV + 3)*w + k] = M_aa_xz;
+    M[(4*NV + 4)*w + k] = M_aa_yy;
+    M[(4*NV + 5)*w + k] = M_aa_yz;
+    M[(5*NV + 4)*w + k] = M_aa_yz;
+    M[(5*NV + 5)*w + k] = M_aa_zz;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    /* (Z_a) */
+    Z[3*w + k] = Z_a_x;
+    Z[4*w + k] = Z_a_y;
+    Z[5*w + k] = Z_a_z;
+    t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
+        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_t) + (M_ta_yz + M_ta_zx)))) +
+        (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
+        ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
 }
 
-INLINE void dynamics_run(const prepared *m, const real *X, const real *V, const real *joints, real
+APART void dynamics_run(const prepared *m, const real *X, const real *V, const real *joints, real
     *M, real *Z, real *H, verdict *t)
 {
     real s[24] = {0}, sums[27] = {0};
     real terms_six_r[27*LEGS(LEGS_OF_six_r)] = {0}, o_six_r[8*LEGS(LEGS_OF_six_r)] = {0};
-    dynamics_before(m, 1, X, V, s, t);
-    dynamics_legs_six_r(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_six_r), 0, V, joints, terms_six_r, o_six_r);
-    for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
-        dynamics_place_six_r(1, LEGS(LEGS_OF_six_r), o_six_r, leg, leg, H, t);
+    dynamics_before(m, 1, 0, X, V, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
+        dynamics_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), 0, s, V, joints, terms_six_r, o_six_r);
+    }
+    for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
+        dynamics_place_six_r(1, i, 0, i, LEGS(LEGS_OF_six_r), o_six_r, H, t);
     }
     for (size_t n = 0; n < 27; ++n) {
         sums[n] = total(terms_six_r + n*LEGS(LEGS_OF_six_r), LEGS_OF_six_r);
     }
-    dynamics_after(m, 1, s, sums, M, Z, t);
+    dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
-INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, const real
-    *joints, real *M, real *Z, real *H, verdict *t)
+APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, const real *joints,
+    real *restrict M, real *restrict Z, real *restrict H, verdict *restrict t)
 {
     real s[24*LANES], sums[27*LANES];
     real o_six_r[8*LANES];
-    dynamics_before(m, LANES, X, V, s, t);
-    clear(sums, 27*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
-        dynamics_legs_six_r(m, LANES, leg, 0, s, 1, LANES, 1, V, joints, sums, o_six_r);
-        dynamics_place_six_r(LANES, LANES, o_six_r, leg, 0, H, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        dynamics_before(m, LANES, k, X, V, s, t);
     }
-    dynamics_after(m, LANES, s, sums, M, Z, t);
+    clear(sums, 27*LANES);
+    for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_legs_six_r(m, LANES, i, k, k, LANES, 1, s, V, joints, sums, o_six_r);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_place_six_r(LANES, i, k, k, LANES, o_six_r, H, t);
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        dynamics_after(m, LANES, k, s, sums, M, Z, t);
+    }
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        stage_M_dynamics(m, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = v.h_star_x;
-        s[10*w + k] = v.h_star_y;
-        s[11*w + k] = v.h_star_z;
-        s[12*w + k] = v.J_star_xx;
-        s[13*w + k] = v.J_star_xy;
-        s[14*w + k] = v.J_star_xz;
-        s[15*w + k] = v.J_star_yy;
-        s[16*w + k] = v.J_star_yz;
-        s[17*w + k] = v.J_star_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    stage_M_dynamics(m, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = v.h_star_x;
+    s[10*w + k] = v.h_star_y;
+    s[11*w + k] = v.h_star_z;
+    s[12*w + k] = v.J_star_xx;
+    s[13*w + k] = v.J_star_xy;
+    s[14*w + k] = v.J_star_xz;
+    s[15*w + k] = v.J_star_yy;
+    s[16*w + k] = v.J_star_yz;
+    s[17*w + k] = v.J_star_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void M_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *joints, real *terms, real *o)
+INLINE void M_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *s, const real *joints, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_six_r v;
-        stage_six_r_X(m, w, i, j, s, &v);
-        stage_six_r_q(m, w, i, j, joints, &v);
-        stage_six_r_M_dynamics(m, w, i, j, joints, &v);
-        /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real six_r_n_m1_t = v.six_r_c_3*v.six_r_h_4_t;
-        const real six_r_n_m1_t_2 = v.six_r_h_4_t*v.six_r_s_3;
-        const real six_r_n_m1_t_3 = v.six_r_c_2*six_r_n_m1_t_2 + six_r_n_m1_t*v.six_r_s_2;
-        const real six_r_n_m1_t_4 = six_r_n_m1_t_2*v.six_r_s_2 - v.six_r_c_2*six_r_n_m1_t;
-        const real six_r_n_m1_t_5 = v.six_r_c_1*six_r_n_m1_t_4 -
-            v.six_r_e_2_in_axes5_z*v.six_r_s_1;
-        const real six_r_n_m1_t_6 = v.six_r_c_1*v.six_r_e_2_in_axes5_z +
-            six_r_n_m1_t_4*v.six_r_s_1;
-        const real six_r_base_frame_xx = m->six_r_base_frame_xx[i];
-        const real six_r_base_frame_xy = m->six_r_base_frame_xy[i];
-        const real six_r_base_frame_xz = m->six_r_base_frame_xz[i];
-        const real axis_z_six_r_axes5_x = six_r_base_frame_xx*six_r_n_m1_t_3 +
-            six_r_base_frame_xy*six_r_n_m1_t_5 + six_r_base_frame_xz*six_r_n_m1_t_6;
-        const real six_r_base_frame_yx = m->six_r_base_frame_yx[i];
-        const real six_r_base_frame_yy = m->six_r_base_frame_yy[i];
-        const real six_r_base_frame_yz = m->six_r_base_frame_yz[i];
-        const real axis_z_six_r_axes5_y = six_r_base_frame_yx*six_r_n_m1_t_3 +
-            six_r_base_frame_yy*six_r_n_m1_t_5 + six_r_base_frame_yz*six_r_n_m1_t_6;
-        const real six_r_base_frame_zx = m->six_r_base_frame_zx[i];
-        const real six_r_base_frame_zy = m->six_r_base_frame_zy[i];
-        const real six_r_base_frame_zz = m->six_r_base_frame_zz[i];
-        const real axis_z_six_r_axes5_z = six_r_base_frame_zx*six_r_n_m1_t_3 +
-            six_r_base_frame_zy*six_r_n_m1_t_5 + six_r_base_frame_zz*six_r_n_m1_t_6;
-        const real six_r_n_m1_t_7 = v.six_r_e_2_in_axes5_z*v.six_r_e_4_in_axes5_x;
-        const real six_r_n_m1_t_8 = v.six_r_J_5_t*v.six_r_s_3 - v.six_r_c_3*six_r_n_m1_t_7;
-        const real six_r_n_m1_t_9 = -v.six_r_J_5_t*v.six_r_c_3 - six_r_n_m1_t_7*v.six_r_s_3;
-        const real six_r_n_m1_t_10 = v.six_r_c_2*six_r_n_m1_t_9 + six_r_n_m1_t_8*v.six_r_s_2;
-        const real six_r_n_m1_t_11 = six_r_n_m1_t_9*v.six_r_s_2 - v.six_r_c_2*six_r_n_m1_t_8;
-        const real six_r_n_m1_t_12 = v.six_r_c_1*six_r_n_m1_t_11 -
-            v.six_r_e_2_in_axes5_y*v.six_r_s_1;
-        const real six_r_n_m1_t_13 = v.six_r_c_1*v.six_r_e_2_in_axes5_y +
-            six_r_n_m1_t_11*v.six_r_s_1;
-        const real axis_y_six_r_axes5_x = six_r_base_frame_xx*six_r_n_m1_t_10 +
-            six_r_base_frame_xy*six_r_n_m1_t_12 + six_r_base_frame_xz*six_r_n_m1_t_13;
-        const real axis_y_six_r_axes5_y = six_r_base_frame_yx*six_r_n_m1_t_10 +
-            six_r_base_frame_yy*six_r_n_m1_t_12 + six_r_base_frame_yz*six_r_n_m1_t_13;
-        const real axis_y_six_r_axes5_z = six_r_base_frame_zx*six_r_n_m1_t_10 +
-            six_r_base_frame_zy*six_r_n_m1_t_12 + six_r_base_frame_zz*six_r_n_m1_t_13;
-        const real axis_x_six_r_axes5_x = axis_y_six_r_axes5_y*axis_z_six_r_axes5_z -
-            axis_y_six_r_axes5_z*axis_z_six_r_axes5_y;
-        const real axis_x_six_r_axes5_y = axis_y_six_r_axes5_z*axis_z_six_r_axes5_x -
-            axis_y_six_r_axes5_x*axis_z_six_r_axes5_z;
-        const real axis_x_six_r_axes5_z = axis_y_six_r_axes5_x*axis_z_six_r_axes5_y -
-            axis_y_six_r_axes5_y*axis_z_six_r_axes5_x;
-        const real R_xx = s[0*w + j];
-        const real R_xy = s[1*w + j];
-        const real R_xz = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real R_yy = s[4*w + j];
-        const real R_yz = s[5*w + j];
-        const real R_zx = s[6*w + j];
-        const real R_zy = s[7*w + j];
-        const real R_zz = s[8*w + j];
-        const real six_r_platform_joint_axis_platform_x = m->six_r_platform_joint_axis_platform_x[i];
-        const real six_r_platform_joint_axis_platform_y = m->six_r_platform_joint_axis_platform_y[i];
-        const real six_r_platform_joint_axis_platform_z = m->six_r_platform_joint_axis_platform_z[i];
-        const real six_r_n_m1_t_14 =
-            six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xy +
-            R_yx*six_r_base_frame_yy + R_zx*six_r_base_frame_zy) +
-            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xy +
-            R_yy*six_r_base_frame_yy + R_zy*six_r_base_frame_zy) +
-            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xy +
-            R_yz*six_r_base_frame_yy + R_zz*six_r_base_frame_zy);
-        const real six_r_n_m1_t_15 =
-            six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xz +
-            R_yx*six_r_base_frame_yz + R_zx*six_r_base_frame_zz) +
-            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xz +
-            R_yy*six_r_base_frame_yz + R_zy*six_r_base_frame_zz) +
-            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xz +
-            R_yz*six_r_base_frame_yz + R_zz*six_r_base_frame_zz);
-        const real six_r_n_m1_t_16 =
-            six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xx +
-            R_yx*six_r_base_frame_yx + R_zx*six_r_base_frame_zx) +
-            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xx +
-            R_yy*six_r_base_frame_yx + R_zy*six_r_base_frame_zx) +
-            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xx +
-            R_yz*six_r_base_frame_yx + R_zz*six_r_base_frame_zx);
-        const real six_r_n_m1_t_17 = v.six_r_c_1*six_r_n_m1_t_14 + six_r_n_m1_t_15*v.six_r_s_1;
-        const real six_r_n_m1_t_18 = v.six_r_c_1*six_r_n_m1_t_15 - six_r_n_m1_t_14*v.six_r_s_1;
-        const real six_r_n_m1_t_19 = v.six_r_c_2*six_r_n_m1_t_16 + six_r_n_m1_t_17*v.six_r_s_2;
-        const real six_r_n_m1_t_20 = v.six_r_c_2*six_r_n_m1_t_17 - six_r_n_m1_t_16*v.six_r_s_2;
-        const real six_r_n_m1_t_21 = six_r_n_m1_t_19*v.six_r_s_3 - v.six_r_c_3*six_r_n_m1_t_20;
-        const real six_r_n_m1_t_22 = v.six_r_c_3*six_r_n_m1_t_19 + six_r_n_m1_t_20*v.six_r_s_3;
-        const real six_r_n_m1_t_23 = v.six_r_h_4_t*six_r_n_m1_t_18 -
-            v.six_r_e_2_in_axes5_z*six_r_n_m1_t_21;
-        const real six_r_n_m1_in_axes5_y = v.six_r_J_5_t*six_r_n_m1_t_23 +
-            v.six_r_e_4_in_axes5_x*six_r_n_m1_t_22;
-        const real six_r_end_p1_in_axes5_y = v.six_r_e_4_in_axes5_x*six_r_n_m1_t_23 -
-            v.six_r_J_5_t*six_r_n_m1_t_22;
-        const real six_r_n_m1_x = axis_y_six_r_axes5_x*six_r_n_m1_in_axes5_y -
-            axis_x_six_r_axes5_x*six_r_end_p1_in_axes5_y;
-        const real six_r_n_m1_y = axis_y_six_r_axes5_y*six_r_n_m1_in_axes5_y -
-            axis_x_six_r_axes5_y*six_r_end_p1_in_axes5_y;
-        const real six_r_n_m1_z = axis_y_six_r_axes5_z*six_r_n_m1_in_axes5_y -
-            axis_x_six_r_axes5_z*six_r_end_p1_in_axes5_y;
-        /* (six_r-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real six_r_end_p1_in_axes5_z = v.six_r_e_2_in_axes5_z*six_r_n_m1_t_18 +
-            v.six_r_h_4_t*six_r_n_m1_t_21;
-        const real six_r_n_m2_x = axis_z_six_r_axes5_x*six_r_end_p1_in_axes5_y -
-            axis_y_six_r_axes5_x*six_r_end_p1_in_axes5_z;
-        const real six_r_n_m2_y = axis_z_six_r_axes5_y*six_r_end_p1_in_axes5_y -
-            axis_y_six_r_axes5_y*six_r_end_p1_in_axes5_z;
-        const real six_r_n_m2_z = axis_z_six_r_axes5_z*six_r_end_p1_in_axes5_y -
-            axis_y_six_r_axes5_z*six_r_end_p1_in_axes5_z;
-        /* (six_r-w_1) force part of reciprocal wrench 1 */
-        const real six_r_w_1_t = v.six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y -
-            v.six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_w_1_t_2 = v.six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y -
-            v.six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_w_1_t_3 = v.six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
-            v.six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y;
-        const real six_r_w_1_t_4 = v.six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
-            v.six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y;
-        const real six_r_size = m->six_r_size[i];
-        const real six_r_w_1_t_5 = six_r_size*six_r_w_1_t;
-        const real six_r_w_1_t_6 = six_r_size*six_r_w_1_t_3;
-        const real six_r_w_1_t_7 = six_r_size*six_r_w_1_t_2;
-        const real six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4;
-        const real six_r_w_1_t_9 = six_r_size*(-v.six_r_J_5_t*six_r_n_m1_in_axes5_y -
-            v.six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y);
-        const real six_r_w_1_t_10 = v.six_r_J_5_t*six_r_end_p1_in_axes5_z*six_r_size;
-        const real six_r_w_1_t_11 = six_r_end_p1_in_axes5_y*six_r_size;
-        const real six_r_size_t = m->six_r_size_t[i];
-        const real six_r_w_1_t_12 = root(six_r_size_t + six_r_w_1_t_11*six_r_w_1_t_11);
-        const real inv_six_r_w_1_t_12 = 1/six_r_w_1_t_12;
-        const real six_r_platform_joint_offset_x = m->six_r_platform_joint_offset_x[i];
-        const real six_r_w_1_t_13 = inv_six_r_w_1_t_12*six_r_platform_joint_offset_x;
-        const real six_r_w_1_t_14 = inv_six_r_w_1_t_12*six_r_w_1_t_11;
-        const real six_r_w_1_t_15 = six_r_w_1_t_10*six_r_w_1_t_14;
-        const real six_r_w_1_t_16 = six_r_w_1_t_13*six_r_w_1_t_15;
-        const real six_r_w_1_t_17 = six_r_w_1_t_10 - six_r_w_1_t_14*six_r_w_1_t_15;
-        const real six_r_w_1_t_18 = v.six_r_v_1_in_axes5_y*six_r_w_1_t_13 -
-            six_r_w_1_t_14*six_r_w_1_t_6;
-        const real six_r_w_1_t_19 = v.six_r_v_1_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_18;
-        const real six_r_w_1_t_20 = six_r_w_1_t_6 + six_r_w_1_t_14*six_r_w_1_t_18;
-        const real six_r_w_1_t_21 = six_r_w_1_t_14*six_r_w_1_t_8;
-        const real six_r_w_1_t_22 = v.six_r_v_2_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_21;
-        const real six_r_w_1_t_23 = v.six_r_v_2_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_22;
-        const real six_r_w_1_t_24 = six_r_w_1_t_8 + six_r_w_1_t_14*six_r_w_1_t_22;
-        const real six_r_w_1_t_25 = six_r_w_1_t_21 - v.six_r_v_3_in_axes5_y*six_r_w_1_t_13;
-        const real six_r_w_1_t_26 = v.six_r_v_3_in_axes5_y + six_r_w_1_t_13*six_r_w_1_t_25;
-        const real six_r_w_1_t_27 = six_r_w_1_t_8 - six_r_w_1_t_14*six_r_w_1_t_25;
-        const real six_r_w_1_t_28 = root(v.six_r_v_4_in_axes5_z*v.six_r_v_4_in_axes5_z +
-            six_r_w_1_t_16*six_r_w_1_t_16 + six_r_w_1_t_17*six_r_w_1_t_17 +
-            six_r_w_1_t_9*six_r_w_1_t_9);
-        const real inv_six_r_w_1_t_28 = 1/six_r_w_1_t_28;
-        const real six_r_w_1_t_29 = inv_six_r_w_1_t_28*six_r_w_1_t_16;
-        const real six_r_w_1_t_30 = inv_six_r_w_1_t_28*v.six_r_v_4_in_axes5_z;
-        const real six_r_w_1_t_31 = inv_six_r_w_1_t_28*six_r_w_1_t_9;
-        const real six_r_w_1_t_32 = inv_six_r_w_1_t_28*six_r_w_1_t_17;
-        const real six_r_w_1_t_33 = six_r_w_1_t_19*six_r_w_1_t_29 + six_r_w_1_t_20*six_r_w_1_t_32
-            + six_r_w_1_t_31*six_r_w_1_t_5 - v.six_r_v_1_in_axes5_z*six_r_w_1_t_30;
-        const real six_r_w_1_t_34 = six_r_w_1_t_29*six_r_w_1_t_33 - six_r_w_1_t_19;
-        const real six_r_w_1_t_35 = v.six_r_v_1_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_33;
-        const real six_r_w_1_t_36 = six_r_w_1_t_31*six_r_w_1_t_33 - six_r_w_1_t_5;
-        const real six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_33 - six_r_w_1_t_20;
-        const real six_r_w_1_t_38 = six_r_w_1_t_31*six_r_w_1_t_7;
-        const real six_r_w_1_t_39 = six_r_w_1_t_38 + six_r_w_1_t_23*six_r_w_1_t_29 +
-            six_r_w_1_t_24*six_r_w_1_t_32 - v.six_r_v_2_in_axes5_z*six_r_w_1_t_30;
-        const real six_r_w_1_t_40 = six_r_w_1_t_29*six_r_w_1_t_39 - six_r_w_1_t_23;
-        const real six_r_w_1_t_41 = v.six_r_v_2_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_39;
-        const real six_r_w_1_t_42 = six_r_w_1_t_31*six_r_w_1_t_39 - six_r_w_1_t_7;
-        const real six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_39 - six_r_w_1_t_24;
-        const real six_r_w_1_t_44 = six_r_w_1_t_38 + six_r_w_1_t_26*six_r_w_1_t_29 +
-            six_r_w_1_t_27*six_r_w_1_t_32 - v.six_r_v_3_in_axes5_z*six_r_w_1_t_30;
-        const real six_r_w_1_t_45 = six_r_w_1_t_29*six_r_w_1_t_44 - six_r_w_1_t_26;
-        const real six_r_w_1_t_46 = v.six_r_v_3_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_44;
-        const real six_r_w_1_t_47 = six_r_w_1_t_31*six_r_w_1_t_44 - six_r_w_1_t_7;
-        const real six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_44 - six_r_w_1_t_27;
-        const real six_r_w_1_t_49 = root(v.six_r_v_1_in_axes5_x*v.six_r_v_1_in_axes5_x +
-            six_r_w_1_t_34*six_r_w_1_t_34 + six_r_w_1_t_35*six_r_w_1_t_35 +
-            six_r_w_1_t_36*six_r_w_1_t_36 + six_r_w_1_t_37*six_r_w_1_t_37);
-        const real inv_six_r_w_1_t_49 = 1/six_r_w_1_t_49;
-        const real six_r_w_1_t_50 = inv_six_r_w_1_t_49*v.six_r_v_1_in_axes5_x;
-        const real six_r_w_1_t_51 = inv_six_r_w_1_t_49*six_r_w_1_t_34;
-        const real six_r_w_1_t_52 = inv_six_r_w_1_t_49*six_r_w_1_t_35;
-        const real six_r_w_1_t_53 = inv_six_r_w_1_t_49*six_r_w_1_t_36;
-        const real six_r_w_1_t_54 = inv_six_r_w_1_t_49*six_r_w_1_t_37;
-        const real six_r_w_1_t_55 = v.six_r_v_2_in_axes5_x*six_r_w_1_t_50 +
-            six_r_w_1_t_40*six_r_w_1_t_51 + six_r_w_1_t_41*six_r_w_1_t_52 +
-            six_r_w_1_t_42*six_r_w_1_t_53 + six_r_w_1_t_43*six_r_w_1_t_54;
-        const real six_r_w_1_t_56 = v.six_r_v_2_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_55;
-        const real six_r_w_1_t_57 = six_r_w_1_t_40 - six_r_w_1_t_51*six_r_w_1_t_55;
-        const real six_r_w_1_t_58 = six_r_w_1_t_41 - six_r_w_1_t_52*six_r_w_1_t_55;
-        const real six_r_w_1_t_59 = six_r_w_1_t_42 - six_r_w_1_t_53*six_r_w_1_t_55;
-        const real six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_55;
-        const real six_r_w_1_t_61 = v.six_r_v_3_in_axes5_x*six_r_w_1_t_50 +
-            six_r_w_1_t_45*six_r_w_1_t_51 + six_r_w_1_t_46*six_r_w_1_t_52 +
-            six_r_w_1_t_47*six_r_w_1_t_53 + six_r_w_1_t_48*six_r_w_1_t_54;
-        const real six_r_w_1_t_62 = v.six_r_v_3_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_61;
-        const real six_r_w_1_t_63 = six_r_w_1_t_45 - six_r_w_1_t_51*six_r_w_1_t_61;
-        const real six_r_w_1_t_64 = six_r_w_1_t_46 - six_r_w_1_t_52*six_r_w_1_t_61;
-        const real six_r_w_1_t_65 = six_r_w_1_t_47 - six_r_w_1_t_53*six_r_w_1_t_61;
-        const real six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_61;
-        const real six_r_w_1_t_67 = root(six_r_w_1_t_56*six_r_w_1_t_56 +
-            six_r_w_1_t_57*six_r_w_1_t_57 + six_r_w_1_t_58*six_r_w_1_t_58 +
-            six_r_w_1_t_59*six_r_w_1_t_59 + six_r_w_1_t_60*six_r_w_1_t_60);
-        const real inv_six_r_w_1_t_67 = 1/six_r_w_1_t_67;
-        const real six_r_w_1_t_68 = inv_six_r_w_1_t_67*six_r_w_1_t_56;
-        const real six_r_w_1_t_69 = inv_six_r_w_1_t_67*six_r_w_1_t_57;
-        const real six_r_w_1_t_70 = inv_six_r_w_1_t_67*six_r_w_1_t_58;
-        const real six_r_w_1_t_71 = inv_six_r_w_1_t_67*six_r_w_1_t_59;
-        const real six_r_w_1_t_72 = inv_six_r_w_1_t_67*six_r_w_1_t_60;
-        const real six_r_w_1_t_73 = six_r_w_1_t_62*six_r_w_1_t_68 + six_r_w_1_t_63*six_r_w_1_t_69
-            + six_r_w_1_t_64*six_r_w_1_t_70 + six_r_w_1_t_65*six_r_w_1_t_71 +
-            six_r_w_1_t_66*six_r_w_1_t_72;
-        const real six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_73;
-        const real six_r_w_1_t_75 = six_r_w_1_t_63 - six_r_w_1_t_69*six_r_w_1_t_73;
-        const real six_r_w_1_t_76 = six_r_w_1_t_64 - six_r_w_1_t_70*six_r_w_1_t_73;
-        const real six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_73;
-        const real six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_73;
-        const real six_r_w_1_t_79 = root(six_r_w_1_t_74*six_r_w_1_t_74 +
-            six_r_w_1_t_75*six_r_w_1_t_75 + six_r_w_1_t_76*six_r_w_1_t_76 +
-            six_r_w_1_t_77*six_r_w_1_t_77 + six_r_w_1_t_78*six_r_w_1_t_78);
-        const real inv_six_r_w_1_t_79 = 1/six_r_w_1_t_79;
-        const real six_r_w_1_t_80 = inv_six_r_w_1_t_79*six_r_w_1_t_74;
-        const real six_r_w_1_t_81 = inv_six_r_w_1_t_79*six_r_w_1_t_75;
-        const real six_r_w_1_t_82 = inv_six_r_w_1_t_79*six_r_w_1_t_76;
-        const real six_r_w_1_t_83 = inv_six_r_w_1_t_49*inv_six_r_w_1_t_67*six_r_w_1_t_55;
-        const real six_r_w_1_t_84 = inv_six_r_w_1_t_79*(inv_six_r_w_1_t_49*six_r_w_1_t_61 -
-            six_r_w_1_t_73*six_r_w_1_t_83);
-        const real six_r_w_1_in_axes5_x = inv_six_r_w_1_t_49*six_r_w_1_t_50 -
-            six_r_w_1_t_68*six_r_w_1_t_83 - six_r_w_1_t_80*six_r_w_1_t_84;
-        const real six_r_w_1_in_axes5_y = six_r_w_1_t_69*six_r_w_1_t_83 +
-            six_r_w_1_t_81*six_r_w_1_t_84 - inv_six_r_w_1_t_49*six_r_w_1_t_51;
-        const real six_r_w_1_in_axes5_z = inv_six_r_w_1_t_49*six_r_w_1_t_52 -
-            six_r_w_1_t_70*six_r_w_1_t_83 - six_r_w_1_t_82*six_r_w_1_t_84;
-        /* (six_r-m1_w_1) moment part 1 of reciprocal wrench 1 */
-        const real six_r_m1_w_1_t = inv_six_r_w_1_t_79*six_r_w_1_t_77;
-        const real six_r_m1_w_1_t_2 = six_r_size*(six_r_m1_w_1_t*six_r_w_1_t_84 +
-            six_r_w_1_t_71*six_r_w_1_t_83 - inv_six_r_w_1_t_49*six_r_w_1_t_53);
-        /* (six_r-m2_w_1) moment part 2 of reciprocal wrench 1 */
-        const real six_r_m2_w_1_t = inv_six_r_w_1_t_79*six_r_w_1_t_78;
-        const real six_r_m2_w_1_t_2 = six_r_size*(six_r_m2_w_1_t*six_r_w_1_t_84 +
-            six_r_w_1_t_72*six_r_w_1_t_83 - inv_six_r_w_1_t_49*six_r_w_1_t_54);
-        /* (six_r-w_2) force part of reciprocal wrench 2 */
-        const real six_r_w_2_t = inv_six_r_w_1_t_67*inv_six_r_w_1_t_79*six_r_w_1_t_73;
-        const real six_r_w_2_in_axes5_x = inv_six_r_w_1_t_67*six_r_w_1_t_68 -
-            six_r_w_1_t_80*six_r_w_2_t;
-        const real six_r_w_2_in_axes5_y = six_r_w_1_t_81*six_r_w_2_t -
-            inv_six_r_w_1_t_67*six_r_w_1_t_69;
-        const real six_r_w_2_in_axes5_z = inv_six_r_w_1_t_67*six_r_w_1_t_70 -
-            six_r_w_1_t_82*six_r_w_2_t;
-        /* (six_r-m1_w_2) moment part 1 of reciprocal wrench 2 */
-        const real six_r_m1_w_2 = six_r_size*(inv_six_r_w_1_t_67*six_r_w_1_t_71 -
-            six_r_m1_w_1_t*six_r_w_2_t);
-        /* (six_r-m2_w_2) moment part 2 of reciprocal wrench 2 */
-        const real six_r_m2_w_2 = six_r_size*(inv_six_r_w_1_t_67*six_r_w_1_t_72 -
-            six_r_m2_w_1_t*six_r_w_2_t);
-        /* (six_r-w_3) force part of reciprocal wrench 3 */
-        const real six_r_w_3_in_axes5_x = inv_six_r_w_1_t_79*six_r_w_1_t_80;
-        const real six_r_w_3_t = inv_six_r_w_1_t_79*six_r_w_1_t_81;
-        const real six_r_w_3_in_axes5_z = inv_six_r_w_1_t_79*six_r_w_1_t_82;
-        /* (six_r-m1_w_3) moment part 1 of reciprocal wrench 3 */
-        const real six_r_m1_w_3 = inv_six_r_w_1_t_79*six_r_m1_w_1_t*six_r_size;
-        /* (six_r-m2_w_3) moment part 2 of reciprocal wrench 3 */
-        const real six_r_m2_w_3 = inv_six_r_w_1_t_79*six_r_m2_w_1_t*six_r_size;
-        /* (six_r-w_4) force part of reciprocal wrench 4 */
-        const real six_r_w_4_t = inv_six_r_w_1_t_28*inv_six_r_w_1_t_49*six_r_w_1_t_33;
-        const real six_r_w_4_t_2 = inv_six_r_w_1_t_67*(inv_six_r_w_1_t_28*six_r_w_1_t_39 -
-            six_r_w_1_t_55*six_r_w_4_t);
-        const real six_r_w_4_t_3 = inv_six_r_w_1_t_79*(six_r_w_1_t_61*six_r_w_4_t +
-            six_r_w_1_t_73*six_r_w_4_t_2 - inv_six_r_w_1_t_28*six_r_w_1_t_44);
-        const real six_r_w_4_in_axes5_x = six_r_w_1_t_50*six_r_w_4_t +
-            six_r_w_1_t_68*six_r_w_4_t_2 - six_r_w_1_t_80*six_r_w_4_t_3;
-        const real six_r_w_4_in_axes5_y = six_r_w_1_t_81*six_r_w_4_t_3 -
-            inv_six_r_w_1_t_28*six_r_w_1_t_29 - six_r_w_1_t_51*six_r_w_4_t -
-            six_r_w_1_t_69*six_r_w_4_t_2;
-        const real six_r_w_4_in_axes5_z = inv_six_r_w_1_t_28*six_r_w_1_t_30 +
-            six_r_w_1_t_52*six_r_w_4_t + six_r_w_1_t_70*six_r_w_4_t_2 -
-            six_r_w_1_t_82*six_r_w_4_t_3;
-        /* (six_r-m1_w_4) moment part 1 of reciprocal wrench 4 */
-        const real six_r_m1_w_4 = six_r_size*(inv_six_r_w_1_t_28*six_r_w_1_t_31 +
-            six_r_w_1_t_53*six_r_w_4_t + six_r_w_1_t_71*six_r_w_4_t_2 -
-            six_r_m1_w_1_t*six_r_w_4_t_3);
-        /* (six_r-m2_w_4) moment part 2 of reciprocal wrench 4 */
-        const real six_r_m2_w_4 = six_r_size*(inv_six_r_w_1_t_28*six_r_w_1_t_32 +
-            six_r_w_1_t_54*six_r_w_4_t + six_r_w_1_t_72*six_r_w_4_t_2 -
-            six_r_m2_w_1_t*six_r_w_4_t_3);
-        /* (six_r-w_5) force part of reciprocal wrench 5 */
-        const real six_r_w_5_t = inv_six_r_w_1_t_12*inv_six_r_w_1_t_28*six_r_w_1_t_15;
-        const real six_r_w_5_t_2 = inv_six_r_w_1_t_49*(inv_six_r_w_1_t_12*six_r_w_1_t_18 +
-            six_r_w_1_t_33*six_r_w_5_t);
-        const real six_r_w_5_t_3 = inv_six_r_w_1_t_67*(inv_six_r_w_1_t_12*six_r_w_1_t_22 +
-            six_r_w_1_t_39*six_r_w_5_t - six_r_w_1_t_55*six_r_w_5_t_2);
-        const real six_r_w_5_t_4 = inv_six_r_w_1_t_79*(inv_six_r_w_1_t_12*six_r_w_1_t_25 +
-            six_r_w_1_t_61*six_r_w_5_t_2 + six_r_w_1_t_73*six_r_w_5_t_3 -
-            six_r_w_1_t_44*six_r_w_5_t);
-        const real six_r_w_5_t_5 = six_r_w_1_t_50*six_r_w_5_t_2 + six_r_w_1_t_68*six_r_w_5_t_3 -
-            six_r_w_1_t_80*six_r_w_5_t_4;
-        const real six_r_w_5_in_axes5_y = inv_six_r_w_1_t_12*six_r_w_1_t_13 +
-            six_r_w_1_t_29*six_r_w_5_t + six_r_w_1_t_51*six_r_w_5_t_2 +
-            six_r_w_1_t_69*six_r_w_5_t_3 - six_r_w_1_t_81*six_r_w_5_t_4;
-        const real six_r_w_5_in_axes5_z = six_r_w_1_t_82*six_r_w_5_t_4 -
-            six_r_w_1_t_30*six_r_w_5_t - six_r_w_1_t_52*six_r_w_5_t_2 -
-            six_r_w_1_t_70*six_r_w_5_t_3;
-        /* (six_r-m1_w_5) moment part 1 of reciprocal wrench 5 */
-        const real six_r_m1_w_5_t = six_r_size*(six_r_w_1_t_31*six_r_w_5_t +
-            six_r_w_1_t_53*six_r_w_5_t_2 + six_r_w_1_t_71*six_r_w_5_t_3 -
-            six_r_m1_w_1_t*six_r_w_5_t_4);
-        /* (six_r-m2_w_5) moment part 2 of reciprocal wrench 5 */
-        const real six_r_m2_w_5_t = six_r_size*(six_r_w_1_t_32*six_r_w_5_t +
-            six_r_w_1_t_54*six_r_w_5_t_2 + six_r_w_1_t_72*six_r_w_5_t_3 -
-            inv_six_r_w_1_t_12*six_r_w_1_t_14 - six_r_m2_w_1_t*six_r_w_5_t_4);
-        /* (six_r-o_1) moment part of reciprocal wrench 1 */
-        const real six_r_o_1_in_axes5_x = six_r_end_p1_in_axes5_y*six_r_m1_w_1_t_2;
-        const real six_r_o_1_t = six_r_end_p1_in_axes5_y*six_r_m2_w_1_t_2;
-        const real six_r_o_1_in_axes5_y = six_r_end_p1_in_axes5_z*six_r_m2_w_1_t_2 -
-            six_r_m1_w_1_t_2*six_r_n_m1_in_axes5_y;
-        /* (six_r-o_2) moment part of reciprocal wrench 2 */
-        const real six_r_o_2_t = six_r_end_p1_in_axes5_y*six_r_m1_w_2;
-        const real six_r_o_2_in_axes5_z = six_r_end_p1_in_axes5_y*six_r_m2_w_2;
-        const real six_r_o_2_in_axes5_y = six_r_m1_w_2*six_r_n_m1_in_axes5_y -
-            six_r_end_p1_in_axes5_z*six_r_m2_w_2;
-        /* (six_r-o_3) moment part of reciprocal wrench 3 */
-        const real six_r_o_3_t = six_r_end_p1_in_axes5_y*six_r_m1_w_3;
-        const real six_r_o_3_in_axes5_z = six_r_end_p1_in_axes5_y*six_r_m2_w_3;
-        const real six_r_o_3_in_axes5_y = six_r_m1_w_3*six_r_n_m1_in_axes5_y -
-            six_r_end_p1_in_axes5_z*six_r_m2_w_3;
-        /* (six_r-o_4) moment part of reciprocal wrench 4 */
-        const real six_r_o_4_t = six_r_end_p1_in_axes5_y*six_r_m1_w_4;
-        const real six_r_o_4_in_axes5_z = six_r_end_p1_in_axes5_y*six_r_m2_w_4;
-        const real six_r_o_4_in_axes5_y = six_r_m1_w_4*six_r_n_m1_in_axes5_y -
-            six_r_end_p1_in_axes5_z*six_r_m2_w_4;
-        /* (six_r-o_5) moment part of reciprocal wrench 5 */
-        const real six_r_o_5_in_axes5_x = six_r_end_p1_in_axes5_y*six_r_m1_w_5_t;
-        const real six_r_o_5_t = six_r_end_p1_in_axes5_y*six_r_m2_w_5_t;
-        const real six_r_o_5_in_axes5_y = six_r_end_p1_in_axes5_z*six_r_m2_w_5_t -
-            six_r_m1_w_5_t*six_r_n_m1_in_axes5_y;
-        /* (six_r-dalpha_alpha_5) coefficient of the acceleration in: angular acceleration of link 5 */
-        const real six_r_dalpha_alpha_5_in_axes5_xx = v.six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_x
-            - v.six_r_e_2_in_axes5_x*six_r_o_2_t - v.six_r_e_2_in_axes5_x*six_r_o_3_t -
-            v.six_r_e_4_in_axes5_x*six_r_o_4_t;
-        const real six_r_dalpha_alpha_5_in_axes5_xy = v.six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_y
-            + v.six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_y +
-            v.six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_y +
-            v.six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_y;
-        const real six_r_dalpha_alpha_5_in_axes5_xz = v.six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_z
-            + v.six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_z +
-            v.six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_z - v.six_r_e_1_in_axes5_x*six_r_o_1_t;
-        const real six_r_dalpha_alpha_5_in_axes5_yx = v.six_r_J_5_t*six_r_o_4_t +
-            v.six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_x - v.six_r_e_2_in_axes5_y*six_r_o_2_t -
-            v.six_r_e_2_in_axes5_y*six_r_o_3_t;
-        const real six_r_dalpha_alpha_5_in_axes5_yy = v.six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_y
-            + v.six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_y +
-            v.six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_y - v.six_r_J_5_t*six_r_o_4_in_axes5_y;
-        const real six_r_dalpha_alpha_5_in_axes5_yz = v.six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_z
-            + v.six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_z - v.six_r_J_5_t*six_r_o_4_in_axes5_z -
-            v.six_r_e_1_in_axes5_y*six_r_o_1_t;
-        const real six_r_dalpha_alpha_5_in_axes5_zx = six_r_o_5_in_axes5_x +
-            v.six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_x - v.six_r_e_2_in_axes5_z*six_r_o_2_t -
-            v.six_r_e_2_in_axes5_z*six_r_o_3_t;
-        const real six_r_dalpha_alpha_5_in_axes5_zy = six_r_o_5_in_axes5_y +
-            v.six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_y +
-            v.six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_y +
-            v.six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_y;
-        const real six_r_dalpha_alpha_5_in_axes5_zz = v.six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_z
-            + v.six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_z - six_r_o_5_t -
-            v.six_r_e_1_in_axes5_z*six_r_o_1_t;
-        /* (six_r-d_alpha_5) coefficient of the acceleration in: angular acceleration of link 5 */
-        const real six_r_d_alpha_5_in_axes5_xz = v.six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_z +
-            v.six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_z +
-            v.six_r_e_2_in_axes5_x*six_r_w_3_in_axes5_z +
-            v.six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_z;
-        const real six_r_d_alpha_5_in_axes5_yz = v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_z +
-            v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_z +
-            v.six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_z - v.six_r_J_5_t*six_r_w_4_in_axes5_z;
-        const real six_r_d_alpha_5_in_axes5_zy = six_r_w_5_in_axes5_y +
-            v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_y +
-            v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_y - v.six_r_e_2_in_axes5_z*six_r_w_3_t;
-        const real six_r_d_alpha_5_in_axes5_zz = six_r_w_5_in_axes5_z +
-            v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_z +
-            v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_z +
-            v.six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_z;
-        /* (six_r-d_phi_5) coefficient of the acceleration in: inertia force of link 5 from its turning
-           about its reference point */
-        const real six_r_h_5_in_spec5_y = m->six_r_h_5_in_spec5_y[i];
-        const real six_r_h_5_in_spec5_z = m->six_r_h_5_in_spec5_z[i];
-        const real six_r_d_phi_5_in_axes5_xx =
-            six_r_h_5_in_spec5_z*(v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_x +
-            v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_x +
-            v.six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_x - v.six_r_J_5_t*six_r_w_4_in_axes5_x) -
-            six_r_h_5_in_spec5_y*(v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_x +
-            v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_x +
-            v.six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_x - six_r_w_5_t_5);
-        /* (six_r-dalpha_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal
-           links' inertia and weight */
-        const real six_r_J_5_in_spec5_zz = m->six_r_J_5_in_spec5_zz[i];
-        const real six_r_dalpha_Gamma_5_in_axes5_x = v.six_r_D_1_5*six_r_o_1_in_axes5_x +
-            six_r_J_5_in_spec5_zz*six_r_o_5_in_axes5_x - v.six_r_D_3_5*six_r_o_2_t -
-            v.six_r_D_3_5*six_r_o_3_t - v.six_r_J_5_in_axes4_yz*six_r_o_4_t;
-        const real six_r_dalpha_Gamma_5_in_axes5_y = v.six_r_D_1_5*six_r_o_1_in_axes5_y +
-            v.six_r_D_3_5*six_r_o_2_in_axes5_y + v.six_r_D_3_5*six_r_o_3_in_axes5_y +
-            v.six_r_J_5_in_axes4_yz*six_r_o_4_in_axes5_y +
-            six_r_J_5_in_spec5_zz*six_r_o_5_in_axes5_y;
-        const real six_r_dalpha_Gamma_5_in_axes5_z = v.six_r_D_3_5*six_r_o_2_in_axes5_z +
-            v.six_r_D_3_5*six_r_o_3_in_axes5_z + v.six_r_J_5_in_axes4_yz*six_r_o_4_in_axes5_z -
-            v.six_r_D_1_5*six_r_o_1_t - six_r_J_5_in_spec5_zz*six_r_o_5_t;
-        /* (six_r-d_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal links'
-           inertia and weight */
-        const real six_r_d_Gamma_5_t = inv_six_r_w_1_t_12*six_r_J_5_in_spec5_zz;
-        const real six_r_d_Gamma_5_t_2 = inv_six_r_w_1_t_28*(v.six_r_J_5_in_axes4_yz -
-            six_r_d_Gamma_5_t*six_r_w_1_t_15);
-        const real six_r_d_Gamma_5_t_3 = inv_six_r_w_1_t_49*(v.six_r_D_1_5 +
-            six_r_d_Gamma_5_t_2*six_r_w_1_t_33 - six_r_d_Gamma_5_t*six_r_w_1_t_18);
-        const real six_r_d_Gamma_5_t_4 = inv_six_r_w_1_t_67*(v.six_r_D_3_5 +
-            six_r_d_Gamma_5_t_2*six_r_w_1_t_39 - six_r_d_Gamma_5_t*six_r_w_1_t_22 -
-            six_r_d_Gamma_5_t_3*six_r_w_1_t_55);
-        const real six_r_d_Gamma_5_t_5 = inv_six_r_w_1_t_79*(v.six_r_D_3_5 +
-            six_r_d_Gamma_5_t*six_r_w_1_t_25 + six_r_d_Gamma_5_t_2*six_r_w_1_t_44 -
-            six_r_d_Gamma_5_t_3*six_r_w_1_t_61 - six_r_d_Gamma_5_t_4*six_r_w_1_t_73);
-        const real six_r_d_Gamma_5_in_axes5_z = six_r_d_Gamma_5_t_2*six_r_w_1_t_30 +
-            six_r_d_Gamma_5_t_3*six_r_w_1_t_52 + six_r_d_Gamma_5_t_4*six_r_w_1_t_70 +
-            six_r_d_Gamma_5_t_5*six_r_w_1_t_82;
-        const real six_r_d_Gamma_5_in_axes5_x = six_r_d_Gamma_5_t_3*six_r_w_1_t_50 +
-            six_r_d_Gamma_5_t_4*six_r_w_1_t_68 + six_r_d_Gamma_5_t_5*six_r_w_1_t_80 -
-            six_r_h_5_in_spec5_y;
-        const real six_r_h_5_in_spec5_x = m->six_r_h_5_in_spec5_x[i];
-        const real six_r_d_Gamma_5_in_axes5_y = six_r_h_5_in_spec5_x +
-            six_r_d_Gamma_5_t*six_r_w_1_t_13 - six_r_d_Gamma_5_t_2*six_r_w_1_t_29 -
-            six_r_d_Gamma_5_t_3*six_r_w_1_t_51 - six_r_d_Gamma_5_t_4*six_r_w_1_t_69 -
-            six_r_d_Gamma_5_t_5*six_r_w_1_t_81;
-        /* (six_r-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal
-           links' inertia and weight */
-        const real six_r_dalpha_Gamma_4_in_axes5_x = v.six_r_J_5_in_axes4_yz*six_r_o_5_in_axes5_x
-            + v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_x -
-            v.six_r_Jc_4_in_axes4_zz*six_r_o_4_t - v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_t -
-            v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_t;
-        const real six_r_dalpha_Gamma_4_in_axes5_y = v.six_r_J_5_in_axes4_yz*six_r_o_5_in_axes5_y
-            + v.six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_y +
-            v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_y +
-            v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_y +
-            v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_y;
-        const real six_r_dalpha_Gamma_4_in_axes5_z = v.six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_z
-            + v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_z +
-            v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_z - v.six_r_J_5_in_axes4_yz*six_r_o_5_t
-            - v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_t;
-        /* (six_r-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
-           inertia and weight */
-        const real six_r_d_Gamma_4_t = inv_six_r_w_1_t_12*v.six_r_J_5_in_axes4_yz;
-        const real six_r_d_Gamma_4_t_2 = inv_six_r_w_1_t_28*(v.six_r_Jc_4_in_axes4_zz -
-            six_r_d_Gamma_4_t*six_r_w_1_t_15);
-        const real six_r_d_Gamma_4_t_3 = inv_six_r_w_1_t_49*(v.six_r_L_c_4_2_in_axes1_z +
-            six_r_d_Gamma_4_t_2*six_r_w_1_t_33 - six_r_d_Gamma_4_t*six_r_w_1_t_18);
-        const real six_r_d_Gamma_4_t_4 = inv_six_r_w_1_t_67*(v.six_r_L_c_4_2_in_axes2_z +
-            six_r_d_Gamma_4_t_2*six_r_w_1_t_39 - six_r_d_Gamma_4_t*six_r_w_1_t_22 -
-            six_r_d_Gamma_4_t_3*six_r_w_1_t_55);
-        const real six_r_d_Gamma_4_t_5 = inv_six_r_w_1_t_79*(v.six_r_L_c_4_3_in_axes3_z +
-            six_r_d_Gamma_4_t*six_r_w_1_t_25 + six_r_d_Gamma_4_t_2*six_r_w_1_t_44 -
-            six_r_d_Gamma_4_t_3*six_r_w_1_t_61 - six_r_d_Gamma_4_t_4*six_r_w_1_t_73);
-        const real six_r_d_Gamma_4_in_axes5_x = six_r_d_Gamma_4_t_3*six_r_w_1_t_50 +
-            six_r_d_Gamma_4_t_4*six_r_w_1_t_68 + six_r_d_Gamma_4_t_5*six_r_w_1_t_80 -
-            v.six_r_J_5_t*six_r_h_5_in_spec5_z;
-        const real six_r_d_Gamma_4_in_axes5_y = six_r_d_Gamma_4_t*six_r_w_1_t_13 -
-            six_r_d_Gamma_4_t_2*six_r_w_1_t_29 - six_r_d_Gamma_4_t_3*six_r_w_1_t_51 -
-            six_r_d_Gamma_4_t_4*six_r_w_1_t_69 - six_r_d_Gamma_4_t_5*six_r_w_1_t_81 -
-            v.six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_z;
-        const real six_r_d_Gamma_4_in_axes5_z = v.six_r_J_5_t*six_r_h_5_in_spec5_x +
-            six_r_d_Gamma_4_t_2*six_r_w_1_t_30 + six_r_d_Gamma_4_t_3*six_r_w_1_t_52 +
-            six_r_d_Gamma_4_t_4*six_r_w_1_t_70 + six_r_d_Gamma_4_t_5*six_r_w_1_t_82 +
-            v.six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_y;
-        /* (six_r-dalpha_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
-           links' inertia and weight */
-        const real six_r_dalpha_Gamma_3_t = v.six_r_D_3_5*six_r_o_5_in_axes5_x;
-        const real six_r_dalpha_Gamma_3_t_2 = v.six_r_D_3_5*six_r_o_5_in_axes5_y;
-        const real six_r_dalpha_Gamma_3_t_3 = v.six_r_D_3_5*six_r_o_5_t;
-        const real six_r_dalpha_Gamma_3_in_axes5_x = six_r_dalpha_Gamma_3_t +
-            v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_x - v.six_r_Jc_3_in_axes3_zz*six_r_o_3_t
-            - v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_t - v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_t;
-        const real six_r_dalpha_Gamma_3_in_axes5_y = six_r_dalpha_Gamma_3_t_2 +
-            v.six_r_Jc_3_in_axes3_zz*six_r_o_3_in_axes5_y +
-            v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_y +
-            v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_in_axes5_y +
-            v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_y;
-        const real six_r_dalpha_Gamma_3_in_axes5_z = v.six_r_Jc_3_in_axes3_zz*six_r_o_3_in_axes5_z
-            + v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_in_axes5_z +
-            v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_z - six_r_dalpha_Gamma_3_t_3 -
-            v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_t;
-        /* (six_r-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-           inertia and weight */
-        const real six_r_d_Gamma_3_t_4 = inv_six_r_w_1_t_12*v.six_r_D_3_5;
-        const real six_r_d_Gamma_3_t_5 = six_r_d_Gamma_3_t_4*six_r_w_1_t_15;
-        const real six_r_d_Gamma_3_t_6 = inv_six_r_w_1_t_28*(v.six_r_L_c_4_3_in_axes3_z -
-            six_r_d_Gamma_3_t_5);
-        const real six_r_d_Gamma_3_t_7 = six_r_d_Gamma_3_t_4*six_r_w_1_t_18;
-        const real six_r_d_Gamma_3_t_8 = inv_six_r_w_1_t_49*(v.six_r_L_c_3_2_in_axes1_z +
-            six_r_d_Gamma_3_t_6*six_r_w_1_t_33 - six_r_d_Gamma_3_t_7);
-        const real six_r_d_Gamma_3_t_9 = six_r_d_Gamma_3_t_4*six_r_w_1_t_22;
-        const real six_r_d_Gamma_3_t_10 = inv_six_r_w_1_t_67*(v.six_r_L_c_3_2_in_axes2_z +
-            six_r_d_Gamma_3_t_6*six_r_w_1_t_39 - six_r_d_Gamma_3_t_9 -
-            six_r_d_Gamma_3_t_8*six_r_w_1_t_55);
-        const real six_r_d_Gamma_3_t_11 = six_r_d_Gamma_3_t_4*six_r_w_1_t_25;
-        const real six_r_d_Gamma_3_t_12 = inv_six_r_w_1_t_79*(v.six_r_Jc_3_in_axes3_zz +
-            six_r_d_Gamma_3_t_11 + six_r_d_Gamma_3_t_6*six_r_w_1_t_44 -
-            six_r_d_Gamma_3_t_10*six_r_w_1_t_73 - six_r_d_Gamma_3_t_8*six_r_w_1_t_61);
-        const real six_r_d_Gamma_3_t_13 = six_r_d_Gamma_3_t_4*six_r_w_1_t_13;
-        const real six_r_d_Gamma_3_in_axes5_x = v.six_r_d_Gamma_3_t +
-            six_r_d_Gamma_3_t_10*six_r_w_1_t_68 + six_r_d_Gamma_3_t_12*six_r_w_1_t_80 +
-            six_r_d_Gamma_3_t_8*six_r_w_1_t_50;
-        const real six_r_d_Gamma_3_in_axes5_y = six_r_d_Gamma_3_t_13 - v.six_r_d_Gamma_3_t_2 -
-            six_r_d_Gamma_3_t_10*six_r_w_1_t_69 - six_r_d_Gamma_3_t_12*six_r_w_1_t_81 -
-            six_r_d_Gamma_3_t_6*six_r_w_1_t_29 - six_r_d_Gamma_3_t_8*six_r_w_1_t_51;
-        const real six_r_d_Gamma_3_in_axes5_z = v.six_r_d_Gamma_3_t_3 +
-            six_r_d_Gamma_3_t_10*six_r_w_1_t_70 + six_r_d_Gamma_3_t_12*six_r_w_1_t_82 +
-            six_r_d_Gamma_3_t_6*six_r_w_1_t_30 + six_r_d_Gamma_3_t_8*six_r_w_1_t_52;
-        /* (six_r-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
-           links' inertia and weight */
-        const real six_r_dalpha_Gamma_2_in_axes5_x = six_r_dalpha_Gamma_3_t +
-            v.six_r_Jc_2_in_axes1_yz*six_r_o_1_in_axes5_x - v.six_r_Jc_2_in_axes2_zz*six_r_o_2_t -
-            v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_t - v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_t;
-        const real six_r_dalpha_Gamma_2_in_axes5_y = six_r_dalpha_Gamma_3_t_2 +
-            v.six_r_Jc_2_in_axes1_yz*six_r_o_1_in_axes5_y +
-            v.six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_y +
-            v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_y +
-            v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_y;
-        const real six_r_dalpha_Gamma_2_in_axes5_z = v.six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_z
-            + v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_z +
-            v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_z - six_r_dalpha_Gamma_3_t_3 -
-            v.six_r_Jc_2_in_axes1_yz*six_r_o_1_t;
-        /* (six_r-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real six_r_d_Gamma_2_t = inv_six_r_w_1_t_28*(v.six_r_L_c_4_2_in_axes2_z -
-            six_r_d_Gamma_3_t_5);
-        const real six_r_d_Gamma_2_t_2 = inv_six_r_w_1_t_49*(v.six_r_Jc_2_in_axes1_yz +
-            six_r_d_Gamma_2_t*six_r_w_1_t_33 - six_r_d_Gamma_3_t_7);
-        const real six_r_d_Gamma_2_t_3 = inv_six_r_w_1_t_67*(v.six_r_Jc_2_in_axes2_zz +
-            six_r_d_Gamma_2_t*six_r_w_1_t_39 - six_r_d_Gamma_3_t_9 -
-            six_r_d_Gamma_2_t_2*six_r_w_1_t_55);
-        const real six_r_d_Gamma_2_t_4 = inv_six_r_w_1_t_79*(v.six_r_L_c_3_2_in_axes2_z +
-            six_r_d_Gamma_3_t_11 + six_r_d_Gamma_2_t*six_r_w_1_t_44 -
-            six_r_d_Gamma_2_t_2*six_r_w_1_t_61 - six_r_d_Gamma_2_t_3*six_r_w_1_t_73);
-        const real six_r_d_Gamma_2_in_axes5_x = v.six_r_d_Gamma_3_t +
-            six_r_d_Gamma_2_t_2*six_r_w_1_t_50 + six_r_d_Gamma_2_t_3*six_r_w_1_t_68 +
-            six_r_d_Gamma_2_t_4*six_r_w_1_t_80;
-        const real six_r_d_Gamma_2_in_axes5_y = six_r_d_Gamma_3_t_13 - v.six_r_d_Gamma_3_t_2 -
-            six_r_d_Gamma_2_t*six_r_w_1_t_29 - six_r_d_Gamma_2_t_2*six_r_w_1_t_51 -
-            six_r_d_Gamma_2_t_3*six_r_w_1_t_69 - six_r_d_Gamma_2_t_4*six_r_w_1_t_81;
-        const real six_r_d_Gamma_2_in_axes5_z = v.six_r_d_Gamma_3_t_3 +
-            six_r_d_Gamma_2_t*six_r_w_1_t_30 + six_r_d_Gamma_2_t_2*six_r_w_1_t_52 +
-            six_r_d_Gamma_2_t_3*six_r_w_1_t_70 + six_r_d_Gamma_2_t_4*six_r_w_1_t_82;
-        /* (six_r-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
-           links' inertia and weight */
-        const real six_r_dalpha_Gamma_1_in_axes5_x = v.six_r_D_1_5*six_r_o_5_in_axes5_x +
-            v.six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_x - v.six_r_Jc_2_in_axes1_yz*six_r_o_2_t -
-            v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_t - v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_t;
-        const real six_r_dalpha_Gamma_1_in_axes5_y = v.six_r_D_1_5*six_r_o_5_in_axes5_y +
-            v.six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_y +
-            v.six_r_Jc_2_in_axes1_yz*six_r_o_2_in_axes5_y +
-            v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_y +
-            v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_y;
-        const real six_r_dalpha_Gamma_1_in_axes5_z = v.six_r_Jc_2_in_axes1_yz*six_r_o_2_in_axes5_z
-            + v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_z +
-            v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_z - v.six_r_D_1_5*six_r_o_5_t -
-            v.six_r_Jc_1_in_axes1_zz*six_r_o_1_t;
-        /* (six_r-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real six_r_d_Gamma_1_t = inv_six_r_w_1_t_12*v.six_r_D_1_5;
-        const real six_r_d_Gamma_1_t_2 = inv_six_r_w_1_t_28*(v.six_r_L_c_4_2_in_axes1_z -
-            six_r_d_Gamma_1_t*six_r_w_1_t_15);
-        const real six_r_d_Gamma_1_t_3 = inv_six_r_w_1_t_49*(v.six_r_Jc_1_in_axes1_zz +
-            six_r_d_Gamma_1_t_2*six_r_w_1_t_33 - six_r_d_Gamma_1_t*six_r_w_1_t_18);
-        const real six_r_d_Gamma_1_t_4 = inv_six_r_w_1_t_67*(v.six_r_Jc_2_in_axes1_yz +
-            six_r_d_Gamma_1_t_2*six_r_w_1_t_39 - six_r_d_Gamma_1_t*six_r_w_1_t_22 -
-            six_r_d_Gamma_1_t_3*six_r_w_1_t_55);
-        const real six_r_d_Gamma_1_t_5 = inv_six_r_w_1_t_79*(v.six_r_L_c_3_2_in_axes1_z +
-            six_r_d_Gamma_1_t*six_r_w_1_t_25 + six_r_d_Gamma_1_t_2*six_r_w_1_t_44 -
-            six_r_d_Gamma_1_t_3*six_r_w_1_t_61 - six_r_d_Gamma_1_t_4*six_r_w_1_t_73);
-        const real six_r_d_Gamma_1_in_axes5_x = six_r_d_Gamma_1_t_3*six_r_w_1_t_50 +
-            six_r_d_Gamma_1_t_4*six_r_w_1_t_68 + six_r_d_Gamma_1_t_5*six_r_w_1_t_80 +
-            v.six_r_e_1_in_axes5_y*six_r_h_5_in_spec5_z -
-            v.six_r_e_1_in_axes5_z*six_r_h_5_in_spec5_y;
-        const real six_r_d_Gamma_1_in_axes5_y = six_r_d_Gamma_1_t*six_r_w_1_t_13 +
-            v.six_r_e_1_in_axes5_z*six_r_h_5_in_spec5_x - six_r_d_Gamma_1_t_2*six_r_w_1_t_29 -
-            six_r_d_Gamma_1_t_3*six_r_w_1_t_51 - six_r_d_Gamma_1_t_4*six_r_w_1_t_69 -
-            six_r_d_Gamma_1_t_5*six_r_w_1_t_81 - v.six_r_e_1_in_axes5_x*six_r_h_5_in_spec5_z;
-        const real six_r_d_Gamma_1_in_axes5_z = six_r_d_Gamma_1_t_2*six_r_w_1_t_30 +
-            six_r_d_Gamma_1_t_3*six_r_w_1_t_52 + six_r_d_Gamma_1_t_4*six_r_w_1_t_70 +
-            six_r_d_Gamma_1_t_5*six_r_w_1_t_82 + v.six_r_e_1_in_axes5_x*six_r_h_5_in_spec5_y -
-            v.six_r_e_1_in_axes5_y*six_r_h_5_in_spec5_x;
-        /* (six_r-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
-           balances the leg's inertia and weight along all degrees of freedom */
-        const real six_r_dalpha_G_m1_in_axes5_x = six_r_dalpha_Gamma_2_in_axes5_x*six_r_m1_w_2 +
-            six_r_dalpha_Gamma_3_in_axes5_x*six_r_m1_w_3 +
-            six_r_dalpha_Gamma_4_in_axes5_x*six_r_m1_w_4 -
-            six_r_dalpha_Gamma_1_in_axes5_x*six_r_m1_w_1_t_2 -
-            six_r_dalpha_Gamma_5_in_axes5_x*six_r_m1_w_5_t;
-        const real six_r_dalpha_G_m1_in_axes5_y = six_r_dalpha_Gamma_2_in_axes5_y*six_r_m1_w_2 +
-            six_r_dalpha_Gamma_3_in_axes5_y*six_r_m1_w_3 +
-            six_r_dalpha_Gamma_4_in_axes5_y*six_r_m1_w_4 -
-            six_r_dalpha_Gamma_1_in_axes5_y*six_r_m1_w_1_t_2 -
-            six_r_dalpha_Gamma_5_in_axes5_y*six_r_m1_w_5_t;
-        const real six_r_dalpha_G_m1_in_axes5_z = six_r_dalpha_Gamma_2_in_axes5_z*six_r_m1_w_2 +
-            six_r_dalpha_Gamma_3_in_axes5_z*six_r_m1_w_3 +
-            six_r_dalpha_Gamma_4_in_axes5_z*six_r_m1_w_4 -
-            six_r_dalpha_Gamma_1_in_axes5_z*six_r_m1_w_1_t_2 -
-            six_r_dalpha_Gamma_5_in_axes5_z*six_r_m1_w_5_t;
-        const real six_r_dalpha_G_m1_y = axis_x_six_r_axes5_y*six_r_dalpha_G_m1_in_axes5_x +
-            axis_y_six_r_axes5_y*six_r_dalpha_G_m1_in_axes5_y +
-            axis_z_six_r_axes5_y*six_r_dalpha_G_m1_in_axes5_z;
-        const real six_r_dalpha_G_m1_z = axis_x_six_r_axes5_z*six_r_dalpha_G_m1_in_axes5_x +
-            axis_y_six_r_axes5_z*six_r_dalpha_G_m1_in_axes5_y +
-            axis_z_six_r_axes5_z*six_r_dalpha_G_m1_in_axes5_z;
-        /* (six_r-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
-           balances the leg's inertia and weight along all degrees of freedom */
-        const real six_r_d_G_m1_in_axes5_x = six_r_d_Gamma_2_in_axes5_x*six_r_m1_w_2 +
-            six_r_d_Gamma_3_in_axes5_x*six_r_m1_w_3 + six_r_d_Gamma_4_in_axes5_x*six_r_m1_w_4 -
-            six_r_d_Gamma_1_in_axes5_x*six_r_m1_w_1_t_2 -
-            six_r_d_Gamma_5_in_axes5_x*six_r_m1_w_5_t;
-        const real six_r_d_G_m1_in_axes5_y = six_r_d_Gamma_2_in_axes5_y*six_r_m1_w_2 +
-            six_r_d_Gamma_3_in_axes5_y*six_r_m1_w_3 + six_r_d_Gamma_4_in_axes5_y*six_r_m1_w_4 -
-            six_r_d_Gamma_1_in_axes5_y*six_r_m1_w_1_t_2 -
-            six_r_d_Gamma_5_in_axes5_y*six_r_m1_w_5_t;
-        const real six_r_d_G_m1_in_axes5_z = six_r_d_Gamma_2_in_axes5_z*six_r_m1_w_2 +
-            six_r_d_Gamma_3_in_axes5_z*six_r_m1_w_3 + six_r_d_Gamma_4_in_axes5_z*six_r_m1_w_4 -
-            six_r_d_Gamma_1_in_axes5_z*six_r_m1_w_1_t_2 -
-            six_r_d_Gamma_5_in_axes5_z*six_r_m1_w_5_t;
-        const real six_r_d_G_m1_x = axis_x_six_r_axes5_x*six_r_d_G_m1_in_axes5_x +
-            axis_y_six_r_axes5_x*six_r_d_G_m1_in_axes5_y +
-            axis_z_six_r_axes5_x*six_r_d_G_m1_in_axes5_z;
-        const real six_r_d_G_m1_y = axis_x_six_r_axes5_y*six_r_d_G_m1_in_axes5_x +
-            axis_y_six_r_axes5_y*six_r_d_G_m1_in_axes5_y +
-            axis_z_six_r_axes5_y*six_r_d_G_m1_in_axes5_z;
-        const real six_r_d_G_m1_z = axis_x_six_r_axes5_z*six_r_d_G_m1_in_axes5_x +
-            axis_y_six_r_axes5_z*six_r_d_G_m1_in_axes5_y +
-            axis_z_six_r_axes5_z*six_r_d_G_m1_in_axes5_z;
-        /* (six_r-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
-           balances the leg's inertia and weight along all degrees of freedom */
-        const real six_r_dalpha_G_m2_in_axes5_x = six_r_dalpha_Gamma_2_in_axes5_x*six_r_m2_w_2 +
-            six_r_dalpha_Gamma_3_in_axes5_x*six_r_m2_w_3 +
-            six_r_dalpha_Gamma_4_in_axes5_x*six_r_m2_w_4 -
-            six_r_dalpha_Gamma_1_in_axes5_x*six_r_m2_w_1_t_2 -
-            six_r_dalpha_Gamma_5_in_axes5_x*six_r_m2_w_5_t;
-        const real six_r_dalpha_G_m2_in_axes5_y = six_r_dalpha_Gamma_2_in_axes5_y*six_r_m2_w_2 +
-            six_r_dalpha_Gamma_3_in_axes5_y*six_r_m2_w_3 +
-            six_r_dalpha_Gamma_4_in_axes5_y*six_r_m2_w_4 -
-            six_r_dalpha_Gamma_1_in_axes5_y*six_r_m2_w_1_t_2 -
-            six_r_dalpha_Gamma_5_in_axes5_y*six_r_m2_w_5_t;
-        const real six_r_dalpha_G_m2_in_axes5_z = six_r_dalpha_Gamma_2_in_axes5_z*six_r_m2_w_2 +
-            six_r_dalpha_Gamma_3_in_axes5_z*six_r_m2_w_3 +
-            six_r_dalpha_Gamma_4_in_axes5_z*six_r_m2_w_4 -
-            six_r_dalpha_Gamma_1_in_axes5_z*six_r_m2_w_1_t_2 -
-            six_r_dalpha_Gamma_5_in_axes5_z*six_r_m2_w_5_t;
-        const real six_r_dalpha_G_m2_y = axis_x_six_r_axes5_y*six_r_dalpha_G_m2_in_axes5_x +
-            axis_y_six_r_axes5_y*six_r_dalpha_G_m2_in_axes5_y +
-            axis_z_six_r_axes5_y*six_r_dalpha_G_m2_in_axes5_z;
-        const real six_r_dalpha_G_m2_z = axis_x_six_r_axes5_z*six_r_dalpha_G_m2_in_axes5_x +
-            axis_y_six_r_axes5_z*six_r_dalpha_G_m2_in_axes5_y +
-            axis_z_six_r_axes5_z*six_r_dalpha_G_m2_in_axes5_z;
-        /* (six_r-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
-           balances the leg's inertia and weight along all degrees of freedom */
-        const real six_r_d_G_m2_in_axes5_x = six_r_d_Gamma_2_in_axes5_x*six_r_m2_w_2 +
-            six_r_d_Gamma_3_in_axes5_x*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_x*six_r_m2_w_4 -
-            six_r_d_Gamma_1_in_axes5_x*six_r_m2_w_1_t_2 -
-            six_r_d_Gamma_5_in_axes5_x*six_r_m2_w_5_t;
-        const real six_r_d_G_m2_in_axes5_y = six_r_d_Gamma_2_in_axes5_y*six_r_m2_w_2 +
-            six_r_d_Gamma_3_in_axes5_y*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_y*six_r_m2_w_4 -
-            six_r_d_Gamma_1_in_axes5_y*six_r_m2_w_1_t_2 -
-            six_r_d_Gamma_5_in_axes5_y*six_r_m2_w_5_t;
-        const real six_r_d_G_m2_in_axes5_z = six_r_d_Gamma_2_in_axes5_z*six_r_m2_w_2 +
-            six_r_d_Gamma_3_in_axes5_z*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_z*six_r_m2_w_4 -
-            six_r_d_Gamma_1_in_axes5_z*six_r_m2_w_1_t_2 -
-            six_r_d_Gamma_5_in_axes5_z*six_r_m2_w_5_t;
-        const real six_r_d_G_m2_x = axis_x_six_r_axes5_x*six_r_d_G_m2_in_axes5_x +
-            axis_y_six_r_axes5_x*six_r_d_G_m2_in_axes5_y +
-            axis_z_six_r_axes5_x*six_r_d_G_m2_in_axes5_z;
-        const real six_r_d_G_m2_y = axis_x_six_r_axes5_y*six_r_d_G_m2_in_axes5_x +
-            axis_y_six_r_axes5_y*six_r_d_G_m2_in_axes5_y +
-            axis_z_six_r_axes5_y*six_r_d_G_m2_in_axes5_z;
-        const real six_r_d_G_m2_z = axis_x_six_r_axes5_z*six_r_d_G_m2_in_axes5_x +
-            axis_y_six_r_axes5_z*six_r_d_G_m2_in_axes5_y +
-            axis_z_six_r_axes5_z*six_r_d_G_m2_in_axes5_z;
-        /* (six_r-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
-        const real six_r_d_G_m_xx = six_r_d_G_m1_x*six_r_n_m1_x + six_r_d_G_m2_x*six_r_n_m2_x;
-        const real six_r_d_G_m_xy = six_r_d_G_m1_y*six_r_n_m1_x + six_r_d_G_m2_y*six_r_n_m2_x;
-        const real six_r_d_G_m_xz = six_r_d_G_m1_z*six_r_n_m1_x + six_r_d_G_m2_z*six_r_n_m2_x;
-        const real six_r_d_G_m_yx = six_r_d_G_m1_x*six_r_n_m1_y + six_r_d_G_m2_x*six_r_n_m2_y;
-        /* (six_r-dalpha_c) coefficient of the acceleration in: leg force on the platform without
-           actuation and without the mass at the connection point */
-        const real six_r_dalpha_c_in_axes5_xx = six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_t_5 +
-            six_r_dalpha_alpha_5_in_axes5_zx*six_r_h_5_in_spec5_y -
-            six_r_dalpha_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_x -
-            six_r_dalpha_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_x -
-            six_r_dalpha_Gamma_3_in_axes5_x*six_r_w_3_in_axes5_x -
-            six_r_dalpha_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_x -
-            six_r_dalpha_alpha_5_in_axes5_yx*six_r_h_5_in_spec5_z;
-        const real six_r_dalpha_c_in_axes5_xy = six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_t_5 +
-            six_r_dalpha_alpha_5_in_axes5_zy*six_r_h_5_in_spec5_y -
-            six_r_dalpha_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_x -
-            six_r_dalpha_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_x -
-            six_r_dalpha_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_x -
-            six_r_dalpha_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_x -
-            six_r_dalpha_alpha_5_in_axes5_yy*six_r_h_5_in_spec5_z;
-        const real six_r_dalpha_c_in_axes5_xz = six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_t_5 +
-            six_r_dalpha_alpha_5_in_axes5_zz*six_r_h_5_in_spec5_y -
-            six_r_dalpha_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_x -
-            six_r_dalpha_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_x -
-            six_r_dalpha_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_x -
-            six_r_dalpha_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_x -
-            six_r_dalpha_alpha_5_in_axes5_yz*six_r_h_5_in_spec5_z;
-        const real six_r_dalpha_c_in_axes5_yx = six_r_dalpha_Gamma_3_in_axes5_x*six_r_w_3_t +
-            six_r_dalpha_alpha_5_in_axes5_xx*six_r_h_5_in_spec5_z -
-            six_r_dalpha_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_y -
-            six_r_dalpha_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_y -
-            six_r_dalpha_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_y -
-            six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_in_axes5_y -
-            six_r_dalpha_alpha_5_in_axes5_zx*six_r_h_5_in_spec5_x;
-        const real six_r_dalpha_c_in_axes5_yy = six_r_dalpha_Gamma_3_in_axes5_y*six_r_w_3_t +
-            six_r_dalpha_alpha_5_in_axes5_xy*six_r_h_5_in_spec5_z -
-            six_r_dalpha_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_y -
-            six_r_dalpha_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_y -
-            six_r_dalpha_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_y -
-            six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_y -
-            six_r_dalpha_alpha_5_in_axes5_zy*six_r_h_5_in_spec5_x;
-        const real six_r_dalpha_c_in_axes5_yz = six_r_dalpha_Gamma_3_in_axes5_z*six_r_w_3_t +
-            six_r_dalpha_alpha_5_in_axes5_xz*six_r_h_5_in_spec5_z -
-            six_r_dalpha_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_y -
-            six_r_dalpha_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_y -
-            six_r_dalpha_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_y -
-            six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_y -
-            six_r_dalpha_alpha_5_in_axes5_zz*six_r_h_5_in_spec5_x;
-        const real six_r_dalpha_c_in_axes5_zx =
-            six_r_dalpha_alpha_5_in_axes5_yx*six_r_h_5_in_spec5_x -
-            six_r_dalpha_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_z -
-            six_r_dalpha_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_z -
-            six_r_dalpha_Gamma_3_in_axes5_x*six_r_w_3_in_axes5_z -
-            six_r_dalpha_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_z -
-            six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_in_axes5_z -
-            six_r_dalpha_alpha_5_in_axes5_xx*six_r_h_5_in_spec5_y;
-        const real six_r_dalpha_c_in_axes5_zy =
-            six_r_dalpha_alpha_5_in_axes5_yy*six_r_h_5_in_spec5_x -
-            six_r_dalpha_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_z -
-            six_r_dalpha_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_z -
-            six_r_dalpha_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_z -
-            six_r_dalpha_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_z -
-            six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_z -
-            six_r_dalpha_alpha_5_in_axes5_xy*six_r_h_5_in_spec5_y;
-        const real six_r_dalpha_c_in_axes5_zz =
-            six_r_dalpha_alpha_5_in_axes5_yz*six_r_h_5_in_spec5_x -
-            six_r_dalpha_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_z -
-            six_r_dalpha_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_z -
-            six_r_dalpha_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_z -
-            six_r_dalpha_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_z -
-            six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_z -
-            six_r_dalpha_alpha_5_in_axes5_xz*six_r_h_5_in_spec5_y;
-        /* (six_r-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real six_r_d_c_in_axes5_xx = six_r_d_Gamma_5_in_axes5_x*six_r_w_5_t_5 -
-            six_r_d_phi_5_in_axes5_xx - six_r_d_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_x -
-            six_r_d_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_x -
-            six_r_d_Gamma_3_in_axes5_x*six_r_w_3_in_axes5_x -
-            six_r_d_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_x;
-        const real six_r_d_c_in_axes5_xy = six_r_d_Gamma_5_in_axes5_y*six_r_w_5_t_5 +
-            six_r_d_alpha_5_in_axes5_zy*six_r_h_5_in_spec5_y -
-            six_r_d_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_x -
-            six_r_d_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_x -
-            six_r_d_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_x -
-            six_r_d_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_x -
-            six_r_h_5_in_spec5_z*(v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_y +
-            v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_y - v.six_r_J_5_t*six_r_w_4_in_axes5_y -
-            v.six_r_e_2_in_axes5_y*six_r_w_3_t);
-        const real six_r_d_c_in_axes5_xz = six_r_d_Gamma_5_in_axes5_z*six_r_w_5_t_5 +
-            six_r_d_alpha_5_in_axes5_zz*six_r_h_5_in_spec5_y -
-            six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_x -
-            six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_x -
-            six_r_d_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_x -
-            six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_x -
-            six_r_d_alpha_5_in_axes5_yz*six_r_h_5_in_spec5_z;
-        const real six_r_d_c_in_axes5_yy = six_r_d_Gamma_3_in_axes5_y*six_r_w_3_t +
-            six_r_h_5_in_spec5_z*(v.six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_y +
-            v.six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_y +
-            v.six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_y - v.six_r_e_2_in_axes5_x*six_r_w_3_t) -
-            six_r_d_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_y -
-            six_r_d_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_y -
-            six_r_d_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_y -
-            six_r_d_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_y -
-            six_r_d_alpha_5_in_axes5_zy*six_r_h_5_in_spec5_x;
-        const real six_r_d_c_in_axes5_yz = six_r_d_Gamma_3_in_axes5_z*six_r_w_3_t +
-            six_r_d_alpha_5_in_axes5_xz*six_r_h_5_in_spec5_z -
-            six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_y -
-            six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_y -
-            six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_y -
-            six_r_d_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_y -
-            six_r_d_alpha_5_in_axes5_zz*six_r_h_5_in_spec5_x;
-        /* (six_r-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real six_r_Q_t = six_r_d_c_in_axes5_xx - six_r_d_c_in_axes5_yy;
-        const real six_r_Q_t_2 = R(0.5)*six_r_Q_t;
-        const real six_r_Q_t_3 = six_r_d_c_in_axes5_xx +
-            six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_z +
-            six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_z +
-            six_r_d_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_z +
-            six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_z +
-            six_r_d_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_z +
-            six_r_d_alpha_5_in_axes5_xz*six_r_h_5_in_spec5_y -
-            six_r_d_alpha_5_in_axes5_yz*six_r_h_5_in_spec5_x;
-        const real six_r_Q_t_4 = R(0.5)*six_r_Q_t_3;
-        const real six_r_Q_t_5 = axis_x_six_r_axes5_x*six_r_d_c_in_axes5_xy +
-            axis_z_six_r_axes5_x*six_r_d_c_in_axes5_yz - axis_y_six_r_axes5_x*six_r_Q_t_2;
-        const real six_r_Q_t_6 = axis_x_six_r_axes5_y*six_r_d_c_in_axes5_xy +
-            axis_z_six_r_axes5_y*six_r_d_c_in_axes5_yz - axis_y_six_r_axes5_y*six_r_Q_t_2;
-        const real six_r_Q_t_7 = axis_x_six_r_axes5_z*six_r_d_c_in_axes5_xy +
-            axis_z_six_r_axes5_z*six_r_d_c_in_axes5_yz - axis_y_six_r_axes5_z*six_r_Q_t_2;
-        const real six_r_Q_t_8 = axis_z_six_r_axes5_x*six_r_Q_t_4 -
-            axis_x_six_r_axes5_x*six_r_d_c_in_axes5_xz;
-        const real six_r_Q_t_9 = axis_z_six_r_axes5_y*six_r_Q_t_4 -
-            axis_x_six_r_axes5_y*six_r_d_c_in_axes5_xz;
-        const real six_r_Q_t_10 = axis_z_six_r_axes5_z*six_r_Q_t_4 -
-            axis_x_six_r_axes5_z*six_r_d_c_in_axes5_xz;
-        const real six_r_Q_t_11 = axis_y_six_r_axes5_x*six_r_Q_t_5 -
-            axis_z_six_r_axes5_x*six_r_Q_t_8;
-        const real six_r_Q_xx = -2*six_r_Q_t_11 - six_r_d_c_in_axes5_xx;
-        const real six_r_Q_xy = axis_z_six_r_axes5_x*six_r_Q_t_9 +
-            axis_z_six_r_axes5_y*six_r_Q_t_8 - axis_y_six_r_axes5_x*six_r_Q_t_6 -
-            axis_y_six_r_axes5_y*six_r_Q_t_5;
-        const real six_r_Q_xz = axis_z_six_r_axes5_x*six_r_Q_t_10 +
-            axis_z_six_r_axes5_z*six_r_Q_t_8 - axis_y_six_r_axes5_x*six_r_Q_t_7 -
-            axis_y_six_r_axes5_z*six_r_Q_t_5;
-        const real six_r_Q_t_12 = axis_y_six_r_axes5_y*six_r_Q_t_6 -
-            axis_z_six_r_axes5_y*six_r_Q_t_9;
-        const real six_r_Q_yy = -2*six_r_Q_t_12 - six_r_d_c_in_axes5_xx;
-        const real six_r_Q_yz = axis_z_six_r_axes5_y*six_r_Q_t_10 +
-            axis_z_six_r_axes5_z*six_r_Q_t_9 - axis_y_six_r_axes5_y*six_r_Q_t_7 -
-            axis_y_six_r_axes5_z*six_r_Q_t_6;
-        const real six_r_Q_t_13 = axis_y_six_r_axes5_z*six_r_Q_t_7 -
-            axis_z_six_r_axes5_z*six_r_Q_t_10;
-        const real six_r_Q_zz = -2*six_r_Q_t_13 - six_r_d_c_in_axes5_xx;
-        /* (M_ta) coupling block of M */
-        const real six_r_M_ta_t = axis_x_six_r_axes5_x*six_r_dalpha_c_in_axes5_xx +
-            axis_y_six_r_axes5_x*six_r_dalpha_c_in_axes5_yx +
-            axis_z_six_r_axes5_x*six_r_dalpha_c_in_axes5_zx;
-        const real six_r_M_ta_t_2 = axis_x_six_r_axes5_y*six_r_dalpha_c_in_axes5_xx +
-            axis_y_six_r_axes5_y*six_r_dalpha_c_in_axes5_yx +
-            axis_z_six_r_axes5_y*six_r_dalpha_c_in_axes5_zx;
-        const real six_r_M_ta_t_3 = axis_x_six_r_axes5_z*six_r_dalpha_c_in_axes5_xx +
-            axis_y_six_r_axes5_z*six_r_dalpha_c_in_axes5_yx +
-            axis_z_six_r_axes5_z*six_r_dalpha_c_in_axes5_zx;
-        const real six_r_M_ta_t_4 = axis_x_six_r_axes5_x*six_r_dalpha_c_in_axes5_xy +
-            axis_y_six_r_axes5_x*six_r_dalpha_c_in_axes5_yy +
-            axis_z_six_r_axes5_x*six_r_dalpha_c_in_axes5_zy;
-        const real six_r_M_ta_t_5 = axis_x_six_r_axes5_y*six_r_dalpha_c_in_axes5_xy +
-            axis_y_six_r_axes5_y*six_r_dalpha_c_in_axes5_yy +
-            axis_z_six_r_axes5_y*six_r_dalpha_c_in_axes5_zy;
-        const real six_r_M_ta_t_6 = axis_x_six_r_axes5_z*six_r_dalpha_c_in_axes5_xy +
-            axis_y_six_r_axes5_z*six_r_dalpha_c_in_axes5_yy +
-            axis_z_six_r_axes5_z*six_r_dalpha_c_in_axes5_zy;
-        const real six_r_M_ta_t_7 = axis_x_six_r_axes5_x*six_r_dalpha_c_in_axes5_xz +
-            axis_y_six_r_axes5_x*six_r_dalpha_c_in_axes5_yz +
-            axis_z_six_r_axes5_x*six_r_dalpha_c_in_axes5_zz;
-        const real six_r_M_ta_t_8 = axis_x_six_r_axes5_y*six_r_dalpha_c_in_axes5_xz +
-            axis_y_six_r_axes5_y*six_r_dalpha_c_in_axes5_yz +
-            axis_z_six_r_axes5_y*six_r_dalpha_c_in_axes5_zz;
-        const real six_r_M_ta_t_9 = axis_x_six_r_axes5_z*six_r_dalpha_c_in_axes5_xz +
-            axis_y_six_r_axes5_z*six_r_dalpha_c_in_axes5_yz +
-            axis_z_six_r_axes5_z*six_r_dalpha_c_in_axes5_zz;
-        const real six_r_M_ta_t_10 = -six_r_Q_xy*v.six_r_q_z;
-        const real six_r_M_ta_t_11 = six_r_Q_xz*v.six_r_q_y;
-        const real six_r_M_ta_t_12 = six_r_Q_yz*v.six_r_q_x;
-        const real six_r_M_ta_t_13 = six_r_M_ta_t_10 + six_r_M_ta_t_11 -
-            axis_x_six_r_axes5_x*six_r_M_ta_t - axis_y_six_r_axes5_x*six_r_M_ta_t_4 -
-            axis_z_six_r_axes5_x*six_r_M_ta_t_7;
-        const real six_r_M_ta_t_14 = six_r_Q_xx*v.six_r_q_z - axis_x_six_r_axes5_y*six_r_M_ta_t -
-            axis_y_six_r_axes5_y*six_r_M_ta_t_4 - axis_z_six_r_axes5_y*six_r_M_ta_t_7 -
-            six_r_Q_xz*v.six_r_q_x;
-        const real six_r_M_ta_t_15 = six_r_Q_xy*v.six_r_q_x - axis_x_six_r_axes5_z*six_r_M_ta_t -
-            axis_y_six_r_axes5_z*six_r_M_ta_t_4 - axis_z_six_r_axes5_z*six_r_M_ta_t_7 -
-            six_r_Q_xx*v.six_r_q_y;
-        const real six_r_M_ta_t_16 = six_r_Q_yz*v.six_r_q_y - axis_x_six_r_axes5_x*six_r_M_ta_t_2
-            - axis_y_six_r_axes5_x*six_r_M_ta_t_5 - axis_z_six_r_axes5_x*six_r_M_ta_t_8 -
-            six_r_Q_yy*v.six_r_q_z;
-        const real six_r_M_ta_t_17 = six_r_M_ta_t_10 + six_r_M_ta_t_12 +
-            axis_x_six_r_axes5_y*six_r_M_ta_t_2 + axis_y_six_r_axes5_y*six_r_M_ta_t_5 +
-            axis_z_six_r_axes5_y*six_r_M_ta_t_8;
-        const real six_r_M_ta_t_18 = six_r_Q_yy*v.six_r_q_x - axis_x_six_r_axes5_z*six_r_M_ta_t_2
-            - axis_y_six_r_axes5_z*six_r_M_ta_t_5 - axis_z_six_r_axes5_z*six_r_M_ta_t_8 -
-            six_r_Q_xy*v.six_r_q_y;
-        const real six_r_M_ta_t_19 = six_r_Q_zz*v.six_r_q_y - axis_x_six_r_axes5_x*six_r_M_ta_t_3
-            - axis_y_six_r_axes5_x*six_r_M_ta_t_6 - axis_z_six_r_axes5_x*six_r_M_ta_t_9 -
-            six_r_Q_yz*v.six_r_q_z;
-        const real six_r_M_ta_t_20 = six_r_Q_xz*v.six_r_q_z - axis_x_six_r_axes5_y*six_r_M_ta_t_3
-            - axis_y_six_r_axes5_y*six_r_M_ta_t_6 - axis_z_six_r_axes5_y*six_r_M_ta_t_9 -
-            six_r_Q_zz*v.six_r_q_x;
-        const real six_r_M_ta_t_21 = six_r_M_ta_t_12 - six_r_M_ta_t_11 -
-            axis_x_six_r_axes5_z*six_r_M_ta_t_3 - axis_y_six_r_axes5_z*six_r_M_ta_t_6 -
-            axis_z_six_r_axes5_z*six_r_M_ta_t_9;
-        /* (M_aa) rotational block of M */
-        const real six_r_M_aa_t = six_r_M_ta_t_19*v.six_r_q_y + six_r_d_G_m_xz*v.six_r_q_y +
-            six_r_n_m1_x*(axis_x_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_x +
-            axis_y_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_y +
-            axis_z_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_z) +
-            six_r_n_m2_x*(axis_x_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_x +
-            axis_y_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_y +
-            axis_z_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_z) - six_r_M_ta_t_16*v.six_r_q_z -
-            six_r_d_G_m_xy*v.six_r_q_z;
-        const real six_r_M_aa_t_2 = six_r_M_ta_t_17*v.six_r_q_z + six_r_M_ta_t_20*v.six_r_q_y +
-            six_r_d_G_m_xx*v.six_r_q_z + six_r_dalpha_G_m1_y*six_r_n_m1_x +
-            six_r_dalpha_G_m2_y*six_r_n_m2_x - six_r_d_G_m_xz*v.six_r_q_x;
-        const real six_r_M_aa_t_3 = six_r_M_ta_t_21*v.six_r_q_y + six_r_d_G_m_xy*v.six_r_q_x +
-            six_r_dalpha_G_m1_z*six_r_n_m1_x + six_r_dalpha_G_m2_z*six_r_n_m2_x -
-            six_r_M_ta_t_18*v.six_r_q_z - six_r_d_G_m_xx*v.six_r_q_y;
-        const real six_r_M_aa_t_4 = six_r_M_ta_t_14*v.six_r_q_z + six_r_d_G_m_yx*v.six_r_q_z +
-            six_r_dalpha_G_m1_y*six_r_n_m1_y + six_r_dalpha_G_m2_y*six_r_n_m2_y -
-            six_r_M_ta_t_20*v.six_r_q_x - v.six_r_q_x*(six_r_d_G_m1_z*six_r_n_m1_y +
-            six_r_d_G_m2_z*six_r_n_m2_y);
-        const real six_r_M_aa_t_5 = six_r_M_ta_t_15*v.six_r_q_z + six_r_dalpha_G_m1_z*six_r_n_m1_y
-            + six_r_dalpha_G_m2_z*six_r_n_m2_y + v.six_r_q_x*(six_r_d_G_m1_y*six_r_n_m1_y +
-            six_r_d_G_m2_y*six_r_n_m2_y) - six_r_M_ta_t_21*v.six_r_q_x -
-            six_r_d_G_m_yx*v.six_r_q_y;
-        const real six_r_M_aa_t_6 = six_r_M_ta_t_18*v.six_r_q_x + six_r_dalpha_G_m1_z*six_r_n_m1_z
-            + six_r_dalpha_G_m2_z*six_r_n_m2_z + v.six_r_q_x*(six_r_d_G_m1_y*six_r_n_m1_z +
-            six_r_d_G_m2_y*six_r_n_m2_z) - six_r_M_ta_t_15*v.six_r_q_y -
-            v.six_r_q_y*(six_r_d_G_m1_x*six_r_n_m1_z + six_r_d_G_m2_x*six_r_n_m2_z);
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, six_r_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, six_r_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, six_r_Q_xz);  /* M_tt_xz */
-        gather(&terms[3*count + k], add, six_r_Q_yy);  /* M_tt_yy_of_legs */
-        gather(&terms[4*count + k], add, six_r_Q_yz);  /* M_tt_yz */
-        gather(&terms[5*count + k], add, six_r_Q_zz);  /* M_tt_zz_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[6*count + k], add, six_r_M_ta_t_13);  /* M_ta_xx */
-        gather(&terms[7*count + k], add, six_r_M_ta_t_14);  /* M_ta_xy_of_legs */
-        gather(&terms[8*count + k], add, six_r_M_ta_t_15);  /* M_ta_xz_of_legs */
-        gather(&terms[9*count + k], add, six_r_M_ta_t_16);  /* M_ta_yx_of_legs */
-        gather(&terms[10*count + k], add, six_r_M_ta_t_17);  /* M_ta_t */
-        gather(&terms[11*count + k], add, six_r_M_ta_t_18);  /* M_ta_yz_of_legs */
-        gather(&terms[12*count + k], add, six_r_M_ta_t_19);  /* M_ta_zx_of_legs */
-        gather(&terms[13*count + k], add, six_r_M_ta_t_20);  /* M_ta_zy_of_legs */
-        gather(&terms[14*count + k], add, six_r_M_ta_t_21);  /* M_ta_zz */
-        /* (M_aa) rotational block of M */
-        gather(&terms[15*count + k], add, six_r_M_aa_t);  /* M_aa_xx_of_legs */
-        gather(&terms[16*count + k], add, six_r_M_aa_t_2);  /* M_aa_xy_of_legs */
-        gather(&terms[17*count + k], add, six_r_M_aa_t_3);  /* M_aa_xz_of_legs */
-        gather(&terms[18*count + k], add, six_r_M_aa_t_4);  /* M_aa_yy_of_legs */
-        gather(&terms[19*count + k], add, six_r_M_aa_t_5);  /* M_aa_yz_of_legs */
-        gather(&terms[20*count + k], add, six_r_M_aa_t_6);  /* M_aa_zz_of_legs */
-        o[0*count + k] = UNLESS(magnitude(six_r_w_1_t_12) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_28) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_49) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_67) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_79) > TOLERANCE*six_r_size);
-    }
+    values_six_r v;
+    stage_six_r_X(m, w, i, j, s, &v);
+    stage_six_r_q(m, w, i, j, joints, &v);
+    stage_six_r_M_dynamics(m, w, i, j, joints, &v);
+    /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
+    const real six_r_n_m1_t = v.six_r_c_3*v.six_r_h_4_t;
+    const real six_r_n_m1_t_2 = v.six_r_h_4_t*v.six_r_s_3;
+    const real six_r_n_m1_t_3 = v.six_r_c_2*six_r_n_m1_t_2 + six_r_n_m1_t*v.six_r_s_2;
+    const real six_r_n_m1_t_4 = six_r_n_m1_t_2*v.six_r_s_2 - v.six_r_c_2*six_r_n_m1_t;
+    const real six_r_n_m1_t_5 = v.six_r_c_1*six_r_n_m1_t_4 -
+        v.six_r_e_2_in_axes5_z*v.six_r_s_1;
+    const real six_r_n_m1_t_6 = v.six_r_c_1*v.six_r_e_2_in_axes5_z +
+        six_r_n_m1_t_4*v.six_r_s_1;
+    const real axis_z_six_r_axes5_x = m->six_r_base_frame_xx[i]*six_r_n_m1_t_3 +
+        m->six_r_base_frame_xy[i]*six_r_n_m1_t_5 + m->six_r_base_frame_xz[i]*six_r_n_m1_t_6;
+    const real axis_z_six_r_axes5_y = m->six_r_base_frame_yx[i]*six_r_n_m1_t_3 +
+        m->six_r_base_frame_yy[i]*six_r_n_m1_t_5 + m->six_r_base_frame_yz[i]*six_r_n_m1_t_6;
+    const real axis_z_six_r_axes5_z = m->six_r_base_frame_zx[i]*six_r_n_m1_t_3 +
+        m->six_r_base_frame_zy[i]*six_r_n_m1_t_5 + m->six_r_base_frame_zz[i]*six_r_n_m1_t_6;
+    const real six_r_n_m1_t_7 = v.six_r_e_2_in_axes5_z*v.six_r_e_4_in_axes5_x;
+    const real six_r_n_m1_t_8 = v.six_r_J_5_t*v.six_r_s_3 - v.six_r_c_3*six_r_n_m1_t_7;
+    const real six_r_n_m1_t_9 = -v.six_r_J_5_t*v.six_r_c_3 - six_r_n_m1_t_7*v.six_r_s_3;
+    const real six_r_n_m1_t_10 = v.six_r_c_2*six_r_n_m1_t_9 + six_r_n_m1_t_8*v.six_r_s_2;
+    const real six_r_n_m1_t_11 = six_r_n_m1_t_9*v.six_r_s_2 - v.six_r_c_2*six_r_n_m1_t_8;
+    const real six_r_n_m1_t_12 = v.six_r_c_1*six_r_n_m1_t_11 -
+        v.six_r_e_2_in_axes5_y*v.six_r_s_1;
+    const real six_r_n_m1_t_13 = v.six_r_c_1*v.six_r_e_2_in_axes5_y +
+        six_r_n_m1_t_11*v.six_r_s_1;
+    const real axis_y_six_r_axes5_x = m->six_r_base_frame_xx[i]*six_r_n_m1_t_10 +
+        m->six_r_base_frame_xy[i]*six_r_n_m1_t_12 + m->six_r_base_frame_xz[i]*six_r_n_m1_t_13;
+    const real axis_y_six_r_axes5_y = m->six_r_base_frame_yx[i]*six_r_n_m1_t_10 +
+        m->six_r_base_frame_yy[i]*six_r_n_m1_t_12 + m->six_r_base_frame_yz[i]*six_r_n_m1_t_13;
+    const real axis_y_six_r_axes5_z = m->six_r_base_frame_zx[i]*six_r_n_m1_t_10 +
+        m->six_r_base_frame_zy[i]*six_r_n_m1_t_12 + m->six_r_base_frame_zz[i]*six_r_n_m1_t_13;
+    const real axis_x_six_r_axes5_x = axis_y_six_r_axes5_y*axis_z_six_r_axes5_z -
+        axis_y_six_r_axes5_z*axis_z_six_r_axes5_y;
+    const real axis_x_six_r_axes5_y = axis_y_six_r_axes5_z*axis_z_six_r_axes5_x -
+        axis_y_six_r_axes5_x*axis_z_six_r_axes5_z;
+    const real axis_x_six_r_axes5_z = axis_y_six_r_axes5_x*axis_z_six_r_axes5_y -
+        axis_y_six_r_axes5_y*axis_z_six_r_axes5_x;
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real six_r_n_m1_t_14 =
+        m->six_r_platform_joint_axis_platform_x[i]*(R_xx*m->six_r_base_frame_xy[i] +
+        R_yx*m->six_r_base_frame_yy[i] + R_zx*m->six_r_base_frame_zy[i]) +
+        m->six_r_platform_joint_axis_platform_y[i]*(R_xy*m->six_r_base_frame_xy[i] +
+        R_yy*m->six_r_base_frame_yy[i] + R_zy*m->six_r_base_frame_zy[i]) +
+        m->six_r_platform_joint_axis_platform_z[i]*(R_xz*m->six_r_base_frame_xy[i] +
+        R_yz*m->six_r_base_frame_yy[i] + R_zz*m->six_r_base_frame_zy[i]);
+    const real six_r_n_m1_t_15 =
+        m->six_r_platform_joint_axis_platform_x[i]*(R_xx*m->six_r_base_frame_xz[i] +
+        R_yx*m->six_r_base_frame_yz[i] + R_zx*m->six_r_base_frame_zz[i]) +
+        m->six_r_platform_joint_axis_platform_y[i]*(R_xy*m->six_r_base_frame_xz[i] +
+        R_yy*m->six_r_base_frame_yz[i] + R_zy*m->six_r_base_frame_zz[i]) +
+        m->six_r_platform_joint_axis_platform_z[i]*(R_xz*m->six_r_base_frame_xz[i] +
+        R_yz*m->six_r_base_frame_yz[i] + R_zz*m->six_r_base_frame_zz[i]);
+    const real six_r_n_m1_t_16 =
+        m->six_r_platform_joint_axis_platform_x[i]*(R_xx*m->six_r_base_frame_xx[i] +
+        R_yx*m->six_r_base_frame_yx[i] + R_zx*m->six_r_base_frame_zx[i]) +
+        m->six_r_platform_joint_axis_platform_y[i]*(R_xy*m->six_r_base_frame_xx[i] +
+        R_yy*m->six_r_base_frame_yx[i] + R_zy*m->six_r_base_frame_zx[i]) +
+        m->six_r_platform_joint_axis_platform_z[i]*(R_xz*m->six_r_base_frame_xx[i] +
+        R_yz*m->six_r_base_frame_yx[i] + R_zz*m->six_r_base_frame_zx[i]);
+    const real six_r_n_m1_t_17 = v.six_r_c_1*six_r_n_m1_t_14 + six_r_n_m1_t_15*v.six_r_s_1;
+    const real six_r_n_m1_t_18 = v.six_r_c_1*six_r_n_m1_t_15 - six_r_n_m1_t_14*v.six_r_s_1;
+    const real six_r_n_m1_t_19 = v.six_r_c_2*six_r_n_m1_t_16 + six_r_n_m1_t_17*v.six_r_s_2;
+    const real six_r_n_m1_t_20 = v.six_r_c_2*six_r_n_m1_t_17 - six_r_n_m1_t_16*v.six_r_s_2;
+    const real six_r_n_m1_t_21 = six_r_n_m1_t_19*v.six_r_s_3 - v.six_r_c_3*six_r_n_m1_t_20;
+    const real six_r_n_m1_t_22 = v.six_r_c_3*six_r_n_m1_t_19 + six_r_n_m1_t_20*v.six_r_s_3;
+    const real six_r_n_m1_t_23 = v.six_r_h_4_t*six_r_n_m1_t_18 -
+        v.six_r_e_2_in_axes5_z*six_r_n_m1_t_21;
+    const real six_r_n_m1_in_axes5_y = v.six_r_J_5_t*six_r_n_m1_t_23 +
+        v.six_r_e_4_in_axes5_x*six_r_n_m1_t_22;
+    const real six_r_end_p1_in_axes5_y = v.six_r_e_4_in_axes5_x*six_r_n_m1_t_23 -
+        v.six_r_J_5_t*six_r_n_m1_t_22;
+    const real six_r_n_m1_x = axis_y_six_r_axes5_x*six_r_n_m1_in_axes5_y -
+        axis_x_six_r_axes5_x*six_r_end_p1_in_axes5_y;
+    const real six_r_n_m1_y = axis_y_six_r_axes5_y*six_r_n_m1_in_axes5_y -
+        axis_x_six_r_axes5_y*six_r_end_p1_in_axes5_y;
+    const real six_r_n_m1_z = axis_y_six_r_axes5_z*six_r_n_m1_in_axes5_y -
+        axis_x_six_r_axes5_z*six_r_end_p1_in_axes5_y;
+    /* (six_r-n_m2) direction 2 of the moment that the platform joint transmits */
+    const real six_r_end_p1_in_axes5_z = v.six_r_e_2_in_axes5_z*six_r_n_m1_t_18 +
+        v.six_r_h_4_t*six_r_n_m1_t_21;
+    const real six_r_n_m2_x = axis_z_six_r_axes5_x*six_r_end_p1_in_axes5_y -
+        axis_y_six_r_axes5_x*six_r_end_p1_in_axes5_z;
+    const real six_r_n_m2_y = axis_z_six_r_axes5_y*six_r_end_p1_in_axes5_y -
+        axis_y_six_r_axes5_y*six_r_end_p1_in_axes5_z;
+    const real six_r_n_m2_z = axis_z_six_r_axes5_z*six_r_end_p1_in_axes5_y -
+        axis_y_six_r_axes5_z*six_r_end_p1_in_axes5_z;
+    /* (six_r-w_1) force part of reciprocal wrench 1 */
+    const real six_r_w_1_t = v.six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y -
+        v.six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y;
+    const real six_r_w_1_t_2 = v.six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y -
+        v.six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y;
+    const real six_r_w_1_t_3 = v.six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
+        v.six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y;
+    const real six_r_w_1_t_4 = v.six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
+        v.six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y;
+    const real six_r_w_1_t_5 = m->six_r_size[i]*six_r_w_1_t;
+    const real six_r_w_1_t_6 = m->six_r_size[i]*six_r_w_1_t_3;
+    const real six_r_w_1_t_7 = m->six_r_size[i]*six_r_w_1_t_2;
+    const real six_r_w_1_t_8 = m->six_r_size[i]*six_r_w_1_t_4;
+    const real six_r_w_1_t_9 = m->six_r_size[i]*(-v.six_r_J_5_t*six_r_n_m1_in_axes5_y -
+        v.six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y);
+    const real six_r_w_1_t_10 = v.six_r_J_5_t*six_r_end_p1_in_axes5_z*m->six_r_size[i];
+    const real six_r_w_1_t_11 = six_r_end_p1_in_axes5_y*m->six_r_size[i];
+    const real six_r_w_1_t_12 = root(m->six_r_size_t[i] + six_r_w_1_t_11*six_r_w_1_t_11);
+    const real inv_six_r_w_1_t_12 = 1/six_r_w_1_t_12;
+    const real six_r_w_1_t_13 = inv_six_r_w_1_t_12*m->six_r_platform_joint_offset_x[i];
+    const real six_r_w_1_t_14 = inv_six_r_w_1_t_12*six_r_w_1_t_11;
+    const real six_r_w_1_t_15 = six_r_w_1_t_10*six_r_w_1_t_14;
+    const real six_r_w_1_t_16 = six_r_w_1_t_13*six_r_w_1_t_15;
+    const real six_r_w_1_t_17 = six_r_w_1_t_10 - six_r_w_1_t_14*six_r_w_1_t_15;
+    const real six_r_w_1_t_18 = v.six_r_v_1_in_axes5_y*six_r_w_1_t_13 -
+        six_r_w_1_t_14*six_r_w_1_t_6;
+    const real six_r_w_1_t_19 = v.six_r_v_1_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_18;
+    const real six_r_w_1_t_20 = six_r_w_1_t_6 + six_r_w_1_t_14*six_r_w_1_t_18;
+    const real six_r_w_1_t_21 = six_r_w_1_t_14*six_r_w_1_t_8;
+    const real six_r_w_1_t_22 = v.six_r_v_2_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_21;
+    const real six_r_w_1_t_23 = v.six_r_v_2_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_22;
+    const real six_r_w_1_t_24 = six_r_w_1_t_8 + six_r_w_1_t_14*six_r_w_1_t_22;
+    const real six_r_w_1_t_25 = six_r_w_1_t_21 - v.six_r_v_3_in_axes5_y*six_r_w_1_t_13;
+    const real six_r_w_1_t_26 = v.six_r_v_3_in_axes5_y + six_r_w_1_t_13*six_r_w_1_t_25;
+    const real six_r_w_1_t_27 = six_r_w_1_t_8 - six_r_w_1_t_14*six_r_w_1_t_25;
+    const real six_r_w_1_t_28 = root(v.six_r_v_4_in_axes5_z*v.six_r_v_4_in_axes5_z +
+        six_r_w_1_t_16*six_r_w_1_t_16 + six_r_w_1_t_17*six_r_w_1_t_17 +
+        six_r_w_1_t_9*six_r_w_1_t_9);
+    const real inv_six_r_w_1_t_28 = 1/six_r_w_1_t_28;
+    const real six_r_w_1_t_29 = inv_six_r_w_1_t_28*six_r_w_1_t_16;
+    const real six_r_w_1_t_30 = inv_six_r_w_1_t_28*v.six_r_v_4_in_axes5_z;
+    const real six_r_w_1_t_31 = inv_six_r_w_1_t_28*six_r_w_1_t_9;
+    const real six_r_w_1_t_32 = inv_six_r_w_1_t_28*six_r_w_1_t_17;
+    const real six_r_w_1_t_33 = six_r_w_1_t_19*six_r_w_1_t_29 + six_r_w_1_t_20*six_r_w_1_t_32
+        + six_r_w_1_t_31*six_r_w_1_t_5 - v.six_r_v_1_in_axes5_z*six_r_w_1_t_30;
+    const real six_r_w_1_t_34 = six_r_w_1_t_29*six_r_w_1_t_33 - six_r_w_1_t_19;
+    const real six_r_w_1_t_35 = v.six_r_v_1_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_33;
+    const real six_r_w_1_t_36 = six_r_w_1_t_31*six_r_w_1_t_33 - six_r_w_1_t_5;
+    const real six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_33 - six_r_w_1_t_20;
+    const real six_r_w_1_t_38 = six_r_w_1_t_31*six_r_w_1_t_7;
+    const real six_r_w_1_t_39 = six_r_w_1_t_38 + six_r_w_1_t_23*six_r_w_1_t_29 +
+        six_r_w_1_t_24*six_r_w_1_t_32 - v.six_r_v_2_in_axes5_z*six_r_w_1_t_30;
+    const real six_r_w_1_t_40 = six_r_w_1_t_29*six_r_w_1_t_39 - six_r_w_1_t_23;
+    const real six_r_w_1_t_41 = v.six_r_v_2_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_39;
+    const real six_r_w_1_t_42 = six_r_w_1_t_31*six_r_w_1_t_39 - six_r_w_1_t_7;
+    const real six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_39 - six_r_w_1_t_24;
+    const real six_r_w_1_t_44 = six_r_w_1_t_38 + six_r_w_1_t_26*six_r_w_1_t_29 +
+        six_r_w_1_t_27*six_r_w_1_t_32 - v.six_r_v_3_in_axes5_z*six_r_w_1_t_30;
+    const real six_r_w_1_t_45 = six_r_w_1_t_29*six_r_w_1_t_44 - six_r_w_1_t_26;
+    const real six_r_w_1_t_46 = v.six_r_v_3_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_44;
+    const real six_r_w_1_t_47 = six_r_w_1_t_31*six_r_w_1_t_44 - six_r_w_1_t_7;
+    const real six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_44 - six_r_w_1_t_27;
+    const real six_r_w_1_t_49 = root(v.six_r_v_1_in_axes5_x*v.six_r_v_1_in_axes5_x +
+        six_r_w_1_t_34*six_r_w_1_t_34 + six_r_w_1_t_35*six_r_w_1_t_35 +
+        six_r_w_1_t_36*six_r_w_1_t_36 + six_r_w_1_t_37*six_r_w_1_t_37);
+    const real inv_six_r_w_1_t_49 = 1/six_r_w_1_t_49;
+    const real six_r_w_1_t_50 = inv_six_r_w_1_t_49*v.six_r_v_1_in_axes5_x;
+    const real six_r_w_1_t_51 = inv_six_r_w_1_t_49*six_r_w_1_t_34;
+    const real six_r_w_1_t_52 = inv_six_r_w_1_t_49*six_r_w_1_t_35;
+    const real six_r_w_1_t_53 = inv_six_r_w_1_t_49*six_r_w_1_t_36;
+    const real six_r_w_1_t_54 = inv_six_r_w_1_t_49*six_r_w_1_t_37;
+    const real six_r_w_1_t_55 = v.six_r_v_2_in_axes5_x*six_r_w_1_t_50 +
+        six_r_w_1_t_40*six_r_w_1_t_51 + six_r_w_1_t_41*six_r_w_1_t_52 +
+        six_r_w_1_t_42*six_r_w_1_t_53 + six_r_w_1_t_43*six_r_w_1_t_54;
+    const real six_r_w_1_t_56 = v.six_r_v_2_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_55;
+    const real six_r_w_1_t_57 = six_r_w_1_t_40 - six_r_w_1_t_51*six_r_w_1_t_55;
+    const real six_r_w_1_t_58 = six_r_w_1_t_41 - six_r_w_1_t_52*six_r_w_1_t_55;
+    const real six_r_w_1_t_59 = six_r_w_1_t_42 - six_r_w_1_t_53*six_r_w_1_t_55;
+    const real six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_55;
+    const real six_r_w_1_t_61 = v.six_r_v_3_in_axes5_x*six_r_w_1_t_50 +
+        six_r_w_1_t_45*six_r_w_1_t_51 + six_r_w_1_t_46*six_r_w_1_t_52 +
+        six_r_w_1_t_47*six_r_w_1_t_53 + six_r_w_1_t_48*six_r_w_1_t_54;
+    const real six_r_w_1_t_62 = v.six_r_v_3_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_61;
+    const real six_r_w_1_t_63 = six_r_w_1_t_45 - six_r_w_1_t_51*six_r_w_1_t_61;
+    const real six_r_w_1_t_64 = six_r_w_1_t_46 - six_r_w_1_t_52*six_r_w_1_t_61;
+    const real six_r_w_1_t_65 = six_r_w_1_t_47 - six_r_w_1_t_53*six_r_w_1_t_61;
+    const real six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_61;
+    const real six_r_w_1_t_67 = root(six_r_w_1_t_56*six_r_w_1_t_56 +
+        six_r_w_1_t_57*six_r_w_1_t_57 + six_r_w_1_t_58*six_r_w_1_t_58 +
+        six_r_w_1_t_59*six_r_w_1_t_59 + six_r_w_1_t_60*six_r_w_1_t_60);
+    const real inv_six_r_w_1_t_67 = 1/six_r_w_1_t_67;
+    const real six_r_w_1_t_68 = inv_six_r_w_1_t_67*six_r_w_1_t_56;
+    const real six_r_w_1_t_69 = inv_six_r_w_1_t_67*six_r_w_1_t_57;
+    const real six_r_w_1_t_70 = inv_six_r_w_1_t_67*six_r_w_1_t_58;
+    const real six_r_w_1_t_71 = inv_six_r_w_1_t_67*six_r_w_1_t_59;
+    const real six_r_w_1_t_72 = inv_six_r_w_1_t_67*six_r_w_1_t_60;
+    const real six_r_w_1_t_73 = six_r_w_1_t_62*six_r_w_1_t_68 + six_r_w_1_t_63*six_r_w_1_t_69
+        + six_r_w_1_t_64*six_r_w_1_t_70 + six_r_w_1_t_65*six_r_w_1_t_71 +
+        six_r_w_1_t_66*six_r_w_1_t_72;
+    const real six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_73;
+    const real six_r_w_1_t_75 = six_r_w_1_t_63 - six_r_w_1_t_69*six_r_w_1_t_73;
+    const real six_r_w_1_t_76 = six_r_w_1_t_64 - six_r_w_1_t_70*six_r_w_1_t_73;
+    const real six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_73;
+    const real six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_73;
+    const real six_r_w_1_t_79 = root(six_r_w_1_t_74*six_r_w_1_t_74 +
+        six_r_w_1_t_75*six_r_w_1_t_75 + six_r_w_1_t_76*six_r_w_1_t_76 +
+        six_r_w_1_t_77*six_r_w_1_t_77 + six_r_w_1_t_78*six_r_w_1_t_78);
+    const real inv_six_r_w_1_t_79 = 1/six_r_w_1_t_79;
+    const real six_r_w_1_t_80 = inv_six_r_w_1_t_79*six_r_w_1_t_74;
+    const real six_r_w_1_t_81 = inv_six_r_w_1_t_79*six_r_w_1_t_75;
+    const real six_r_w_1_t_82 = inv_six_r_w_1_t_79*six_r_w_1_t_76;
+    const real six_r_w_1_t_83 = inv_six_r_w_1_t_49*inv_six_r_w_1_t_67*six_r_w_1_t_55;
+    const real six_r_w_1_t_84 = inv_six_r_w_1_t_79*(inv_six_r_w_1_t_49*six_r_w_1_t_61 -
+        six_r_w_1_t_73*six_r_w_1_t_83);
+    const real six_r_w_1_in_axes5_x = inv_six_r_w_1_t_49*six_r_w_1_t_50 -
+        six_r_w_1_t_68*six_r_w_1_t_83 - six_r_w_1_t_80*six_r_w_1_t_84;
+    const real six_r_w_1_in_axes5_y = six_r_w_1_t_69*six_r_w_1_t_83 +
+        six_r_w_1_t_81*six_r_w_1_t_84 - inv_six_r_w_1_t_49*six_r_w_1_t_51;
+    const real six_r_w_1_in_axes5_z = inv_six_r_w_1_t_49*six_r_w_1_t_52 -
+        six_r_w_1_t_70*six_r_w_1_t_83 - six_r_w_1_t_82*six_r_w_1_t_84;
+    /* (six_r-m1_w_1) moment part 1 of reciprocal wrench 1 */
+    const real six_r_m1_w_1_t = inv_six_r_w_1_t_79*six_r_w_1_t_77;
+    const real six_r_m1_w_1_t_2 = m->six_r_size[i]*(six_r_m1_w_1_t*six_r_w_1_t_84 +
+        six_r_w_1_t_71*six_r_w_1_t_83 - inv_six_r_w_1_t_49*six_r_w_1_t_53);
+    /* (six_r-m2_w_1) moment part 2 of reciprocal wrench 1 */
+    const real six_r_m2_w_1_t = inv_six_r_w_1_t_79*six_r_w_1_t_78;
+    const real six_r_m2_w_1_t_2 = m->six_r_size[i]*(six_r_m2_w_1_t*six_r_w_1_t_84 +
+        six_r_w_1_t_72*six_r_w_1_t_83 - inv_six_r_w_1_t_49*six_r_w_1_t_54);
+    /* (six_r-w_2) force part of reciprocal wrench 2 */
+    const real six_r_w_2_t = inv_six_r_w_1_t_67*inv_six_r_w_1_t_79*six_r_w_1_t_73;
+    const real six_r_w_2_in_axes5_x = inv_six_r_w_1_t_67*six_r_w_1_t_68 -
+        six_r_w_1_t_80*six_r_w_2_t;
+    const real six_r_w_2_in_axes5_y = six_r_w_1_t_81*six_r_w_2_t -
+        inv_six_r_w_1_t_67*six_r_w_1_t_69;
+    const real six_r_w_2_in_axes5_z = inv_six_r_w_1_t_67*six_r_w_1_t_70 -
+        six_r_w_1_t_82*six_r_w_2_t;
+    /* (six_r-m1_w_2) moment part 1 of reciprocal wrench 2 */
+    const real six_r_m1_w_2 = m->six_r_size[i]*(inv_six_r_w_1_t_67*six_r_w_1_t_71 -
+        six_r_m1_w_1_t*six_r_w_2_t);
+    /* (six_r-m2_w_2) moment part 2 of reciprocal wrench 2 */
+    const real six_r_m2_w_2 = m->six_r_size[i]*(inv_six_r_w_1_t_67*six_r_w_1_t_72 -
+        six_r_m2_w_1_t*six_r_w_2_t);
+    /* (six_r-w_3) force part of reciprocal wrench 3 */
+    const real six_r_w_3_in_axes5_x = inv_six_r_w_1_t_79*six_r_w_1_t_80;
+    const real six_r_w_3_t = inv_six_r_w_1_t_79*six_r_w_1_t_81;
+    const real six_r_w_3_in_axes5_z = inv_six_r_w_1_t_79*six_r_w_1_t_82;
+    /* (six_r-m1_w_3) moment part 1 of reciprocal wrench 3 */
+    const real six_r_m1_w_3 = inv_six_r_w_1_t_79*six_r_m1_w_1_t*m->six_r_size[i];
+    /* (six_r-m2_w_3) moment part 2 of reciprocal wrench 3 */
+    const real six_r_m2_w_3 = inv_six_r_w_1_t_79*six_r_m2_w_1_t*m->six_r_size[i];
+    /* (six_r-w_4) force part of reciprocal wrench 4 */
+    const real six_r_w_4_t = inv_six_r_w_1_t_28*inv_six_r_w_1_t_49*six_r_w_1_t_33;
+    const real six_r_w_4_t_2 = inv_six_r_w_1_t_67*(inv_six_r_w_1_t_28*six_r_w_1_t_39 -
+        six_r_w_1_t_55*six_r_w_4_t);
+    const real six_r_w_4_t_3 = inv_six_r_w_1_t_79*(six_r_w_1_t_61*six_r_w_4_t +
+        six_r_w_1_t_73*six_r_w_4_t_2 - inv_six_r_w_1_t_28*six_r_w_1_t_44);
+    const real six_r_w_4_in_axes5_x = six_r_w_1_t_50*six_r_w_4_t +
+        six_r_w_1_t_68*six_r_w_4_t_2 - six_r_w_1_t_80*six_r_w_4_t_3;
+    const real six_r_w_4_in_axes5_y = six_r_w_1_t_81*six_r_w_4_t_3 -
+        inv_six_r_w_1_t_28*six_r_w_1_t_29 - six_r_w_1_t_51*six_r_w_4_t -
+        six_r_w_1_t_69*six_r_w_4_t_2;
+    const real six_r_w_4_in_axes5_z = inv_six_r_w_1_t_28*six_r_w_1_t_30 +
+        six_r_w_1_t_52*six_r_w_4_t + six_r_w_1_t_70*six_r_w_4_t_2 -
+        six_r_w_1_t_82*six_r_w_4_t_3;
+    /* (six_r-m1_w_4) moment part 1 of reciprocal wrench 4 */
+    const real six_r_m1_w_4 = m->six_r_size[i]*(inv_six_r_w_1_t_28*six_r_w_1_t_31 +
+        six_r_w_1_t_53*six_r_w_4_t + six_r_w_1_t_71*six_r_w_4_t_2 -
+        six_r_m1_w_1_t*six_r_w_4_t_3);
+    /* (six_r-m2_w_4) moment part 2 of reciprocal wrench 4 */
+    const real six_r_m2_w_4 = m->six_r_size[i]*(inv_six_r_w_1_t_28*six_r_w_1_t_32 +
+        six_r_w_1_t_54*six_r_w_4_t + six_r_w_1_t_72*six_r_w_4_t_2 -
+        six_r_m2_w_1_t*six_r_w_4_t_3);
+    /* (six_r-w_5) force part of reciprocal wrench 5 */
+    const real six_r_w_5_t = inv_six_r_w_1_t_12*inv_six_r_w_1_t_28*six_r_w_1_t_15;
+    const real six_r_w_5_t_2 = inv_six_r_w_1_t_49*(inv_six_r_w_1_t_12*six_r_w_1_t_18 +
+        six_r_w_1_t_33*six_r_w_5_t);
+    const real six_r_w_5_t_3 = inv_six_r_w_1_t_67*(inv_six_r_w_1_t_12*six_r_w_1_t_22 +
+        six_r_w_1_t_39*six_r_w_5_t - six_r_w_1_t_55*six_r_w_5_t_2);
+    const real six_r_w_5_t_4 = inv_six_r_w_1_t_79*(inv_six_r_w_1_t_12*six_r_w_1_t_25 +
+        six_r_w_1_t_61*six_r_w_5_t_2 + six_r_w_1_t_73*six_r_w_5_t_3 -
+        six_r_w_1_t_44*six_r_w_5_t);
+    const real six_r_w_5_t_5 = six_r_w_1_t_50*six_r_w_5_t_2 + six_r_w_1_t_68*six_r_w_5_t_3 -
+        six_r_w_1_t_80*six_r_w_5_t_4;
+    const real six_r_w_5_in_axes5_y = inv_six_r_w_1_t_12*six_r_w_1_t_13 +
+        six_r_w_1_t_29*six_r_w_5_t + six_r_w_1_t_51*six_r_w_5_t_2 +
+        six_r_w_1_t_69*six_r_w_5_t_3 - six_r_w_1_t_81*six_r_w_5_t_4;
+    const real six_r_w_5_in_axes5_z = six_r_w_1_t_82*six_r_w_5_t_4 -
+        six_r_w_1_t_30*six_r_w_5_t - six_r_w_1_t_52*six_r_w_5_t_2 -
+        six_r_w_1_t_70*six_r_w_5_t_3;
+    /* (six_r-m1_w_5) moment part 1 of reciprocal wrench 5 */
+    const real six_r_m1_w_5_t = m->six_r_size[i]*(six_r_w_1_t_31*six_r_w_5_t +
+        six_r_w_1_t_53*six_r_w_5_t_2 + six_r_w_1_t_71*six_r_w_5_t_3 -
+        six_r_m1_w_1_t*six_r_w_5_t_4);
+    /* (six_r-m2_w_5) moment part 2 of reciprocal wrench 5 */
+    const real six_r_m2_w_5_t = m->six_r_size[i]*(six_r_w_1_t_32*six_r_w_5_t +
+        six_r_w_1_t_54*six_r_w_5_t_2 + six_r_w_1_t_72*six_r_w_5_t_3 -
+        inv_six_r_w_1_t_12*six_r_w_1_t_14 - six_r_m2_w_1_t*six_r_w_5_t_4);
+    /* (six_r-o_1) moment part of reciprocal wrench 1 */
+    const real six_r_o_1_in_axes5_x = six_r_end_p1_in_axes5_y*six_r_m1_w_1_t_2;
+    const real six_r_o_1_t = six_r_end_p1_in_axes5_y*six_r_m2_w_1_t_2;
+    const real six_r_o_1_in_axes5_y = six_r_end_p1_in_axes5_z*six_r_m2_w_1_t_2 -
+        six_r_m1_w_1_t_2*six_r_n_m1_in_axes5_y;
+    /* (six_r-o_2) moment part of reciprocal wrench 2 */
+    const real six_r_o_2_t = six_r_end_p1_in_axes5_y*six_r_m1_w_2;
+    const real six_r_o_2_in_axes5_z = six_r_end_p1_in_axes5_y*six_r_m2_w_2;
+    const real six_r_o_2_in_axes5_y = six_r_m1_w_2*six_r_n_m1_in_axes5_y -
+        six_r_end_p1_in_axes5_z*six_r_m2_w_2;
+    /* (six_r-o_3) moment part of reciprocal wrench 3 */
+    const real six_r_o_3_t = six_r_end_p1_in_axes5_y*six_r_m1_w_3;
+    const real six_r_o_3_in_axes5_z = six_r_end_p1_in_axes5_y*six_r_m2_w_3;
+    const real six_r_o_3_in_axes5_y = six_r_m1_w_3*six_r_n_m1_in_axes5_y -
+        six_r_end_p1_in_axes5_z*six_r_m2_w_3;
+    /* (six_r-o_4) moment part of reciprocal wrench 4 */
+    const real six_r_o_4_t = six_r_end_p1_in_axes5_y*six_r_m1_w_4;
+    const real six_r_o_4_in_axes5_z = six_r_end_p1_in_axes5_y*six_r_m2_w_4;
+    const real six_r_o_4_in_axes5_y = six_r_m1_w_4*six_r_n_m1_in_axes5_y -
+        six_r_end_p1_in_axes5_z*six_r_m2_w_4;
+    /* (six_r-o_5) moment part of reciprocal wrench 5 */
+    const real six_r_o_5_in_axes5_x = six_r_end_p1_in_axes5_y*six_r_m1_w_5_t;
+    const real six_r_o_5_t = six_r_end_p1_in_axes5_y*six_r_m2_w_5_t;
+    const real six_r_o_5_in_axes5_y = six_r_end_p1_in_axes5_z*six_r_m2_w_5_t -
+        six_r_m1_w_5_t*six_r_n_m1_in_axes5_y;
+    /* (six_r-dalpha_alpha_5) coefficient of the acceleration in: angular acceleration of link 5 */
+    const real six_r_dalpha_alpha_5_in_axes5_xx = v.six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_x
+        - v.six_r_e_2_in_axes5_x*six_r_o_2_t - v.six_r_e_2_in_axes5_x*six_r_o_3_t -
+        v.six_r_e_4_in_axes5_x*six_r_o_4_t;
+    const real six_r_dalpha_alpha_5_in_axes5_xy = v.six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_y
+        + v.six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_y +
+        v.six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_y +
+        v.six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_y;
+    const real six_r_dalpha_alpha_5_in_axes5_xz = v.six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_z
+        + v.six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_z +
+        v.six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_z - v.six_r_e_1_in_axes5_x*six_r_o_1_t;
+    const real six_r_dalpha_alpha_5_in_axes5_yx = v.six_r_J_5_t*six_r_o_4_t +
+        v.six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_x - v.six_r_e_2_in_axes5_y*six_r_o_2_t -
+        v.six_r_e_2_in_axes5_y*six_r_o_3_t;
+    const real six_r_dalpha_alpha_5_in_axes5_yy = v.six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_y
+        + v.six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_y +
+        v.six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_y - v.six_r_J_5_t*six_r_o_4_in_axes5_y;
+    const real six_r_dalpha_alpha_5_in_axes5_yz = v.six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_z
+        + v.six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_z - v.six_r_J_5_t*six_r_o_4_in_axes5_z -
+        v.six_r_e_1_in_axes5_y*six_r_o_1_t;
+    const real six_r_dalpha_alpha_5_in_axes5_zx = six_r_o_5_in_axes5_x +
+        v.six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_x - v.six_r_e_2_in_axes5_z*six_r_o_2_t -
+        v.six_r_e_2_in_axes5_z*six_r_o_3_t;
+    const real six_r_dalpha_alpha_5_in_axes5_zy = six_r_o_5_in_axes5_y +
+        v.six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_y +
+        v.six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_y +
+        v.six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_y;
+    const real six_r_dalpha_alpha_5_in_axes5_zz = v.six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_z
+        + v.six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_z - six_r_o_5_t -
+        v.six_r_e_1_in_axes5_z*six_r_o_1_t;
+    /* (six_r-d_alpha_5) coefficient of the acceleration in: angular acceleration of link 5 */
+    const real six_r_d_alpha_5_in_axes5_xz = v.six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_z +
+        v.six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_z +
+        v.six_r_e_2_in_axes5_x*six_r_w_3_in_axes5_z +
+        v.six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_z;
+    const real six_r_d_alpha_5_in_axes5_yz = v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_z +
+        v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_z +
+        v.six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_z - v.six_r_J_5_t*six_r_w_4_in_axes5_z;
+    const real six_r_d_alpha_5_in_axes5_zy = six_r_w_5_in_axes5_y +
+        v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_y +
+        v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_y - v.six_r_e_2_in_axes5_z*six_r_w_3_t;
+    const real six_r_d_alpha_5_in_axes5_zz = six_r_w_5_in_axes5_z +
+        v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_z +
+        v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_z +
+        v.six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_z;
+    /* (six_r-d_phi_5) coefficient of the acceleration in: inertia force of link 5 from its turning
+       about its reference point */
+    const real six_r_d_phi_5_in_axes5_xx =
+        m->six_r_h_5_in_spec5_z[i]*(v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_x +
+        v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_x +
+        v.six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_x - v.six_r_J_5_t*six_r_w_4_in_axes5_x) -
+        m->six_r_h_5_in_spec5_y[i]*(v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_x +
+        v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_x +
+        v.six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_x - six_r_w_5_t_5);
+    /* (six_r-dalpha_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal
+       links' inertia and weight */
+    const real six_r_dalpha_Gamma_5_in_axes5_x = v.six_r_D_1_5*six_r_o_1_in_axes5_x +
+        m->six_r_J_5_in_spec5_zz[i]*six_r_o_5_in_axes5_x - v.six_r_D_3_5*six_r_o_2_t -
+        v.six_r_D_3_5*six_r_o_3_t - v.six_r_J_5_in_axes4_yz*six_r_o_4_t;
+    const real six_r_dalpha_Gamma_5_in_axes5_y = v.six_r_D_1_5*six_r_o_1_in_axes5_y +
+        v.six_r_D_3_5*six_r_o_2_in_axes5_y + v.six_r_D_3_5*six_r_o_3_in_axes5_y +
+        v.six_r_J_5_in_axes4_yz*six_r_o_4_in_axes5_y +
+        m->six_r_J_5_in_spec5_zz[i]*six_r_o_5_in_axes5_y;
+    const real six_r_dalpha_Gamma_5_in_axes5_z = v.six_r_D_3_5*six_r_o_2_in_axes5_z +
+        v.six_r_D_3_5*six_r_o_3_in_axes5_z + v.six_r_J_5_in_axes4_yz*six_r_o_4_in_axes5_z -
+        v.six_r_D_1_5*six_r_o_1_t - m->six_r_J_5_in_spec5_zz[i]*six_r_o_5_t;
+    /* (six_r-d_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal links'
+       inertia and weight */
+    const real six_r_d_Gamma_5_t = inv_six_r_w_1_t_12*m->six_r_J_5_in_spec5_zz[i];
+    const real six_r_d_Gamma_5_t_2 = inv_six_r_w_1_t_28*(v.six_r_J_5_in_axes4_yz -
+        six_r_d_Gamma_5_t*six_r_w_1_t_15);
+    const real six_r_d_Gamma_5_t_3 = inv_six_r_w_1_t_49*(v.six_r_D_1_5 +
+        six_r_d_Gamma_5_t_2*six_r_w_1_t_33 - six_r_d_Gamma_5_t*six_r_w_1_t_18);
+    const real six_r_d_Gamma_5_t_4 = inv_six_r_w_1_t_67*(v.six_r_D_3_5 +
+        six_r_d_Gamma_5_t_2*six_r_w_1_t_39 - six_r_d_Gamma_5_t*six_r_w_1_t_22 -
+        six_r_d_Gamma_5_t_3*six_r_w_1_t_55);
+    const real six_r_d_Gamma_5_t_5 = inv_six_r_w_1_t_79*(v.six_r_D_3_5 +
+        six_r_d_Gamma_5_t*six_r_w_1_t_25 + six_r_d_Gamma_5_t_2*six_r_w_1_t_44 -
+        six_r_d_Gamma_5_t_3*six_r_w_1_t_61 - six_r_d_Gamma_5_t_4*six_r_w_1_t_73);
+    const real six_r_d_Gamma_5_in_axes5_z = six_r_d_Gamma_5_t_2*six_r_w_1_t_30 +
+        six_r_d_Gamma_5_t_3*six_r_w_1_t_52 + six_r_d_Gamma_5_t_4*six_r_w_1_t_70 +
+        six_r_d_Gamma_5_t_5*six_r_w_1_t_82;
+    const real six_r_d_Gamma_5_in_axes5_x = six_r_d_Gamma_5_t_3*six_r_w_1_t_50 +
+        six_r_d_Gamma_5_t_4*six_r_w_1_t_68 + six_r_d_Gamma_5_t_5*six_r_w_1_t_80 -
+        m->six_r_h_5_in_spec5_y[i];
+    const real six_r_d_Gamma_5_in_axes5_y = m->six_r_h_5_in_spec5_x[i] +
+        six_r_d_Gamma_5_t*six_r_w_1_t_13 - six_r_d_Gamma_5_t_2*six_r_w_1_t_29 -
+        six_r_d_Gamma_5_t_3*six_r_w_1_t_51 - six_r_d_Gamma_5_t_4*six_r_w_1_t_69 -
+        six_r_d_Gamma_5_t_5*six_r_w_1_t_81;
+    /* (six_r-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal
+       links' inertia and weight */
+    const real six_r_dalpha_Gamma_4_in_axes5_x = v.six_r_J_5_in_axes4_yz*six_r_o_5_in_axes5_x
+        + v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_x -
+        v.six_r_Jc_4_in_axes4_zz*six_r_o_4_t - v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_t -
+        v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_t;
+    const real six_r_dalpha_Gamma_4_in_axes5_y = v.six_r_J_5_in_axes4_yz*six_r_o_5_in_axes5_y
+        + v.six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_y +
+        v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_y +
+        v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_y +
+        v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_y;
+    const real six_r_dalpha_Gamma_4_in_axes5_z = v.six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_z
+        + v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_z +
+        v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_z - v.six_r_J_5_in_axes4_yz*six_r_o_5_t
+        - v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_t;
+    /* (six_r-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
+       inertia and weight */
+    const real six_r_d_Gamma_4_t = inv_six_r_w_1_t_12*v.six_r_J_5_in_axes4_yz;
+    const real six_r_d_Gamma_4_t_2 = inv_six_r_w_1_t_28*(v.six_r_Jc_4_in_axes4_zz -
+        six_r_d_Gamma_4_t*six_r_w_1_t_15);
+    const real six_r_d_Gamma_4_t_3 = inv_six_r_w_1_t_49*(v.six_r_L_c_4_2_in_axes1_z +
+        six_r_d_Gamma_4_t_2*six_r_w_1_t_33 - six_r_d_Gamma_4_t*six_r_w_1_t_18);
+    const real six_r_d_Gamma_4_t_4 = inv_six_r_w_1_t_67*(v.six_r_L_c_4_2_in_axes2_z +
+        six_r_d_Gamma_4_t_2*six_r_w_1_t_39 - six_r_d_Gamma_4_t*six_r_w_1_t_22 -
+        six_r_d_Gamma_4_t_3*six_r_w_1_t_55);
+    const real six_r_d_Gamma_4_t_5 = inv_six_r_w_1_t_79*(v.six_r_L_c_4_3_in_axes3_z +
+        six_r_d_Gamma_4_t*six_r_w_1_t_25 + six_r_d_Gamma_4_t_2*six_r_w_1_t_44 -
+        six_r_d_Gamma_4_t_3*six_r_w_1_t_61 - six_r_d_Gamma_4_t_4*six_r_w_1_t_73);
+    const real six_r_d_Gamma_4_in_axes5_x = six_r_d_Gamma_4_t_3*six_r_w_1_t_50 +
+        six_r_d_Gamma_4_t_4*six_r_w_1_t_68 + six_r_d_Gamma_4_t_5*six_r_w_1_t_80 -
+        v.six_r_J_5_t*m->six_r_h_5_in_spec5_z[i];
+    const real six_r_d_Gamma_4_in_axes5_y = six_r_d_Gamma_4_t*six_r_w_1_t_13 -
+        six_r_d_Gamma_4_t_2*six_r_w_1_t_29 - six_r_d_Gamma_4_t_3*six_r_w_1_t_51 -
+        six_r_d_Gamma_4_t_4*six_r_w_1_t_69 - six_r_d_Gamma_4_t_5*six_r_w_1_t_81 -
+        v.six_r_e_4_in_axes5_x*m->six_r_h_5_in_spec5_z[i];
+    const real six_r_d_Gamma_4_in_axes5_z = v.six_r_J_5_t*m->six_r_h_5_in_spec5_x[i] +
+        six_r_d_Gamma_4_t_2*six_r_w_1_t_30 + six_r_d_Gamma_4_t_3*six_r_w_1_t_52 +
+        six_r_d_Gamma_4_t_4*six_r_w_1_t_70 + six_r_d_Gamma_4_t_5*six_r_w_1_t_82 +
+        v.six_r_e_4_in_axes5_x*m->six_r_h_5_in_spec5_y[i];
+    /* (six_r-dalpha_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
+       links' inertia and weight */
+    const real six_r_dalpha_Gamma_3_t = v.six_r_D_3_5*six_r_o_5_in_axes5_x;
+    const real six_r_dalpha_Gamma_3_t_2 = v.six_r_D_3_5*six_r_o_5_in_axes5_y;
+    const real six_r_dalpha_Gamma_3_t_3 = v.six_r_D_3_5*six_r_o_5_t;
+    const real six_r_dalpha_Gamma_3_in_axes5_x = six_r_dalpha_Gamma_3_t +
+        v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_x - v.six_r_Jc_3_in_axes3_zz*six_r_o_3_t
+        - v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_t - v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_t;
+    const real six_r_dalpha_Gamma_3_in_axes5_y = six_r_dalpha_Gamma_3_t_2 +
+        v.six_r_Jc_3_in_axes3_zz*six_r_o_3_in_axes5_y +
+        v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_y +
+        v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_in_axes5_y +
+        v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_y;
+    const real six_r_dalpha_Gamma_3_in_axes5_z = v.six_r_Jc_3_in_axes3_zz*six_r_o_3_in_axes5_z
+        + v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_in_axes5_z +
+        v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_z - six_r_dalpha_Gamma_3_t_3 -
+        v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_t;
+    /* (six_r-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
+       inertia and weight */
+    const real six_r_d_Gamma_3_t_4 = inv_six_r_w_1_t_12*v.six_r_D_3_5;
+    const real six_r_d_Gamma_3_t_5 = six_r_d_Gamma_3_t_4*six_r_w_1_t_15;
+    const real six_r_d_Gamma_3_t_6 = inv_six_r_w_1_t_28*(v.six_r_L_c_4_3_in_axes3_z -
+        six_r_d_Gamma_3_t_5);
+    const real six_r_d_Gamma_3_t_7 = six_r_d_Gamma_3_t_4*six_r_w_1_t_18;
+    const real six_r_d_Gamma_3_t_8 = inv_six_r_w_1_t_49*(v.six_r_L_c_3_2_in_axes1_z +
+        six_r_d_Gamma_3_t_6*six_r_w_1_t_33 - six_r_d_Gamma_3_t_7);
+    const real six_r_d_Gamma_3_t_9 = six_r_d_Gamma_3_t_4*six_r_w_1_t_22;
+    const real six_r_d_Gamma_3_t_10 = inv_six_r_w_1_t_67*(v.six_r_L_c_3_2_in_axes2_z +
+        six_r_d_Gamma_3_t_6*six_r_w_1_t_39 - six_r_d_Gamma_3_t_9 -
+        six_r_d_Gamma_3_t_8*six_r_w_1_t_55);
+    const real six_r_d_Gamma_3_t_11 = six_r_d_Gamma_3_t_4*six_r_w_1_t_25;
+    const real six_r_d_Gamma_3_t_12 = inv_six_r_w_1_t_79*(v.six_r_Jc_3_in_axes3_zz +
+        six_r_d_Gamma_3_t_11 + six_r_d_Gamma_3_t_6*six_r_w_1_t_44 -
+        six_r_d_Gamma_3_t_10*six_r_w_1_t_73 - six_r_d_Gamma_3_t_8*six_r_w_1_t_61);
+    const real six_r_d_Gamma_3_t_13 = six_r_d_Gamma_3_t_4*six_r_w_1_t_13;
+    const real six_r_d_Gamma_3_in_axes5_x = v.six_r_d_Gamma_3_t +
+        six_r_d_Gamma_3_t_10*six_r_w_1_t_68 + six_r_d_Gamma_3_t_12*six_r_w_1_t_80 +
+        six_r_d_Gamma_3_t_8*six_r_w_1_t_50;
+    const real six_r_d_Gamma_3_in_axes5_y = six_r_d_Gamma_3_t_13 - v.six_r_d_Gamma_3_t_2 -
+        six_r_d_Gamma_3_t_10*six_r_w_1_t_69 - six_r_d_Gamma_3_t_12*six_r_w_1_t_81 -
+        six_r_d_Gamma_3_t_6*six_r_w_1_t_29 - six_r_d_Gamma_3_t_8*six_r_w_1_t_51;
+    const real six_r_d_Gamma_3_in_axes5_z = v.six_r_d_Gamma_3_t_3 +
+        six_r_d_Gamma_3_t_10*six_r_w_1_t_70 + six_r_d_Gamma_3_t_12*six_r_w_1_t_82 +
+        six_r_d_Gamma_3_t_6*six_r_w_1_t_30 + six_r_d_Gamma_3_t_8*six_r_w_1_t_52;
+    /* (six_r-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
+       links' inertia and weight */
+    const real six_r_dalpha_Gamma_2_in_axes5_x = six_r_dalpha_Gamma_3_t +
+        v.six_r_Jc_2_in_axes1_yz*six_r_o_1_in_axes5_x - v.six_r_Jc_2_in_axes2_zz*six_r_o_2_t -
+        v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_t - v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_t;
+    const real six_r_dalpha_Gamma_2_in_axes5_y = six_r_dalpha_Gamma_3_t_2 +
+        v.six_r_Jc_2_in_axes1_yz*six_r_o_1_in_axes5_y +
+        v.six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_y +
+        v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_y +
+        v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_y;
+    const real six_r_dalpha_Gamma_2_in_axes5_z = v.six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_z
+        + v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_z +
+        v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_z - six_r_dalpha_Gamma_3_t_3 -
+        v.six_r_Jc_2_in_axes1_yz*six_r_o_1_t;
+    /* (six_r-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+       inertia and weight */
+    const real six_r_d_Gamma_2_t = inv_six_r_w_1_t_28*(v.six_r_L_c_4_2_in_axes2_z -
+        six_r_d_Gamma_3_t_5);
+    const real six_r_d_Gamma_2_t_2 = inv_six_r_w_1_t_49*(v.six_r_Jc_2_in_axes1_yz +
+        six_r_d_Gamma_2_t*six_r_w_1_t_33 - six_r_d_Gamma_3_t_7);
+    const real six_r_d_Gamma_2_t_3 = inv_six_r_w_1_t_67*(v.six_r_Jc_2_in_axes2_zz +
+        six_r_d_Gamma_2_t*six_r_w_1_t_39 - six_r_d_Gamma_3_t_9 -
+        six_r_d_Gamma_2_t_2*six_r_w_1_t_55);
+    const real six_r_d_Gamma_2_t_4 = inv_six_r_w_1_t_79*(v.six_r_L_c_3_2_in_axes2_z +
+        six_r_d_Gamma_3_t_11 + six_r_d_Gamma_2_t*six_r_w_1_t_44 -
+        six_r_d_Gamma_2_t_2*six_r_w_1_t_61 - six_r_d_Gamma_2_t_3*six_r_w_1_t_73);
+    const real six_r_d_Gamma_2_in_axes5_x = v.six_r_d_Gamma_3_t +
+        six_r_d_Gamma_2_t_2*six_r_w_1_t_50 + six_r_d_Gamma_2_t_3*six_r_w_1_t_68 +
+        six_r_d_Gamma_2_t_4*six_r_w_1_t_80;
+    const real six_r_d_Gamma_2_in_axes5_y = six_r_d_Gamma_3_t_13 - v.six_r_d_Gamma_3_t_2 -
+        six_r_d_Gamma_2_t*six_r_w_1_t_29 - six_r_d_Gamma_2_t_2*six_r_w_1_t_51 -
+        six_r_d_Gamma_2_t_3*six_r_w_1_t_69 - six_r_d_Gamma_2_t_4*six_r_w_1_t_81;
+    const real six_r_d_Gamma_2_in_axes5_z = v.six_r_d_Gamma_3_t_3 +
+        six_r_d_Gamma_2_t*six_r_w_1_t_30 + six_r_d_Gamma_2_t_2*six_r_w_1_t_52 +
+        six_r_d_Gamma_2_t_3*six_r_w_1_t_70 + six_r_d_Gamma_2_t_4*six_r_w_1_t_82;
+    /* (six_r-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
+       links' inertia and weight */
+    const real six_r_dalpha_Gamma_1_in_axes5_x = v.six_r_D_1_5*six_r_o_5_in_axes5_x +
+        v.six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_x - v.six_r_Jc_2_in_axes1_yz*six_r_o_2_t -
+        v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_t - v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_t;
+    const real six_r_dalpha_Gamma_1_in_axes5_y = v.six_r_D_1_5*six_r_o_5_in_axes5_y +
+        v.six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_y +
+        v.six_r_Jc_2_in_axes1_yz*six_r_o_2_in_axes5_y +
+        v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_y +
+        v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_y;
+    const real six_r_dalpha_Gamma_1_in_axes5_z = v.six_r_Jc_2_in_axes1_yz*six_r_o_2_in_axes5_z
+        + v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_z +
+        v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_z - v.six_r_D_1_5*six_r_o_5_t -
+        v.six_r_Jc_1_in_axes1_zz*six_r_o_1_t;
+    /* (six_r-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+       inertia and weight */
+    const real six_r_d_Gamma_1_t = inv_six_r_w_1_t_12*v.six_r_D_1_5;
+    const real six_r_d_Gamma_1_t_2 = inv_six_r_w_1_t_28*(v.six_r_L_c_4_2_in_axes1_z -
+        six_r_d_Gamma_1_t*six_r_w_1_t_15);
+    const real six_r_d_Gamma_1_t_3 = inv_six_r_w_1_t_49*(v.six_r_Jc_1_in_axes1_zz +
+        six_r_d_Gamma_1_t_2*six_r_w_1_t_33 - six_r_d_Gamma_1_t*six_r_w_1_t_18);
+    const real six_r_d_Gamma_1_t_4 = inv_six_r_w_1_t_67*(v.six_r_Jc_2_in_axes1_yz +
+        six_r_d_Gamma_1_t_2*six_r_w_1_t_39 - six_r_d_Gamma_1_t*six_r_w_1_t_22 -
+        six_r_d_Gamma_1_t_3*six_r_w_1_t_55);
+    const real six_r_d_Gamma_1_t_5 = inv_six_r_w_1_t_79*(v.six_r_L_c_3_2_in_axes1_z +
+        six_r_d_Gamma_1_t*six_r_w_1_t_25 + six_r_d_Gamma_1_t_2*six_r_w_1_t_44 -
+        six_r_d_Gamma_1_t_3*six_r_w_1_t_61 - six_r_d_Gamma_1_t_4*six_r_w_1_t_73);
+    const real six_r_d_Gamma_1_in_axes5_x = six_r_d_Gamma_1_t_3*six_r_w_1_t_50 +
+        six_r_d_Gamma_1_t_4*six_r_w_1_t_68 + six_r_d_Gamma_1_t_5*six_r_w_1_t_80 +
+        v.six_r_e_1_in_axes5_y*m->six_r_h_5_in_spec5_z[i] -
+        v.six_r_e_1_in_axes5_z*m->six_r_h_5_in_spec5_y[i];
+    const real six_r_d_Gamma_1_in_axes5_y = six_r_d_Gamma_1_t*six_r_w_1_t_13 +
+        v.six_r_e_1_in_axes5_z*m->six_r_h_5_in_spec5_x[i] - six_r_d_Gamma_1_t_2*six_r_w_1_t_29
+        - six_r_d_Gamma_1_t_3*six_r_w_1_t_51 - six_r_d_Gamma_1_t_4*six_r_w_1_t_69 -
+        six_r_d_Gamma_1_t_5*six_r_w_1_t_81 -
+        v.six_r_e_1_in_axes5_x*m->six_r_h_5_in_spec5_z[i];
+    const real six_r_d_Gamma_1_in_axes5_z = six_r_d_Gamma_1_t_2*six_r_w_1_t_30 +
+        six_r_d_Gamma_1_t_3*six_r_w_1_t_52 + six_r_d_Gamma_1_t_4*six_r_w_1_t_70 +
+        six_r_d_Gamma_1_t_5*six_r_w_1_t_82 + v.six_r_e_1_in_axes5_x*m->six_r_h_5_in_spec5_y[i]
+        - v.six_r_e_1_in_axes5_y*m->six_r_h_5_in_spec5_x[i];
+    /* (six_r-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
+       balances the leg's inertia and weight along all degrees of freedom */
+    const real six_r_dalpha_G_m1_in_axes5_x = six_r_dalpha_Gamma_2_in_axes5_x*six_r_m1_w_2 +
+        six_r_dalpha_Gamma_3_in_axes5_x*six_r_m1_w_3 +
+        six_r_dalpha_Gamma_4_in_axes5_x*six_r_m1_w_4 -
+        six_r_dalpha_Gamma_1_in_axes5_x*six_r_m1_w_1_t_2 -
+        six_r_dalpha_Gamma_5_in_axes5_x*six_r_m1_w_5_t;
+    const real six_r_dalpha_G_m1_in_axes5_y = six_r_dalpha_Gamma_2_in_axes5_y*six_r_m1_w_2 +
+        six_r_dalpha_Gamma_3_in_axes5_y*six_r_m1_w_3 +
+        six_r_dalpha_Gamma_4_in_axes5_y*six_r_m1_w_4 -
+        six_r_dalpha_Gamma_1_in_axes5_y*six_r_m1_w_1_t_2 -
+        six_r_dalpha_Gamma_5_in_axes5_y*six_r_m1_w_5_t;
+    const real six_r_dalpha_G_m1_in_axes5_z = six_r_dalpha_Gamma_2_in_axes5_z*six_r_m1_w_2 +
+        six_r_dalpha_Gamma_3_in_axes5_z*six_r_m1_w_3 +
+        six_r_dalpha_Gamma_4_in_axes5_z*six_r_m1_w_4 -
+        six_r_dalpha_Gamma_1_in_axes5_z*six_r_m1_w_1_t_2 -
+        six_r_dalpha_Gamma_5_in_axes5_z*six_r_m1_w_5_t;
+    const real six_r_dalpha_G_m1_y = axis_x_six_r_axes5_y*six_r_dalpha_G_m1_in_axes5_x +
+        axis_y_six_r_axes5_y*six_r_dalpha_G_m1_in_axes5_y +
+        axis_z_six_r_axes5_y*six_r_dalpha_G_m1_in_axes5_z;
+    const real six_r_dalpha_G_m1_z = axis_x_six_r_axes5_z*six_r_dalpha_G_m1_in_axes5_x +
+        axis_y_six_r_axes5_z*six_r_dalpha_G_m1_in_axes5_y +
+        axis_z_six_r_axes5_z*six_r_dalpha_G_m1_in_axes5_z;
+    /* (six_r-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
+       balances the leg's inertia and weight along all degrees of freedom */
+    const real six_r_d_G_m1_in_axes5_x = six_r_d_Gamma_2_in_axes5_x*six_r_m1_w_2 +
+        six_r_d_Gamma_3_in_axes5_x*six_r_m1_w_3 + six_r_d_Gamma_4_in_axes5_x*six_r_m1_w_4 -
+        six_r_d_Gamma_1_in_axes5_x*six_r_m1_w_1_t_2 -
+        six_r_d_Gamma_5_in_axes5_x*six_r_m1_w_5_t;
+    const real six_r_d_G_m1_in_axes5_y = six_r_d_Gamma_2_in_axes5_y*six_r_m1_w_2 +
+        six_r_d_Gamma_3_in_axes5_y*six_r_m1_w_3 + six_r_d_Gamma_4_in_axes5_y*six_r_m1_w_4 -
+        six_r_d_Gamma_1_in_axes5_y*six_r_m1_w_1_t_2 -
+        six_r_d_Gamma_5_in_axes5_y*six_r_m1_w_5_t;
+    const real six_r_d_G_m1_in_axes5_z = six_r_d_Gamma_2_in_axes5_z*six_r_m1_w_2 +
+        six_r_d_Gamma_3_in_axes5_z*six_r_m1_w_3 + six_r_d_Gamma_4_in_axes5_z*six_r_m1_w_4 -
+        six_r_d_Gamma_1_in_axes5_z*six_r_m1_w_1_t_2 -
+        six_r_d_Gamma_5_in_axes5_z*six_r_m1_w_5_t;
+    const real six_r_d_G_m1_x = axis_x_six_r_axes5_x*six_r_d_G_m1_in_axes5_x +
+        axis_y_six_r_axes5_x*six_r_d_G_m1_in_axes5_y +
+        axis_z_six_r_axes5_x*six_r_d_G_m1_in_axes5_z;
+    const real six_r_d_G_m1_y = axis_x_six_r_axes5_y*six_r_d_G_m1_in_axes5_x +
+        axis_y_six_r_axes5_y*six_r_d_G_m1_in_axes5_y +
+        axis_z_six_r_axes5_y*six_r_d_G_m1_in_axes5_z;
+    const real six_r_d_G_m1_z = axis_x_six_r_axes5_z*six_r_d_G_m1_in_axes5_x +
+        axis_y_six_r_axes5_z*six_r_d_G_m1_in_axes5_y +
+        axis_z_six_r_axes5_z*six_r_d_G_m1_in_axes5_z;
+    /* (six_r-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
+       balances the leg's inertia and weight along all degrees of freedom */
+    const real six_r_dalpha_G_m2_in_axes5_x = six_r_dalpha_Gamma_2_in_axes5_x*six_r_m2_w_2 +
+        six_r_dalpha_Gamma_3_in_axes5_x*six_r_m2_w_3 +
+        six_r_dalpha_Gamma_4_in_axes5_x*six_r_m2_w_4 -
+        six_r_dalpha_Gamma_1_in_axes5_x*six_r_m2_w_1_t_2 -
+        six_r_dalpha_Gamma_5_in_axes5_x*six_r_m2_w_5_t;
+    const real six_r_dalpha_G_m2_in_axes5_y = six_r_dalpha_Gamma_2_in_axes5_y*six_r_m2_w_2 +
+        six_r_dalpha_Gamma_3_in_axes5_y*six_r_m2_w_3 +
+        six_r_dalpha_Gamma_4_in_axes5_y*six_r_m2_w_4 -
+        six_r_dalpha_Gamma_1_in_axes5_y*six_r_m2_w_1_t_2 -
+        six_r_dalpha_Gamma_5_in_axes5_y*six_r_m2_w_5_t;
+    const real six_r_dalpha_G_m2_in_axes5_z = six_r_dalpha_Gamma_2_in_axes5_z*six_r_m2_w_2 +
+        six_r_dalpha_Gamma_3_in_axes5_z*six_r_m2_w_3 +
+        six_r_dalpha_Gamma_4_in_axes5_z*six_r_m2_w_4 -
+        six_r_dalpha_Gamma_1_in_axes5_z*six_r_m2_w_1_t_2 -
+        six_r_dalpha_Gamma_5_in_axes5_z*six_r_m2_w_5_t;
+    const real six_r_dalpha_G_m2_y = axis_x_six_r_axes5_y*six_r_dalpha_G_m2_in_axes5_x +
+        axis_y_six_r_axes5_y*six_r_dalpha_G_m2_in_axes5_y +
+        axis_z_six_r_axes5_y*six_r_dalpha_G_m2_in_axes5_z;
+    const real six_r_dalpha_G_m2_z = axis_x_six_r_axes5_z*six_r_dalpha_G_m2_in_axes5_x +
+        axis_y_six_r_axes5_z*six_r_dalpha_G_m2_in_axes5_y +
+        axis_z_six_r_axes5_z*six_r_dalpha_G_m2_in_axes5_z;
+    /* (six_r-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
+       balances the leg's inertia and weight along all degrees of freedom */
+    const real six_r_d_G_m2_in_axes5_x = six_r_d_Gamma_2_in_axes5_x*six_r_m2_w_2 +
+        six_r_d_Gamma_3_in_axes5_x*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_x*six_r_m2_w_4 -
+        six_r_d_Gamma_1_in_axes5_x*six_r_m2_w_1_t_2 -
+        six_r_d_Gamma_5_in_axes5_x*six_r_m2_w_5_t;
+    const real six_r_d_G_m2_in_axes5_y = six_r_d_Gamma_2_in_axes5_y*six_r_m2_w_2 +
+        six_r_d_Gamma_3_in_axes5_y*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_y*six_r_m2_w_4 -
+        six_r_d_Gamma_1_in_axes5_y*six_r_m2_w_1_t_2 -
+        six_r_d_Gamma_5_in_axes5_y*six_r_m2_w_5_t;
+    const real six_r_d_G_m2_in_axes5_z = six_r_d_Gamma_2_in_axes5_z*six_r_m2_w_2 +
+        six_r_d_Gamma_3_in_axes5_z*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_z*six_r_m2_w_4 -
+        six_r_d_Gamma_1_in_axes5_z*six_r_m2_w_1_t_2 -
+        six_r_d_Gamma_5_in_axes5_z*six_r_m2_w_5_t;
+    const real six_r_d_G_m2_x = axis_x_six_r_axes5_x*six_r_d_G_m2_in_axes5_x +
+        axis_y_six_r_axes5_x*six_r_d_G_m2_in_axes5_y +
+        axis_z_six_r_axes5_x*six_r_d_G_m2_in_axes5_z;
+    const real six_r_d_G_m2_y = axis_x_six_r_axes5_y*six_r_d_G_m2_in_axes5_x +
+        axis_y_six_r_axes5_y*six_r_d_G_m2_in_axes5_y +
+        axis_z_six_r_axes5_y*six_r_d_G_m2_in_axes5_z;
+    const real six_r_d_G_m2_z = axis_x_six_r_axes5_z*six_r_d_G_m2_in_axes5_x +
+        axis_y_six_r_axes5_z*six_r_d_G_m2_in_axes5_y +
+        axis_z_six_r_axes5_z*six_r_d_G_m2_in_axes5_z;
+    /* (six_r-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
+       the leg's inertia and weight along all degrees of freedom */
+    const real six_r_d_G_m_xx = six_r_d_G_m1_x*six_r_n_m1_x + six_r_d_G_m2_x*six_r_n_m2_x;
+    const real six_r_d_G_m_xy = six_r_d_G_m1_y*six_r_n_m1_x + six_r_d_G_m2_y*six_r_n_m2_x;
+    const real six_r_d_G_m_xz = six_r_d_G_m1_z*six_r_n_m1_x + six_r_d_G_m2_z*six_r_n_m2_x;
+    const real six_r_d_G_m_yx = six_r_d_G_m1_x*six_r_n_m1_y + six_r_d_G_m2_x*six_r_n_m2_y;
+    /* (six_r-dalpha_c) coefficient of the acceleration in: leg force on the platform without
+       actuation and without the mass at the connection point */
+    const real six_r_dalpha_c_in_axes5_xx = six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_t_5 +
+        six_r_dalpha_alpha_5_in_axes5_zx*m->six_r_h_5_in_spec5_y[i] -
+        six_r_dalpha_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_x -
+        six_r_dalpha_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_x -
+        six_r_dalpha_Gamma_3_in_axes5_x*six_r_w_3_in_axes5_x -
+        six_r_dalpha_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_x -
+        six_r_dalpha_alpha_5_in_axes5_yx*m->six_r_h_5_in_spec5_z[i];
+    const real six_r_dalpha_c_in_axes5_xy = six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_t_5 +
+        six_r_dalpha_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] -
+        six_r_dalpha_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_x -
+        six_r_dalpha_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_x -
+        six_r_dalpha_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_x -
+        six_r_dalpha_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_x -
+        six_r_dalpha_alpha_5_in_axes5_yy*m->six_r_h_5_in_spec5_z[i];
+    const real six_r_dalpha_c_in_axes5_xz = six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_t_5 +
+        six_r_dalpha_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_y[i] -
+        six_r_dalpha_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_x -
+        six_r_dalpha_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_x -
+        six_r_dalpha_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_x -
+        six_r_dalpha_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_x -
+        six_r_dalpha_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_z[i];
+    const real six_r_dalpha_c_in_axes5_yx = six_r_dalpha_Gamma_3_in_axes5_x*six_r_w_3_t +
+        six_r_dalpha_alpha_5_in_axes5_xx*m->six_r_h_5_in_spec5_z[i] -
+        six_r_dalpha_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_y -
+        six_r_dalpha_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_y -
+        six_r_dalpha_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_y -
+        six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_in_axes5_y -
+        six_r_dalpha_alpha_5_in_axes5_zx*m->six_r_h_5_in_spec5_x[i];
+    const real six_r_dalpha_c_in_axes5_yy = six_r_dalpha_Gamma_3_in_axes5_y*six_r_w_3_t +
+        six_r_dalpha_alpha_5_in_axes5_xy*m->six_r_h_5_in_spec5_z[i] -
+        six_r_dalpha_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_y -
+        six_r_dalpha_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_y -
+        six_r_dalpha_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_y -
+        six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_y -
+        six_r_dalpha_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_x[i];
+    const real six_r_dalpha_c_in_axes5_yz = six_r_dalpha_Gamma_3_in_axes5_z*six_r_w_3_t +
+        six_r_dalpha_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] -
+        six_r_dalpha_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_y -
+        six_r_dalpha_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_y -
+        six_r_dalpha_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_y -
+        six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_y -
+        six_r_dalpha_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_x[i];
+    const real six_r_dalpha_c_in_axes5_zx =
+        six_r_dalpha_alpha_5_in_axes5_yx*m->six_r_h_5_in_spec5_x[i] -
+        six_r_dalpha_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_z -
+        six_r_dalpha_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_z -
+        six_r_dalpha_Gamma_3_in_axes5_x*six_r_w_3_in_axes5_z -
+        six_r_dalpha_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_z -
+        six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_in_axes5_z -
+        six_r_dalpha_alpha_5_in_axes5_xx*m->six_r_h_5_in_spec5_y[i];
+    const real six_r_dalpha_c_in_axes5_zy =
+        six_r_dalpha_alpha_5_in_axes5_yy*m->six_r_h_5_in_spec5_x[i] -
+        six_r_dalpha_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_z -
+        six_r_dalpha_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_z -
+        six_r_dalpha_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_z -
+        six_r_dalpha_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_z -
+        six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_z -
+        six_r_dalpha_alpha_5_in_axes5_xy*m->six_r_h_5_in_spec5_y[i];
+    const real six_r_dalpha_c_in_axes5_zz =
+        six_r_dalpha_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_x[i] -
+        six_r_dalpha_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_z -
+        six_r_dalpha_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_z -
+        six_r_dalpha_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_z -
+        six_r_dalpha_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_z -
+        six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_z -
+        six_r_dalpha_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_y[i];
+    /* (six_r-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real six_r_d_c_in_axes5_xx = six_r_d_Gamma_5_in_axes5_x*six_r_w_5_t_5 -
+        six_r_d_phi_5_in_axes5_xx - six_r_d_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_x -
+        six_r_d_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_x -
+        six_r_d_Gamma_3_in_axes5_x*six_r_w_3_in_axes5_x -
+        six_r_d_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_x;
+    const real six_r_d_c_in_axes5_xy = six_r_d_Gamma_5_in_axes5_y*six_r_w_5_t_5 +
+        six_r_d_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] -
+        six_r_d_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_x -
+        six_r_d_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_x -
+        six_r_d_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_x -
+        six_r_d_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_x -
+        m->six_r_h_5_in_spec5_z[i]*(v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_y +
+        v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_y - v.six_r_J_5_t*six_r_w_4_in_axes5_y -
+        v.six_r_e_2_in_axes5_y*six_r_w_3_t);
+    const real six_r_d_c_in_axes5_xz = six_r_d_Gamma_5_in_axes5_z*six_r_w_5_t_5 +
+        six_r_d_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_y[i] -
+        six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_x -
+        six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_x -
+        six_r_d_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_x -
+        six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_x -
+        six_r_d_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_z[i];
+    const real six_r_d_c_in_axes5_yy = six_r_d_Gamma_3_in_axes5_y*six_r_w_3_t +
+        m->six_r_h_5_in_spec5_z[i]*(v.six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_y +
+        v.six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_y +
+        v.six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_y - v.six_r_e_2_in_axes5_x*six_r_w_3_t) -
+        six_r_d_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_y -
+        six_r_d_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_y -
+        six_r_d_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_y -
+        six_r_d_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_y -
+        six_r_d_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_x[i];
+    const real six_r_d_c_in_axes5_yz = six_r_d_Gamma_3_in_axes5_z*six_r_w_3_t +
+        six_r_d_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] -
+        six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_y -
+        six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_y -
+        six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_y -
+        six_r_d_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_y -
+        six_r_d_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_x[i];
+    /* (six_r-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real six_r_Q_t = six_r_d_c_in_axes5_xx - six_r_d_c_in_axes5_yy;
+    const real six_r_Q_t_2 = R(0.5)*six_r_Q_t;
+    const real six_r_Q_t_3 = six_r_d_c_in_axes5_xx +
+        six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_z +
+        six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_z +
+        six_r_d_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_z +
+        six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_z +
+        six_r_d_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_z +
+        six_r_d_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_y[i] -
+        six_r_d_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_x[i];
+    const real six_r_Q_t_4 = R(0.5)*six_r_Q_t_3;
+    const real six_r_Q_t_5 = axis_x_six_r_axes5_x*six_r_d_c_in_axes5_xy +
+        axis_z_six_r_axes5_x*six_r_d_c_in_axes5_yz - axis_y_six_r_axes5_x*six_r_Q_t_2;
+    const real six_r_Q_t_6 = axis_x_six_r_axes5_y*six_r_d_c_in_axes5_xy +
+        axis_z_six_r_axes5_y*six_r_d_c_in_axes5_yz - axis_y_six_r_axes5_y*six_r_Q_t_2;
+    const real six_r_Q_t_7 = axis_x_six_r_axes5_z*six_r_d_c_in_axes5_xy +
+        axis_z_six_r_axes5_z*six_r_d_c_in_axes5_yz - axis_y_six_r_axes5_z*six_r_Q_t_2;
+    const real six_r_Q_t_8 = axis_z_six_r_axes5_x*six_r_Q_t_4 -
+        axis_x_six_r_axes5_x*six_r_d_c_in_axes5_xz;
+    const real six_r_Q_t_9 = axis_z_six_r_axes5_y*six_r_Q_t_4 -
+        axis_x_six_r_axes5_y*six_r_d_c_in_axes5_xz;
+    const real six_r_Q_t_10 = axis_z_six_r_axes5_z*six_r_Q_t_4 -
+        axis_x_six_r_axes5_z*six_r_d_c_in_axes5_xz;
+    const real six_r_Q_t_11 = axis_y_six_r_axes5_x*six_r_Q_t_5 -
+        axis_z_six_r_axes5_x*six_r_Q_t_8;
+    const real six_r_Q_xx = -2*six_r_Q_t_11 - six_r_d_c_in_axes5_xx;
+    const real six_r_Q_xy = axis_z_six_r_axes5_x*six_r_Q_t_9 +
+        axis_z_six_r_axes5_y*six_r_Q_t_8 - axis_y_six_r_axes5_x*six_r_Q_t_6 -
+        axis_y_six_r_axes5_y*six_r_Q_t_5;
+    const real six_r_Q_xz = axis_z_six_r_axes5_x*six_r_Q_t_10 +
+        axis_z_six_r_axes5_z*six_r_Q_t_8 - axis_y_six_r_axes5_x*six_r_Q_t_7 -
+        axis_y_six_r_axes5_z*six_r_Q_t_5;
+    const real six_r_Q_t_12 = axis_y_six_r_axes5_y*six_r_Q_t_6 -
+        axis_z_six_r_axes5_y*six_r_Q_t_9;
+    const real six_r_Q_yy = -2*six_r_Q_t_12 - six_r_d_c_in_axes5_xx;
+    const real six_r_Q_yz = axis_z_six_r_axes5_y*six_r_Q_t_10 +
+        axis_z_six_r_axes5_z*six_r_Q_t_9 - axis_y_six_r_axes5_y*six_r_Q_t_7 -
+        axis_y_six_r_axes5_z*six_r_Q_t_6;
+    const real six_r_Q_t_13 = axis_y_six_r_axes5_z*six_r_Q_t_7 -
+        axis_z_six_r_axes5_z*six_r_Q_t_10;
+    const real six_r_Q_zz = -2*six_r_Q_t_13 - six_r_d_c_in_axes5_xx;
+    /* (M_ta) coupling block of M */
+    const real six_r_M_ta_t = axis_x_six_r_axes5_x*six_r_dalpha_c_in_axes5_xx +
+        axis_y_six_r_axes5_x*six_r_dalpha_c_in_axes5_yx +
+        axis_z_six_r_axes5_x*six_r_dalpha_c_in_axes5_zx;
+    const real six_r_M_ta_t_2 = axis_x_six_r_axes5_y*six_r_dalpha_c_in_axes5_xx +
+        axis_y_six_r_axes5_y*six_r_dalpha_c_in_axes5_yx +
+        axis_z_six_r_axes5_y*six_r_dalpha_c_in_axes5_zx;
+    const real six_r_M_ta_t_3 = axis_x_six_r_axes5_z*six_r_dalpha_c_in_axes5_xx +
+        axis_y_six_r_axes5_z*six_r_dalpha_c_in_axes5_yx +
+        axis_z_six_r_axes5_z*six_r_dalpha_c_in_axes5_zx;
+    const real six_r_M_ta_t_4 = axis_x_six_r_axes5_x*six_r_dalpha_c_in_axes5_xy +
+        axis_y_six_r_axes5_x*six_r_dalpha_c_in_axes5_yy +
+        axis_z_six_r_axes5_x*six_r_dalpha_c_in_axes5_zy;
+    const real six_r_M_ta_t_5 = axis_x_six_r_axes5_y*six_r_dalpha_c_in_axes5_xy +
+        axis_y_six_r_axes5_y*six_r_dalpha_c_in_axes5_yy +
+        axis_z_six_r_axes5_y*six_r_dalpha_c_in_axes5_zy;
+    const real six_r_M_ta_t_6 = axis_x_six_r_axes5_z*six_r_dalpha_c_in_axes5_xy +
+        axis_y_six_r_axes5_z*six_r_dalpha_c_in_axes5_yy +
+        axis_z_six_r_axes5_z*six_r_dalpha_c_in_axes5_zy;
+    const real six_r_M_ta_t_7 = axis_x_six_r_axes5_x*six_r_dalpha_c_in_axes5_xz +
+        axis_y_six_r_axes5_x*six_r_dalpha_c_in_axes5_yz +
+        axis_z_six_r_axes5_x*six_r_dalpha_c_in_axes5_zz;
+    const real six_r_M_ta_t_8 = axis_x_six_r_axes5_y*six_r_dalpha_c_in_axes5_xz +
+        axis_y_six_r_axes5_y*six_r_dalpha_c_in_axes5_yz +
+        axis_z_six_r_axes5_y*six_r_dalpha_c_in_axes5_zz;
+    const real six_r_M_ta_t_9 = axis_x_six_r_axes5_z*six_r_dalpha_c_in_axes5_xz +
+        axis_y_six_r_axes5_z*six_r_dalpha_c_in_axes5_yz +
+        axis_z_six_r_axes5_z*six_r_dalpha_c_in_axes5_zz;
+    const real six_r_M_ta_t_10 = -six_r_Q_xy*v.six_r_q_z;
+    const real six_r_M_ta_t_11 = six_r_Q_xz*v.six_r_q_y;
+    const real six_r_M_ta_t_12 = six_r_Q_yz*v.six_r_q_x;
+    const real six_r_M_ta_t_13 = six_r_M_ta_t_10 + six_r_M_ta_t_11 -
+        axis_x_six_r_axes5_x*six_r_M_ta_t - axis_y_six_r_axes5_x*six_r_M_ta_t_4 -
+        axis_z_six_r_axes5_x*six_r_M_ta_t_7;
+    const real six_r_M_ta_t_14 = six_r_Q_xx*v.six_r_q_z - axis_x_six_r_axes5_y*six_r_M_ta_t -
+        axis_y_six_r_axes5_y*six_r_M_ta_t_4 - axis_z_six_r_axes5_y*six_r_M_ta_t_7 -
+        six_r_Q_xz*v.six_r_q_x;
+    const real six_r_M_ta_t_15 = six_r_Q_xy*v.six_r_q_x - axis_x_six_r_axes5_z*six_r_M_ta_t -
+        axis_y_six_r_axes5_z*six_r_M_ta_t_4 - axis_z_six_r_axes5_z*six_r_M_ta_t_7 -
+        six_r_Q_xx*v.six_r_q_y;
+    const real six_r_M_ta_t_16 = six_r_Q_yz*v.six_r_q_y - axis_x_six_r_axes5_x*six_r_M_ta_t_2
+        - axis_y_six_r_axes5_x*six_r_M_ta_t_5 - axis_z_six_r_axes5_x*six_r_M_ta_t_8 -
+        six_r_Q_yy*v.six_r_q_z;
+    const real six_r_M_ta_t_17 = six_r_M_ta_t_10 + six_r_M_ta_t_12 +
+        axis_x_six_r_axes5_y*six_r_M_ta_t_2 + axis_y_six_r_axes5_y*six_r_M_ta_t_5 +
+        axis_z_six_r_axes5_y*six_r_M_ta_t_8;
+    const real six_r_M_ta_t_18 = six_r_Q_yy*v.six_r_q_x - axis_x_six_r_axes5_z*six_r_M_ta_t_2
+        - axis_y_six_r_axes5_z*six_r_M_ta_t_5 - axis_z_six_r_axes5_z*six_r_M_ta_t_8 -
+        six_r_Q_xy*v.six_r_q_y;
+    const real six_r_M_ta_t_19 = six_r_Q_zz*v.six_r_q_y - axis_x_six_r_axes5_x*six_r_M_ta_t_3
+        - axis_y_six_r_axes5_x*six_r_M_ta_t_6 - axis_z_six_r_axes5_x*six_r_M_ta_t_9 -
+        six_r_Q_yz*v.six_r_q_z;
+    const real six_r_M_ta_t_20 = six_r_Q_xz*v.six_r_q_z - axis_x_six_r_axes5_y*six_r_M_ta_t_3
+        - axis_y_six_r_axes5_y*six_r_M_ta_t_6 - axis_z_six_r_axes5_y*six_r_M_ta_t_9 -
+        six_r_Q_zz*v.six_r_q_x;
+    const real six_r_M_ta_t_21 = six_r_M_ta_t_12 - six_r_M_ta_t_11 -
+        axis_x_six_r_axes5_z*six_r_M_ta_t_3 - axis_y_six_r_axes5_z*six_r_M_ta_t_6 -
+        axis_z_six_r_axes5_z*six_r_M_ta_t_9;
+    /* (M_aa) rotational block of M */
+    const real six_r_M_aa_t = six_r_M_ta_t_19*v.six_r_q_y + six_r_d_G_m_xz*v.six_r_q_y +
+        six_r_n_m1_x*(axis_x_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_x +
+        axis_y_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_y +
+        axis_z_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_z) +
+        six_r_n_m2_x*(axis_x_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_x +
+        axis_y_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_y +
+        axis_z_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_z) - six_r_M_ta_t_16*v.six_r_q_z -
+        six_r_d_G_m_xy*v.six_r_q_z;
+    const real six_r_M_aa_t_2 = six_r_M_ta_t_17*v.six_r_q_z + six_r_M_ta_t_20*v.six_r_q_y +
+        six_r_d_G_m_xx*v.six_r_q_z + six_r_dalpha_G_m1_y*six_r_n_m1_x +
+        six_r_dalpha_G_m2_y*six_r_n_m2_x - six_r_d_G_m_xz*v.six_r_q_x;
+    const real six_r_M_aa_t_3 = six_r_M_ta_t_21*v.six_r_q_y + six_r_d_G_m_xy*v.six_r_q_x +
+        six_r_dalpha_G_m1_z*six_r_n_m1_x + six_r_dalpha_G_m2_z*six_r_n_m2_x -
+        six_r_M_ta_t_18*v.six_r_q_z - six_r_d_G_m_xx*v.six_r_q_y;
+    const real six_r_M_aa_t_4 = six_r_M_ta_t_14*v.six_r_q_z + six_r_d_G_m_yx*v.six_r_q_z +
+        six_r_dalpha_G_m1_y*six_r_n_m1_y + six_r_dalpha_G_m2_y*six_r_n_m2_y -
+        six_r_M_ta_t_20*v.six_r_q_x - v.six_r_q_x*(six_r_d_G_m1_z*six_r_n_m1_y +
+        six_r_d_G_m2_z*six_r_n_m2_y);
+    const real six_r_M_aa_t_5 = six_r_M_ta_t_15*v.six_r_q_z + six_r_dalpha_G_m1_z*six_r_n_m1_y
+        + six_r_dalpha_G_m2_z*six_r_n_m2_y + v.six_r_q_x*(six_r_d_G_m1_y*six_r_n_m1_y +
+        six_r_d_G_m2_y*six_r_n_m2_y) - six_r_M_ta_t_21*v.six_r_q_x -
+        six_r_d_G_m_yx*v.six_r_q_y;
+    const real six_r_M_aa_t_6 = six_r_M_ta_t_18*v.six_r_q_x + six_r_dalpha_G_m1_z*six_r_n_m1_z
+        + six_r_dalpha_G_m2_z*six_r_n_m2_z + v.six_r_q_x*(six_r_d_G_m1_y*six_r_n_m1_z +
+        six_r_d_G_m2_y*six_r_n_m2_z) - six_r_M_ta_t_15*v.six_r_q_y -
+        v.six_r_q_y*(six_r_d_G_m1_x*six_r_n_m1_z + six_r_d_G_m2_x*six_r_n_m2_z);
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, six_r_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, six_r_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, six_r_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, six_r_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, six_r_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, six_r_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) */
+    gather(&terms[6*count + k], add, six_r_M_ta_t_13);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, six_r_M_ta_t_14);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, six_r_M_ta_t_15);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, six_r_M_ta_t_16);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, six_r_M_ta_t_17);  /* M_ta_t */
+    gather(&terms[11*count + k], add, six_r_M_ta_t_18);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, six_r_M_ta_t_19);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, six_r_M_ta_t_20);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, six_r_M_ta_t_21);  /* M_ta_zz */
+    /* (M_aa) */
+    gather(&terms[15*count + k], add, six_r_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, six_r_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, six_r_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, six_r_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, six_r_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, six_r_M_aa_t_6);  /* M_aa_zz_of_legs */
+    o[0*count + k] = UNLESS(magnitude(six_r_w_1_t_12) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(six_r_w_1_t_28) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(six_r_w_1_t_49) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(six_r_w_1_t_67) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(six_r_w_1_t_79) > TOLERANCE*m->six_r_size[i]);
 }
 
-INLINE void M_place_six_r(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void M_place_six_r(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o[0*count + first + k];
-    }
+    t->singular[k] += o[0*count + at];
 }
 
-INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums, real *M, verdict
-    *t)
+INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
+    *M, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (M_tt) translational block of M */
-        const real M_tt_xx_of_legs = sums[0*w + k];
-        const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_xx_of_legs + m_star;
-        const real M_tt_yy_of_legs = sums[3*w + k];
-        const real M_tt_yy = M_tt_yy_of_legs + m_star;
-        const real M_tt_zz_of_legs = sums[5*w + k];
-        const real M_tt_zz = M_tt_zz_of_legs + m_star;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[11*w + k];
-        const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
-        const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[10*w + k];
-        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-        const real M_ta_yx_of_legs = sums[9*w + k];
-        const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-        const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[9*w + k];
-        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
-        const real M_ta_zx_of_legs = sums[12*w + k];
-        const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
-        const real M_ta_zy_of_legs = sums[13*w + k];
-        const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-        /* (M_aa) rotational block of M */
-        const real J_star_xx = s[12*w + k];
-        const real M_aa_xx_of_legs = sums[15*w + k];
-        const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[13*w + k];
-        const real M_aa_xy_of_legs = sums[16*w + k];
-        const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[14*w + k];
-        const real M_aa_xz_of_legs = sums[17*w + k];
-        const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[15*w + k];
-        const real M_aa_yy_of_legs = sums[18*w + k];
-        const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-        const real J_star_yz = s[16*w + k];
-        const real M_aa_yz_of_legs = sums[19*w + k];
-        const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[17*w + k];
-        const real M_aa_zz_of_legs = sums[20*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-        /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        const real M_tt_xy = sums[1*w + k];
-        M[1*w + k] = M_tt_xy;
-        M[NV*w + k] = M_tt_xy;
-        const real M_tt_xz = sums[2*w + k];
-        M[2*w + k] = M_tt_xz;
-        M[2*NV*w + k] = M_tt_xz;
-        M[(NV + 1)*w + k] = M_tt_yy;
-        const real M_tt_yz = sums[4*w + k];
-        M[(NV + 2)*w + k] = M_tt_yz;
-        M[(2*NV + 1)*w + k] = M_tt_yz;
-        M[(2*NV + 2)*w + k] = M_tt_zz;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xx = sums[6*w + k];
-        M[3*w + k] = M_ta_xx;
-        M[3*NV*w + k] = M_ta_xx;
-        M[4*w + k] = M_ta_xy;
-        M[4*NV*w + k] = M_ta_xy;
-        M[5*w + k] = M_ta_xz;
-        M[5*NV*w + k] = M_ta_xz;
-        M[(NV + 3)*w + k] = M_ta_yx;
-        M[(3*NV + 1)*w + k] = M_ta_yx;
-        const real M_ta_t = sums[10*w + k];
-        M[(NV + 4)*w + k] = -M_ta_t;
-        M[(4*NV + 1)*w + k] = -M_ta_t;
-        M[(NV + 5)*w + k] = M_ta_yz;
-        M[(5*NV + 1)*w + k] = M_ta_yz;
-        M[(2*NV + 3)*w + k] = M_ta_zx;
-        M[(3*NV + 2)*w + k] = M_ta_zx;
-        M[(2*NV + 4)*w + k] = M_ta_zy;
-        M[(4*NV + 2)*w + k] = M_ta_zy;
-        const real M_ta_zz = sums[14*w + k];
-        M[(2*NV + 5)*w + k] = M_ta_zz;
-        M[(5*NV + 2)*w + k] = M_ta_zz;
-        /* (M_aa) rotational block of M */
-        M[(3*NV + 3)*w + k] = M_aa_xx;
-        M[(3*NV + 4)*w + k] = M_aa_xy;
-        M[(4*NV + 3)*w + k] = M_aa_xy;
-        M[(3*NV + 5)*w + k] = M_aa_xz;
-        M[(5*NV + 3)*w + k] = M_aa_xz;
-        M[(4*NV + 4)*w + k] = M_aa_yy;
-        M[(4*NV + 5)*w + k] = M_aa_yz;
-        M[(5*NV + 4)*w + k] = M_aa_yz;
-        M[(5*NV + 5)*w + k] = M_aa_zz;
-        t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
-            M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_t + M_ta_yz) + (M_ta_zx +
-            (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
-            M_aa_zz))));
-    }
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    /* (M_ta) */
+    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real h_star_z = s[11*w + k];
+    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real h_star_y = s[10*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yx_of_legs = sums[9*w + k];
+    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_yz_of_legs = sums[11*w + k];
+    const real h_star_x = s[9*w + k];
+    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_zx_of_legs = sums[12*w + k];
+    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zy_of_legs = sums[13*w + k];
+    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    /* (M_aa) */
+    const real J_star_xx = s[12*w + k];
+    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
+    const real J_star_xy = s[13*w + k];
+    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
+    const real J_star_xz = s[14*w + k];
+    const real M_aa_xz_of_legs = sums[17*w + k];
+    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
+    const real J_star_yy = s[15*w + k];
+    const real M_aa_yy_of_legs = sums[18*w + k];
+    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
+    const real J_star_yz = s[16*w + k];
+    const real M_aa_yz_of_legs = sums[19*w + k];
+    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
+    const real J_star_zz = s[17*w + k];
+    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    const real M_tt_xz = sums[2*w + k];
+    M[2*w + k] = M_tt_xz;
+    M[2*NV*w + k] = M_tt_xz;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_yz = sums[4*w + k];
+    M[(NV + 2)*w + k] = M_tt_yz;
+    M[(2*NV + 1)*w + k] = M_tt_yz;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    /* (M_ta) */
+    const real M_ta_xx = sums[6*w + k];
+    M[3*w + k] = M_ta_xx;
+    M[3*NV*w + k] = M_ta_xx;
+    M[4*w + k] = M_ta_xy;
+    M[4*NV*w + k] = M_ta_xy;
+    M[5*w + k] = M_ta_xz;
+    M[5*NV*w + k] = M_ta_xz;
+    M[(NV + 3)*w + k] = M_ta_yx;
+    M[(3*NV + 1)*w + k] = M_ta_yx;
+    const real M_ta_t = sums[10*w + k];
+    M[(NV + 4)*w + k] = -M_ta_t;
+    M[(4*NV + 1)*w + k] = -M_ta_t;
+    M[(NV + 5)*w + k] = M_ta_yz;
+    M[(5*NV + 1)*w + k] = M_ta_yz;
+    M[(2*NV + 3)*w + k] = M_ta_zx;
+    M[(3*NV + 2)*w + k] = M_ta_zx;
+    M[(2*NV + 4)*w + k] = M_ta_zy;
+    M[(4*NV + 2)*w + k] = M_ta_zy;
+    const real M_ta_zz = sums[14*w + k];
+    M[(2*NV + 5)*w + k] = M_ta_zz;
+    M[(5*NV + 2)*w + k] = M_ta_zz;
+    /* (M_aa) */
+    M[(3*NV + 3)*w + k] = M_aa_xx;
+    M[(3*NV + 4)*w + k] = M_aa_xy;
+    M[(4*NV + 3)*w + k] = M_aa_xy;
+    M[(3*NV + 5)*w + k] = M_aa_xz;
+    M[(5*NV + 3)*w + k] = M_aa_xz;
+    M[(4*NV + 4)*w + k] = M_aa_yy;
+    M[(4*NV + 5)*w + k] = M_aa_yz;
+    M[(5*NV + 4)*w + k] = M_aa_yz;
+    M[(5*NV + 5)*w + k] = M_aa_zz;
+    t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
+        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_t + M_ta_yz) + (M_ta_zx +
+        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+        M_aa_zz))));
 }
 
-INLINE void M_run(const prepared *m, const real *X, const real *joints, real *M, verdict *t)
+APART void M_run(const prepared *m, const real *X, const real *joints, real *M, verdict *t)
 {
     real s[18] = {0}, sums[21] = {0};
     real terms_six_r[21*LEGS(LEGS_OF_six_r)] = {0}, o_six_r[LEGS(LEGS_OF_six_r)] = {0};
-    M_before(m, 1, X, s, t);
-    M_legs_six_r(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_six_r), 0, joints, terms_six_r, o_six_r);
-    for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
-        M_place_six_r(1, LEGS(LEGS_OF_six_r), o_six_r, leg, t);
+    M_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
+        M_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), 0, s, joints, terms_six_r, o_six_r);
+    }
+    for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
+        M_place_six_r(0, i, LEGS(LEGS_OF_six_r), o_six_r, t);
     }
     for (size_t n = 0; n < 21; ++n) {
         sums[n] = total(terms_six_r + n*LEGS(LEGS_OF_six_r), LEGS_OF_six_r);
     }
-    M_after(m, 1, s, sums, M, t);
+    M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, const real *joints, real *M, verdict *t)
+INLINE void M_run_lanes(const prepared *m, const real *X, const real *joints, real *restrict M,
+    verdict *restrict t)
 {
     real s[18*LANES], sums[21*LANES];
     real o_six_r[LANES];
-    M_before(m, LANES, X, s, t);
-    clear(sums, 21*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
-        M_legs_six_r(m, LANES, leg, 0, s, 1, LANES, 1, joints, sums, o_six_r);
-        M_place_six_r(LANES, LANES, o_six_r, 0, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        M_before(m, LANES, k, X, s, t);
     }
-    M_after(m, LANES, s, sums, M, t);
+    clear(sums, 21*LANES);
+    for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            M_legs_six_r(m, LANES, i, k, k, LANES, 1, s, joints, sums, o_six_r);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            M_place_six_r(k, k, LANES, o_six_r, t);
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        M_after(m, LANES, k, s, sums, M, t);
+    }
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s, verdict
-    *t)
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        stage_V_X(w, k, V, &v);
-        stage_Z_dynamics(m, w, k, V, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = v.Z_p_x;
-        s[10*w + k] = v.Z_p_y;
-        s[11*w + k] = v.Z_p_z;
-        s[12*w + k] = v.Z_q_x;
-        s[13*w + k] = v.Z_q_y;
-        s[14*w + k] = v.Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    stage_V_X(w, k, V, &v);
+    stage_Z_dynamics(m, w, k, V, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = v.Z_p_x;
+    s[10*w + k] = v.Z_p_y;
+    s[11*w + k] = v.Z_p_z;
+    s[12*w + k] = v.Z_q_x;
+    s[13*w + k] = v.Z_q_y;
+    s[14*w + k] = v.Z_q_z;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *V, const real *joints, real *terms, real *o)
+INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *s, const real *V, const real *joints, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_six_r v;
-        stage_six_r_X(m, w, i, j, s, &v);
-        stage_six_r_q(m, w, i, j, joints, &v);
-        stage_six_r_V_X(w, j, V, &v);
-        stage_six_r_V_q(w, j, V, &v);
-        stage_six_r_X_q(m, i, &v);
-        stage_six_r_V_X_q(&v);
-        stage_six_r_Z_dynamics(m, w, i, j, V, &v);
-        stage_six_r_Z_joint_accelerations(&v);
-        /* (six_r-eta_1) rate at which the joints turn along moment direction 1 */
-        const real omega_x = V[3*w + j];
-        const real omega_y = V[4*w + j];
-        const real omega_z = V[5*w + j];
-        const real six_r_eta_1 = omega_x*(v.axis_y_six_r_axes5_x*v.six_r_n_m1_in_axes5_y -
-            v.axis_x_six_r_axes5_x*v.six_r_n_m2_in_axes5_z) +
-            omega_y*(v.axis_y_six_r_axes5_y*v.six_r_n_m1_in_axes5_y -
-            v.axis_x_six_r_axes5_y*v.six_r_n_m2_in_axes5_z) +
-            omega_z*(v.axis_y_six_r_axes5_z*v.six_r_n_m1_in_axes5_y -
-            v.axis_x_six_r_axes5_z*v.six_r_n_m2_in_axes5_z);
-        /* (six_r-eta_2) rate at which the joints turn along moment direction 2 */
-        const real six_r_eta_2 = omega_x*(v.axis_z_six_r_axes5_x*v.six_r_n_m2_in_axes5_z -
-            v.axis_y_six_r_axes5_x*v.six_r_end_p1_in_axes5_z) +
-            omega_y*(v.axis_z_six_r_axes5_y*v.six_r_n_m2_in_axes5_z -
-            v.axis_y_six_r_axes5_y*v.six_r_end_p1_in_axes5_z) +
-            omega_z*(v.axis_z_six_r_axes5_z*v.six_r_n_m2_in_axes5_z -
-            v.axis_y_six_r_axes5_z*v.six_r_end_p1_in_axes5_z);
-        /* (six_r-qd_1) rate of joint 1 */
-        const real six_r_size = m->six_r_size[i];
-        const real six_r_qd_1_t_6 = six_r_eta_1*six_r_size;
-        const real six_r_qd_1_t_7 = six_r_eta_2*six_r_size;
-        const real six_r_qd_1_t_8 = v.inv_six_r_w_1_t_79*(v.six_r_S_dot_in_axes5_x*v.six_r_qd_1_t
-            + v.six_r_S_dot_in_axes5_z*v.six_r_qd_1_t_3 + v.six_r_qd_1_t_4*six_r_qd_1_t_6 +
-            v.six_r_qd_1_t_5*six_r_qd_1_t_7 - v.six_r_S_dot_in_axes5_y*v.six_r_qd_1_t_2);
-        const real six_r_qd_1_t_9 =
-            v.inv_six_r_w_1_t_67*(v.six_r_S_dot_in_axes5_x*v.six_r_w_1_t_68 +
-            v.six_r_S_dot_in_axes5_z*v.six_r_w_1_t_70 + six_r_qd_1_t_6*v.six_r_w_1_t_71 +
-            six_r_qd_1_t_7*v.six_r_w_1_t_72 - v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_69 -
-            six_r_qd_1_t_8*v.six_r_w_1_t_73);
-        const real six_r_qd_1_t_10 =
-            v.inv_six_r_w_1_t_49*(v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_51 +
-            six_r_qd_1_t_8*v.six_r_w_1_t_61 + six_r_qd_1_t_9*v.six_r_w_1_t_55 -
-            v.six_r_S_dot_in_axes5_x*v.six_r_w_1_t_50 - v.six_r_S_dot_in_axes5_z*v.six_r_w_1_t_52
-            - six_r_qd_1_t_6*v.six_r_w_1_t_53 - six_r_qd_1_t_7*v.six_r_w_1_t_54);
-        /* (six_r-qd_4) rate of joint 4 */
-        const real six_r_qd_4 = v.inv_six_r_w_1_t_28*(v.six_r_S_dot_in_axes5_z*v.six_r_w_1_t_30 +
-            six_r_qd_1_t_6*v.six_r_w_1_t_31 + six_r_qd_1_t_7*v.six_r_w_1_t_32 +
-            six_r_qd_1_t_8*v.six_r_w_1_t_44 + six_r_qd_1_t_9*v.six_r_w_1_t_39 -
-            v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_29 - six_r_qd_1_t_10*v.six_r_w_1_t_33);
-        /* (six_r-qd_5) rate of joint 5 */
-        const real six_r_qd_5 = v.inv_six_r_w_1_t_12*(v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_13 +
-            six_r_qd_1_t_10*v.six_r_w_1_t_18 + six_r_qd_1_t_7*v.six_r_w_1_t_14 +
-            six_r_qd_1_t_8*v.six_r_w_1_t_25 - six_r_qd_1_t_9*v.six_r_w_1_t_22 -
-            six_r_qd_4*v.six_r_w_1_t_15);
-        /* (six_r-omega_1) angular velocity of link 1 */
-        const real six_r_omega_1_in_axes2_x = -v.six_r_c_2*six_r_qd_1_t_10;
-        const real six_r_omega_1_in_axes2_y = six_r_qd_1_t_10*v.six_r_s_2;
-        const real six_r_omega_1_t = v.six_r_e_1_in_axes5_x*six_r_qd_1_t_10;
-        const real six_r_omega_1_t_2 = v.six_r_e_1_in_axes5_y*six_r_qd_1_t_10;
-        const real six_r_omega_1_t_3 = v.six_r_e_1_in_axes5_z*six_r_qd_1_t_10;
-        /* (six_r-W_1) centripetal tensor of link 1 */
-        const real six_r_W_1_in_axes5_xy = six_r_omega_1_t*six_r_omega_1_t_2;
-        const real six_r_W_1_in_axes5_xz = six_r_omega_1_t*six_r_omega_1_t_3;
-        const real six_r_W_1_in_axes5_yz = six_r_omega_1_t_2*six_r_omega_1_t_3;
-        /* (six_r-omega_2) angular velocity of link 2 */
-        const real six_r_omega_2_in_axes3_x = six_r_omega_1_in_axes2_x*v.six_r_s_3 -
-            v.six_r_c_3*six_r_omega_1_in_axes2_y;
-        const real six_r_omega_2_in_axes3_y = v.six_r_c_3*six_r_omega_1_in_axes2_x +
-            six_r_omega_1_in_axes2_y*v.six_r_s_3;
-        const real six_r_omega_2_in_axes5_x = v.six_r_e_2_in_axes5_x*six_r_qd_1_t_9 -
-            six_r_omega_1_t;
-        const real six_r_omega_2_in_axes5_y = v.six_r_e_2_in_axes5_y*six_r_qd_1_t_9 -
-            six_r_omega_1_t_2;
-        const real six_r_omega_2_in_axes5_z = v.six_r_c_4*six_r_qd_1_t_9 - six_r_omega_1_t_3;
-        /* (six_r-W_2) centripetal tensor of link 2 */
-        const real six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_9;
-        const real six_r_W_2_in_axes2_xy = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_y;
-        const real six_r_W_2_in_axes5_xy = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_y;
-        const real six_r_W_2_in_axes5_xz = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_z;
-        const real six_r_W_2_in_axes5_yz = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_z;
-        /* (six_r-omega_3) angular velocity of link 3 */
-        const real six_r_omega_3_in_axes3_z = six_r_qd_1_t_8 + six_r_qd_1_t_9;
-        const real six_r_omega_3_in_axes4_x = six_r_omega_3_in_axes3_z*v.six_r_s_4 -
-            v.six_r_c_4*six_r_omega_2_in_axes3_x;
-        const real six_r_omega_3_in_axes4_y = v.six_r_c_4*six_r_omega_3_in_axes3_z +
-            six_r_omega_2_in_axes3_x*v.six_r_s_4;
-        const real six_r_omega_3_t = six_r_omega_3_in_axes4_x*v.six_r_s_5;
-        const real six_r_omega_3_t_2 = v.six_r_c_5*six_r_omega_3_in_axes4_x;
-        const real six_r_omega_3_in_axes5_x = six_r_omega_3_t +
-            v.six_r_c_5*six_r_omega_2_in_axes3_y;
-        const real six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 -
-            six_r_omega_2_in_axes3_y*v.six_r_s_5;
-        /* (six_r-W_3) centripetal tensor of link 3 */
-        const real six_r_W_3_t = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_x;
-        const real six_r_W_3_t_2 = six_r_omega_3_in_axes3_z*six_r_omega_3_in_axes3_z;
-        const real six_r_W_3_in_axes3_xy = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_y;
-        const real six_r_W_3_in_axes3_xz = six_r_omega_2_in_axes3_x*six_r_omega_3_in_axes3_z;
-        const real six_r_W_3_t_3 = six_r_W_3_t + six_r_W_3_t_2;
-        const real six_r_W_3_in_axes3_yz = six_r_omega_2_in_axes3_y*six_r_omega_3_in_axes3_z;
-        const real six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y;
-        /* (six_r-omega_4) angular velocity of link 4 */
-        const real six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y + six_r_qd_4;
-        const real six_r_omega_4_in_axes5_x = six_r_omega_3_t +
-            v.six_r_c_5*six_r_omega_4_in_axes4_z;
-        const real six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 -
-            six_r_omega_4_in_axes4_z*v.six_r_s_5;
-        /* (six_r-W_4) centripetal tensor of link 4 */
-        const real six_r_W_4_in_axes4_xy = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_y;
-        const real six_r_W_4_in_axes4_xz = six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes4_z;
-        const real six_r_W_4_in_axes4_yz = six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes4_z;
-        const real six_r_W_4_in_axes5_xy = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_y;
-        /* (six_r-omega_5) angular velocity of link 5 */
-        const real six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_y + six_r_qd_5;
-        /* (six_r-W_5) centripetal tensor of link 5 */
-        const real six_r_W_5_t = six_r_omega_4_in_axes5_y*six_r_omega_4_in_axes5_y;
-        const real six_r_W_5_t_2 = six_r_omega_5_in_axes5_z*six_r_omega_5_in_axes5_z;
-        const real six_r_W_5_t_3 = six_r_W_5_t + six_r_W_5_t_2;
-        const real six_r_W_5_in_axes5_xz = six_r_omega_4_in_axes5_x*six_r_omega_5_in_axes5_z;
-        const real six_r_W_5_in_axes5_yz = six_r_omega_4_in_axes5_y*six_r_omega_5_in_axes5_z;
-        /* (six_r-u_1) centripetal acceleration of the connection point */
-        const real six_r_u_1_in_axes5_x = v.axis_x_six_r_axes5_x*v.six_r_u_1_x +
-            v.axis_x_six_r_axes5_y*v.six_r_u_1_y + v.axis_x_six_r_axes5_z*v.six_r_u_1_z;
-        const real six_r_u_1_in_axes5_y = v.axis_y_six_r_axes5_x*v.six_r_u_1_x +
-            v.axis_y_six_r_axes5_y*v.six_r_u_1_y + v.axis_y_six_r_axes5_z*v.six_r_u_1_z;
-        const real six_r_u_1_in_axes5_z = v.axis_z_six_r_axes5_x*v.six_r_u_1_x +
-            v.axis_z_six_r_axes5_y*v.six_r_u_1_y + v.axis_z_six_r_axes5_z*v.six_r_u_1_z;
-        /* (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_9;
-        const real six_r_zeta_2_in_axes3_x = six_r_W_2_in_axes2_yz*v.six_r_s_3 -
-            v.six_r_c_3*six_r_zeta_2_in_axes2_y;
-        const real six_r_zeta_2_in_axes3_y = six_r_W_2_in_axes2_yz*v.six_r_c_3 +
-            v.six_r_s_3*six_r_zeta_2_in_axes2_y;
-        const real six_r_zeta_2_t = v.six_r_c_4*six_r_zeta_2_in_axes3_x;
-        const real six_r_zeta_2_in_axes5_z = v.six_r_s_4*six_r_zeta_2_in_axes3_x;
-        const real six_r_zeta_2_in_axes5_x = v.six_r_c_5*six_r_zeta_2_in_axes3_y -
-            v.six_r_s_5*six_r_zeta_2_t;
-        const real six_r_zeta_2_in_axes5_y = -v.six_r_c_5*six_r_zeta_2_t -
-            v.six_r_s_5*six_r_zeta_2_in_axes3_y;
-        /* (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real six_r_zeta_3_in_axes3_x = six_r_omega_2_in_axes3_y*six_r_qd_1_t_8;
-        const real six_r_zeta_3_t = six_r_omega_2_in_axes3_x*six_r_qd_1_t_8;
-        /* (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real six_r_beta_3_in_axes3_x = six_r_zeta_2_in_axes3_x + six_r_zeta_3_in_axes3_x;
-        const real six_r_beta_3_in_axes3_y = six_r_zeta_2_in_axes3_y - six_r_zeta_3_t;
-        const real six_r_beta_3_t = six_r_beta_3_in_axes3_x*v.six_r_c_4;
-        const real six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*v.six_r_s_4;
-        /* (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
-        const real six_r_zeta_4_in_axes4_x = six_r_omega_3_in_axes4_y*six_r_qd_4;
-        const real six_r_zeta_4_t = six_r_omega_3_in_axes4_x*six_r_qd_4;
-        /* (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations */
-        const real six_r_beta_4_in_axes4_x = six_r_zeta_4_in_axes4_x - six_r_beta_3_t;
-        const real six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y - six_r_zeta_4_t;
-        const real six_r_beta_4_t = six_r_beta_3_in_axes3_y*v.six_r_c_5;
-        const real six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_beta_4_in_axes4_x*v.six_r_s_5;
-        const real six_r_beta_4_t_2 = six_r_beta_3_in_axes3_y*v.six_r_s_5;
-        const real six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*v.six_r_c_5 -
-            six_r_beta_4_t_2;
-        /* (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5 */
-        const real six_r_zeta_5_in_axes5_x = six_r_omega_4_in_axes5_y*six_r_qd_5;
-        const real six_r_zeta_5_t = six_r_omega_4_in_axes5_x*six_r_qd_5;
-        /* (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations */
-        const real six_r_beta_5_in_axes5_x = six_r_beta_4_in_axes5_x + six_r_zeta_5_in_axes5_x;
-        const real six_r_beta_5_in_axes5_y = six_r_beta_4_in_axes5_y - six_r_zeta_5_t;
-        /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
-        const real six_r_bias_t = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y;
-        const real six_r_bias_t_2 = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x;
-        const real six_r_bias_t_6 = v.six_r_bias_t_4*v.six_r_c_4;
-        const real six_r_d_2_in_axes5_z = v.six_r_bias_t_4*v.six_r_s_4;
-        const real six_r_d_2_in_axes5_x = v.six_r_bias_t_5*v.six_r_c_5 -
-            six_r_bias_t_6*v.six_r_s_5;
-        const real six_r_d_2_in_axes5_y = -v.six_r_bias_t_5*v.six_r_s_5 -
-            six_r_bias_t_6*v.six_r_c_5;
-        const real six_r_bias_t_7 = six_r_omega_1_t*six_r_omega_1_t;
-        const real six_r_bias_t_8 = six_r_omega_1_t_2*six_r_omega_1_t_2;
-        const real six_r_bias_t_9 = six_r_omega_1_t_3*six_r_omega_1_t_3;
-        const real six_r_bias_t_12 = v.six_r_bias_t_10*v.six_r_c_4;
-        const real six_r_d_3_in_axes5_z = v.six_r_bias_t_10*v.six_r_s_4;
-        const real six_r_d_3_in_axes5_x = v.six_r_bias_t_11*v.six_r_c_5 -
-            six_r_bias_t_12*v.six_r_s_5;
-        const real six_r_d_3_in_axes5_y = -v.six_r_bias_t_11*v.six_r_s_5 -
-            six_r_bias_t_12*v.six_r_c_5;
-        const real six_r_bias_t_13 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x;
-        const real six_r_bias_t_14 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y;
-        const real six_r_bias_t_15 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z;
-        const real six_r_joint4_offset_x = m->six_r_joint4_offset_x[i];
-        const real six_r_bias_t_16 = six_r_joint4_offset_x*v.six_r_s_5;
-        const real six_r_joint5_offset_x = m->six_r_joint5_offset_x[i];
-        const real six_r_bias_t_17 = six_r_joint5_offset_x*v.six_r_s_5;
-        const real six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y;
-        const real six_r_platform_joint_offset_x = m->six_r_platform_joint_offset_x[i];
-        const real six_r_bias_in_axes5_x = six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_y +
-            six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_z +
-            six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
-            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) -
-            six_r_W_5_t_3*six_r_platform_joint_offset_x - six_r_bias_t_16*(six_r_W_3_in_axes5_xy -
-            six_r_beta_3_in_axes4_y) - six_r_bias_t_17*(six_r_W_4_in_axes5_xy -
-            six_r_beta_4_in_axes4_y) - six_r_d_2_in_axes5_x*(six_r_bias_t_8 + six_r_bias_t_9) -
-            six_r_d_3_in_axes5_x*(six_r_bias_t_14 + six_r_bias_t_15) -
-            v.six_r_d_4_in_axes5_x*(six_r_bias_t +
-            six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) -
-            v.six_r_d_5_in_axes5_x*(six_r_W_5_t + six_r_bias_t);
-        const real six_r_bias_in_axes5_y = six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_x +
-            six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_z + six_r_bias_t_16*(six_r_bias_t +
-            six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) + six_r_bias_t_17*(six_r_bias_t +
-            six_r_bias_t_2) + six_r_bias_t_18*v.six_r_d_5_in_axes5_x +
-            six_r_bias_t_18*six_r_platform_joint_offset_x +
-            six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
-            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
-            v.six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_y) -
-            six_r_d_2_in_axes5_y*(six_r_bias_t_7 + six_r_bias_t_9) -
-            six_r_d_3_in_axes5_y*(six_r_bias_t_13 + six_r_bias_t_15);
-        const real six_r_bias_in_axes5_z = six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_x +
-            six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_y +
-            six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
-            six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
-            v.six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*v.six_r_c_5 +
-            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) +
-            v.six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
-            six_r_beta_4_in_axes5_y) + six_r_platform_joint_offset_x*(six_r_W_5_in_axes5_xz -
-            six_r_beta_5_in_axes5_y) - six_r_bias_t_16*(six_r_beta_4_t +
-            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - six_r_beta_3_t*v.six_r_s_5) -
-            six_r_bias_t_17*(six_r_beta_4_in_axes5_x +
-            six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y) -
-            six_r_d_2_in_axes5_z*(six_r_bias_t_7 + six_r_bias_t_8) -
-            six_r_d_3_in_axes5_z*(six_r_bias_t_13 + six_r_bias_t_14);
-        /* (six_r-rel_o) remainder of: acceleration of the connection point left to the joint
-           accelerations */
-        const real six_r_rel_o_in_axes5_x = six_r_u_1_in_axes5_x - six_r_bias_in_axes5_x;
-        const real six_r_rel_o_in_axes5_y = six_r_u_1_in_axes5_y - six_r_bias_in_axes5_y;
-        const real six_r_rel_o_in_axes5_z = six_r_u_1_in_axes5_z - six_r_bias_in_axes5_z;
-        /* (six_r-nd_m1) rate of moment direction 1 */
-        const real six_r_nd_m1_in_axes5_x = -v.six_r_nd_m1_t -
-            v.six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_x;
-        const real six_r_nd_m1_in_axes5_y = v.six_r_end_p1_in_axes5_z*v.six_r_omega_in_axes5_y -
-            v.six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y -
-            v.six_r_n_m2_in_axes5_z*v.six_r_omega_in_axes5_z;
-        /* (six_r-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real six_r_nu_1_t = v.six_r_n_m2_in_axes5_z*six_r_omega_4_in_axes5_y;
-        const real six_r_nu_1_t_2 = six_r_beta_5_in_axes5_x*v.six_r_n_m2_in_axes5_z -
-            six_r_beta_5_in_axes5_y*v.six_r_n_m1_in_axes5_y;
-        const real six_r_nu_1_t_3 = six_r_omega_4_in_axes5_x - v.six_r_omega_in_axes5_x;
-        const real six_r_nu_1_t_4 = six_r_omega_4_in_axes5_y - v.six_r_omega_in_axes5_y;
-        const real six_r_nu_1_t_5 = six_r_omega_5_in_axes5_z - v.six_r_omega_in_axes5_z;
-        const real six_r_nu_1_t_6 = six_r_nd_m1_in_axes5_x*six_r_nu_1_t_3 +
-            six_r_nd_m1_in_axes5_y*six_r_nu_1_t_4 + six_r_nu_1_t_5*(six_r_nu_1_t +
-            v.six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x);
-        const real six_r_nu_1 = six_r_nu_1_t_2 - six_r_nu_1_t_6;
-        /* (six_r-nd_m2) rate of moment direction 2 */
-        const real six_r_nd_m2_in_axes5_y = v.six_r_n_m1_in_axes5_y*v.six_r_omega_in_axes5_y -
-            v.six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y -
-            v.six_r_n_m2_in_axes5_z*v.six_r_omega_in_axes5_x;
-        const real six_r_nd_m2_in_axes5_z = v.six_r_nd_m1_t -
-            v.six_r_n_m1_in_axes5_y*six_r_omega_5_in_axes5_z;
-        /* (six_r-nu_2) bias of the angular acceleration along moment direction 2 */
-        const real six_r_nu_2_t = six_r_beta_5_in_axes5_y*v.six_r_end_p1_in_axes5_z -
-            six_r_beta_4_in_axes4_y*v.six_r_n_m2_in_axes5_z;
-        const real six_r_nu_2_t_2 = six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 +
-            six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 + six_r_nu_1_t_3*(six_r_nu_1_t +
-            v.six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z);
-        const real six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2;
-        /* (six_r-qdd_1_o) remainder of: acceleration of joint 1 */
-        const real six_r_qdd_1_o_t = six_r_nu_1*six_r_size;
-        const real six_r_qdd_1_o_t_2 = six_r_nu_2*six_r_size;
-        const real six_r_qdd_1_o_t_3 = v.inv_six_r_w_1_t_79*(v.six_r_qd_1_t*six_r_rel_o_in_axes5_x
-            + v.six_r_qd_1_t_3*six_r_rel_o_in_axes5_z + v.six_r_qd_1_t_4*six_r_qdd_1_o_t +
-            v.six_r_qd_1_t_5*six_r_qdd_1_o_t_2 - v.six_r_qd_1_t_2*six_r_rel_o_in_axes5_y);
-        const real six_r_qdd_1_o_t_4 = v.inv_six_r_w_1_t_67*(six_r_qdd_1_o_t*v.six_r_w_1_t_71 +
-            six_r_qdd_1_o_t_2*v.six_r_w_1_t_72 + six_r_rel_o_in_axes5_x*v.six_r_w_1_t_68 +
-            six_r_rel_o_in_axes5_z*v.six_r_w_1_t_70 - six_r_qdd_1_o_t_3*v.six_r_w_1_t_73 -
-            six_r_rel_o_in_axes5_y*v.six_r_w_1_t_69);
-        const real six_r_qdd_1_o_t_5 = v.inv_six_r_w_1_t_49*(six_r_qdd_1_o_t_3*v.six_r_w_1_t_61 +
-            six_r_qdd_1_o_t_4*v.six_r_w_1_t_55 + six_r_rel_o_in_axes5_y*v.six_r_w_1_t_51 -
-            six_r_qdd_1_o_t*v.six_r_w_1_t_53 - six_r_qdd_1_o_t_2*v.six_r_w_1_t_54 -
-            six_r_rel_o_in_axes5_x*v.six_r_w_1_t_50 - six_r_rel_o_in_axes5_z*v.six_r_w_1_t_52);
-        /* (six_r-qdd_4_o) remainder of: acceleration of joint 4 */
-        const real six_r_qdd_4_o = v.inv_six_r_w_1_t_28*(six_r_qdd_1_o_t*v.six_r_w_1_t_31 +
-            six_r_qdd_1_o_t_2*v.six_r_w_1_t_32 + six_r_qdd_1_o_t_3*v.six_r_w_1_t_44 +
-            six_r_qdd_1_o_t_4*v.six_r_w_1_t_39 + six_r_rel_o_in_axes5_z*v.six_r_w_1_t_30 -
-            six_r_qdd_1_o_t_5*v.six_r_w_1_t_33 - six_r_rel_o_in_axes5_y*v.six_r_w_1_t_29);
-        /* (six_r-alpha_1_o) remainder of: angular acceleration of link 1 */
-        const real six_r_alpha_1_o_t = v.six_r_c_2*six_r_qdd_1_o_t_5;
-        const real six_r_alpha_1_o_in_axes2_y = six_r_qdd_1_o_t_5*v.six_r_s_2;
-        /* (six_r-alpha_2_o) remainder of: angular acceleration of link 2 */
-        const real six_r_alpha_2_o_in_axes2_x = six_r_W_2_in_axes2_yz - six_r_alpha_1_o_t;
-        const real six_r_alpha_2_o_in_axes2_y = six_r_alpha_1_o_in_axes2_y +
-            six_r_zeta_2_in_axes2_y;
-        /* (six_r-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real six_r_B_2_o_in_axes2_xy = six_r_W_2_in_axes2_xy - six_r_qdd_1_o_t_4;
-        const real six_r_B_2_o_in_axes2_yx = six_r_W_2_in_axes2_xy + six_r_qdd_1_o_t_4;
-        const real six_r_B_2_o_in_axes2_zx = -six_r_alpha_2_o_in_axes2_y -
-            six_r_zeta_2_in_axes2_y;
-        const real six_r_B_2_o_in_axes2_zy = six_r_W_2_in_axes2_yz + six_r_alpha_2_o_in_axes2_x;
-        /* (six_r-alpha_3_o) remainder of: angular acceleration of link 3 */
-        const real six_r_alpha_3_o_in_axes3_x = six_r_zeta_3_in_axes3_x +
-            six_r_alpha_2_o_in_axes2_x*v.six_r_s_3 - six_r_alpha_2_o_in_axes2_y*v.six_r_c_3;
-        const real six_r_alpha_3_o_in_axes3_y = six_r_alpha_2_o_in_axes2_x*v.six_r_c_3 +
-            six_r_alpha_2_o_in_axes2_y*v.six_r_s_3 - six_r_zeta_3_t;
-        const real six_r_alpha_3_o_in_axes3_z = six_r_qdd_1_o_t_3 + six_r_qdd_1_o_t_4;
-        /* (six_r-B_3_o) remainder of the acceleration tensor of link 3 */
-        const real six_r_B_3_o_in_axes3_xy = six_r_W_3_in_axes3_xy - six_r_alpha_3_o_in_axes3_z;
-        const real six_r_B_3_o_in_axes3_xz = six_r_W_3_in_axes3_xz + six_r_alpha_3_o_in_axes3_y;
-        const real six_r_B_3_o_in_axes3_yx = six_r_W_3_in_axes3_xy + six_r_alpha_3_o_in_axes3_z;
-        const real six_r_B_3_o_in_axes3_yz = six_r_W_3_in_axes3_yz - six_r_alpha_3_o_in_axes3_x;
-        const real six_r_B_3_o_in_axes3_zx = six_r_W_3_in_axes3_xz - six_r_alpha_3_o_in_axes3_y;
-        const real six_r_B_3_o_in_axes3_zy = six_r_W_3_in_axes3_yz + six_r_alpha_3_o_in_axes3_x;
-        /* (six_r-alpha_4_o) remainder of: angular acceleration of link 4 */
-        const real six_r_alpha_4_o_in_axes4_x = six_r_zeta_4_in_axes4_x +
-            six_r_alpha_3_o_in_axes3_z*v.six_r_s_4 - six_r_alpha_3_o_in_axes3_x*v.six_r_c_4;
-        const real six_r_alpha_4_o_in_axes4_y = six_r_alpha_3_o_in_axes3_x*v.six_r_s_4 +
-            six_r_alpha_3_o_in_axes3_z*v.six_r_c_4 - six_r_zeta_4_t;
-        const real six_r_alpha_4_o_in_axes4_z = six_r_alpha_3_o_in_axes3_y + six_r_qdd_4_o;
-        /* (six_r-B_4_o) remainder of the acceleration tensor of link 4 */
-        const real six_r_B_4_o_in_axes4_xy = six_r_W_4_in_axes4_xy - six_r_alpha_4_o_in_axes4_z;
-        const real six_r_B_4_o_in_axes4_xz = six_r_W_4_in_axes4_xz + six_r_alpha_4_o_in_axes4_y;
-        const real six_r_B_4_o_in_axes4_yx = six_r_W_4_in_axes4_xy + six_r_alpha_4_o_in_axes4_z;
-        const real six_r_B_4_o_in_axes4_yz = six_r_W_4_in_axes4_yz - six_r_alpha_4_o_in_axes4_x;
-        const real six_r_B_4_o_in_axes4_zx = six_r_W_4_in_axes4_xz - six_r_alpha_4_o_in_axes4_y;
-        const real six_r_B_4_o_in_axes4_zy = six_r_W_4_in_axes4_yz + six_r_alpha_4_o_in_axes4_x;
-        /* (six_r-alpha_5_o) remainder of: angular acceleration of link 5 */
-        const real six_r_alpha_5_o_in_axes5_x = six_r_zeta_5_in_axes5_x +
-            six_r_alpha_4_o_in_axes4_x*v.six_r_s_5 + six_r_alpha_4_o_in_axes4_z*v.six_r_c_5;
-        const real six_r_alpha_5_o_in_axes5_y = six_r_alpha_4_o_in_axes4_x*v.six_r_c_5 -
-            six_r_zeta_5_t - six_r_alpha_4_o_in_axes4_z*v.six_r_s_5;
-        const real six_r_alpha_5_o_in_axes5_z = six_r_alpha_4_o_in_axes4_y +
-            v.inv_six_r_w_1_t_12*(six_r_qdd_1_o_t_2*v.six_r_w_1_t_14 +
-            six_r_qdd_1_o_t_3*v.six_r_w_1_t_25 + six_r_qdd_1_o_t_5*v.six_r_w_1_t_18 +
-            six_r_rel_o_in_axes5_y*v.six_r_w_1_t_13 - six_r_qdd_1_o_t_4*v.six_r_w_1_t_22 -
-            six_r_qdd_4_o*v.six_r_w_1_t_15);
-        /* (six_r-B_5_o) remainder of the acceleration tensor of link 5 */
-        const real six_r_B_5_o_in_axes5_xy = six_r_W_4_in_axes5_xy - six_r_alpha_5_o_in_axes5_z;
-        const real six_r_B_5_o_in_axes5_xz = six_r_W_5_in_axes5_xz + six_r_alpha_5_o_in_axes5_y;
-        const real six_r_B_5_o_in_axes5_yx = six_r_W_4_in_axes5_xy + six_r_alpha_5_o_in_axes5_z;
-        const real six_r_B_5_o_in_axes5_yz = six_r_W_5_in_axes5_yz - six_r_alpha_5_o_in_axes5_x;
-        const real six_r_B_5_o_in_axes5_zx = six_r_W_5_in_axes5_xz - six_r_alpha_5_o_in_axes5_y;
-        const real six_r_B_5_o_in_axes5_zy = six_r_W_5_in_axes5_yz + six_r_alpha_5_o_in_axes5_x;
-        /* (six_r-a_o_3_o) remainder of: acceleration of the origin of joint 3 */
-        const real six_r_a_o_3_o_t = six_r_omega_1_in_axes2_y*six_r_omega_1_in_axes2_y;
-        const real six_r_a_o_3_o_t_2 = six_r_qd_1_t_9*six_r_qd_1_t_9;
-        const real six_r_joint3_offset_x = m->six_r_joint3_offset_x[i];
-        const real six_r_a_o_3_o_in_axes2_x = -six_r_joint3_offset_x*(six_r_a_o_3_o_t +
-            six_r_a_o_3_o_t_2);
-        const real six_r_a_o_3_o_in_axes2_y = six_r_B_2_o_in_axes2_yx*six_r_joint3_offset_x;
-        const real six_r_a_o_3_o_in_axes2_z = six_r_B_2_o_in_axes2_zx*six_r_joint3_offset_x;
-        const real six_r_a_o_3_o_in_axes3_x = six_r_a_o_3_o_in_axes2_x*v.six_r_s_3 -
-            six_r_a_o_3_o_in_axes2_y*v.six_r_c_3;
-        const real six_r_a_o_3_o_in_axes3_y = six_r_a_o_3_o_in_axes2_x*v.six_r_c_3 +
-            six_r_a_o_3_o_in_axes2_y*v.six_r_s_3;
-        /* (six_r-a_o_4_o) remainder of: acceleration of the origin of joint 4 */
-        const real six_r_a_o_4_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x +
-            six_r_B_3_o_in_axes3_xy*six_r_joint4_offset_x;
-        const real six_r_a_o_4_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y -
-            six_r_W_3_t_3*six_r_joint4_offset_x;
-        const real six_r_a_o_4_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z +
-            six_r_B_3_o_in_axes3_zy*six_r_joint4_offset_x;
-        /* (six_r-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-        const real six_r_acc_3_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x - v.six_r_g_in_axes3_x;
-        const real six_r_acc_3_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y - v.six_r_g_in_axes3_y;
-        const real six_r_acc_3_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z - v.six_r_g_in_axes1_y;
-        /* (six_r-f_3_o) remainder of: inertia force of link 3 less its weight */
-        const real six_r_f_3_o_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y;
-        const real six_r_h_3_in_spec3_x = m->six_r_h_3_in_spec3_x[i];
-        const real six_r_h_3_in_spec3_y = m->six_r_h_3_in_spec3_y[i];
-        const real six_r_h_3_in_spec3_z = m->six_r_h_3_in_spec3_z[i];
-        const real six_r_link3_mass = m->six_r_link3_mass[i];
-        const real six_r_f_3_o_in_axes3_x = six_r_B_3_o_in_axes3_xy*six_r_h_3_in_spec3_x +
-            six_r_B_3_o_in_axes3_xz*six_r_h_3_in_spec3_z +
-            six_r_acc_3_o_in_axes3_x*six_r_link3_mass + six_r_h_3_in_spec3_y*(six_r_W_3_t_2 +
-            six_r_f_3_o_t);
-        const real six_r_f_3_o_in_axes3_y = six_r_B_3_o_in_axes3_yz*six_r_h_3_in_spec3_z +
-            six_r_acc_3_o_in_axes3_y*six_r_link3_mass -
-            six_r_B_3_o_in_axes3_yx*six_r_h_3_in_spec3_y - six_r_W_3_t_3*six_r_h_3_in_spec3_x;
-        const real six_r_f_3_o_in_axes3_z = six_r_B_3_o_in_axes3_zy*six_r_h_3_in_spec3_x +
-            six_r_acc_3_o_in_axes3_z*six_r_link3_mass -
-            six_r_B_3_o_in_axes3_zx*six_r_h_3_in_spec3_y - six_r_h_3_in_spec3_z*(six_r_W_3_t +
-            six_r_f_3_o_t);
-        /* (six_r-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity */
-        const real six_r_acc_4_o_in_axes4_x = six_r_a_o_4_o_in_axes3_z*v.six_r_s_4 +
-            v.six_r_c_4*v.six_r_g_in_axes3_x - six_r_a_o_4_o_in_axes3_x*v.six_r_c_4 -
-            v.six_r_g_in_axes1_y*v.six_r_s_4;
-        const real six_r_acc_4_o_in_axes4_y = six_r_a_o_4_o_in_axes3_x*v.six_r_s_4 +
-            six_r_a_o_4_o_in_axes3_z*v.six_r_c_4 - v.six_r_c_4*v.six_r_g_in_axes1_y -
-            v.six_r_g_in_axes3_x*v.six_r_s_4;
-        const real six_r_acc_4_o_in_axes4_z = six_r_a_o_4_o_in_axes3_y - v.six_r_g_in_axes3_y;
-        /* (six_r-f_4_o) remainder of: inertia force of link 4 less its weight */
-        const real six_r_f_4_o_t = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x;
-        const real six_r_f_4_o_t_2 = six_r_omega_4_in_axes4_z*six_r_omega_4_in_axes4_z;
-        const real six_r_h_4_in_spec4_x = m->six_r_h_4_in_spec4_x[i];
-        const real six_r_h_4_in_spec4_y = m->six_r_h_4_in_spec4_y[i];
-        const real six_r_h_4_in_spec4_z = m->six_r_h_4_in_spec4_z[i];
-        const real six_r_link4_mass = m->six_r_link4_mass[i];
-        const real six_r_f_4_o_in_axes4_x = six_r_B_4_o_in_axes4_xy*six_r_h_4_in_spec4_z +
-            six_r_B_4_o_in_axes4_xz*six_r_h_4_in_spec4_x +
-            six_r_acc_4_o_in_axes4_x*six_r_link4_mass - six_r_h_4_in_spec4_y*(six_r_bias_t +
-            six_r_f_4_o_t_2);
-        const real six_r_f_4_o_in_axes4_y = six_r_B_4_o_in_axes4_yx*six_r_h_4_in_spec4_y +
-            six_r_B_4_o_in_axes4_yz*six_r_h_4_in_spec4_x +
-            six_r_acc_4_o_in_axes4_y*six_r_link4_mass - six_r_h_4_in_spec4_z*(six_r_f_4_o_t +
-            six_r_f_4_o_t_2);
-        const real six_r_f_4_o_in_axes4_z = six_r_B_4_o_in_axes4_zx*six_r_h_4_in_spec4_y +
-            six_r_B_4_o_in_axes4_zy*six_r_h_4_in_spec4_z +
-            six_r_acc_4_o_in_axes4_z*six_r_link4_mass - six_r_h_4_in_spec4_x*(six_r_bias_t +
-            six_r_f_4_o_t);
-        const real six_r_f_4_o_in_axes3_x = six_r_f_4_o_in_axes4_y*v.six_r_s_4 -
-            v.six_r_c_4*six_r_f_4_o_in_axes4_x;
-        const real six_r_f_4_o_in_axes3_z = v.six_r_c_4*six_r_f_4_o_in_axes4_y +
-            six_r_f_4_o_in_axes4_x*v.six_r_s_4;
-        /* (six_r-acc_5_o) remainder of: acceleration of the reference point of link 5, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real six_r_acc_5_o_in_axes5_x = six_r_u_1_in_axes5_x -
-            v.axis_x_six_r_axes5_x*gravity_x - v.axis_x_six_r_axes5_y*gravity_y -
-            v.axis_x_six_r_axes5_z*gravity_z;
-        const real six_r_acc_5_o_in_axes5_y = six_r_u_1_in_axes5_y -
-            v.axis_y_six_r_axes5_x*gravity_x - v.axis_y_six_r_axes5_y*gravity_y -
-            v.axis_y_six_r_axes5_z*gravity_z;
-        const real six_r_acc_5_o_in_axes5_z = six_r_u_1_in_axes5_z -
-            v.axis_z_six_r_axes5_x*gravity_x - v.axis_z_six_r_axes5_y*gravity_y -
-            v.axis_z_six_r_axes5_z*gravity_z;
-        /* (six_r-mu_5_o) remainder of: inertia moment of the links that turn with link 5, about their
-           reference points */
-        const real six_r_J_5_in_spec5_xy = m->six_r_J_5_in_spec5_xy[i];
-        const real six_r_J_5_in_spec5_xz = m->six_r_J_5_in_spec5_xz[i];
-        const real six_r_J_5_in_spec5_yz = m->six_r_J_5_in_spec5_yz[i];
-        const real six_r_Sigma_5_in_axes5_yy = m->six_r_Sigma_5_in_axes5_yy[i];
-        const real six_r_Sigma_5_in_axes5_zz = m->six_r_Sigma_5_in_axes5_zz[i];
-        const real six_r_h_5_in_spec5_y = m->six_r_h_5_in_spec5_y[i];
-        const real six_r_h_5_in_spec5_z = m->six_r_h_5_in_spec5_z[i];
-        const real six_r_mu_5_o_in_axes5_x = six_r_B_5_o_in_axes5_yx*six_r_J_5_in_spec5_xz +
-            six_r_B_5_o_in_axes5_zy*six_r_Sigma_5_in_axes5_yy + six_r_J_5_in_spec5_yz*(six_r_W_5_t
-            - six_r_W_5_t_2) + six_r_acc_5_o_in_axes5_z*six_r_h_5_in_spec5_y -
-            six_r_B_5_o_in_axes5_yz*six_r_Sigma_5_in_axes5_zz -
-            six_r_B_5_o_in_axes5_zx*six_r_J_5_in_spec5_xy -
-            six_r_acc_5_o_in_axes5_y*six_r_h_5_in_spec5_z;
-        const real six_r_Sigma_5_in_axes5_xx = m->six_r_Sigma_5_in_axes5_xx[i];
-        const real six_r_h_5_in_spec5_x = m->six_r_h_5_in_spec5_x[i];
-        const real six_r_mu_5_o_in_axes5_y = six_r_B_5_o_in_axes5_xz*six_r_Sigma_5_in_axes5_zz +
-            six_r_B_5_o_in_axes5_zy*six_r_J_5_in_spec5_xy +
-            six_r_acc_5_o_in_axes5_x*six_r_h_5_in_spec5_z -
-            six_r_B_5_o_in_axes5_xy*six_r_J_5_in_spec5_yz -
-            six_r_B_5_o_in_axes5_zx*six_r_Sigma_5_in_axes5_xx -
-            six_r_J_5_in_spec5_xz*(six_r_bias_t_2 - six_r_W_5_t_2) -
-            six_r_acc_5_o_in_axes5_z*six_r_h_5_in_spec5_x;
-        const real six_r_mu_5_o_in_axes5_z = six_r_B_5_o_in_axes5_xz*six_r_J_5_in_spec5_yz +
-            six_r_B_5_o_in_axes5_yx*six_r_Sigma_5_in_axes5_xx +
-            six_r_J_5_in_spec5_xy*(six_r_bias_t_2 - six_r_W_5_t) +
-            six_r_acc_5_o_in_axes5_y*six_r_h_5_in_spec5_x -
-            six_r_B_5_o_in_axes5_xy*six_r_Sigma_5_in_axes5_yy -
-            six_r_B_5_o_in_axes5_yz*six_r_J_5_in_spec5_xz -
-            six_r_acc_5_o_in_axes5_x*six_r_h_5_in_spec5_y;
-        /* (six_r-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their
-           reference points */
-        const real six_r_J_4_in_spec4_xy = m->six_r_J_4_in_spec4_xy[i];
-        const real six_r_J_4_in_spec4_xz = m->six_r_J_4_in_spec4_xz[i];
-        const real six_r_J_4_in_spec4_yz = m->six_r_J_4_in_spec4_yz[i];
-        const real six_r_Sigma_4_in_axes4_yy = m->six_r_Sigma_4_in_axes4_yy[i];
-        const real six_r_Sigma_4_in_axes4_zz = m->six_r_Sigma_4_in_axes4_zz[i];
-        const real six_r_mu_4_o_in_axes4_x = six_r_B_4_o_in_axes4_yx*six_r_J_4_in_spec4_xy +
-            six_r_B_4_o_in_axes4_zy*six_r_Sigma_4_in_axes4_yy +
-            six_r_J_4_in_spec4_xz*(six_r_bias_t - six_r_f_4_o_t_2) +
-            six_r_acc_4_o_in_axes4_z*six_r_h_4_in_spec4_z -
-            six_r_B_4_o_in_axes4_yz*six_r_Sigma_4_in_axes4_zz -
-            six_r_B_4_o_in_axes4_zx*six_r_J_4_in_spec4_yz -
-            six_r_acc_4_o_in_axes4_y*six_r_h_4_in_spec4_x;
-        const real six_r_Sigma_4_in_axes4_xx = m->six_r_Sigma_4_in_axes4_xx[i];
-        const real six_r_mu_4_o_in_axes4_y = six_r_B_4_o_in_axes4_xz*six_r_Sigma_4_in_axes4_zz +
-            six_r_B_4_o_in_axes4_zy*six_r_J_4_in_spec4_yz +
-            six_r_acc_4_o_in_axes4_x*six_r_h_4_in_spec4_x -
-            six_r_B_4_o_in_axes4_xy*six_r_J_4_in_spec4_xz -
-            six_r_B_4_o_in_axes4_zx*six_r_Sigma_4_in_axes4_xx -
-            six_r_J_4_in_spec4_xy*(six_r_f_4_o_t - six_r_f_4_o_t_2) -
-            six_r_acc_4_o_in_axes4_z*six_r_h_4_in_spec4_y;
-        const real six_r_mu_4_o_in_axes4_z = six_r_B_4_o_in_axes4_xz*six_r_J_4_in_spec4_xz +
-            six_r_B_4_o_in_axes4_yx*six_r_Sigma_4_in_axes4_xx +
-            six_r_J_4_in_spec4_yz*(six_r_f_4_o_t - six_r_bias_t) +
-            six_r_acc_4_o_in_axes4_y*six_r_h_4_in_spec4_y -
-            six_r_B_4_o_in_axes4_xy*six_r_Sigma_4_in_axes4_yy -
-            six_r_B_4_o_in_axes4_yz*six_r_J_4_in_spec4_xy -
-            six_r_acc_4_o_in_axes4_x*six_r_h_4_in_spec4_z;
-        /* (six_r-N_4_o) remainder of: moment about joint 4 of the links from 4 outwards, the force at the
-           connection point left out */
-        const real six_r_N_4_o_in_axes4_x = six_r_mu_4_o_in_axes4_x +
-            v.six_r_c_5*six_r_mu_5_o_in_axes5_y + six_r_mu_5_o_in_axes5_x*v.six_r_s_5;
-        const real six_r_N_4_o_in_axes4_y = six_r_mu_4_o_in_axes4_y + six_r_mu_5_o_in_axes5_z;
-        const real six_r_N_4_o_in_axes4_z = six_r_mu_4_o_in_axes4_z +
-            v.six_r_c_5*six_r_mu_5_o_in_axes5_x - six_r_mu_5_o_in_axes5_y*v.six_r_s_5;
-        /* (six_r-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
-           reference points */
-        const real six_r_J_3_in_spec3_xy = m->six_r_J_3_in_spec3_xy[i];
-        const real six_r_J_3_in_spec3_xz = m->six_r_J_3_in_spec3_xz[i];
-        const real six_r_J_3_in_spec3_yz = m->six_r_J_3_in_spec3_yz[i];
-        const real six_r_Sigma_3_in_axes3_yy = m->six_r_Sigma_3_in_axes3_yy[i];
-        const real six_r_Sigma_3_in_axes3_zz = m->six_r_Sigma_3_in_axes3_zz[i];
-        const real six_r_mu_3_o_in_axes3_x = six_r_B_3_o_in_axes3_zx*six_r_J_3_in_spec3_xy +
-            six_r_B_3_o_in_axes3_zy*six_r_Sigma_3_in_axes3_yy +
-            six_r_J_3_in_spec3_xz*(six_r_f_3_o_t - six_r_W_3_t_2) +
-            six_r_acc_3_o_in_axes3_z*six_r_h_3_in_spec3_x -
-            six_r_B_3_o_in_axes3_yx*six_r_J_3_in_spec3_yz -
-            six_r_B_3_o_in_axes3_yz*six_r_Sigma_3_in_axes3_zz -
-            six_r_acc_3_o_in_axes3_y*six_r_h_3_in_spec3_z;
-        const real six_r_Sigma_3_in_axes3_xx = m->six_r_Sigma_3_in_axes3_xx[i];
-        const real six_r_mu_3_o_in_axes3_y = six_r_B_3_o_in_axes3_xz*six_r_Sigma_3_in_axes3_zz +
-            six_r_J_3_in_spec3_yz*(six_r_W_3_t - six_r_W_3_t_2) +
-            six_r_acc_3_o_in_axes3_x*six_r_h_3_in_spec3_z +
-            six_r_acc_3_o_in_axes3_z*six_r_h_3_in_spec3_y -
-            six_r_B_3_o_in_axes3_xy*six_r_J_3_in_spec3_xz -
-            six_r_B_3_o_in_axes3_zx*six_r_Sigma_3_in_axes3_xx -
-            six_r_B_3_o_in_axes3_zy*six_r_J_3_in_spec3_xy;
-        const real six_r_mu_3_o_in_axes3_z = six_r_B_3_o_in_axes3_xz*six_r_J_3_in_spec3_xz +
-            six_r_B_3_o_in_axes3_yx*six_r_Sigma_3_in_axes3_xx +
-            six_r_B_3_o_in_axes3_yz*six_r_J_3_in_spec3_yz -
-            six_r_B_3_o_in_axes3_xy*six_r_Sigma_3_in_axes3_yy - six_r_J_3_in_spec3_xy*(six_r_W_3_t
-            - six_r_f_3_o_t) - six_r_acc_3_o_in_axes3_x*six_r_h_3_in_spec3_x -
-            six_r_acc_3_o_in_axes3_y*six_r_h_3_in_spec3_y;
-        /* (six_r-N_3_o) remainder of: moment about joint 3 of the links from 3 outwards, the force at the
-           connection point left out */
-        const real six_r_N_3_o_in_axes3_x = six_r_mu_3_o_in_axes3_x +
-            six_r_N_4_o_in_axes4_y*v.six_r_s_4 + six_r_f_4_o_in_axes3_z*six_r_joint4_offset_x -
-            six_r_N_4_o_in_axes4_x*v.six_r_c_4;
-        const real six_r_N_3_o_in_axes3_y = six_r_N_4_o_in_axes4_z + six_r_mu_3_o_in_axes3_y;
-        const real six_r_N_3_o_in_axes3_z = six_r_mu_3_o_in_axes3_z +
-            six_r_N_4_o_in_axes4_x*v.six_r_s_4 + six_r_N_4_o_in_axes4_y*v.six_r_c_4 -
-            six_r_f_4_o_in_axes3_x*six_r_joint4_offset_x;
-        /* (six_r-T_3_o) remainder of: inertia force of the links from 3 outwards, the last link left out
-           */
-        const real six_r_T_3_o_in_axes3_x = six_r_f_3_o_in_axes3_x + six_r_f_4_o_in_axes3_x;
-        const real six_r_T_3_o_in_axes3_y = six_r_f_3_o_in_axes3_y + six_r_f_4_o_in_axes4_z;
-        const real six_r_T_3_o_in_axes3_z = six_r_f_3_o_in_axes3_z + six_r_f_4_o_in_axes3_z;
-        /* (six_r-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-           reference points */
-        const real six_r_mu_2_o_t = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_x;
-        const real six_r_J_2_in_spec2_xy = m->six_r_J_2_in_spec2_xy[i];
-        const real six_r_J_2_in_spec2_xz = m->six_r_J_2_in_spec2_xz[i];
-        const real six_r_J_2_in_spec2_yz = m->six_r_J_2_in_spec2_yz[i];
-        const real six_r_Sigma_2_in_axes2_yy = m->six_r_Sigma_2_in_axes2_yy[i];
-        const real six_r_Sigma_2_in_axes2_zz = m->six_r_Sigma_2_in_axes2_zz[i];
-        const real six_r_h_2_in_spec2_y = m->six_r_h_2_in_spec2_y[i];
-        const real six_r_h_2_in_spec2_z = m->six_r_h_2_in_spec2_z[i];
-        const real six_r_mu_2_o_in_axes2_x = six_r_B_2_o_in_axes2_yx*six_r_J_2_in_spec2_xz +
-            six_r_B_2_o_in_axes2_zy*six_r_Sigma_2_in_axes2_yy +
-            six_r_J_2_in_spec2_yz*(six_r_a_o_3_o_t - six_r_a_o_3_o_t_2) +
-            v.six_r_g_in_axes2_y*six_r_h_2_in_spec2_z -
-            six_r_B_2_o_in_axes2_zx*six_r_J_2_in_spec2_xy -
-            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_o_t -
-            v.six_r_g_in_axes1_y*six_r_h_2_in_spec2_y;
-        const real six_r_Sigma_2_in_axes2_xx = m->six_r_Sigma_2_in_axes2_xx[i];
-        const real six_r_h_2_in_spec2_x = m->six_r_h_2_in_spec2_x[i];
-        const real six_r_mu_2_o_in_axes2_y = six_r_B_2_o_in_axes2_zy*six_r_J_2_in_spec2_xy +
-            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_o_in_axes2_y +
-            v.six_r_g_in_axes1_y*six_r_h_2_in_spec2_x -
-            six_r_B_2_o_in_axes2_xy*six_r_J_2_in_spec2_yz -
-            six_r_B_2_o_in_axes2_zx*six_r_Sigma_2_in_axes2_xx -
-            six_r_J_2_in_spec2_xz*(six_r_mu_2_o_t - six_r_a_o_3_o_t_2) -
-            v.six_r_g_in_axes2_x*six_r_h_2_in_spec2_z;
-        const real six_r_mu_2_o_in_axes2_z = six_r_B_2_o_in_axes2_yx*six_r_Sigma_2_in_axes2_xx +
-            six_r_J_2_in_spec2_xy*(six_r_mu_2_o_t - six_r_a_o_3_o_t) +
-            six_r_J_2_in_spec2_yz*six_r_alpha_1_o_in_axes2_y +
-            v.six_r_g_in_axes2_x*six_r_h_2_in_spec2_y -
-            six_r_B_2_o_in_axes2_xy*six_r_Sigma_2_in_axes2_yy -
-            six_r_J_2_in_spec2_xz*six_r_alpha_1_o_t - v.six_r_g_in_axes2_y*six_r_h_2_in_spec2_x;
-        /* (six_r-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
-           connection point left out */
-        const real six_r_N_2_o_in_axes2_x = six_r_mu_2_o_in_axes2_x +
-            six_r_N_3_o_in_axes3_x*v.six_r_s_3 + six_r_N_3_o_in_axes3_y*v.six_r_c_3;
-        const real six_r_N_2_o_in_axes2_y = six_r_mu_2_o_in_axes2_y +
-            six_r_N_3_o_in_axes3_y*v.six_r_s_3 - six_r_N_3_o_in_axes3_x*v.six_r_c_3 -
-            six_r_T_3_o_in_axes3_z*six_r_joint3_offset_x;
-        const real six_r_N_2_o_in_axes2_z = six_r_N_3_o_in_axes3_z + six_r_mu_2_o_in_axes2_z -
-            six_r_joint3_offset_x*(six_r_T_3_o_in_axes3_x*v.six_r_c_3 -
-            six_r_T_3_o_in_axes3_y*v.six_r_s_3);
-        /* (six_r-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-           reference points */
-        const real six_r_J_1_in_spec1_xx = m->six_r_J_1_in_spec1_xx[i];
-        const real six_r_h_1_in_spec1_y = m->six_r_h_1_in_spec1_y[i];
-        const real six_r_h_1_in_spec1_z = m->six_r_h_1_in_spec1_z[i];
-        const real six_r_mu_1_o_in_axes1_z = v.six_r_g_in_axes1_x*six_r_h_1_in_spec1_z -
-            six_r_J_1_in_spec1_xx*six_r_qdd_1_o_t_5 - v.six_r_g_in_axes1_y*six_r_h_1_in_spec1_y;
-        /* (six_r-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
-           connection point left out */
-        const real six_r_N_1_o_in_axes1_z = six_r_mu_1_o_in_axes1_z +
-            six_r_N_2_o_in_axes2_x*v.six_r_c_2 - six_r_N_2_o_in_axes2_y*v.six_r_s_2;
-        /* (six_r-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia
-           and weight along all degrees of freedom */
-        const real six_r_G_m1_o_t = v.inv_six_r_w_1_t_12*six_r_mu_5_o_in_axes5_z;
-        const real six_r_G_m1_o_t_2 = v.inv_six_r_w_1_t_28*(six_r_G_m1_o_t*v.six_r_w_1_t_15 -
-            six_r_N_4_o_in_axes4_z);
-        const real six_r_G_m1_o_t_3 = v.inv_six_r_w_1_t_49*(six_r_G_m1_o_t*v.six_r_w_1_t_18 +
-            six_r_G_m1_o_t_2*v.six_r_w_1_t_33 - six_r_N_1_o_in_axes1_z);
-        const real six_r_G_m1_o_t_4 = v.inv_six_r_w_1_t_67*(six_r_G_m1_o_t*v.six_r_w_1_t_22 +
-            six_r_G_m1_o_t_2*v.six_r_w_1_t_39 - six_r_N_2_o_in_axes2_z -
-            six_r_G_m1_o_t_3*v.six_r_w_1_t_55);
-        const real six_r_G_m1_o_t_5 = v.inv_six_r_w_1_t_79*(six_r_N_3_o_in_axes3_z +
-            six_r_G_m1_o_t*v.six_r_w_1_t_25 + six_r_G_m1_o_t_3*v.six_r_w_1_t_61 +
-            six_r_G_m1_o_t_4*v.six_r_w_1_t_73 - six_r_G_m1_o_t_2*v.six_r_w_1_t_44);
-        const real six_r_G_m1_o_t_6 = six_r_size*(six_r_G_m1_o_t_2*v.six_r_w_1_t_31 +
-            six_r_G_m1_o_t_3*v.six_r_w_1_t_53 + six_r_G_m1_o_t_4*v.six_r_w_1_t_71 -
-            six_r_G_m1_o_t_5*v.six_r_qd_1_t_4);
-        /* (six_r-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia
-           and weight along all degrees of freedom */
-        const real six_r_G_m2_o_t = six_r_size*(six_r_G_m1_o_t_2*v.six_r_w_1_t_32 +
-            six_r_G_m1_o_t_3*v.six_r_w_1_t_54 + six_r_G_m1_o_t_4*v.six_r_w_1_t_72 -
-            six_r_G_m1_o_t*v.six_r_w_1_t_14 - six_r_G_m1_o_t_5*v.six_r_qd_1_t_5);
-        /* (six_r-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real six_r_G_m_o_in_axes5_x = six_r_G_m1_o_t_6*v.six_r_n_m2_in_axes5_z;
-        const real six_r_G_m_o_in_axes5_y = six_r_G_m2_o_t*v.six_r_end_p1_in_axes5_z -
-            six_r_G_m1_o_t_6*v.six_r_n_m1_in_axes5_y;
-        /* (six_r-c_o) remainder of: leg force on the platform without actuation and without the mass at
-           the connection point */
-        const real six_r_c_o_in_axes5_x = six_r_G_m1_o_t_3*v.six_r_w_1_t_50 +
-            six_r_G_m1_o_t_4*v.six_r_w_1_t_68 + six_r_W_5_t_3*six_r_h_5_in_spec5_x -
-            six_r_B_5_o_in_axes5_xy*six_r_h_5_in_spec5_y -
-            six_r_B_5_o_in_axes5_xz*six_r_h_5_in_spec5_z - six_r_G_m1_o_t_5*v.six_r_qd_1_t;
-        const real six_r_c_o_in_axes5_y = six_r_G_m1_o_t_5*v.six_r_qd_1_t_2 +
-            six_r_h_5_in_spec5_y*(six_r_W_5_t_2 + six_r_bias_t_2) -
-            six_r_B_5_o_in_axes5_yx*six_r_h_5_in_spec5_x -
-            six_r_B_5_o_in_axes5_yz*six_r_h_5_in_spec5_z - six_r_G_m1_o_t*v.six_r_w_1_t_13 -
-            six_r_G_m1_o_t_2*v.six_r_w_1_t_29 - six_r_G_m1_o_t_3*v.six_r_w_1_t_51 -
-            six_r_G_m1_o_t_4*v.six_r_w_1_t_69;
-        const real six_r_c_o_in_axes5_z = six_r_G_m1_o_t_2*v.six_r_w_1_t_30 +
-            six_r_G_m1_o_t_3*v.six_r_w_1_t_52 + six_r_G_m1_o_t_4*v.six_r_w_1_t_70 +
-            six_r_h_5_in_spec5_z*(six_r_W_5_t + six_r_bias_t_2) -
-            six_r_B_5_o_in_axes5_zx*six_r_h_5_in_spec5_x -
-            six_r_B_5_o_in_axes5_zy*six_r_h_5_in_spec5_y - six_r_G_m1_o_t_5*v.six_r_qd_1_t_3;
-        /* (six_r-c_m_o) remainder of: moment of the leg on the platform without actuation */
-        const real six_r_c_m_o_in_axes5_z = six_r_G_m2_o_t*v.six_r_n_m2_in_axes5_z;
-        /* (six_r-U) velocity and gravity terms of the leg force */
-        const real six_r_U_x = -v.axis_x_six_r_axes5_x*six_r_c_o_in_axes5_x -
-            v.axis_y_six_r_axes5_x*six_r_c_o_in_axes5_y -
-            v.axis_z_six_r_axes5_x*six_r_c_o_in_axes5_z;
-        const real six_r_U_y = -v.axis_x_six_r_axes5_y*six_r_c_o_in_axes5_x -
-            v.axis_y_six_r_axes5_y*six_r_c_o_in_axes5_y -
-            v.axis_z_six_r_axes5_y*six_r_c_o_in_axes5_z;
-        const real six_r_U_z = -v.axis_x_six_r_axes5_z*six_r_c_o_in_axes5_x -
-            v.axis_y_six_r_axes5_z*six_r_c_o_in_axes5_y -
-            v.axis_z_six_r_axes5_z*six_r_c_o_in_axes5_z;
-        /* (Z_a) rotational part of Z */
-        const real six_r_Z_a_t = v.axis_x_six_r_axes5_x*six_r_G_m_o_in_axes5_x +
-            v.axis_y_six_r_axes5_x*six_r_G_m_o_in_axes5_y + six_r_U_z*v.six_r_q_y -
-            v.axis_z_six_r_axes5_x*six_r_c_m_o_in_axes5_z - six_r_U_y*v.six_r_q_z;
-        const real six_r_Z_a_t_2 = v.axis_x_six_r_axes5_y*six_r_G_m_o_in_axes5_x +
-            v.axis_y_six_r_axes5_y*six_r_G_m_o_in_axes5_y + six_r_U_x*v.six_r_q_z -
-            v.axis_z_six_r_axes5_y*six_r_c_m_o_in_axes5_z - six_r_U_z*v.six_r_q_x;
-        const real six_r_Z_a_t_3 = v.axis_x_six_r_axes5_z*six_r_G_m_o_in_axes5_x +
-            v.axis_y_six_r_axes5_z*six_r_G_m_o_in_axes5_y + six_r_U_y*v.six_r_q_x -
-            v.axis_z_six_r_axes5_z*six_r_c_m_o_in_axes5_z - six_r_U_x*v.six_r_q_y;
-        /* (Z_t) translational part of Z */
-        gather(&terms[0*count + k], add, six_r_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[1*count + k], add, six_r_U_y);  /* Z_t_y_of_legs */
-        gather(&terms[2*count + k], add, six_r_U_z);  /* Z_t_z_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[3*count + k], add, six_r_Z_a_t);  /* Z_a_x_of_legs */
-        gather(&terms[4*count + k], add, six_r_Z_a_t_2);  /* Z_a_y_of_legs */
-        gather(&terms[5*count + k], add, six_r_Z_a_t_3);  /* Z_a_z_of_legs */
-        o[0*count + k] = UNLESS(magnitude(v.six_r_w_1_t_12) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(v.six_r_w_1_t_28) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(v.six_r_w_1_t_49) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(v.six_r_w_1_t_67) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(v.six_r_w_1_t_79) > TOLERANCE*six_r_size);
-    }
+    values_six_r v;
+    stage_six_r_X(m, w, i, j, s, &v);
+    stage_six_r_q(m, w, i, j, joints, &v);
+    stage_six_r_V_X(w, j, V, &v);
+    stage_six_r_V_q(w, j, V, &v);
+    stage_six_r_X_q(m, i, &v);
+    stage_six_r_V_X_q(&v);
+    stage_six_r_Z_dynamics(m, w, i, j, V, &v);
+    stage_six_r_Z_joint_accelerations(&v);
+    /* (six_r-eta_1) rate at which the joints turn along moment direction 1 */
+    const real omega_x = V[3*w + j];
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real six_r_eta_1 = omega_x*(v.axis_y_six_r_axes5_x*v.six_r_n_m1_in_axes5_y -
+        v.axis_x_six_r_axes5_x*v.six_r_n_m2_in_axes5_z) +
+        omega_y*(v.axis_y_six_r_axes5_y*v.six_r_n_m1_in_axes5_y -
+        v.axis_x_six_r_axes5_y*v.six_r_n_m2_in_axes5_z) +
+        omega_z*(v.axis_y_six_r_axes5_z*v.six_r_n_m1_in_axes5_y -
+        v.axis_x_six_r_axes5_z*v.six_r_n_m2_in_axes5_z);
+    /* (six_r-eta_2) rate at which the joints turn along moment direction 2 */
+    const real six_r_eta_2 = omega_x*(v.axis_z_six_r_axes5_x*v.six_r_n_m2_in_axes5_z -
+        v.axis_y_six_r_axes5_x*v.six_r_end_p1_in_axes5_z) +
+        omega_y*(v.axis_z_six_r_axes5_y*v.six_r_n_m2_in_axes5_z -
+        v.axis_y_six_r_axes5_y*v.six_r_end_p1_in_axes5_z) +
+        omega_z*(v.axis_z_six_r_axes5_z*v.six_r_n_m2_in_axes5_z -
+        v.axis_y_six_r_axes5_z*v.six_r_end_p1_in_axes5_z);
+    /* (six_r-qd_1) rate of joint 1 */
+    const real six_r_qd_1_t_6 = six_r_eta_1*m->six_r_size[i];
+    const real six_r_qd_1_t_7 = six_r_eta_2*m->six_r_size[i];
+    const real six_r_qd_1_t_8 = v.inv_six_r_w_1_t_79*(v.six_r_S_dot_in_axes5_x*v.six_r_qd_1_t
+        + v.six_r_S_dot_in_axes5_z*v.six_r_qd_1_t_3 + v.six_r_qd_1_t_4*six_r_qd_1_t_6 +
+        v.six_r_qd_1_t_5*six_r_qd_1_t_7 - v.six_r_S_dot_in_axes5_y*v.six_r_qd_1_t_2);
+    const real six_r_qd_1_t_9 =
+        v.inv_six_r_w_1_t_67*(v.six_r_S_dot_in_axes5_x*v.six_r_w_1_t_68 +
+        v.six_r_S_dot_in_axes5_z*v.six_r_w_1_t_70 + six_r_qd_1_t_6*v.six_r_w_1_t_71 +
+        six_r_qd_1_t_7*v.six_r_w_1_t_72 - v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_69 -
+        six_r_qd_1_t_8*v.six_r_w_1_t_73);
+    const real six_r_qd_1_t_10 =
+        v.inv_six_r_w_1_t_49*(v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_51 +
+        six_r_qd_1_t_8*v.six_r_w_1_t_61 + six_r_qd_1_t_9*v.six_r_w_1_t_55 -
+        v.six_r_S_dot_in_axes5_x*v.six_r_w_1_t_50 - v.six_r_S_dot_in_axes5_z*v.six_r_w_1_t_52
+        - six_r_qd_1_t_6*v.six_r_w_1_t_53 - six_r_qd_1_t_7*v.six_r_w_1_t_54);
+    /* (six_r-qd_4) rate of joint 4 */
+    const real six_r_qd_4 = v.inv_six_r_w_1_t_28*(v.six_r_S_dot_in_axes5_z*v.six_r_w_1_t_30 +
+        six_r_qd_1_t_6*v.six_r_w_1_t_31 + six_r_qd_1_t_7*v.six_r_w_1_t_32 +
+        six_r_qd_1_t_8*v.six_r_w_1_t_44 + six_r_qd_1_t_9*v.six_r_w_1_t_39 -
+        v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_29 - six_r_qd_1_t_10*v.six_r_w_1_t_33);
+    /* (six_r-qd_5) rate of joint 5 */
+    const real six_r_qd_5 = v.inv_six_r_w_1_t_12*(v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_13 +
+        six_r_qd_1_t_10*v.six_r_w_1_t_18 + six_r_qd_1_t_7*v.six_r_w_1_t_14 +
+        six_r_qd_1_t_8*v.six_r_w_1_t_25 - six_r_qd_1_t_9*v.six_r_w_1_t_22 -
+        six_r_qd_4*v.six_r_w_1_t_15);
+    /* (six_r-omega_1) angular velocity of link 1 */
+    const real six_r_omega_1_in_axes2_x = -v.six_r_c_2*six_r_qd_1_t_10;
+    const real six_r_omega_1_in_axes2_y = six_r_qd_1_t_10*v.six_r_s_2;
+    const real six_r_omega_1_t = v.six_r_e_1_in_axes5_x*six_r_qd_1_t_10;
+    const real six_r_omega_1_t_2 = v.six_r_e_1_in_axes5_y*six_r_qd_1_t_10;
+    const real six_r_omega_1_t_3 = v.six_r_e_1_in_axes5_z*six_r_qd_1_t_10;
+    /* (six_r-W_1) centripetal tensor of link 1 */
+    const real six_r_W_1_in_axes5_xy = six_r_omega_1_t*six_r_omega_1_t_2;
+    const real six_r_W_1_in_axes5_xz = six_r_omega_1_t*six_r_omega_1_t_3;
+    const real six_r_W_1_in_axes5_yz = six_r_omega_1_t_2*six_r_omega_1_t_3;
+    /* (six_r-omega_2) angular velocity of link 2 */
+    const real six_r_omega_2_in_axes3_x = six_r_omega_1_in_axes2_x*v.six_r_s_3 -
+        v.six_r_c_3*six_r_omega_1_in_axes2_y;
+    const real six_r_omega_2_in_axes3_y = v.six_r_c_3*six_r_omega_1_in_axes2_x +
+        six_r_omega_1_in_axes2_y*v.six_r_s_3;
+    const real six_r_omega_2_in_axes5_x = v.six_r_e_2_in_axes5_x*six_r_qd_1_t_9 -
+        six_r_omega_1_t;
+    const real six_r_omega_2_in_axes5_y = v.six_r_e_2_in_axes5_y*six_r_qd_1_t_9 -
+        six_r_omega_1_t_2;
+    const real six_r_omega_2_in_axes5_z = v.six_r_c_4*six_r_qd_1_t_9 - six_r_omega_1_t_3;
+    /* (six_r-W_2) centripetal tensor of link 2 */
+    const real six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_9;
+    const real six_r_W_2_in_axes2_xy = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_y;
+    const real six_r_W_2_in_axes5_xy = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_y;
+    const real six_r_W_2_in_axes5_xz = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_z;
+    const real six_r_W_2_in_axes5_yz = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_z;
+    /* (six_r-omega_3) angular velocity of link 3 */
+    const real six_r_omega_3_in_axes3_z = six_r_qd_1_t_8 + six_r_qd_1_t_9;
+    const real six_r_omega_3_in_axes4_x = six_r_omega_3_in_axes3_z*v.six_r_s_4 -
+        v.six_r_c_4*six_r_omega_2_in_axes3_x;
+    const real six_r_omega_3_in_axes4_y = v.six_r_c_4*six_r_omega_3_in_axes3_z +
+        six_r_omega_2_in_axes3_x*v.six_r_s_4;
+    const real six_r_omega_3_t = six_r_omega_3_in_axes4_x*v.six_r_s_5;
+    const real six_r_omega_3_t_2 = v.six_r_c_5*six_r_omega_3_in_axes4_x;
+    const real six_r_omega_3_in_axes5_x = six_r_omega_3_t +
+        v.six_r_c_5*six_r_omega_2_in_axes3_y;
+    const real six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 -
+        six_r_omega_2_in_axes3_y*v.six_r_s_5;
+    /* (six_r-W_3) centripetal tensor of link 3 */
+    const real six_r_W_3_t = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_x;
+    const real six_r_W_3_t_2 = six_r_omega_3_in_axes3_z*six_r_omega_3_in_axes3_z;
+    const real six_r_W_3_in_axes3_xy = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_y;
+    const real six_r_W_3_in_axes3_xz = six_r_omega_2_in_axes3_x*six_r_omega_3_in_axes3_z;
+    const real six_r_W_3_t_3 = six_r_W_3_t + six_r_W_3_t_2;
+    const real six_r_W_3_in_axes3_yz = six_r_omega_2_in_axes3_y*six_r_omega_3_in_axes3_z;
+    const real six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y;
+    /* (six_r-omega_4) angular velocity of link 4 */
+    const real six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y + six_r_qd_4;
+    const real six_r_omega_4_in_axes5_x = six_r_omega_3_t +
+        v.six_r_c_5*six_r_omega_4_in_axes4_z;
+    const real six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 -
+        six_r_omega_4_in_axes4_z*v.six_r_s_5;
+    /* (six_r-W_4) centripetal tensor of link 4 */
+    const real six_r_W_4_in_axes4_xy = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_y;
+    const real six_r_W_4_in_axes4_xz = six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes4_z;
+    const real six_r_W_4_in_axes4_yz = six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes4_z;
+    const real six_r_W_4_in_axes5_xy = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_y;
+    /* (six_r-omega_5) angular velocity of link 5 */
+    const real six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_y + six_r_qd_5;
+    /* (six_r-W_5) centripetal tensor of link 5 */
+    const real six_r_W_5_t = six_r_omega_4_in_axes5_y*six_r_omega_4_in_axes5_y;
+    const real six_r_W_5_t_2 = six_r_omega_5_in_axes5_z*six_r_omega_5_in_axes5_z;
+    const real six_r_W_5_t_3 = six_r_W_5_t + six_r_W_5_t_2;
+    const real six_r_W_5_in_axes5_xz = six_r_omega_4_in_axes5_x*six_r_omega_5_in_axes5_z;
+    const real six_r_W_5_in_axes5_yz = six_r_omega_4_in_axes5_y*six_r_omega_5_in_axes5_z;
+    /* (six_r-u_1) centripetal acceleration of the connection point */
+    const real six_r_u_1_in_axes5_x = v.axis_x_six_r_axes5_x*v.six_r_u_1_x +
+        v.axis_x_six_r_axes5_y*v.six_r_u_1_y + v.axis_x_six_r_axes5_z*v.six_r_u_1_z;
+    const real six_r_u_1_in_axes5_y = v.axis_y_six_r_axes5_x*v.six_r_u_1_x +
+        v.axis_y_six_r_axes5_y*v.six_r_u_1_y + v.axis_y_six_r_axes5_z*v.six_r_u_1_z;
+    const real six_r_u_1_in_axes5_z = v.axis_z_six_r_axes5_x*v.six_r_u_1_x +
+        v.axis_z_six_r_axes5_y*v.six_r_u_1_y + v.axis_z_six_r_axes5_z*v.six_r_u_1_z;
+    /* (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+    const real six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_9;
+    const real six_r_zeta_2_in_axes3_x = six_r_W_2_in_axes2_yz*v.six_r_s_3 -
+        v.six_r_c_3*six_r_zeta_2_in_axes2_y;
+    const real six_r_zeta_2_in_axes3_y = six_r_W_2_in_axes2_yz*v.six_r_c_3 +
+        v.six_r_s_3*six_r_zeta_2_in_axes2_y;
+    const real six_r_zeta_2_t = v.six_r_c_4*six_r_zeta_2_in_axes3_x;
+    const real six_r_zeta_2_in_axes5_z = v.six_r_s_4*six_r_zeta_2_in_axes3_x;
+    const real six_r_zeta_2_in_axes5_x = v.six_r_c_5*six_r_zeta_2_in_axes3_y -
+        v.six_r_s_5*six_r_zeta_2_t;
+    const real six_r_zeta_2_in_axes5_y = -v.six_r_c_5*six_r_zeta_2_t -
+        v.six_r_s_5*six_r_zeta_2_in_axes3_y;
+    /* (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+    const real six_r_zeta_3_in_axes3_x = six_r_omega_2_in_axes3_y*six_r_qd_1_t_8;
+    const real six_r_zeta_3_t = six_r_omega_2_in_axes3_x*six_r_qd_1_t_8;
+    /* (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations */
+    const real six_r_beta_3_in_axes3_x = six_r_zeta_2_in_axes3_x + six_r_zeta_3_in_axes3_x;
+    const real six_r_beta_3_in_axes3_y = six_r_zeta_2_in_axes3_y - six_r_zeta_3_t;
+    const real six_r_beta_3_t = six_r_beta_3_in_axes3_x*v.six_r_c_4;
+    const real six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*v.six_r_s_4;
+    /* (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
+    const real six_r_zeta_4_in_axes4_x = six_r_omega_3_in_axes4_y*six_r_qd_4;
+    const real six_r_zeta_4_t = six_r_omega_3_in_axes4_x*six_r_qd_4;
+    /* (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations */
+    const real six_r_beta_4_in_axes4_x = six_r_zeta_4_in_axes4_x - six_r_beta_3_t;
+    const real six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y - six_r_zeta_4_t;
+    const real six_r_beta_4_t = six_r_beta_3_in_axes3_y*v.six_r_c_5;
+    const real six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_beta_4_in_axes4_x*v.six_r_s_5;
+    const real six_r_beta_4_t_2 = six_r_beta_3_in_axes3_y*v.six_r_s_5;
+    const real six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*v.six_r_c_5 -
+        six_r_beta_4_t_2;
+    /* (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5 */
+    const real six_r_zeta_5_in_axes5_x = six_r_omega_4_in_axes5_y*six_r_qd_5;
+    const real six_r_zeta_5_t = six_r_omega_4_in_axes5_x*six_r_qd_5;
+    /* (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations */
+    const real six_r_beta_5_in_axes5_x = six_r_beta_4_in_axes5_x + six_r_zeta_5_in_axes5_x;
+    const real six_r_beta_5_in_axes5_y = six_r_beta_4_in_axes5_y - six_r_zeta_5_t;
+    /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
+    const real six_r_bias_t = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y;
+    const real six_r_bias_t_2 = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x;
+    const real six_r_bias_t_6 = v.six_r_bias_t_4*v.six_r_c_4;
+    const real six_r_d_2_in_axes5_z = v.six_r_bias_t_4*v.six_r_s_4;
+    const real six_r_d_2_in_axes5_x = v.six_r_bias_t_5*v.six_r_c_5 -
+        six_r_bias_t_6*v.six_r_s_5;
+    const real six_r_d_2_in_axes5_y = -v.six_r_bias_t_5*v.six_r_s_5 -
+        six_r_bias_t_6*v.six_r_c_5;
+    const real six_r_bias_t_7 = six_r_omega_1_t*six_r_omega_1_t;
+    const real six_r_bias_t_8 = six_r_omega_1_t_2*six_r_omega_1_t_2;
+    const real six_r_bias_t_9 = six_r_omega_1_t_3*six_r_omega_1_t_3;
+    const real six_r_bias_t_12 = v.six_r_bias_t_10*v.six_r_c_4;
+    const real six_r_d_3_in_axes5_z = v.six_r_bias_t_10*v.six_r_s_4;
+    const real six_r_d_3_in_axes5_x = v.six_r_bias_t_11*v.six_r_c_5 -
+        six_r_bias_t_12*v.six_r_s_5;
+    const real six_r_d_3_in_axes5_y = -v.six_r_bias_t_11*v.six_r_s_5 -
+        six_r_bias_t_12*v.six_r_c_5;
+    const real six_r_bias_t_13 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x;
+    const real six_r_bias_t_14 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y;
+    const real six_r_bias_t_15 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z;
+    const real six_r_bias_t_16 = m->six_r_joint4_offset_x[i]*v.six_r_s_5;
+    const real six_r_bias_t_17 = m->six_r_joint5_offset_x[i]*v.six_r_s_5;
+    const real six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y;
+    const real six_r_bias_in_axes5_x = six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_y +
+        six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_z +
+        six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
+        six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) -
+        six_r_W_5_t_3*m->six_r_platform_joint_offset_x[i] -
+        six_r_bias_t_16*(six_r_W_3_in_axes5_xy - six_r_beta_3_in_axes4_y) -
+        six_r_bias_t_17*(six_r_W_4_in_axes5_xy - six_r_beta_4_in_axes4_y) -
+        six_r_d_2_in_axes5_x*(six_r_bias_t_8 + six_r_bias_t_9) -
+        six_r_d_3_in_axes5_x*(six_r_bias_t_14 + six_r_bias_t_15) -
+        v.six_r_d_4_in_axes5_x*(six_r_bias_t +
+        six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) -
+        v.six_r_d_5_in_axes5_x*(six_r_W_5_t + six_r_bias_t);
+    const real six_r_bias_in_axes5_y = six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_x +
+        six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_z + six_r_bias_t_16*(six_r_bias_t +
+        six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) + six_r_bias_t_17*(six_r_bias_t +
+        six_r_bias_t_2) + six_r_bias_t_18*v.six_r_d_5_in_axes5_x +
+        six_r_bias_t_18*m->six_r_platform_joint_offset_x[i] +
+        six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
+        six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
+        v.six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_y) -
+        six_r_d_2_in_axes5_y*(six_r_bias_t_7 + six_r_bias_t_9) -
+        six_r_d_3_in_axes5_y*(six_r_bias_t_13 + six_r_bias_t_15);
+    const real six_r_bias_in_axes5_z = six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_x +
+        six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_y +
+        six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
+        six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
+        v.six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*v.six_r_c_5 +
+        six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) +
+        v.six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
+        six_r_beta_4_in_axes5_y) + m->six_r_platform_joint_offset_x[i]*(six_r_W_5_in_axes5_xz
+        - six_r_beta_5_in_axes5_y) - six_r_bias_t_16*(six_r_beta_4_t +
+        six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - six_r_beta_3_t*v.six_r_s_5) -
+        six_r_bias_t_17*(six_r_beta_4_in_axes5_x +
+        six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y) -
+        six_r_d_2_in_axes5_z*(six_r_bias_t_7 + six_r_bias_t_8) -
+        six_r_d_3_in_axes5_z*(six_r_bias_t_13 + six_r_bias_t_14);
+    /* (six_r-rel_o) remainder of: acceleration of the connection point left to the joint
+       accelerations */
+    const real six_r_rel_o_in_axes5_x = six_r_u_1_in_axes5_x - six_r_bias_in_axes5_x;
+    const real six_r_rel_o_in_axes5_y = six_r_u_1_in_axes5_y - six_r_bias_in_axes5_y;
+    const real six_r_rel_o_in_axes5_z = six_r_u_1_in_axes5_z - six_r_bias_in_axes5_z;
+    /* (six_r-nd_m1) rate of moment direction 1 */
+    const real six_r_nd_m1_in_axes5_x = -v.six_r_nd_m1_t -
+        v.six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_x;
+    const real six_r_nd_m1_in_axes5_y = v.six_r_end_p1_in_axes5_z*v.six_r_omega_in_axes5_y -
+        v.six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y -
+        v.six_r_n_m2_in_axes5_z*v.six_r_omega_in_axes5_z;
+    /* (six_r-nu_1) bias of the angular acceleration along moment direction 1 */
+    const real six_r_nu_1_t = v.six_r_n_m2_in_axes5_z*six_r_omega_4_in_axes5_y;
+    const real six_r_nu_1_t_2 = six_r_beta_5_in_axes5_x*v.six_r_n_m2_in_axes5_z -
+        six_r_beta_5_in_axes5_y*v.six_r_n_m1_in_axes5_y;
+    const real six_r_nu_1_t_3 = six_r_omega_4_in_axes5_x - v.six_r_omega_in_axes5_x;
+    const real six_r_nu_1_t_4 = six_r_omega_4_in_axes5_y - v.six_r_omega_in_axes5_y;
+    const real six_r_nu_1_t_5 = six_r_omega_5_in_axes5_z - v.six_r_omega_in_axes5_z;
+    const real six_r_nu_1_t_6 = six_r_nd_m1_in_axes5_x*six_r_nu_1_t_3 +
+        six_r_nd_m1_in_axes5_y*six_r_nu_1_t_4 + six_r_nu_1_t_5*(six_r_nu_1_t +
+        v.six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x);
+    const real six_r_nu_1 = six_r_nu_1_t_2 - six_r_nu_1_t_6;
+    /* (six_r-nd_m2) rate of moment direction 2 */
+    const real six_r_nd_m2_in_axes5_y = v.six_r_n_m1_in_axes5_y*v.six_r_omega_in_axes5_y -
+        v.six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y -
+        v.six_r_n_m2_in_axes5_z*v.six_r_omega_in_axes5_x;
+    const real six_r_nd_m2_in_axes5_z = v.six_r_nd_m1_t -
+        v.six_r_n_m1_in_axes5_y*six_r_omega_5_in_axes5_z;
+    /* (six_r-nu_2) bias of the angular acceleration along moment direction 2 */
+    const real six_r_nu_2_t = six_r_beta_5_in_axes5_y*v.six_r_end_p1_in_axes5_z -
+        six_r_beta_4_in_axes4_y*v.six_r_n_m2_in_axes5_z;
+    const real six_r_nu_2_t_2 = six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 +
+        six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 + six_r_nu_1_t_3*(six_r_nu_1_t +
+        v.six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z);
+    const real six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2;
+    /* (six_r-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real six_r_qdd_1_o_t = six_r_nu_1*m->six_r_size[i];
+    const real six_r_qdd_1_o_t_2 = six_r_nu_2*m->six_r_size[i];
+    const real six_r_qdd_1_o_t_3 = v.inv_six_r_w_1_t_79*(v.six_r_qd_1_t*six_r_rel_o_in_axes5_x
+        + v.six_r_qd_1_t_3*six_r_rel_o_in_axes5_z + v.six_r_qd_1_t_4*six_r_qdd_1_o_t +
+        v.six_r_qd_1_t_5*six_r_qdd_1_o_t_2 - v.six_r_qd_1_t_2*six_r_rel_o_in_axes5_y);
+    const real six_r_qdd_1_o_t_4 = v.inv_six_r_w_1_t_67*(six_r_qdd_1_o_t*v.six_r_w_1_t_71 +
+        six_r_qdd_1_o_t_2*v.six_r_w_1_t_72 + six_r_rel_o_in_axes5_x*v.six_r_w_1_t_68 +
+        six_r_rel_o_in_axes5_z*v.six_r_w_1_t_70 - six_r_qdd_1_o_t_3*v.six_r_w_1_t_73 -
+        six_r_rel_o_in_axes5_y*v.six_r_w_1_t_69);
+    const real six_r_qdd_1_o_t_5 = v.inv_six_r_w_1_t_49*(six_r_qdd_1_o_t_3*v.six_r_w_1_t_61 +
+        six_r_qdd_1_o_t_4*v.six_r_w_1_t_55 + six_r_rel_o_in_axes5_y*v.six_r_w_1_t_51 -
+        six_r_qdd_1_o_t*v.six_r_w_1_t_53 - six_r_qdd_1_o_t_2*v.six_r_w_1_t_54 -
+        six_r_rel_o_in_axes5_x*v.six_r_w_1_t_50 - six_r_rel_o_in_axes5_z*v.six_r_w_1_t_52);
+    /* (six_r-qdd_4_o) remainder of: acceleration of joint 4 */
+    const real six_r_qdd_4_o = v.inv_six_r_w_1_t_28*(six_r_qdd_1_o_t*v.six_r_w_1_t_31 +
+        six_r_qdd_1_o_t_2*v.six_r_w_1_t_32 + six_r_qdd_1_o_t_3*v.six_r_w_1_t_44 +
+        six_r_qdd_1_o_t_4*v.six_r_w_1_t_39 + six_r_rel_o_in_axes5_z*v.six_r_w_1_t_30 -
+        six_r_qdd_1_o_t_5*v.six_r_w_1_t_33 - six_r_rel_o_in_axes5_y*v.six_r_w_1_t_29);
+    /* (six_r-alpha_1_o) remainder of: angular acceleration of link 1 */
+    const real six_r_alpha_1_o_t = v.six_r_c_2*six_r_qdd_1_o_t_5;
+    const real six_r_alpha_1_o_in_axes2_y = six_r_qdd_1_o_t_5*v.six_r_s_2;
+    /* (six_r-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real six_r_alpha_2_o_in_axes2_x = six_r_W_2_in_axes2_yz - six_r_alpha_1_o_t;
+    const real six_r_alpha_2_o_in_axes2_y = six_r_alpha_1_o_in_axes2_y +
+        six_r_zeta_2_in_axes2_y;
+    /* (six_r-B_2_o) remainder of the acceleration tensor of link 2 */
+    const real six_r_B_2_o_in_axes2_xy = six_r_W_2_in_axes2_xy - six_r_qdd_1_o_t_4;
+    const real six_r_B_2_o_in_axes2_yx = six_r_W_2_in_axes2_xy + six_r_qdd_1_o_t_4;
+    const real six_r_B_2_o_in_axes2_zx = -six_r_alpha_2_o_in_axes2_y -
+        six_r_zeta_2_in_axes2_y;
+    const real six_r_B_2_o_in_axes2_zy = six_r_W_2_in_axes2_yz + six_r_alpha_2_o_in_axes2_x;
+    /* (six_r-alpha_3_o) remainder of: angular acceleration of link 3 */
+    const real six_r_alpha_3_o_in_axes3_x = six_r_zeta_3_in_axes3_x +
+        six_r_alpha_2_o_in_axes2_x*v.six_r_s_3 - six_r_alpha_2_o_in_axes2_y*v.six_r_c_3;
+    const real six_r_alpha_3_o_in_axes3_y = six_r_alpha_2_o_in_axes2_x*v.six_r_c_3 +
+        six_r_alpha_2_o_in_axes2_y*v.six_r_s_3 - six_r_zeta_3_t;
+    const real six_r_alpha_3_o_in_axes3_z = six_r_qdd_1_o_t_3 + six_r_qdd_1_o_t_4;
+    /* (six_r-B_3_o) remainder of the acceleration tensor of link 3 */
+    const real six_r_B_3_o_in_axes3_xy = six_r_W_3_in_axes3_xy - six_r_alpha_3_o_in_axes3_z;
+    const real six_r_B_3_o_in_axes3_xz = six_r_W_3_in_axes3_xz + six_r_alpha_3_o_in_axes3_y;
+    const real six_r_B_3_o_in_axes3_yx = six_r_W_3_in_axes3_xy + six_r_alpha_3_o_in_axes3_z;
+    const real six_r_B_3_o_in_axes3_yz = six_r_W_3_in_axes3_yz - six_r_alpha_3_o_in_axes3_x;
+    const real six_r_B_3_o_in_axes3_zx = six_r_W_3_in_axes3_xz - six_r_alpha_3_o_in_axes3_y;
+    const real six_r_B_3_o_in_axes3_zy = six_r_W_3_in_axes3_yz + six_r_alpha_3_o_in_axes3_x;
+    /* (six_r-alpha_4_o) remainder of: angular acceleration of link 4 */
+    const real six_r_alpha_4_o_in_axes4_x = six_r_zeta_4_in_axes4_x +
+        six_r_alpha_3_o_in_axes3_z*v.six_r_s_4 - six_r_alpha_3_o_in_axes3_x*v.six_r_c_4;
+    const real six_r_alpha_4_o_in_axes4_y = six_r_alpha_3_o_in_axes3_x*v.six_r_s_4 +
+        six_r_alpha_3_o_in_axes3_z*v.six_r_c_4 - six_r_zeta_4_t;
+    const real six_r_alpha_4_o_in_axes4_z = six_r_alpha_3_o_in_axes3_y + six_r_qdd_4_o;
+    /* (six_r-B_4_o) remainder of the acceleration tensor of link 4 */
+    const real six_r_B_4_o_in_axes4_xy = six_r_W_4_in_axes4_xy - six_r_alpha_4_o_in_axes4_z;
+    const real six_r_B_4_o_in_axes4_xz = six_r_W_4_in_axes4_xz + six_r_alpha_4_o_in_axes4_y;
+    const real six_r_B_4_o_in_axes4_yx = six_r_W_4_in_axes4_xy + six_r_alpha_4_o_in_axes4_z;
+    const real six_r_B_4_o_in_axes4_yz = six_r_W_4_in_axes4_yz - six_r_alpha_4_o_in_axes4_x;
+    const real six_r_B_4_o_in_axes4_zx = six_r_W_4_in_axes4_xz - six_r_alpha_4_o_in_axes4_y;
+    const real six_r_B_4_o_in_axes4_zy = six_r_W_4_in_axes4_yz + six_r_alpha_4_o_in_axes4_x;
+    /* (six_r-alpha_5_o) remainder of: angular acceleration of link 5 */
+    const real six_r_alpha_5_o_in_axes5_x = six_r_zeta_5_in_axes5_x +
+        six_r_alpha_4_o_in_axes4_x*v.six_r_s_5 + six_r_alpha_4_o_in_axes4_z*v.six_r_c_5;
+    const real six_r_alpha_5_o_in_axes5_y = six_r_alpha_4_o_in_axes4_x*v.six_r_c_5 -
+        six_r_zeta_5_t - six_r_alpha_4_o_in_axes4_z*v.six_r_s_5;
+    const real six_r_alpha_5_o_in_axes5_z = six_r_alpha_4_o_in_axes4_y +
+        v.inv_six_r_w_1_t_12*(six_r_qdd_1_o_t_2*v.six_r_w_1_t_14 +
+        six_r_qdd_1_o_t_3*v.six_r_w_1_t_25 + six_r_qdd_1_o_t_5*v.six_r_w_1_t_18 +
+        six_r_rel_o_in_axes5_y*v.six_r_w_1_t_13 - six_r_qdd_1_o_t_4*v.six_r_w_1_t_22 -
+        six_r_qdd_4_o*v.six_r_w_1_t_15);
+    /* (six_r-B_5_o) remainder of the acceleration tensor of link 5 */
+    const real six_r_B_5_o_in_axes5_xy = six_r_W_4_in_axes5_xy - six_r_alpha_5_o_in_axes5_z;
+    const real six_r_B_5_o_in_axes5_xz = six_r_W_5_in_axes5_xz + six_r_alpha_5_o_in_axes5_y;
+    const real six_r_B_5_o_in_axes5_yx = six_r_W_4_in_axes5_xy + six_r_alpha_5_o_in_axes5_z;
+    const real six_r_B_5_o_in_axes5_yz = six_r_W_5_in_axes5_yz - six_r_alpha_5_o_in_axes5_x;
+    const real six_r_B_5_o_in_axes5_zx = six_r_W_5_in_axes5_xz - six_r_alpha_5_o_in_axes5_y;
+    const real six_r_B_5_o_in_axes5_zy = six_r_W_5_in_axes5_yz + six_r_alpha_5_o_in_axes5_x;
+    /* (six_r-a_o_3_o) remainder of: acceleration of the origin of joint 3 */
+    const real six_r_a_o_3_o_t = six_r_omega_1_in_axes2_y*six_r_omega_1_in_axes2_y;
+    const real six_r_a_o_3_o_t_2 = six_r_qd_1_t_9*six_r_qd_1_t_9;
+    const real six_r_a_o_3_o_in_axes2_x = -m->six_r_joint3_offset_x[i]*(six_r_a_o_3_o_t +
+        six_r_a_o_3_o_t_2);
+    const real six_r_a_o_3_o_in_axes2_y = six_r_B_2_o_in_axes2_yx*m->six_r_joint3_offset_x[i];
+    const real six_r_a_o_3_o_in_axes2_z = six_r_B_2_o_in_axes2_zx*m->six_r_joint3_offset_x[i];
+    const real six_r_a_o_3_o_in_axes3_x = six_r_a_o_3_o_in_axes2_x*v.six_r_s_3 -
+        six_r_a_o_3_o_in_axes2_y*v.six_r_c_3;
+    const real six_r_a_o_3_o_in_axes3_y = six_r_a_o_3_o_in_axes2_x*v.six_r_c_3 +
+        six_r_a_o_3_o_in_axes2_y*v.six_r_s_3;
+    /* (six_r-a_o_4_o) remainder of: acceleration of the origin of joint 4 */
+    const real six_r_a_o_4_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x +
+        six_r_B_3_o_in_axes3_xy*m->six_r_joint4_offset_x[i];
+    const real six_r_a_o_4_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y -
+        six_r_W_3_t_3*m->six_r_joint4_offset_x[i];
+    const real six_r_a_o_4_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z +
+        six_r_B_3_o_in_axes3_zy*m->six_r_joint4_offset_x[i];
+    /* (six_r-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
+    const real six_r_acc_3_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x - v.six_r_g_in_axes3_x;
+    const real six_r_acc_3_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y - v.six_r_g_in_axes3_y;
+    const real six_r_acc_3_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z - v.six_r_g_in_axes1_y;
+    /* (six_r-f_3_o) remainder of: inertia force of link 3 less its weight */
+    const real six_r_f_3_o_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y;
+    const real six_r_f_3_o_in_axes3_x = six_r_B_3_o_in_axes3_xy*m->six_r_h_3_in_spec3_x[i] +
+        six_r_B_3_o_in_axes3_xz*m->six_r_h_3_in_spec3_z[i] +
+        six_r_acc_3_o_in_axes3_x*m->six_r_link3_mass[i] +
+        m->six_r_h_3_in_spec3_y[i]*(six_r_W_3_t_2 + six_r_f_3_o_t);
+    const real six_r_f_3_o_in_axes3_y = six_r_B_3_o_in_axes3_yz*m->six_r_h_3_in_spec3_z[i] +
+        six_r_acc_3_o_in_axes3_y*m->six_r_link3_mass[i] -
+        six_r_B_3_o_in_axes3_yx*m->six_r_h_3_in_spec3_y[i] -
+        six_r_W_3_t_3*m->six_r_h_3_in_spec3_x[i];
+    const real six_r_f_3_o_in_axes3_z = six_r_B_3_o_in_axes3_zy*m->six_r_h_3_in_spec3_x[i] +
+        six_r_acc_3_o_in_axes3_z*m->six_r_link3_mass[i] -
+        six_r_B_3_o_in_axes3_zx*m->six_r_h_3_in_spec3_y[i] -
+        m->six_r_h_3_in_spec3_z[i]*(six_r_W_3_t + six_r_f_3_o_t);
+    /* (six_r-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity */
+    const real six_r_acc_4_o_in_axes4_x = six_r_a_o_4_o_in_axes3_z*v.six_r_s_4 +
+        v.six_r_c_4*v.six_r_g_in_axes3_x - six_r_a_o_4_o_in_axes3_x*v.six_r_c_4 -
+        v.six_r_g_in_axes1_y*v.six_r_s_4;
+    const real six_r_acc_4_o_in_axes4_y = six_r_a_o_4_o_in_axes3_x*v.six_r_s_4 +
+        six_r_a_o_4_o_in_axes3_z*v.six_r_c_4 - v.six_r_c_4*v.six_r_g_in_axes1_y -
+        v.six_r_g_in_axes3_x*v.six_r_s_4;
+    const real six_r_acc_4_o_in_axes4_z = six_r_a_o_4_o_in_axes3_y - v.six_r_g_in_axes3_y;
+    /* (six_r-f_4_o) remainder of: inertia force of link 4 less its weight */
+    const real six_r_f_4_o_t = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x;
+    const real six_r_f_4_o_t_2 = six_r_omega_4_in_axes4_z*six_r_omega_4_in_axes4_z;
+    const real six_r_f_4_o_in_axes4_x = six_r_B_4_o_in_axes4_xy*m->six_r_h_4_in_spec4_z[i] +
+        six_r_B_4_o_in_axes4_xz*m->six_r_h_4_in_spec4_x[i] +
+        six_r_acc_4_o_in_axes4_x*m->six_r_link4_mass[i] -
+        m->six_r_h_4_in_spec4_y[i]*(six_r_bias_t + six_r_f_4_o_t_2);
+    const real six_r_f_4_o_in_axes4_y = six_r_B_4_o_in_axes4_yx*m->six_r_h_4_in_spec4_y[i] +
+        six_r_B_4_o_in_axes4_yz*m->six_r_h_4_in_spec4_x[i] +
+        six_r_acc_4_o_in_axes4_y*m->six_r_link4_mass[i] -
+        m->six_r_h_4_in_spec4_z[i]*(six_r_f_4_o_t + six_r_f_4_o_t_2);
+    const real six_r_f_4_o_in_axes4_z = six_r_B_4_o_in_axes4_zx*m->six_r_h_4_in_spec4_y[i] +
+        six_r_B_4_o_in_axes4_zy*m->six_r_h_4_in_spec4_z[i] +
+        six_r_acc_4_o_in_axes4_z*m->six_r_link4_mass[i] -
+        m->six_r_h_4_in_spec4_x[i]*(six_r_bias_t + six_r_f_4_o_t);
+    const real six_r_f_4_o_in_axes3_x = six_r_f_4_o_in_axes4_y*v.six_r_s_4 -
+        v.six_r_c_4*six_r_f_4_o_in_axes4_x;
+    const real six_r_f_4_o_in_axes3_z = v.six_r_c_4*six_r_f_4_o_in_axes4_y +
+        six_r_f_4_o_in_axes4_x*v.six_r_s_4;
+    /* (six_r-acc_5_o) remainder of: acceleration of the reference point of link 5, less gravity */
+    const real six_r_acc_5_o_in_axes5_x = six_r_u_1_in_axes5_x -
+        v.axis_x_six_r_axes5_x*m->gravity_x - v.axis_x_six_r_axes5_y*m->gravity_y -
+        v.axis_x_six_r_axes5_z*m->gravity_z;
+    const real six_r_acc_5_o_in_axes5_y = six_r_u_1_in_axes5_y -
+        v.axis_y_six_r_axes5_x*m->gravity_x - v.axis_y_six_r_axes5_y*m->gravity_y -
+        v.axis_y_six_r_axes5_z*m->gravity_z;
+    const real six_r_acc_5_o_in_axes5_z = six_r_u_1_in_axes5_z -
+        v.axis_z_six_r_axes5_x*m->gravity_x - v.axis_z_six_r_axes5_y*m->gravity_y -
+        v.axis_z_six_r_axes5_z*m->gravity_z;
+    /* (six_r-mu_5_o) remainder of: inertia moment of the links that turn with link 5, about their
+       reference points */
+    const real six_r_mu_5_o_in_axes5_x = six_r_B_5_o_in_axes5_yx*m->six_r_J_5_in_spec5_xz[i] +
+        six_r_B_5_o_in_axes5_zy*m->six_r_Sigma_5_in_axes5_yy[i] +
+        m->six_r_J_5_in_spec5_yz[i]*(six_r_W_5_t - six_r_W_5_t_2) +
+        six_r_acc_5_o_in_axes5_z*m->six_r_h_5_in_spec5_y[i] -
+        six_r_B_5_o_in_axes5_yz*m->six_r_Sigma_5_in_axes5_zz[i] -
+        six_r_B_5_o_in_axes5_zx*m->six_r_J_5_in_spec5_xy[i] -
+        six_r_acc_5_o_in_axes5_y*m->six_r_h_5_in_spec5_z[i];
+    const real six_r_mu_5_o_in_axes5_y =
+        six_r_B_5_o_in_axes5_xz*m->six_r_Sigma_5_in_axes5_zz[i] +
+        six_r_B_5_o_in_axes5_zy*m->six_r_J_5_in_spec5_xy[i] +
+        six_r_acc_5_o_in_axes5_x*m->six_r_h_5_in_spec5_z[i] -
+        six_r_B_5_o_in_axes5_xy*m->six_r_J_5_in_spec5_yz[i] -
+        six_r_B_5_o_in_axes5_zx*m->six_r_Sigma_5_in_axes5_xx[i] -
+        m->six_r_J_5_in_spec5_xz[i]*(six_r_bias_t_2 - six_r_W_5_t_2) -
+        six_r_acc_5_o_in_axes5_z*m->six_r_h_5_in_spec5_x[i];
+    const real six_r_mu_5_o_in_axes5_z = six_r_B_5_o_in_axes5_xz*m->six_r_J_5_in_spec5_yz[i] +
+        six_r_B_5_o_in_axes5_yx*m->six_r_Sigma_5_in_axes5_xx[i] +
+        m->six_r_J_5_in_spec5_xy[i]*(six_r_bias_t_2 - six_r_W_5_t) +
+        six_r_acc_5_o_in_axes5_y*m->six_r_h_5_in_spec5_x[i] -
+        six_r_B_5_o_in_axes5_xy*m->six_r_Sigma_5_in_axes5_yy[i] -
+        six_r_B_5_o_in_axes5_yz*m->six_r_J_5_in_spec5_xz[i] -
+        six_r_acc_5_o_in_axes5_x*m->six_r_h_5_in_spec5_y[i];
+    /* (six_r-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their
+       reference points */
+    const real six_r_mu_4_o_in_axes4_x = six_r_B_4_o_in_axes4_yx*m->six_r_J_4_in_spec4_xy[i] +
+        six_r_B_4_o_in_axes4_zy*m->six_r_Sigma_4_in_axes4_yy[i] +
+        m->six_r_J_4_in_spec4_xz[i]*(six_r_bias_t - six_r_f_4_o_t_2) +
+        six_r_acc_4_o_in_axes4_z*m->six_r_h_4_in_spec4_z[i] -
+        six_r_B_4_o_in_axes4_yz*m->six_r_Sigma_4_in_axes4_zz[i] -
+        six_r_B_4_o_in_axes4_zx*m->six_r_J_4_in_spec4_yz[i] -
+        six_r_acc_4_o_in_axes4_y*m->six_r_h_4_in_spec4_x[i];
+    const real six_r_mu_4_o_in_axes4_y =
+        six_r_B_4_o_in_axes4_xz*m->six_r_Sigma_4_in_axes4_zz[i] +
+        six_r_B_4_o_in_axes4_zy*m->six_r_J_4_in_spec4_yz[i] +
+        six_r_acc_4_o_in_axes4_x*m->six_r_h_4_in_spec4_x[i] -
+        six_r_B_4_o_in_axes4_xy*m->six_r_J_4_in_spec4_xz[i] -
+        six_r_B_4_o_in_axes4_zx*m->six_r_Sigma_4_in_axes4_xx[i] -
+        m->six_r_J_4_in_spec4_xy[i]*(six_r_f_4_o_t - six_r_f_4_o_t_2) -
+        six_r_acc_4_o_in_axes4_z*m->six_r_h_4_in_spec4_y[i];
+    const real six_r_mu_4_o_in_axes4_z = six_r_B_4_o_in_axes4_xz*m->six_r_J_4_in_spec4_xz[i] +
+        six_r_B_4_o_in_axes4_yx*m->six_r_Sigma_4_in_axes4_xx[i] +
+        m->six_r_J_4_in_spec4_yz[i]*(six_r_f_4_o_t - six_r_bias_t) +
+        six_r_acc_4_o_in_axes4_y*m->six_r_h_4_in_spec4_y[i] -
+        six_r_B_4_o_in_axes4_xy*m->six_r_Sigma_4_in_axes4_yy[i] -
+        six_r_B_4_o_in_axes4_yz*m->six_r_J_4_in_spec4_xy[i] -
+        six_r_acc_4_o_in_axes4_x*m->six_r_h_4_in_spec4_z[i];
+    /* (six_r-N_4_o) remainder of: moment about joint 4 of the links from 4 outwards, the force at the
+       connection point left out */
+    const real six_r_N_4_o_in_axes4_x = six_r_mu_4_o_in_axes4_x +
+        v.six_r_c_5*six_r_mu_5_o_in_axes5_y + six_r_mu_5_o_in_axes5_x*v.six_r_s_5;
+    const real six_r_N_4_o_in_axes4_y = six_r_mu_4_o_in_axes4_y + six_r_mu_5_o_in_axes5_z;
+    const real six_r_N_4_o_in_axes4_z = six_r_mu_4_o_in_axes4_z +
+        v.six_r_c_5*six_r_mu_5_o_in_axes5_x - six_r_mu_5_o_in_axes5_y*v.six_r_s_5;
+    /* (six_r-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+       reference points */
+    const real six_r_mu_3_o_in_axes3_x = six_r_B_3_o_in_axes3_zx*m->six_r_J_3_in_spec3_xy[i] +
+        six_r_B_3_o_in_axes3_zy*m->six_r_Sigma_3_in_axes3_yy[i] +
+        m->six_r_J_3_in_spec3_xz[i]*(six_r_f_3_o_t - six_r_W_3_t_2) +
+        six_r_acc_3_o_in_axes3_z*m->six_r_h_3_in_spec3_x[i] -
+        six_r_B_3_o_in_axes3_yx*m->six_r_J_3_in_spec3_yz[i] -
+        six_r_B_3_o_in_axes3_yz*m->six_r_Sigma_3_in_axes3_zz[i] -
+        six_r_acc_3_o_in_axes3_y*m->six_r_h_3_in_spec3_z[i];
+    const real six_r_mu_3_o_in_axes3_y =
+        six_r_B_3_o_in_axes3_xz*m->six_r_Sigma_3_in_axes3_zz[i] +
+        m->six_r_J_3_in_spec3_yz[i]*(six_r_W_3_t - six_r_W_3_t_2) +
+        six_r_acc_3_o_in_axes3_x*m->six_r_h_3_in_spec3_z[i] +
+        six_r_acc_3_o_in_axes3_z*m->six_r_h_3_in_spec3_y[i] -
+        six_r_B_3_o_in_axes3_xy*m->six_r_J_3_in_spec3_xz[i] -
+        six_r_B_3_o_in_axes3_zx*m->six_r_Sigma_3_in_axes3_xx[i] -
+        six_r_B_3_o_in_axes3_zy*m->six_r_J_3_in_spec3_xy[i];
+    const real six_r_mu_3_o_in_axes3_z = six_r_B_3_o_in_axes3_xz*m->six_r_J_3_in_spec3_xz[i] +
+        six_r_B_3_o_in_axes3_yx*m->six_r_Sigma_3_in_axes3_xx[i] +
+        six_r_B_3_o_in_axes3_yz*m->six_r_J_3_in_spec3_yz[i] -
+        six_r_B_3_o_in_axes3_xy*m->six_r_Sigma_3_in_axes3_yy[i] -
+        m->six_r_J_3_in_spec3_xy[i]*(six_r_W_3_t - six_r_f_3_o_t) -
+        six_r_acc_3_o_in_axes3_x*m->six_r_h_3_in_spec3_x[i] -
+        six_r_acc_3_o_in_axes3_y*m->six_r_h_3_in_spec3_y[i];
+    /* (six_r-N_3_o) remainder of: moment about joint 3 of the links from 3 outwards, the force at the
+       connection point left out */
+    const real six_r_N_3_o_in_axes3_x = six_r_mu_3_o_in_axes3_x +
+        six_r_N_4_o_in_axes4_y*v.six_r_s_4 +
+        six_r_f_4_o_in_axes3_z*m->six_r_joint4_offset_x[i] -
+        six_r_N_4_o_in_axes4_x*v.six_r_c_4;
+    const real six_r_N_3_o_in_axes3_y = six_r_N_4_o_in_axes4_z + six_r_mu_3_o_in_axes3_y;
+    const real six_r_N_3_o_in_axes3_z = six_r_mu_3_o_in_axes3_z +
+        six_r_N_4_o_in_axes4_x*v.six_r_s_4 + six_r_N_4_o_in_axes4_y*v.six_r_c_4 -
+        six_r_f_4_o_in_axes3_x*m->six_r_joint4_offset_x[i];
+    /* (six_r-T_3_o) remainder of: inertia force of the links from 3 outwards, the last link left out
+       */
+    const real six_r_T_3_o_in_axes3_x = six_r_f_3_o_in_axes3_x + six_r_f_4_o_in_axes3_x;
+    const real six_r_T_3_o_in_axes3_y = six_r_f_3_o_in_axes3_y + six_r_f_4_o_in_axes4_z;
+    const real six_r_T_3_o_in_axes3_z = six_r_f_3_o_in_axes3_z + six_r_f_4_o_in_axes3_z;
+    /* (six_r-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real six_r_mu_2_o_t = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_x;
+    const real six_r_mu_2_o_in_axes2_x = six_r_B_2_o_in_axes2_yx*m->six_r_J_2_in_spec2_xz[i] +
+        six_r_B_2_o_in_axes2_zy*m->six_r_Sigma_2_in_axes2_yy[i] +
+        m->six_r_J_2_in_spec2_yz[i]*(six_r_a_o_3_o_t - six_r_a_o_3_o_t_2) +
+        v.six_r_g_in_axes2_y*m->six_r_h_2_in_spec2_z[i] -
+        six_r_B_2_o_in_axes2_zx*m->six_r_J_2_in_spec2_xy[i] -
+        m->six_r_Sigma_2_in_axes2_zz[i]*six_r_alpha_1_o_t -
+        v.six_r_g_in_axes1_y*m->six_r_h_2_in_spec2_y[i];
+    const real six_r_mu_2_o_in_axes2_y = six_r_B_2_o_in_axes2_zy*m->six_r_J_2_in_spec2_xy[i] +
+        m->six_r_Sigma_2_in_axes2_zz[i]*six_r_alpha_1_o_in_axes2_y +
+        v.six_r_g_in_axes1_y*m->six_r_h_2_in_spec2_x[i] -
+        six_r_B_2_o_in_axes2_xy*m->six_r_J_2_in_spec2_yz[i] -
+        six_r_B_2_o_in_axes2_zx*m->six_r_Sigma_2_in_axes2_xx[i] -
+        m->six_r_J_2_in_spec2_xz[i]*(six_r_mu_2_o_t - six_r_a_o_3_o_t_2) -
+        v.six_r_g_in_axes2_x*m->six_r_h_2_in_spec2_z[i];
+    const real six_r_mu_2_o_in_axes2_z =
+        six_r_B_2_o_in_axes2_yx*m->six_r_Sigma_2_in_axes2_xx[i] +
+        m->six_r_J_2_in_spec2_xy[i]*(six_r_mu_2_o_t - six_r_a_o_3_o_t) +
+        m->six_r_J_2_in_spec2_yz[i]*six_r_alpha_1_o_in_axes2_y +
+        v.six_r_g_in_axes2_x*m->six_r_h_2_in_spec2_y[i] -
+        six_r_B_2_o_in_axes2_xy*m->six_r_Sigma_2_in_axes2_yy[i] -
+        m->six_r_J_2_in_spec2_xz[i]*six_r_alpha_1_o_t -
+        v.six_r_g_in_axes2_y*m->six_r_h_2_in_spec2_x[i];
+    /* (six_r-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+       connection point left out */
+    const real six_r_N_2_o_in_axes2_x = six_r_mu_2_o_in_axes2_x +
+        six_r_N_3_o_in_axes3_x*v.six_r_s_3 + six_r_N_3_o_in_axes3_y*v.six_r_c_3;
+    const real six_r_N_2_o_in_axes2_y = six_r_mu_2_o_in_axes2_y +
+        six_r_N_3_o_in_axes3_y*v.six_r_s_3 - six_r_N_3_o_in_axes3_x*v.six_r_c_3 -
+        six_r_T_3_o_in_axes3_z*m->six_r_joint3_offset_x[i];
+    const real six_r_N_2_o_in_axes2_z = six_r_N_3_o_in_axes3_z + six_r_mu_2_o_in_axes2_z -
+        m->six_r_joint3_offset_x[i]*(six_r_T_3_o_in_axes3_x*v.six_r_c_3 -
+        six_r_T_3_o_in_axes3_y*v.six_r_s_3);
+    /* (six_r-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
+    const real six_r_mu_1_o_in_axes1_z = v.six_r_g_in_axes1_x*m->six_r_h_1_in_spec1_z[i] -
+        m->six_r_J_1_in_spec1_xx[i]*six_r_qdd_1_o_t_5 -
+        v.six_r_g_in_axes1_y*m->six_r_h_1_in_spec1_y[i];
+    /* (six_r-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+       connection point left out */
+    const real six_r_N_1_o_in_axes1_z = six_r_mu_1_o_in_axes1_z +
+        six_r_N_2_o_in_axes2_x*v.six_r_c_2 - six_r_N_2_o_in_axes2_y*v.six_r_s_2;
+    /* (six_r-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia
+       and weight along all degrees of freedom */
+    const real six_r_G_m1_o_t = v.inv_six_r_w_1_t_12*six_r_mu_5_o_in_axes5_z;
+    const real six_r_G_m1_o_t_2 = v.inv_six_r_w_1_t_28*(six_r_G_m1_o_t*v.six_r_w_1_t_15 -
+        six_r_N_4_o_in_axes4_z);
+    const real six_r_G_m1_o_t_3 = v.inv_six_r_w_1_t_49*(six_r_G_m1_o_t*v.six_r_w_1_t_18 +
+        six_r_G_m1_o_t_2*v.six_r_w_1_t_33 - six_r_N_1_o_in_axes1_z);
+    const real six_r_G_m1_o_t_4 = v.inv_six_r_w_1_t_67*(six_r_G_m1_o_t*v.six_r_w_1_t_22 +
+        six_r_G_m1_o_t_2*v.six_r_w_1_t_39 - six_r_N_2_o_in_axes2_z -
+        six_r_G_m1_o_t_3*v.six_r_w_1_t_55);
+    const real six_r_G_m1_o_t_5 = v.inv_six_r_w_1_t_79*(six_r_N_3_o_in_axes3_z +
+        six_r_G_m1_o_t*v.six_r_w_1_t_25 + six_r_G_m1_o_t_3*v.six_r_w_1_t_61 +
+        six_r_G_m1_o_t_4*v.six_r_w_1_t_73 - six_r_G_m1_o_t_2*v.six_r_w_1_t_44);
+    const real six_r_G_m1_o_t_6 = m->six_r_size[i]*(six_r_G_m1_o_t_2*v.six_r_w_1_t_31 +
+        six_r_G_m1_o_t_3*v.six_r_w_1_t_53 + six_r_G_m1_o_t_4*v.six_r_w_1_t_71 -
+        six_r_G_m1_o_t_5*v.six_r_qd_1_t_4);
+    /* (six_r-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia
+       and weight along all degrees of freedom */
+    const real six_r_G_m2_o_t = m->six_r_size[i]*(six_r_G_m1_o_t_2*v.six_r_w_1_t_32 +
+        six_r_G_m1_o_t_3*v.six_r_w_1_t_54 + six_r_G_m1_o_t_4*v.six_r_w_1_t_72 -
+        six_r_G_m1_o_t*v.six_r_w_1_t_14 - six_r_G_m1_o_t_5*v.six_r_qd_1_t_5);
+    /* (six_r-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real six_r_G_m_o_in_axes5_x = six_r_G_m1_o_t_6*v.six_r_n_m2_in_axes5_z;
+    const real six_r_G_m_o_in_axes5_y = six_r_G_m2_o_t*v.six_r_end_p1_in_axes5_z -
+        six_r_G_m1_o_t_6*v.six_r_n_m1_in_axes5_y;
+    /* (six_r-c_o) remainder of: leg force on the platform without actuation and without the mass at
+       the connection point */
+    const real six_r_c_o_in_axes5_x = six_r_G_m1_o_t_3*v.six_r_w_1_t_50 +
+        six_r_G_m1_o_t_4*v.six_r_w_1_t_68 + six_r_W_5_t_3*m->six_r_h_5_in_spec5_x[i] -
+        six_r_B_5_o_in_axes5_xy*m->six_r_h_5_in_spec5_y[i] -
+        six_r_B_5_o_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] - six_r_G_m1_o_t_5*v.six_r_qd_1_t;
+    const real six_r_c_o_in_axes5_y = six_r_G_m1_o_t_5*v.six_r_qd_1_t_2 +
+        m->six_r_h_5_in_spec5_y[i]*(six_r_W_5_t_2 + six_r_bias_t_2) -
+        six_r_B_5_o_in_axes5_yx*m->six_r_h_5_in_spec5_x[i] -
+        six_r_B_5_o_in_axes5_yz*m->six_r_h_5_in_spec5_z[i] - six_r_G_m1_o_t*v.six_r_w_1_t_13 -
+        six_r_G_m1_o_t_2*v.six_r_w_1_t_29 - six_r_G_m1_o_t_3*v.six_r_w_1_t_51 -
+        six_r_G_m1_o_t_4*v.six_r_w_1_t_69;
+    const real six_r_c_o_in_axes5_z = six_r_G_m1_o_t_2*v.six_r_w_1_t_30 +
+        six_r_G_m1_o_t_3*v.six_r_w_1_t_52 + six_r_G_m1_o_t_4*v.six_r_w_1_t_70 +
+        m->six_r_h_5_in_spec5_z[i]*(six_r_W_5_t + six_r_bias_t_2) -
+        six_r_B_5_o_in_axes5_zx*m->six_r_h_5_in_spec5_x[i] -
+        six_r_B_5_o_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] -
+        six_r_G_m1_o_t_5*v.six_r_qd_1_t_3;
+    /* (six_r-c_m_o) remainder of: moment of the leg on the platform without actuation */
+    const real six_r_c_m_o_in_axes5_z = six_r_G_m2_o_t*v.six_r_n_m2_in_axes5_z;
+    /* (six_r-U) velocity and gravity terms of the leg force */
+    const real six_r_U_x = -v.axis_x_six_r_axes5_x*six_r_c_o_in_axes5_x -
+        v.axis_y_six_r_axes5_x*six_r_c_o_in_axes5_y -
+        v.axis_z_six_r_axes5_x*six_r_c_o_in_axes5_z;
+    const real six_r_U_y = -v.axis_x_six_r_axes5_y*six_r_c_o_in_axes5_x -
+        v.axis_y_six_r_axes5_y*six_r_c_o_in_axes5_y -
+        v.axis_z_six_r_axes5_y*six_r_c_o_in_axes5_z;
+    const real six_r_U_z = -v.axis_x_six_r_axes5_z*six_r_c_o_in_axes5_x -
+        v.axis_y_six_r_axes5_z*six_r_c_o_in_axes5_y -
+        v.axis_z_six_r_axes5_z*six_r_c_o_in_axes5_z;
+    /* (Z_a) rotational part of Z */
+    const real six_r_Z_a_t = v.axis_x_six_r_axes5_x*six_r_G_m_o_in_axes5_x +
+        v.axis_y_six_r_axes5_x*six_r_G_m_o_in_axes5_y + six_r_U_z*v.six_r_q_y -
+        v.axis_z_six_r_axes5_x*six_r_c_m_o_in_axes5_z - six_r_U_y*v.six_r_q_z;
+    const real six_r_Z_a_t_2 = v.axis_x_six_r_axes5_y*six_r_G_m_o_in_axes5_x +
+        v.axis_y_six_r_axes5_y*six_r_G_m_o_in_axes5_y + six_r_U_x*v.six_r_q_z -
+        v.axis_z_six_r_axes5_y*six_r_c_m_o_in_axes5_z - six_r_U_z*v.six_r_q_x;
+    const real six_r_Z_a_t_3 = v.axis_x_six_r_axes5_z*six_r_G_m_o_in_axes5_x +
+        v.axis_y_six_r_axes5_z*six_r_G_m_o_in_axes5_y + six_r_U_y*v.six_r_q_x -
+        v.axis_z_six_r_axes5_z*six_r_c_m_o_in_axes5_z - six_r_U_x*v.six_r_q_y;
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, six_r_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, six_r_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, six_r_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) */
+    gather(&terms[3*count + k], add, six_r_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[4*count + k], add, six_r_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[5*count + k], add, six_r_Z_a_t_3);  /* Z_a_z_of_legs */
+    o[0*count + k] = UNLESS(magnitude(v.six_r_w_1_t_12) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_28) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_49) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_67) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_79) > TOLERANCE*m->six_r_size[i]);
 }
 
-INLINE void Z_place_six_r(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void Z_place_six_r(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o[0*count + first + k];
-    }
+    t->singular[k] += o[0*count + at];
 }
 
-INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict *t)
+INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (Z_t) translational part of Z */
-        const real Z_p_x = s[9*w + k];
-        const real Z_t_x_of_legs = sums[0*w + k];
-        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[10*w + k];
-        const real Z_t_y_of_legs = sums[1*w + k];
-        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[11*w + k];
-        const real Z_t_z_of_legs = sums[2*w + k];
-        const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-        /* (Z_a) rotational part of Z */
-        const real Z_a_x_of_legs = sums[3*w + k];
-        const real Z_q_x = s[12*w + k];
-        const real Z_a_x = Z_a_x_of_legs + Z_q_x;
-        const real Z_a_y_of_legs = sums[4*w + k];
-        const real Z_q_y = s[13*w + k];
-        const real Z_a_y = Z_a_y_of_legs + Z_q_y;
-        const real Z_a_z_of_legs = sums[5*w + k];
-        const real Z_q_z = s[14*w + k];
-        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
-        /* (Z_t) translational part of Z */
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-        Z[2*w + k] = Z_t_z;
-        /* (Z_a) rotational part of Z */
-        Z[3*w + k] = Z_a_x;
-        Z[4*w + k] = Z_a_y;
-        Z[5*w + k] = Z_a_z;
-        t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
-    }
+    /* (Z_t) */
+    const real Z_p_x = s[9*w + k];
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[10*w + k];
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    const real Z_p_z = s[11*w + k];
+    const real Z_t_z_of_legs = sums[2*w + k];
+    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
+    /* (Z_a) */
+    const real Z_a_x_of_legs = sums[3*w + k];
+    const real Z_q_x = s[12*w + k];
+    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_y_of_legs = sums[4*w + k];
+    const real Z_q_y = s[13*w + k];
+    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_z_of_legs = sums[5*w + k];
+    const real Z_q_z = s[14*w + k];
+    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    /* (Z_a) */
+    Z[3*w + k] = Z_a_x;
+    Z[4*w + k] = Z_a_y;
+    Z[5*w + k] = Z_a_z;
+    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, const real *joints, real *Z,
@@ -7527,369 +7307,368 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, const real *j
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_six_r[6*LEGS(LEGS_OF_six_r)] = {0}, o_six_r[LEGS(LEGS_OF_six_r)] = {0};
-    Z_before(m, 1, X, V, s, t);
-    Z_legs_six_r(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_six_r), 0, V, joints, terms_six_r, o_six_r);
-    for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
-        Z_place_six_r(1, LEGS(LEGS_OF_six_r), o_six_r, leg, t);
+    Z_before(m, 1, 0, X, V, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
+        Z_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), 0, s, V, joints, terms_six_r, o_six_r);
+    }
+    for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
+        Z_place_six_r(0, i, LEGS(LEGS_OF_six_r), o_six_r, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_six_r + n*LEGS(LEGS_OF_six_r), LEGS_OF_six_r);
     }
-    Z_after(1, s, sums, Z, t);
+    Z_after(1, 0, s, sums, Z, t);
 }
 
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, const real *joints, real
-    *Z, verdict *t)
+    *restrict Z, verdict *restrict t)
 {
     real s[15*LANES], sums[6*LANES];
     real o_six_r[LANES];
-    Z_before(m, LANES, X, V, s, t);
-    clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
-        Z_legs_six_r(m, LANES, leg, 0, s, 1, LANES, 1, V, joints, sums, o_six_r);
-        Z_place_six_r(LANES, LANES, o_six_r, 0, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        Z_before(m, LANES, k, X, V, s, t);
     }
-    Z_after(LANES, s, sums, Z, t);
+    clear(sums, 6*LANES);
+    for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_legs_six_r(m, LANES, i, k, k, LANES, 1, s, V, joints, sums, o_six_r);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_place_six_r(k, k, LANES, o_six_r, t);
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        Z_after(LANES, k, s, sums, Z, t);
+    }
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void H_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, const real *joints, real *o)
+INLINE void H_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    const real *s, const real *joints, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_six_r v;
-        stage_six_r_X(m, w, i, j, s, &v);
-        stage_six_r_q(m, w, i, j, joints, &v);
-        stage_six_r_X_q(m, i, &v);
-        stage_six_r_H_condition(m, i, &v);
-        /* (six_r-w_2) force part of reciprocal wrench 2 */
-        o[0*count + k] = v.six_r_w_2_x;
-        o[1*count + k] = v.six_r_w_2_y;
-        o[2*count + k] = v.six_r_w_2_z;
-        /* (six_r-H_a_2) moment of the column's unit force about the platform origin */
-        o[3*count + k] = v.six_r_H_a_2_x;
-        o[4*count + k] = v.six_r_H_a_2_y;
-        o[5*count + k] = v.six_r_H_a_2_z;
-        o[7*count + k] = (v.six_r_w_2_x + (v.six_r_w_2_y + v.six_r_w_2_z)) + (v.six_r_H_a_2_x +
-            (v.six_r_H_a_2_y + v.six_r_H_a_2_z));
-        const real six_r_size = m->six_r_size[i];
-        o[6*count + k] = UNLESS(magnitude(v.six_r_w_1_t_12) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(v.six_r_w_1_t_28) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(v.six_r_w_1_t_49) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(v.six_r_w_1_t_67) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(v.six_r_w_1_t_79) > TOLERANCE*six_r_size);
-    }
+    values_six_r v;
+    stage_six_r_X(m, w, i, j, s, &v);
+    stage_six_r_q(m, w, i, j, joints, &v);
+    stage_six_r_X_q(m, i, &v);
+    stage_six_r_H_condition(m, i, &v);
+    /* (six_r-w_2) force part of reciprocal wrench 2 */
+    o[0*count + k] = v.six_r_w_2_x;
+    o[1*count + k] = v.six_r_w_2_y;
+    o[2*count + k] = v.six_r_w_2_z;
+    /* (six_r-H_a_2) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.six_r_H_a_2_x;
+    o[4*count + k] = v.six_r_H_a_2_y;
+    o[5*count + k] = v.six_r_H_a_2_z;
+    o[7*count + k] = (v.six_r_w_2_x + (v.six_r_w_2_y + v.six_r_w_2_z)) + (v.six_r_H_a_2_x +
+        (v.six_r_H_a_2_y + v.six_r_H_a_2_z));
+    o[6*count + k] = UNLESS(magnitude(v.six_r_w_1_t_12) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_28) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_49) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_67) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_79) > TOLERANCE*m->six_r_size[i]);
 }
 
-INLINE void H_place_six_r(size_t w, size_t count, const real *o, size_t leg, size_t first, real
-    *H, verdict *t)
+INLINE void H_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        H[(3*NU + leg)*w + k] = o[3*count + first + k];
-        H[(4*NU + leg)*w + k] = o[4*count + first + k];
-        H[(5*NU + leg)*w + k] = o[5*count + first + k];
-        t->singular[k] += o[6*count + first + k];
-        t->total[k] += o[7*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    H[(3*NU + i)*w + k] = o[3*count + at];
+    H[(4*NU + i)*w + k] = o[4*count + at];
+    H[(5*NU + i)*w + k] = o[5*count + at];
+    t->singular[k] += o[6*count + at];
+    t->total[k] += o[7*count + at];
 }
 
-INLINE void H_run(const prepared *m, const real *X, const real *joints, real *H, verdict *t)
+APART void H_run(const prepared *m, const real *X, const real *joints, real *H, verdict *t)
 {
     real s[9] = {0};
     real o_six_r[8*LEGS(LEGS_OF_six_r)] = {0};
-    H_before(m, 1, X, s, t);
-    H_legs_six_r(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_six_r), joints, o_six_r);
-    for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
-        H_place_six_r(1, LEGS(LEGS_OF_six_r), o_six_r, leg, leg, H, t);
+    H_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
+        H_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), s, joints, o_six_r);
+    }
+    for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
+        H_place_six_r(1, i, 0, i, LEGS(LEGS_OF_six_r), o_six_r, H, t);
     }
 }
 
-INLINE void H_run_lanes(const prepared *m, const real *X, const real *joints, real *H, verdict *t)
+INLINE void H_run_lanes(const prepared *m, const real *X, const real *joints, real *restrict H,
+    verdict *restrict t)
 {
     real s[9*LANES];
     real o_six_r[8*LANES];
-    H_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
-        H_legs_six_r(m, LANES, leg, 0, s, 1, LANES, joints, o_six_r);
-        H_place_six_r(LANES, LANES, o_six_r, leg, 0, H, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        H_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            H_legs_six_r(m, LANES, i, k, k, LANES, s, joints, o_six_r);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            H_place_six_r(LANES, i, k, k, LANES, o_six_r, H, t);
+        }
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, real *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        stage_V_X(w, k, V, &v);
-        /* (W_p) centripetal tensor of the platform */
-        const real omega_x = V[3*w + k];
-        const real omega_y = V[4*w + k];
-        const real W_p_xy = omega_x*omega_y;
-        const real omega_z = V[5*w + k];
-        const real W_p_xz = omega_x*omega_z;
-        const real W_p_yz = omega_y*omega_z;
-        /* (a_t) acceleration of the platform origin, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real t_ddot_x = A[0*w + k];
-        const real a_t_x = t_ddot_x - gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real t_ddot_y = A[1*w + k];
-        const real a_t_y = t_ddot_y - gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real t_ddot_z = A[2*w + k];
-        const real a_t_z = t_ddot_z - gravity_z;
-        const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
-        const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
-        const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
-        /* (f_p) inertia force of the platform less its weight */
-        const real f_p_t = omega_x*omega_x;
-        const real f_p_t_2 = omega_y*omega_y;
-        const real f_p_t_3 = omega_z*omega_z;
-        const real alpha_y = A[4*w + k];
-        const real alpha_z = A[5*w + k];
-        const real m_star = m->m_star;
-        const real f_p_x = a_t_x*m_star + v.h_star_y*(W_p_xy - alpha_z) + v.h_star_z*(W_p_xz +
-            alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
-        const real alpha_x = A[3*w + k];
-        const real f_p_y = a_t_y*m_star + v.h_star_x*(W_p_xy + alpha_z) + v.h_star_z*(W_p_yz -
-            alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
-        const real f_p_z = a_t_z*m_star + v.h_star_x*(W_p_xz - alpha_y) + v.h_star_y*(W_p_yz +
-            alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
-        /* (mu_p) inertia moment of the platform less that of its weight */
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real mu_p_t = J_star_in_platform_xx*v.omega_in_platform_x +
-            J_star_in_platform_xy*v.omega_in_platform_y +
-            J_star_in_platform_xz*v.omega_in_platform_z;
-        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real mu_p_t_2 = J_star_in_platform_xy*v.omega_in_platform_x +
-            J_star_in_platform_yy*v.omega_in_platform_y +
-            J_star_in_platform_yz*v.omega_in_platform_z;
-        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real mu_p_t_3 = J_star_in_platform_xz*v.omega_in_platform_x +
-            J_star_in_platform_yz*v.omega_in_platform_y +
-            J_star_in_platform_zz*v.omega_in_platform_z;
-        const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
-        const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
-        const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real mu_p_in_platform_x = J_star_in_platform_xx*alpha_in_platform_x +
-            J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z
-            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
-            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real mu_p_in_platform_y = J_star_in_platform_xy*alpha_in_platform_x +
-            J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z
-            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
-            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
-        const real mu_p_in_platform_z = J_star_in_platform_xz*alpha_in_platform_x +
-            J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z
-            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
-            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
-        const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
-            v.R_xz*mu_p_in_platform_z;
-        const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
-            v.R_yz*mu_p_in_platform_z;
-        const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
-            v.R_zz*mu_p_in_platform_z;
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = f_p_x;
-        s[10*w + k] = f_p_y;
-        s[11*w + k] = f_p_z;
-        s[12*w + k] = mu_p_x;
-        s[13*w + k] = mu_p_y;
-        s[14*w + k] = mu_p_z;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    stage_V_X(w, k, V, &v);
+    /* (W_p) centripetal tensor of the platform */
+    const real omega_x = V[3*w + k];
+    const real omega_y = V[4*w + k];
+    const real W_p_xy = omega_x*omega_y;
+    const real omega_z = V[5*w + k];
+    const real W_p_xz = omega_x*omega_z;
+    const real W_p_yz = omega_y*omega_z;
+    /* (a_t) acceleration of the platform origin, less gravity */
+    const real t_ddot_x = A[0*w + k];
+    const real a_t_x = t_ddot_x - m->gravity_x;
+    const real t_ddot_y = A[1*w + k];
+    const real a_t_y = t_ddot_y - m->gravity_y;
+    const real t_ddot_z = A[2*w + k];
+    const real a_t_z = t_ddot_z - m->gravity_z;
+    const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
+    const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
+    const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
+    /* (f_p) inertia force of the platform less its weight */
+    const real f_p_t = omega_x*omega_x;
+    const real f_p_t_2 = omega_y*omega_y;
+    const real f_p_t_3 = omega_z*omega_z;
+    const real alpha_y = A[4*w + k];
+    const real alpha_z = A[5*w + k];
+    const real f_p_x = a_t_x*m->m_star + v.h_star_y*(W_p_xy - alpha_z) + v.h_star_z*(W_p_xz +
+        alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+    const real alpha_x = A[3*w + k];
+    const real f_p_y = a_t_y*m->m_star + v.h_star_x*(W_p_xy + alpha_z) + v.h_star_z*(W_p_yz -
+        alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
+    const real f_p_z = a_t_z*m->m_star + v.h_star_x*(W_p_xz - alpha_y) + v.h_star_y*(W_p_yz +
+        alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
+    /* (mu_p) inertia moment of the platform less that of its weight */
+    const real mu_p_t = m->J_star_in_platform_xx*v.omega_in_platform_x +
+        m->J_star_in_platform_xy*v.omega_in_platform_y +
+        m->J_star_in_platform_xz*v.omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*v.omega_in_platform_x +
+        m->J_star_in_platform_yy*v.omega_in_platform_y +
+        m->J_star_in_platform_yz*v.omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*v.omega_in_platform_x +
+        m->J_star_in_platform_yz*v.omega_in_platform_y +
+        m->J_star_in_platform_zz*v.omega_in_platform_z;
+    const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
+    const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
+    const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+    const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
+        m->J_star_in_platform_xy*alpha_in_platform_y +
+        m->J_star_in_platform_xz*alpha_in_platform_z +
+        a_t_in_platform_z*m->h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
+        a_t_in_platform_y*m->h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+    const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
+        m->J_star_in_platform_yy*alpha_in_platform_y +
+        m->J_star_in_platform_yz*alpha_in_platform_z +
+        a_t_in_platform_x*m->h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
+        a_t_in_platform_z*m->h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
+    const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
+        m->J_star_in_platform_yz*alpha_in_platform_y +
+        m->J_star_in_platform_zz*alpha_in_platform_z +
+        a_t_in_platform_y*m->h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
+        a_t_in_platform_x*m->h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
+    const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
+        v.R_xz*mu_p_in_platform_z;
+    const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
+        v.R_yz*mu_p_in_platform_z;
+    const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
+        v.R_zz*mu_p_in_platform_z;
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = f_p_x;
+    s[10*w + k] = f_p_y;
+    s[11*w + k] = f_p_z;
+    s[12*w + k] = mu_p_x;
+    s[13*w + k] = mu_p_y;
+    s[14*w + k] = mu_p_z;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void required_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *V, const real *A, const real *joints,
-    real *terms, real *o)
+INLINE void required_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *V, const real *A, const real *joints, real *terms,
+    real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_six_r v;
-        stage_six_r_X(m, w, i, j, s, &v);
-        stage_six_r_q(m, w, i, j, joints, &v);
-        stage_six_r_A_X(w, j, A, &v);
-        stage_six_r_A_q(w, j, A, &v);
-        stage_six_r_V_X(w, j, V, &v);
-        stage_six_r_V_q(w, j, V, &v);
-        stage_six_r_X_q(m, i, &v);
-        stage_six_r_A_V_X(w, j, V, &v);
-        stage_six_r_A_X_q(w, j, A, &v);
-        stage_six_r_V_X_q(&v);
-        stage_six_r_legs_required(m, i, &v);
-        /* (six_r-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real six_r_c_x = v.axis_x_six_r_axes5_x*v.six_r_c_in_axes5_x +
-            v.axis_y_six_r_axes5_x*v.six_r_c_in_axes5_y +
-            v.axis_z_six_r_axes5_x*v.six_r_c_in_axes5_z;
-        const real six_r_c_y = v.axis_x_six_r_axes5_y*v.six_r_c_in_axes5_x +
-            v.axis_y_six_r_axes5_y*v.six_r_c_in_axes5_y +
-            v.axis_z_six_r_axes5_y*v.six_r_c_in_axes5_z;
-        const real six_r_c_z = v.axis_x_six_r_axes5_z*v.six_r_c_in_axes5_x +
-            v.axis_y_six_r_axes5_z*v.six_r_c_in_axes5_y +
-            v.axis_z_six_r_axes5_z*v.six_r_c_in_axes5_z;
-        /* (R_a) moment that actuators and external wrench must give */
-        const real six_r_R_a_t = v.axis_x_six_r_axes5_x*v.six_r_G_m_in_axes5_x +
-            v.axis_y_six_r_axes5_x*v.six_r_G_m_in_axes5_y + six_r_c_y*v.six_r_q_z -
-            v.axis_z_six_r_axes5_x*v.six_r_c_m_in_axes5_z - six_r_c_z*v.six_r_q_y;
-        const real six_r_R_a_t_2 = v.axis_x_six_r_axes5_y*v.six_r_G_m_in_axes5_x +
-            v.axis_y_six_r_axes5_y*v.six_r_G_m_in_axes5_y + six_r_c_z*v.six_r_q_x -
-            v.axis_z_six_r_axes5_y*v.six_r_c_m_in_axes5_z - six_r_c_x*v.six_r_q_z;
-        const real six_r_R_a_t_3 = v.axis_x_six_r_axes5_z*v.six_r_G_m_in_axes5_x +
-            v.axis_y_six_r_axes5_z*v.six_r_G_m_in_axes5_y + six_r_c_x*v.six_r_q_y -
-            v.axis_z_six_r_axes5_z*v.six_r_c_m_in_axes5_z - six_r_c_y*v.six_r_q_x;
-        /* (six_r-H_a_2) moment of the column's unit force about the platform origin */
-        const real six_r_H_a_2_x = v.axis_y_six_r_axes5_x*v.six_r_o_2_in_axes5_y +
-            v.axis_z_six_r_axes5_x*v.six_r_o_2_in_axes5_z + v.six_r_q_y*v.six_r_w_2_z -
-            v.axis_x_six_r_axes5_x*v.six_r_o_2_t - v.six_r_q_z*v.six_r_w_2_y;
-        const real six_r_H_a_2_y = v.axis_y_six_r_axes5_y*v.six_r_o_2_in_axes5_y +
-            v.axis_z_six_r_axes5_y*v.six_r_o_2_in_axes5_z + v.six_r_q_z*v.six_r_w_2_x -
-            v.axis_x_six_r_axes5_y*v.six_r_o_2_t - v.six_r_q_x*v.six_r_w_2_z;
-        const real six_r_H_a_2_z = v.axis_y_six_r_axes5_z*v.six_r_o_2_in_axes5_y +
-            v.axis_z_six_r_axes5_z*v.six_r_o_2_in_axes5_z + v.six_r_q_x*v.six_r_w_2_y -
-            v.axis_x_six_r_axes5_z*v.six_r_o_2_t - v.six_r_q_y*v.six_r_w_2_x;
-        /* (R_t) force that actuators and external wrench must give */
-        gather(&terms[0*count + k], add, six_r_c_x);  /* R_t_x_of_legs */
-        gather(&terms[1*count + k], add, six_r_c_y);  /* R_t_y_of_legs */
-        gather(&terms[2*count + k], add, six_r_c_z);  /* R_t_z_of_legs */
-        /* (R_a) moment that actuators and external wrench must give */
-        gather(&terms[3*count + k], add, six_r_R_a_t);  /* R_a_x_of_legs */
-        gather(&terms[4*count + k], add, six_r_R_a_t_2);  /* R_a_y_of_legs */
-        gather(&terms[5*count + k], add, six_r_R_a_t_3);  /* R_a_z_of_legs */
-        /* (six_r-w_2) force part of reciprocal wrench 2 */
-        o[0*count + k] = v.six_r_w_2_x;
-        o[1*count + k] = v.six_r_w_2_y;
-        o[2*count + k] = v.six_r_w_2_z;
-        /* (six_r-H_a_2) moment of the column's unit force about the platform origin */
-        o[3*count + k] = six_r_H_a_2_x;
-        o[4*count + k] = six_r_H_a_2_y;
-        o[5*count + k] = six_r_H_a_2_z;
-        const real six_r_size = m->six_r_size[i];
-        o[6*count + k] = UNLESS(magnitude(v.six_r_w_1_t_12) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(v.six_r_w_1_t_28) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(v.six_r_w_1_t_49) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(v.six_r_w_1_t_67) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(v.six_r_w_1_t_79) > TOLERANCE*six_r_size);
-    }
+    values_six_r v;
+    stage_six_r_X(m, w, i, j, s, &v);
+    stage_six_r_q(m, w, i, j, joints, &v);
+    stage_six_r_A_X(w, j, A, &v);
+    stage_six_r_A_q(w, j, A, &v);
+    stage_six_r_V_X(w, j, V, &v);
+    stage_six_r_V_q(w, j, V, &v);
+    stage_six_r_X_q(m, i, &v);
+    stage_six_r_A_V_X(w, j, V, &v);
+    stage_six_r_A_X_q(w, j, A, &v);
+    stage_six_r_V_X_q(&v);
+    stage_six_r_legs_required(m, i, &v);
+    /* (six_r-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real six_r_c_x = v.axis_x_six_r_axes5_x*v.six_r_c_in_axes5_x +
+        v.axis_y_six_r_axes5_x*v.six_r_c_in_axes5_y +
+        v.axis_z_six_r_axes5_x*v.six_r_c_in_axes5_z;
+    const real six_r_c_y = v.axis_x_six_r_axes5_y*v.six_r_c_in_axes5_x +
+        v.axis_y_six_r_axes5_y*v.six_r_c_in_axes5_y +
+        v.axis_z_six_r_axes5_y*v.six_r_c_in_axes5_z;
+    const real six_r_c_z = v.axis_x_six_r_axes5_z*v.six_r_c_in_axes5_x +
+        v.axis_y_six_r_axes5_z*v.six_r_c_in_axes5_y +
+        v.axis_z_six_r_axes5_z*v.six_r_c_in_axes5_z;
+    /* (R_a) moment that actuators and external wrench must give */
+    const real six_r_R_a_t = v.axis_x_six_r_axes5_x*v.six_r_G_m_in_axes5_x +
+        v.axis_y_six_r_axes5_x*v.six_r_G_m_in_axes5_y + six_r_c_y*v.six_r_q_z -
+        v.axis_z_six_r_axes5_x*v.six_r_c_m_in_axes5_z - six_r_c_z*v.six_r_q_y;
+    const real six_r_R_a_t_2 = v.axis_x_six_r_axes5_y*v.six_r_G_m_in_axes5_x +
+        v.axis_y_six_r_axes5_y*v.six_r_G_m_in_axes5_y + six_r_c_z*v.six_r_q_x -
+        v.axis_z_six_r_axes5_y*v.six_r_c_m_in_axes5_z - six_r_c_x*v.six_r_q_z;
+    const real six_r_R_a_t_3 = v.axis_x_six_r_axes5_z*v.six_r_G_m_in_axes5_x +
+        v.axis_y_six_r_axes5_z*v.six_r_G_m_in_axes5_y + six_r_c_x*v.six_r_q_y -
+        v.axis_z_six_r_axes5_z*v.six_r_c_m_in_axes5_z - six_r_c_y*v.six_r_q_x;
+    /* (six_r-H_a_2) moment of the column's unit force about the platform origin */
+    const real six_r_H_a_2_x = v.axis_y_six_r_axes5_x*v.six_r_o_2_in_axes5_y +
+        v.axis_z_six_r_axes5_x*v.six_r_o_2_in_axes5_z + v.six_r_q_y*v.six_r_w_2_z -
+        v.axis_x_six_r_axes5_x*v.six_r_o_2_t - v.six_r_q_z*v.six_r_w_2_y;
+    const real six_r_H_a_2_y = v.axis_y_six_r_axes5_y*v.six_r_o_2_in_axes5_y +
+        v.axis_z_six_r_axes5_y*v.six_r_o_2_in_axes5_z + v.six_r_q_z*v.six_r_w_2_x -
+        v.axis_x_six_r_axes5_y*v.six_r_o_2_t - v.six_r_q_x*v.six_r_w_2_z;
+    const real six_r_H_a_2_z = v.axis_y_six_r_axes5_z*v.six_r_o_2_in_axes5_y +
+        v.axis_z_six_r_axes5_z*v.six_r_o_2_in_axes5_z + v.six_r_q_x*v.six_r_w_2_y -
+        v.axis_x_six_r_axes5_z*v.six_r_o_2_t - v.six_r_q_y*v.six_r_w_2_x;
+    /* (R_t) force that actuators and external wrench must give */
+    gather(&terms[0*count + k], add, six_r_c_x);  /* R_t_x_of_legs */
+    gather(&terms[1*count + k], add, six_r_c_y);  /* R_t_y_of_legs */
+    gather(&terms[2*count + k], add, six_r_c_z);  /* R_t_z_of_legs */
+    /* (R_a) */
+    gather(&terms[3*count + k], add, six_r_R_a_t);  /* R_a_x_of_legs */
+    gather(&terms[4*count + k], add, six_r_R_a_t_2);  /* R_a_y_of_legs */
+    gather(&terms[5*count + k], add, six_r_R_a_t_3);  /* R_a_z_of_legs */
+    /* (six_r-w_2) force part of reciprocal wrench 2 */
+    o[0*count + k] = v.six_r_w_2_x;
+    o[1*count + k] = v.six_r_w_2_y;
+    o[2*count + k] = v.six_r_w_2_z;
+    /* (six_r-H_a_2) */
+    o[3*count + k] = six_r_H_a_2_x;
+    o[4*count + k] = six_r_H_a_2_y;
+    o[5*count + k] = six_r_H_a_2_z;
+    o[6*count + k] = UNLESS(magnitude(v.six_r_w_1_t_12) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_28) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_49) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_67) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_79) > TOLERANCE*m->six_r_size[i]);
 }
 
-INLINE void required_place_six_r(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *H, verdict *t)
+INLINE void required_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t count, const real
+    *o, real *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        H[(3*NU + leg)*w + k] = o[3*count + first + k];
-        H[(4*NU + leg)*w + k] = o[4*count + first + k];
-        H[(5*NU + leg)*w + k] = o[5*count + first + k];
-        t->singular[k] += o[6*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    H[(3*NU + i)*w + k] = o[3*count + at];
+    H[(4*NU + i)*w + k] = o[4*count + at];
+    H[(5*NU + i)*w + k] = o[5*count + at];
+    t->singular[k] += o[6*count + at];
 }
 
-INLINE void required_after(size_t w, const real *s, const real *sums, real *required)
+INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (R_t) force that actuators and external wrench must give */
-        const real R_t_x_of_legs = sums[0*w + k];
-        const real f_p_x = s[9*w + k];
-        const real R_t_x = f_p_x - R_t_x_of_legs;
-        const real R_t_y_of_legs = sums[1*w + k];
-        const real f_p_y = s[10*w + k];
-        const real R_t_y = f_p_y - R_t_y_of_legs;
-        const real R_t_z_of_legs = sums[2*w + k];
-        const real f_p_z = s[11*w + k];
-        const real R_t_z = f_p_z - R_t_z_of_legs;
-        /* (R_a) moment that actuators and external wrench must give */
-        const real R_a_x_of_legs = sums[3*w + k];
-        const real mu_p_x = s[12*w + k];
-        const real R_a_x = R_a_x_of_legs + mu_p_x;
-        const real R_a_y_of_legs = sums[4*w + k];
-        const real mu_p_y = s[13*w + k];
-        const real R_a_y = R_a_y_of_legs + mu_p_y;
-        const real R_a_z_of_legs = sums[5*w + k];
-        const real mu_p_z = s[14*w + k];
-        const real R_a_z = R_a_z_of_legs + mu_p_z;
-        /* (R_t) force that actuators and external wrench must give */
-        required[0*w + k] = R_t_x;
-        required[1*w + k] = R_t_y;
-        required[2*w + k] = R_t_z;
-        /* (R_a) moment that actuators and external wrench must give */
-        required[3*w + k] = R_a_x;
-        required[4*w + k] = R_a_y;
-        required[5*w + k] = R_a_z;
-    }
+    /* (R_t) */
+    const real R_t_x_of_legs = sums[0*w + k];
+    const real f_p_x = s[9*w + k];
+    const real R_t_x = f_p_x - R_t_x_of_legs;
+    const real R_t_y_of_legs = sums[1*w + k];
+    const real f_p_y = s[10*w + k];
+    const real R_t_y = f_p_y - R_t_y_of_legs;
+    const real R_t_z_of_legs = sums[2*w + k];
+    const real f_p_z = s[11*w + k];
+    const real R_t_z = f_p_z - R_t_z_of_legs;
+    /* (R_a) */
+    const real R_a_x_of_legs = sums[3*w + k];
+    const real mu_p_x = s[12*w + k];
+    const real R_a_x = R_a_x_of_legs + mu_p_x;
+    const real R_a_y_of_legs = sums[4*w + k];
+    const real mu_p_y = s[13*w + k];
+    const real R_a_y = R_a_y_of_legs + mu_p_y;
+    const real R_a_z_of_legs = sums[5*w + k];
+    const real mu_p_z = s[14*w + k];
+    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    /* (R_t) */
+    required[0*w + k] = R_t_x;
+    required[1*w + k] = R_t_y;
+    required[2*w + k] = R_t_z;
+    /* (R_a) */
+    required[3*w + k] = R_a_x;
+    required[4*w + k] = R_a_y;
+    required[5*w + k] = R_a_z;
 }
 
-INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, const
-    real *joints, real *required, real *H, verdict *t)
+APART void required_run(const prepared *m, const real *X, const real *V, const real *A, const real
+    *joints, real *required, real *H, verdict *t)
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_six_r[6*LEGS(LEGS_OF_six_r)] = {0}, o_six_r[7*LEGS(LEGS_OF_six_r)] = {0};
-    required_before(m, 1, X, V, A, s, t);
-    required_legs_six_r(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_six_r), 0, V, A, joints, terms_six_r, o_six_r);
-    for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
-        required_place_six_r(1, LEGS(LEGS_OF_six_r), o_six_r, leg, leg, H, t);
+    required_before(m, 1, 0, X, V, A, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
+        required_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), 0, s, V, A, joints, terms_six_r, o_six_r);
+    }
+    for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
+        required_place_six_r(1, i, 0, i, LEGS(LEGS_OF_six_r), o_six_r, H, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_six_r + n*LEGS(LEGS_OF_six_r), LEGS_OF_six_r);
     }
-    required_after(1, s, sums, required);
+    required_after(1, 0, s, sums, required);
 }
 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    const real *joints, real *required, real *H, verdict *t)
+    const real *joints, real *restrict required, real *restrict H, verdict *restrict t)
 {
     real s[15*LANES], sums[6*LANES];
     real o_six_r[7*LANES];
-    required_before(m, LANES, X, V, A, s, t);
-    clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
-        required_legs_six_r(m, LANES, leg, 0, s, 1, LANES, 1, V, A, joints, sums, o_six_r);
-        required_place_six_r(LANES, LANES, o_six_r, leg, 0, H, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        required_before(m, LANES, k, X, V, A, s, t);
     }
-    required_after(LANES, s, sums, required);
+    clear(sums, 6*LANES);
+    for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            required_legs_six_r(m, LANES, i, k, k, LANES, 1, s, V, A, joints, sums, o_six_r);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            required_place_six_r(LANES, i, k, k, LANES, o_six_r, H, t);
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        required_after(LANES, k, s, sums, required);
+    }
 }
 
 /* ---- inverse_kinematics ---- */
@@ -7897,638 +7676,627 @@ INLINE void inverse_kinematics_before()
 {
 }
 
-INLINE void inverse_kinematics_legs_six_r(size_t w, size_t leg, size_t legs, size_t states, size_t
-    count, const real *joints, real *o)
+INLINE void inverse_kinematics_legs_six_r(size_t w, size_t i, size_t j, size_t k, size_t count,
+    const real *joints, real *o)
 {
     static const size_t place_six_r_q_1[] = {0, 5, 10, 15, 20, 25, 0, 0};
     static const size_t place_six_r_q_2[] = {1, 6, 11, 16, 21, 26, 1, 1};
     static const size_t place_six_r_q_3[] = {2, 7, 12, 17, 22, 27, 2, 2};
     static const size_t place_six_r_q_4[] = {3, 8, 13, 18, 23, 28, 3, 3};
     static const size_t place_six_r_q_5[] = {4, 9, 14, 19, 24, 29, 4, 4};
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        const real six_r_q_1 = joints[place_six_r_q_1[i]*w + j];
-        o[0*count + k] = six_r_q_1;
-        const real six_r_q_2 = joints[place_six_r_q_2[i]*w + j];
-        o[1*count + k] = six_r_q_2;
-        const real six_r_q_3 = joints[place_six_r_q_3[i]*w + j];
-        o[2*count + k] = six_r_q_3;
-        const real six_r_q_4 = joints[place_six_r_q_4[i]*w + j];
-        o[3*count + k] = six_r_q_4;
-        const real six_r_q_5 = joints[place_six_r_q_5[i]*w + j];
-        o[4*count + k] = six_r_q_5;
-        o[5*count + k] = (six_r_q_1 + six_r_q_2) + (six_r_q_3 + (six_r_q_4 + six_r_q_5));
-    }
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    const real six_r_q_1 = joints[place_six_r_q_1[i]*w + j];
+    o[0*count + k] = six_r_q_1;
+    const real six_r_q_2 = joints[place_six_r_q_2[i]*w + j];
+    o[1*count + k] = six_r_q_2;
+    const real six_r_q_3 = joints[place_six_r_q_3[i]*w + j];
+    o[2*count + k] = six_r_q_3;
+    const real six_r_q_4 = joints[place_six_r_q_4[i]*w + j];
+    o[3*count + k] = six_r_q_4;
+    const real six_r_q_5 = joints[place_six_r_q_5[i]*w + j];
+    o[4*count + k] = six_r_q_5;
+    o[5*count + k] = (six_r_q_1 + six_r_q_2) + (six_r_q_3 + (six_r_q_4 + six_r_q_5));
 }
 
-INLINE void inverse_kinematics_place_six_r(size_t w, size_t count, const real *o, size_t leg,
-    size_t first, real *q, verdict *t)
+INLINE void inverse_kinematics_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t count,
+    const real *o, real *q, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        q[5*leg*w + k] = o[0*count + first + k];
-        q[(1 + 5*leg)*w + k] = o[1*count + first + k];
-        q[(2 + 5*leg)*w + k] = o[2*count + first + k];
-        q[(3 + 5*leg)*w + k] = o[3*count + first + k];
-        q[(4 + 5*leg)*w + k] = o[4*count + first + k];
-        t->total[k] += o[5*count + first + k];
-    }
+    q[5*i*w + k] = o[0*count + at];
+    q[(1 + 5*i)*w + k] = o[1*count + at];
+    q[(2 + 5*i)*w + k] = o[2*count + at];
+    q[(3 + 5*i)*w + k] = o[3*count + at];
+    q[(4 + 5*i)*w + k] = o[4*count + at];
+    t->total[k] += o[5*count + at];
 }
 
-INLINE void inverse_kinematics_run(const real *joints, real *q, verdict *t)
+APART void inverse_kinematics_run(const real *joints, real *q, verdict *t)
 {
     real o_six_r[6*LEGS(LEGS_OF_six_r)] = {0};
-    inverse_kinematics_before();
-    inverse_kinematics_legs_six_r(1, 0, 1, 0, LEGS(LEGS_OF_six_r), joints, o_six_r);
-    for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
-        inverse_kinematics_place_six_r(1, LEGS(LEGS_OF_six_r), o_six_r, leg, leg, q, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
+        inverse_kinematics_legs_six_r(1, k, 0, k, LEGS(LEGS_OF_six_r), joints, o_six_r);
+    }
+    for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
+        inverse_kinematics_place_six_r(1, i, 0, i, LEGS(LEGS_OF_six_r), o_six_r, q, t);
     }
 }
 
-INLINE void inverse_kinematics_run_lanes(const real *joints, real *q, verdict *t)
+INLINE void inverse_kinematics_run_lanes(const real *joints, real *restrict q, verdict *restrict
+    t)
 {
     real o_six_r[6*LANES];
-    inverse_kinematics_before();
-    for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
-        inverse_kinematics_legs_six_r(LANES, leg, 0, 1, LANES, joints, o_six_r);
-        inverse_kinematics_place_six_r(LANES, LANES, o_six_r, leg, 0, q, t);
+    for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_legs_six_r(LANES, i, k, k, LANES, joints, o_six_r);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_place_six_r(LANES, i, k, k, LANES, o_six_r, q, t);
+        }
     }
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void joint_rates_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, const
-    real *s, size_t states, size_t count, const real *V, const real *joints, real *o)
+INLINE void joint_rates_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k,
+    size_t count, const real *s, const real *V, const real *joints, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_six_r v;
-        stage_six_r_X(m, w, i, j, s, &v);
-        stage_six_r_q(m, w, i, j, joints, &v);
-        stage_six_r_V_q(w, j, V, &v);
-        stage_six_r_X_q(m, i, &v);
-        /* (six_r-S_dot) velocity of the connection point */
-        const real omega_y = V[4*w + j];
-        const real omega_z = V[5*w + j];
-        const real t_dot_x = V[0*w + j];
-        const real six_r_S_dot_x = t_dot_x + omega_y*v.six_r_q_z - omega_z*v.six_r_q_y;
-        const real omega_x = V[3*w + j];
-        const real t_dot_y = V[1*w + j];
-        const real six_r_S_dot_y = t_dot_y + omega_z*v.six_r_q_x - omega_x*v.six_r_q_z;
-        const real t_dot_z = V[2*w + j];
-        const real six_r_S_dot_z = t_dot_z + omega_x*v.six_r_q_y - omega_y*v.six_r_q_x;
-        const real six_r_S_dot_in_axes5_x = v.axis_x_six_r_axes5_x*six_r_S_dot_x +
-            v.axis_x_six_r_axes5_y*six_r_S_dot_y + v.axis_x_six_r_axes5_z*six_r_S_dot_z;
-        const real six_r_S_dot_in_axes5_y = v.axis_y_six_r_axes5_x*six_r_S_dot_x +
-            v.axis_y_six_r_axes5_y*six_r_S_dot_y + v.axis_y_six_r_axes5_z*six_r_S_dot_z;
-        const real six_r_S_dot_in_axes5_z = v.axis_z_six_r_axes5_x*six_r_S_dot_x +
-            v.axis_z_six_r_axes5_y*six_r_S_dot_y + v.axis_z_six_r_axes5_z*six_r_S_dot_z;
-        /* (six_r-qd_1) rate of joint 1 */
-        const real six_r_size = m->six_r_size[i];
-        const real six_r_qd_1_t = six_r_size*(v.six_r_n_m1_in_axes5_y*v.six_r_omega_in_axes5_y -
-            v.six_r_n_m2_in_axes5_z*(v.axis_x_six_r_axes5_x*omega_x +
-            v.axis_x_six_r_axes5_y*omega_y + v.axis_x_six_r_axes5_z*omega_z));
-        const real six_r_qd_1_t_2 = six_r_size*(v.six_r_end_p1_in_axes5_z*v.six_r_omega_in_axes5_y
-            - v.six_r_n_m2_in_axes5_z*(v.axis_z_six_r_axes5_x*omega_x +
-            v.axis_z_six_r_axes5_y*omega_y + v.axis_z_six_r_axes5_z*omega_z));
-        const real six_r_qd_1_t_3 =
-            v.inv_six_r_w_1_t_79*(v.inv_six_r_w_1_t_79*six_r_S_dot_in_axes5_y*v.six_r_w_1_t_75 +
-            v.inv_six_r_w_1_t_79*six_r_qd_1_t_2*v.six_r_w_1_t_78 -
-            v.inv_six_r_w_1_t_79*six_r_S_dot_in_axes5_x*v.six_r_w_1_t_74 -
-            v.inv_six_r_w_1_t_79*six_r_S_dot_in_axes5_z*v.six_r_w_1_t_76 -
-            v.inv_six_r_w_1_t_79*six_r_qd_1_t*v.six_r_w_1_t_77);
-        const real six_r_qd_1_t_4 = -v.inv_six_r_w_1_t_67*(six_r_S_dot_in_axes5_y*v.six_r_w_1_t_69
-            + six_r_qd_1_t_2*v.six_r_w_1_t_72 - six_r_S_dot_in_axes5_x*v.six_r_w_1_t_68 -
-            six_r_S_dot_in_axes5_z*v.six_r_w_1_t_70 - six_r_qd_1_t*v.six_r_w_1_t_71 -
-            six_r_qd_1_t_3*v.six_r_w_1_t_73);
-        const real six_r_qd_1 = v.inv_six_r_w_1_t_49*(six_r_S_dot_in_axes5_x*v.six_r_w_1_t_50 +
-            six_r_S_dot_in_axes5_z*v.six_r_w_1_t_52 + six_r_qd_1_t*v.six_r_w_1_t_53 +
-            six_r_qd_1_t_3*v.six_r_w_1_t_61 - six_r_S_dot_in_axes5_y*v.six_r_w_1_t_51 -
-            six_r_qd_1_t_2*v.six_r_w_1_t_54 - six_r_qd_1_t_4*v.six_r_w_1_t_55);
-        /* (six_r-qd_4) rate of joint 4 */
-        const real six_r_qd_4_t = v.inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_y*v.six_r_w_1_t_29 +
-            six_r_qd_1_t_2*v.six_r_w_1_t_32 + six_r_qd_1_t_3*v.six_r_w_1_t_44 -
-            six_r_S_dot_in_axes5_z*v.six_r_w_1_t_30 - six_r_qd_1*v.six_r_w_1_t_33 -
-            six_r_qd_1_t*v.six_r_w_1_t_31 - six_r_qd_1_t_4*v.six_r_w_1_t_39);
-        /* (six_r-qd_5) rate of joint 5 */
-        const real six_r_qd_5_t = v.inv_six_r_w_1_t_12*(six_r_qd_1*v.six_r_w_1_t_18 +
-            six_r_qd_1_t_2*v.six_r_w_1_t_14 + six_r_qd_1_t_3*v.six_r_w_1_t_25 +
-            six_r_qd_1_t_4*v.six_r_w_1_t_22 - six_r_S_dot_in_axes5_y*v.six_r_w_1_t_13 -
-            six_r_qd_4_t*v.six_r_w_1_t_15);
-        /* (six_r-qd_1) rate of joint 1 */
-        o[0*count + k] = six_r_qd_1;
-        /* (six_r-qd_2) rate of joint 2 */
-        o[1*count + k] = six_r_qd_1_t_4;
-        /* (six_r-qd_3) rate of joint 3 */
-        o[2*count + k] = -six_r_qd_1_t_3;
-        /* (six_r-qd_4) rate of joint 4 */
-        o[3*count + k] = -six_r_qd_4_t;
-        /* (six_r-qd_5) rate of joint 5 */
-        o[4*count + k] = -six_r_qd_5_t;
-        o[6*count + k] = (six_r_qd_1 + six_r_qd_1_t_4) + (six_r_qd_1_t_3 + (six_r_qd_4_t +
-            six_r_qd_5_t));
-        o[5*count + k] = UNLESS(magnitude(v.six_r_w_1_t_12) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(v.six_r_w_1_t_28) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(v.six_r_w_1_t_49) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(v.six_r_w_1_t_67) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(v.six_r_w_1_t_79) > TOLERANCE*six_r_size);
-    }
+    values_six_r v;
+    stage_six_r_X(m, w, i, j, s, &v);
+    stage_six_r_q(m, w, i, j, joints, &v);
+    stage_six_r_V_q(w, j, V, &v);
+    stage_six_r_X_q(m, i, &v);
+    /* (six_r-S_dot) velocity of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real t_dot_x = V[0*w + j];
+    const real six_r_S_dot_x = t_dot_x + omega_y*v.six_r_q_z - omega_z*v.six_r_q_y;
+    const real omega_x = V[3*w + j];
+    const real t_dot_y = V[1*w + j];
+    const real six_r_S_dot_y = t_dot_y + omega_z*v.six_r_q_x - omega_x*v.six_r_q_z;
+    const real t_dot_z = V[2*w + j];
+    const real six_r_S_dot_z = t_dot_z + omega_x*v.six_r_q_y - omega_y*v.six_r_q_x;
+    const real six_r_S_dot_in_axes5_x = v.axis_x_six_r_axes5_x*six_r_S_dot_x +
+        v.axis_x_six_r_axes5_y*six_r_S_dot_y + v.axis_x_six_r_axes5_z*six_r_S_dot_z;
+    const real six_r_S_dot_in_axes5_y = v.axis_y_six_r_axes5_x*six_r_S_dot_x +
+        v.axis_y_six_r_axes5_y*six_r_S_dot_y + v.axis_y_six_r_axes5_z*six_r_S_dot_z;
+    const real six_r_S_dot_in_axes5_z = v.axis_z_six_r_axes5_x*six_r_S_dot_x +
+        v.axis_z_six_r_axes5_y*six_r_S_dot_y + v.axis_z_six_r_axes5_z*six_r_S_dot_z;
+    /* (six_r-qd_1) rate of joint 1 */
+    const real six_r_qd_1_t =
+        m->six_r_size[i]*(v.six_r_n_m1_in_axes5_y*v.six_r_omega_in_axes5_y -
+        v.six_r_n_m2_in_axes5_z*(v.axis_x_six_r_axes5_x*omega_x +
+        v.axis_x_six_r_axes5_y*omega_y + v.axis_x_six_r_axes5_z*omega_z));
+    const real six_r_qd_1_t_2 =
+        m->six_r_size[i]*(v.six_r_end_p1_in_axes5_z*v.six_r_omega_in_axes5_y -
+        v.six_r_n_m2_in_axes5_z*(v.axis_z_six_r_axes5_x*omega_x +
+        v.axis_z_six_r_axes5_y*omega_y + v.axis_z_six_r_axes5_z*omega_z));
+    const real six_r_qd_1_t_3 =
+        v.inv_six_r_w_1_t_79*(v.inv_six_r_w_1_t_79*six_r_S_dot_in_axes5_y*v.six_r_w_1_t_75 +
+        v.inv_six_r_w_1_t_79*six_r_qd_1_t_2*v.six_r_w_1_t_78 -
+        v.inv_six_r_w_1_t_79*six_r_S_dot_in_axes5_x*v.six_r_w_1_t_74 -
+        v.inv_six_r_w_1_t_79*six_r_S_dot_in_axes5_z*v.six_r_w_1_t_76 -
+        v.inv_six_r_w_1_t_79*six_r_qd_1_t*v.six_r_w_1_t_77);
+    const real six_r_qd_1_t_4 = -v.inv_six_r_w_1_t_67*(six_r_S_dot_in_axes5_y*v.six_r_w_1_t_69
+        + six_r_qd_1_t_2*v.six_r_w_1_t_72 - six_r_S_dot_in_axes5_x*v.six_r_w_1_t_68 -
+        six_r_S_dot_in_axes5_z*v.six_r_w_1_t_70 - six_r_qd_1_t*v.six_r_w_1_t_71 -
+        six_r_qd_1_t_3*v.six_r_w_1_t_73);
+    const real six_r_qd_1 = v.inv_six_r_w_1_t_49*(six_r_S_dot_in_axes5_x*v.six_r_w_1_t_50 +
+        six_r_S_dot_in_axes5_z*v.six_r_w_1_t_52 + six_r_qd_1_t*v.six_r_w_1_t_53 +
+        six_r_qd_1_t_3*v.six_r_w_1_t_61 - six_r_S_dot_in_axes5_y*v.six_r_w_1_t_51 -
+        six_r_qd_1_t_2*v.six_r_w_1_t_54 - six_r_qd_1_t_4*v.six_r_w_1_t_55);
+    /* (six_r-qd_4) rate of joint 4 */
+    const real six_r_qd_4_t = v.inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_y*v.six_r_w_1_t_29 +
+        six_r_qd_1_t_2*v.six_r_w_1_t_32 + six_r_qd_1_t_3*v.six_r_w_1_t_44 -
+        six_r_S_dot_in_axes5_z*v.six_r_w_1_t_30 - six_r_qd_1*v.six_r_w_1_t_33 -
+        six_r_qd_1_t*v.six_r_w_1_t_31 - six_r_qd_1_t_4*v.six_r_w_1_t_39);
+    /* (six_r-qd_5) rate of joint 5 */
+    const real six_r_qd_5_t = v.inv_six_r_w_1_t_12*(six_r_qd_1*v.six_r_w_1_t_18 +
+        six_r_qd_1_t_2*v.six_r_w_1_t_14 + six_r_qd_1_t_3*v.six_r_w_1_t_25 +
+        six_r_qd_1_t_4*v.six_r_w_1_t_22 - six_r_S_dot_in_axes5_y*v.six_r_w_1_t_13 -
+        six_r_qd_4_t*v.six_r_w_1_t_15);
+    /* (six_r-qd_1) */
+    o[0*count + k] = six_r_qd_1;
+    /* (six_r-qd_2) rate of joint 2 */
+    o[1*count + k] = six_r_qd_1_t_4;
+    /* (six_r-qd_3) rate of joint 3 */
+    o[2*count + k] = -six_r_qd_1_t_3;
+    /* (six_r-qd_4) */
+    o[3*count + k] = -six_r_qd_4_t;
+    /* (six_r-qd_5) */
+    o[4*count + k] = -six_r_qd_5_t;
+    o[6*count + k] = (six_r_qd_1 + six_r_qd_1_t_4) + (six_r_qd_1_t_3 + (six_r_qd_4_t +
+        six_r_qd_5_t));
+    o[5*count + k] = UNLESS(magnitude(v.six_r_w_1_t_12) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_28) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_49) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_67) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_79) > TOLERANCE*m->six_r_size[i]);
 }
 
-INLINE void joint_rates_place_six_r(size_t w, size_t count, const real *o, size_t leg, size_t
-    first, real *qd, verdict *t)
+INLINE void joint_rates_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t count, const
+    real *o, real *qd, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        qd[5*leg*w + k] = o[0*count + first + k];
-        qd[(1 + 5*leg)*w + k] = o[1*count + first + k];
-        qd[(2 + 5*leg)*w + k] = o[2*count + first + k];
-        qd[(3 + 5*leg)*w + k] = o[3*count + first + k];
-        qd[(4 + 5*leg)*w + k] = o[4*count + first + k];
-        t->singular[k] += o[5*count + first + k];
-        t->total[k] += o[6*count + first + k];
-    }
+    qd[5*i*w + k] = o[0*count + at];
+    qd[(1 + 5*i)*w + k] = o[1*count + at];
+    qd[(2 + 5*i)*w + k] = o[2*count + at];
+    qd[(3 + 5*i)*w + k] = o[3*count + at];
+    qd[(4 + 5*i)*w + k] = o[4*count + at];
+    t->singular[k] += o[5*count + at];
+    t->total[k] += o[6*count + at];
 }
 
-INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, const real *joints,
+APART void joint_rates_run(const prepared *m, const real *X, const real *V, const real *joints,
     real *qd, verdict *t)
 {
     real s[9] = {0};
     real o_six_r[7*LEGS(LEGS_OF_six_r)] = {0};
-    joint_rates_before(m, 1, X, s, t);
-    joint_rates_legs_six_r(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_six_r), V, joints, o_six_r);
-    for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
-        joint_rates_place_six_r(1, LEGS(LEGS_OF_six_r), o_six_r, leg, leg, qd, t);
+    joint_rates_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
+        joint_rates_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), s, V, joints, o_six_r);
+    }
+    for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
+        joint_rates_place_six_r(1, i, 0, i, LEGS(LEGS_OF_six_r), o_six_r, qd, t);
     }
 }
 
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, const real
-    *joints, real *qd, verdict *t)
+    *joints, real *restrict qd, verdict *restrict t)
 {
     real s[9*LANES];
     real o_six_r[7*LANES];
-    joint_rates_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
-        joint_rates_legs_six_r(m, LANES, leg, 0, s, 1, LANES, V, joints, o_six_r);
-        joint_rates_place_six_r(LANES, LANES, o_six_r, leg, 0, qd, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        joint_rates_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_legs_six_r(m, LANES, i, k, k, LANES, s, V, joints, o_six_r);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_place_six_r(LANES, i, k, k, LANES, o_six_r, qd, t);
+        }
     }
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, const real *X, real *s,
-    verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
+    *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void joint_accelerations_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, const real *V, const real *A, const real *joints,
-    real *o)
+INLINE void joint_accelerations_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
+    k, size_t count, const real *s, const real *V, const real *A, const real *joints, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_six_r v;
-        stage_six_r_X(m, w, i, j, s, &v);
-        stage_six_r_q(m, w, i, j, joints, &v);
-        stage_six_r_A_X(w, j, A, &v);
-        stage_six_r_A_q(w, j, A, &v);
-        stage_six_r_V_X(w, j, V, &v);
-        stage_six_r_V_q(w, j, V, &v);
-        stage_six_r_X_q(m, i, &v);
-        stage_six_r_A_V_X(w, j, V, &v);
-        stage_six_r_A_X_q(w, j, A, &v);
-        stage_six_r_V_X_q(&v);
-        stage_six_r_Z_joint_accelerations(&v);
-        /* (six_r-qd_1) rate of joint 1 */
-        const real six_r_size = m->six_r_size[i];
-        const real six_r_qd_1_t_6 = v.six_r_eta_1*six_r_size;
-        const real six_r_qd_1_t_7 = v.six_r_eta_2_t*six_r_size;
-        const real six_r_qd_1_t_8 =
-            v.inv_six_r_w_1_t_79*(v.six_r_S_dot_in_axes5_y*v.six_r_qd_1_t_2 +
-            v.six_r_qd_1_t_5*six_r_qd_1_t_7 - v.six_r_S_dot_in_axes5_x*v.six_r_qd_1_t -
-            v.six_r_S_dot_in_axes5_z*v.six_r_qd_1_t_3 - v.six_r_qd_1_t_4*six_r_qd_1_t_6);
-        const real six_r_qd_1_t_9 =
-            -v.inv_six_r_w_1_t_67*(v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_69 +
-            six_r_qd_1_t_7*v.six_r_w_1_t_72 - v.six_r_S_dot_in_axes5_x*v.six_r_w_1_t_68 -
-            v.six_r_S_dot_in_axes5_z*v.six_r_w_1_t_70 - six_r_qd_1_t_6*v.six_r_w_1_t_71 -
-            six_r_qd_1_t_8*v.six_r_w_1_t_73);
-        const real six_r_qd_1 = v.inv_six_r_w_1_t_49*(v.six_r_S_dot_in_axes5_x*v.six_r_w_1_t_50 +
-            v.six_r_S_dot_in_axes5_z*v.six_r_w_1_t_52 + six_r_qd_1_t_6*v.six_r_w_1_t_53 +
-            six_r_qd_1_t_8*v.six_r_w_1_t_61 - v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_51 -
-            six_r_qd_1_t_7*v.six_r_w_1_t_54 - six_r_qd_1_t_9*v.six_r_w_1_t_55);
-        /* (six_r-qd_4) rate of joint 4 */
-        const real six_r_qd_4_t = v.inv_six_r_w_1_t_28*(v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_29
-            + six_r_qd_1_t_7*v.six_r_w_1_t_32 + six_r_qd_1_t_8*v.six_r_w_1_t_44 -
-            v.six_r_S_dot_in_axes5_z*v.six_r_w_1_t_30 - six_r_qd_1*v.six_r_w_1_t_33 -
-            six_r_qd_1_t_6*v.six_r_w_1_t_31 - six_r_qd_1_t_9*v.six_r_w_1_t_39);
-        /* (six_r-qd_5) rate of joint 5 */
-        const real six_r_qd_5_t = v.inv_six_r_w_1_t_12*(six_r_qd_1*v.six_r_w_1_t_18 +
-            six_r_qd_1_t_7*v.six_r_w_1_t_14 + six_r_qd_1_t_8*v.six_r_w_1_t_25 +
-            six_r_qd_1_t_9*v.six_r_w_1_t_22 - v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_13 -
-            six_r_qd_4_t*v.six_r_w_1_t_15);
-        /* (six_r-omega_1) angular velocity of link 1 */
-        const real six_r_omega_1_in_axes2_x = v.six_r_c_2*six_r_qd_1;
-        const real six_r_omega_1_in_axes2_y = -six_r_qd_1*v.six_r_s_2;
-        const real six_r_omega_1_in_axes5_x = v.six_r_e_1_in_axes5_x*six_r_qd_1;
-        const real six_r_omega_1_in_axes5_y = v.six_r_e_1_in_axes5_y*six_r_qd_1;
-        const real six_r_omega_1_in_axes5_z = v.six_r_e_1_in_axes5_z*six_r_qd_1;
-        /* (six_r-W_1) centripetal tensor of link 1 */
-        const real six_r_W_1_in_axes5_xy = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_y;
-        const real six_r_W_1_in_axes5_xz = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_z;
-        const real six_r_W_1_in_axes5_yz = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_z;
-        /* (six_r-omega_2) angular velocity of link 2 */
-        const real six_r_omega_2_in_axes3_x = six_r_omega_1_in_axes2_x*v.six_r_s_3 -
-            v.six_r_c_3*six_r_omega_1_in_axes2_y;
-        const real six_r_omega_2_in_axes3_y = v.six_r_c_3*six_r_omega_1_in_axes2_x +
-            six_r_omega_1_in_axes2_y*v.six_r_s_3;
-        const real six_r_omega_2_in_axes5_x = six_r_omega_1_in_axes5_x +
-            v.six_r_e_2_in_axes5_x*six_r_qd_1_t_9;
-        const real six_r_omega_2_in_axes5_y = six_r_omega_1_in_axes5_y +
-            v.six_r_e_2_in_axes5_y*six_r_qd_1_t_9;
-        const real six_r_omega_2_in_axes5_z = six_r_omega_1_in_axes5_z +
-            v.six_r_c_4*six_r_qd_1_t_9;
-        /* (six_r-W_2) centripetal tensor of link 2 */
-        const real six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_9;
-        const real six_r_W_2_in_axes5_xy = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_y;
-        const real six_r_W_2_in_axes5_xz = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_z;
-        const real six_r_W_2_in_axes5_yz = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_z;
-        /* (six_r-omega_3) angular velocity of link 3 */
-        const real six_r_omega_3_in_axes3_z = six_r_qd_1_t_9 - six_r_qd_1_t_8;
-        const real six_r_omega_3_in_axes4_x = six_r_omega_3_in_axes3_z*v.six_r_s_4 -
-            v.six_r_c_4*six_r_omega_2_in_axes3_x;
-        const real six_r_omega_3_in_axes4_y = v.six_r_c_4*six_r_omega_3_in_axes3_z +
-            six_r_omega_2_in_axes3_x*v.six_r_s_4;
-        const real six_r_omega_3_t = six_r_omega_3_in_axes4_x*v.six_r_s_5;
-        const real six_r_omega_3_t_2 = v.six_r_c_5*six_r_omega_3_in_axes4_x;
-        const real six_r_omega_3_in_axes5_x = six_r_omega_3_t +
-            v.six_r_c_5*six_r_omega_2_in_axes3_y;
-        const real six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 -
-            six_r_omega_2_in_axes3_y*v.six_r_s_5;
-        /* (six_r-W_3) centripetal tensor of link 3 */
-        const real six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y;
-        /* (six_r-omega_4) angular velocity of link 4 */
-        const real six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y - six_r_qd_4_t;
-        const real six_r_omega_4_in_axes5_x = six_r_omega_3_t +
-            v.six_r_c_5*six_r_omega_4_in_axes4_z;
-        const real six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 -
-            six_r_omega_4_in_axes4_z*v.six_r_s_5;
-        /* (six_r-W_4) centripetal tensor of link 4 */
-        const real six_r_W_4_in_axes5_xy = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_y;
-        /* (six_r-omega_5) angular velocity of link 5 */
-        const real six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_y - six_r_qd_5_t;
-        /* (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_9;
-        const real six_r_zeta_2_in_axes3_x = six_r_W_2_in_axes2_yz*v.six_r_s_3 -
-            v.six_r_c_3*six_r_zeta_2_in_axes2_y;
-        const real six_r_zeta_2_in_axes3_y = six_r_W_2_in_axes2_yz*v.six_r_c_3 +
-            v.six_r_s_3*six_r_zeta_2_in_axes2_y;
-        const real six_r_zeta_2_t = v.six_r_c_4*six_r_zeta_2_in_axes3_x;
-        const real six_r_zeta_2_in_axes5_z = v.six_r_s_4*six_r_zeta_2_in_axes3_x;
-        const real six_r_zeta_2_in_axes5_x = v.six_r_c_5*six_r_zeta_2_in_axes3_y -
-            v.six_r_s_5*six_r_zeta_2_t;
-        const real six_r_zeta_2_in_axes5_y = -v.six_r_c_5*six_r_zeta_2_t -
-            v.six_r_s_5*six_r_zeta_2_in_axes3_y;
-        /* (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real six_r_beta_3_in_axes3_x = six_r_zeta_2_in_axes3_x -
-            six_r_omega_2_in_axes3_y*six_r_qd_1_t_8;
-        const real six_r_beta_3_in_axes3_y = six_r_zeta_2_in_axes3_y +
-            six_r_omega_2_in_axes3_x*six_r_qd_1_t_8;
-        const real six_r_beta_3_t = six_r_beta_3_in_axes3_x*v.six_r_c_4;
-        const real six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*v.six_r_s_4;
-        /* (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations */
-        const real six_r_beta_4_in_axes4_x = -six_r_beta_3_t -
-            six_r_omega_3_in_axes4_y*six_r_qd_4_t;
-        const real six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y +
-            six_r_omega_3_in_axes4_x*six_r_qd_4_t;
-        const real six_r_beta_4_t = six_r_beta_3_in_axes3_y*v.six_r_c_5;
-        const real six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_beta_4_in_axes4_x*v.six_r_s_5;
-        const real six_r_beta_4_t_2 = six_r_beta_3_in_axes3_y*v.six_r_s_5;
-        const real six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*v.six_r_c_5 -
-            six_r_beta_4_t_2;
-        /* (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations */
-        const real six_r_beta_5_in_axes5_x = six_r_beta_4_in_axes5_x -
-            six_r_omega_4_in_axes5_y*six_r_qd_5_t;
-        const real six_r_beta_5_in_axes5_y = six_r_beta_4_in_axes5_y +
-            six_r_omega_4_in_axes5_x*six_r_qd_5_t;
-        /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
-        const real six_r_bias_t_10 = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y;
-        const real six_r_bias_t_11 = six_r_omega_4_in_axes5_y*six_r_omega_4_in_axes5_y;
-        const real six_r_bias_t_12 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_x;
-        const real six_r_bias_t_13 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_y;
-        const real six_r_bias_t_14 = six_r_omega_1_in_axes5_z*six_r_omega_1_in_axes5_z;
-        const real six_r_bias_t_15 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x;
-        const real six_r_bias_t_16 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y;
-        const real six_r_bias_t_17 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z;
-        const real six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y;
-        const real six_r_platform_joint_offset_x = m->six_r_platform_joint_offset_x[i];
-        const real six_r_bias_in_axes5_x = six_r_W_1_in_axes5_xy*v.six_r_d_2_in_axes5_y +
-            six_r_W_1_in_axes5_xz*v.six_r_d_2_in_axes5_z +
-            v.six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
-            v.six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) -
-            v.six_r_bias_t_8*(six_r_W_3_in_axes5_xy - six_r_beta_3_in_axes4_y) -
-            v.six_r_bias_t_9*(six_r_W_4_in_axes5_xy - six_r_beta_4_in_axes4_y) -
-            v.six_r_d_2_in_axes5_x*(six_r_bias_t_13 + six_r_bias_t_14) -
-            v.six_r_d_3_in_axes5_x*(six_r_bias_t_16 + six_r_bias_t_17) -
-            v.six_r_d_4_in_axes5_x*(six_r_bias_t_10 +
-            six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) -
-            v.six_r_d_5_in_axes5_x*(six_r_bias_t_10 + six_r_bias_t_11) -
-            six_r_platform_joint_offset_x*(six_r_bias_t_11 +
-            six_r_omega_5_in_axes5_z*six_r_omega_5_in_axes5_z);
-        const real six_r_bias_in_axes5_y = six_r_W_1_in_axes5_xy*v.six_r_d_2_in_axes5_x +
-            six_r_W_1_in_axes5_yz*v.six_r_d_2_in_axes5_z + six_r_bias_t_18*v.six_r_d_5_in_axes5_x
-            + six_r_bias_t_18*six_r_platform_joint_offset_x + v.six_r_bias_t_8*(six_r_bias_t_10 +
-            six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) + v.six_r_bias_t_9*(six_r_bias_t_10
-            + six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x) +
-            v.six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
-            v.six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
-            v.six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_y) -
-            v.six_r_d_2_in_axes5_y*(six_r_bias_t_12 + six_r_bias_t_14) -
-            v.six_r_d_3_in_axes5_y*(six_r_bias_t_15 + six_r_bias_t_17);
-        const real six_r_bias_in_axes5_z = six_r_W_1_in_axes5_xz*v.six_r_d_2_in_axes5_x +
-            six_r_W_1_in_axes5_yz*v.six_r_d_2_in_axes5_y +
-            v.six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
-            v.six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
-            v.six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*v.six_r_c_5 +
-            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) +
-            v.six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
-            six_r_beta_4_in_axes5_y) +
-            six_r_platform_joint_offset_x*(six_r_omega_4_in_axes5_x*six_r_omega_5_in_axes5_z -
-            six_r_beta_5_in_axes5_y) - v.six_r_bias_t_8*(six_r_beta_4_t +
-            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - six_r_beta_3_t*v.six_r_s_5) -
-            v.six_r_bias_t_9*(six_r_beta_4_in_axes5_x +
-            six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y) -
-            v.six_r_d_2_in_axes5_z*(six_r_bias_t_12 + six_r_bias_t_13) -
-            v.six_r_d_3_in_axes5_z*(six_r_bias_t_15 + six_r_bias_t_16);
-        /* (six_r-rel) acceleration of the connection point left to the joint accelerations */
-        const real six_r_rel_in_axes5_x = v.axis_x_six_r_axes5_x*v.six_r_S_ddot_x +
-            v.axis_x_six_r_axes5_y*v.six_r_S_ddot_y + v.axis_x_six_r_axes5_z*v.six_r_S_ddot_z -
-            six_r_bias_in_axes5_x;
-        const real six_r_rel_in_axes5_y = v.axis_y_six_r_axes5_x*v.six_r_S_ddot_x +
-            v.axis_y_six_r_axes5_y*v.six_r_S_ddot_y + v.axis_y_six_r_axes5_z*v.six_r_S_ddot_z -
-            six_r_bias_in_axes5_y;
-        const real six_r_rel_in_axes5_z = v.axis_z_six_r_axes5_x*v.six_r_S_ddot_x +
-            v.axis_z_six_r_axes5_y*v.six_r_S_ddot_y + v.axis_z_six_r_axes5_z*v.six_r_S_ddot_z -
-            six_r_bias_in_axes5_z;
-        /* (six_r-nd_m1) rate of moment direction 1 */
-        const real six_r_nd_m1_in_axes5_x = -v.six_r_nd_m1_t -
-            v.six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_x;
-        const real six_r_nd_m1_in_axes5_y = v.six_r_eta_2_t -
-            v.six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y;
-        /* (six_r-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real six_r_nu_1_t = v.six_r_n_m2_in_axes5_z*six_r_omega_4_in_axes5_y;
-        const real six_r_nu_1_t_2 = six_r_beta_5_in_axes5_x*v.six_r_n_m2_in_axes5_z -
-            six_r_beta_5_in_axes5_y*v.six_r_n_m1_in_axes5_y;
-        const real six_r_nu_1_t_3 = six_r_omega_4_in_axes5_x - v.six_r_omega_in_axes5_x;
-        const real six_r_nu_1_t_4 = six_r_omega_4_in_axes5_y - v.six_r_omega_in_axes5_y;
-        const real six_r_nu_1_t_5 = six_r_omega_5_in_axes5_z - v.six_r_omega_in_axes5_z;
-        const real six_r_nu_1_t_6 = six_r_nd_m1_in_axes5_x*six_r_nu_1_t_3 +
-            six_r_nd_m1_in_axes5_y*six_r_nu_1_t_4 + six_r_nu_1_t_5*(six_r_nu_1_t +
-            v.six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x);
-        const real six_r_nu_1 = six_r_nu_1_t_2 - six_r_nu_1_t_6;
-        /* (six_r-nd_m2) rate of moment direction 2 */
-        const real six_r_nd_m2_in_axes5_y = v.six_r_eta_1 -
-            v.six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y;
-        const real six_r_nd_m2_in_axes5_z = v.six_r_nd_m1_t -
-            v.six_r_n_m1_in_axes5_y*six_r_omega_5_in_axes5_z;
-        /* (six_r-nu_2) bias of the angular acceleration along moment direction 2 */
-        const real six_r_nu_2_t = six_r_beta_5_in_axes5_y*v.six_r_end_p1_in_axes5_z -
-            six_r_beta_4_in_axes4_y*v.six_r_n_m2_in_axes5_z;
-        const real six_r_nu_2_t_2 = six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 +
-            six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 + six_r_nu_1_t_3*(six_r_nu_1_t +
-            v.six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z);
-        const real six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2;
-        /* (six_r-etad_1) acceleration with which the joints turn along moment direction 1 */
-        const real six_r_etad_1 = six_r_nu_1 - v.six_r_etad_1_t;
-        /* (six_r-etad_2) acceleration with which the joints turn along moment direction 2 */
-        const real six_r_etad_2 = six_r_nu_2 - v.six_r_etad_2_t;
-        /* (six_r-qdd_1) acceleration of joint 1 */
-        const real six_r_qdd_1_t = six_r_etad_1*six_r_size;
-        const real six_r_qdd_1_t_2 = six_r_etad_2*six_r_size;
-        const real six_r_qdd_1_t_3 = v.inv_six_r_w_1_t_79*(v.six_r_qd_1_t*six_r_rel_in_axes5_x +
-            v.six_r_qd_1_t_3*six_r_rel_in_axes5_z + v.six_r_qd_1_t_4*six_r_qdd_1_t +
-            v.six_r_qd_1_t_5*six_r_qdd_1_t_2 - v.six_r_qd_1_t_2*six_r_rel_in_axes5_y);
-        const real six_r_qdd_1_t_4 = v.inv_six_r_w_1_t_67*(six_r_qdd_1_t*v.six_r_w_1_t_71 +
-            six_r_qdd_1_t_2*v.six_r_w_1_t_72 + six_r_rel_in_axes5_x*v.six_r_w_1_t_68 +
-            six_r_rel_in_axes5_z*v.six_r_w_1_t_70 - six_r_qdd_1_t_3*v.six_r_w_1_t_73 -
-            six_r_rel_in_axes5_y*v.six_r_w_1_t_69);
-        const real six_r_qdd_1_t_5 = v.inv_six_r_w_1_t_49*(six_r_qdd_1_t_3*v.six_r_w_1_t_61 +
-            six_r_qdd_1_t_4*v.six_r_w_1_t_55 + six_r_rel_in_axes5_y*v.six_r_w_1_t_51 -
-            six_r_qdd_1_t*v.six_r_w_1_t_53 - six_r_qdd_1_t_2*v.six_r_w_1_t_54 -
-            six_r_rel_in_axes5_x*v.six_r_w_1_t_50 - six_r_rel_in_axes5_z*v.six_r_w_1_t_52);
-        /* (six_r-qdd_4) acceleration of joint 4 */
-        const real six_r_qdd_4 = v.inv_six_r_w_1_t_28*(six_r_qdd_1_t*v.six_r_w_1_t_31 +
-            six_r_qdd_1_t_2*v.six_r_w_1_t_32 + six_r_qdd_1_t_3*v.six_r_w_1_t_44 +
-            six_r_qdd_1_t_4*v.six_r_w_1_t_39 + six_r_rel_in_axes5_z*v.six_r_w_1_t_30 -
-            six_r_qdd_1_t_5*v.six_r_w_1_t_33 - six_r_rel_in_axes5_y*v.six_r_w_1_t_29);
-        /* (six_r-qdd_5) acceleration of joint 5 */
-        const real six_r_qdd_5 = v.inv_six_r_w_1_t_12*(six_r_qdd_1_t_2*v.six_r_w_1_t_14 +
-            six_r_qdd_1_t_3*v.six_r_w_1_t_25 + six_r_qdd_1_t_5*v.six_r_w_1_t_18 +
-            six_r_rel_in_axes5_y*v.six_r_w_1_t_13 - six_r_qdd_1_t_4*v.six_r_w_1_t_22 -
-            six_r_qdd_4*v.six_r_w_1_t_15);
-        /* (six_r-qdd_1) acceleration of joint 1 */
-        o[0*count + k] = -six_r_qdd_1_t_5;
-        /* (six_r-qdd_2) acceleration of joint 2 */
-        o[1*count + k] = six_r_qdd_1_t_4;
-        /* (six_r-qdd_3) acceleration of joint 3 */
-        o[2*count + k] = six_r_qdd_1_t_3;
-        /* (six_r-qdd_4) acceleration of joint 4 */
-        o[3*count + k] = six_r_qdd_4;
-        /* (six_r-qdd_5) acceleration of joint 5 */
-        o[4*count + k] = six_r_qdd_5;
-        o[6*count + k] = (six_r_qdd_1_t_5 + six_r_qdd_1_t_4) + (six_r_qdd_1_t_3 + (six_r_qdd_4 +
-            six_r_qdd_5));
-        o[5*count + k] = UNLESS(magnitude(v.six_r_w_1_t_12) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(v.six_r_w_1_t_28) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(v.six_r_w_1_t_49) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(v.six_r_w_1_t_67) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(v.six_r_w_1_t_79) > TOLERANCE*six_r_size);
-    }
+    values_six_r v;
+    stage_six_r_X(m, w, i, j, s, &v);
+    stage_six_r_q(m, w, i, j, joints, &v);
+    stage_six_r_A_X(w, j, A, &v);
+    stage_six_r_A_q(w, j, A, &v);
+    stage_six_r_V_X(w, j, V, &v);
+    stage_six_r_V_q(w, j, V, &v);
+    stage_six_r_X_q(m, i, &v);
+    stage_six_r_A_V_X(w, j, V, &v);
+    stage_six_r_A_X_q(w, j, A, &v);
+    stage_six_r_V_X_q(&v);
+    stage_six_r_Z_joint_accelerations(&v);
+    /* (six_r-qd_1) rate of joint 1 */
+    const real six_r_qd_1_t_6 = v.six_r_eta_1*m->six_r_size[i];
+    const real six_r_qd_1_t_7 = v.six_r_eta_2_t*m->six_r_size[i];
+    const real six_r_qd_1_t_8 =
+        v.inv_six_r_w_1_t_79*(v.six_r_S_dot_in_axes5_y*v.six_r_qd_1_t_2 +
+        v.six_r_qd_1_t_5*six_r_qd_1_t_7 - v.six_r_S_dot_in_axes5_x*v.six_r_qd_1_t -
+        v.six_r_S_dot_in_axes5_z*v.six_r_qd_1_t_3 - v.six_r_qd_1_t_4*six_r_qd_1_t_6);
+    const real six_r_qd_1_t_9 =
+        -v.inv_six_r_w_1_t_67*(v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_69 +
+        six_r_qd_1_t_7*v.six_r_w_1_t_72 - v.six_r_S_dot_in_axes5_x*v.six_r_w_1_t_68 -
+        v.six_r_S_dot_in_axes5_z*v.six_r_w_1_t_70 - six_r_qd_1_t_6*v.six_r_w_1_t_71 -
+        six_r_qd_1_t_8*v.six_r_w_1_t_73);
+    const real six_r_qd_1 = v.inv_six_r_w_1_t_49*(v.six_r_S_dot_in_axes5_x*v.six_r_w_1_t_50 +
+        v.six_r_S_dot_in_axes5_z*v.six_r_w_1_t_52 + six_r_qd_1_t_6*v.six_r_w_1_t_53 +
+        six_r_qd_1_t_8*v.six_r_w_1_t_61 - v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_51 -
+        six_r_qd_1_t_7*v.six_r_w_1_t_54 - six_r_qd_1_t_9*v.six_r_w_1_t_55);
+    /* (six_r-qd_4) rate of joint 4 */
+    const real six_r_qd_4_t = v.inv_six_r_w_1_t_28*(v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_29
+        + six_r_qd_1_t_7*v.six_r_w_1_t_32 + six_r_qd_1_t_8*v.six_r_w_1_t_44 -
+        v.six_r_S_dot_in_axes5_z*v.six_r_w_1_t_30 - six_r_qd_1*v.six_r_w_1_t_33 -
+        six_r_qd_1_t_6*v.six_r_w_1_t_31 - six_r_qd_1_t_9*v.six_r_w_1_t_39);
+    /* (six_r-qd_5) rate of joint 5 */
+    const real six_r_qd_5_t = v.inv_six_r_w_1_t_12*(six_r_qd_1*v.six_r_w_1_t_18 +
+        six_r_qd_1_t_7*v.six_r_w_1_t_14 + six_r_qd_1_t_8*v.six_r_w_1_t_25 +
+        six_r_qd_1_t_9*v.six_r_w_1_t_22 - v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_13 -
+        six_r_qd_4_t*v.six_r_w_1_t_15);
+    /* (six_r-omega_1) angular velocity of link 1 */
+    const real six_r_omega_1_in_axes2_x = v.six_r_c_2*six_r_qd_1;
+    const real six_r_omega_1_in_axes2_y = -six_r_qd_1*v.six_r_s_2;
+    const real six_r_omega_1_in_axes5_x = v.six_r_e_1_in_axes5_x*six_r_qd_1;
+    const real six_r_omega_1_in_axes5_y = v.six_r_e_1_in_axes5_y*six_r_qd_1;
+    const real six_r_omega_1_in_axes5_z = v.six_r_e_1_in_axes5_z*six_r_qd_1;
+    /* (six_r-W_1) centripetal tensor of link 1 */
+    const real six_r_W_1_in_axes5_xy = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_y;
+    const real six_r_W_1_in_axes5_xz = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_z;
+    const real six_r_W_1_in_axes5_yz = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_z;
+    /* (six_r-omega_2) angular velocity of link 2 */
+    const real six_r_omega_2_in_axes3_x = six_r_omega_1_in_axes2_x*v.six_r_s_3 -
+        v.six_r_c_3*six_r_omega_1_in_axes2_y;
+    const real six_r_omega_2_in_axes3_y = v.six_r_c_3*six_r_omega_1_in_axes2_x +
+        six_r_omega_1_in_axes2_y*v.six_r_s_3;
+    const real six_r_omega_2_in_axes5_x = six_r_omega_1_in_axes5_x +
+        v.six_r_e_2_in_axes5_x*six_r_qd_1_t_9;
+    const real six_r_omega_2_in_axes5_y = six_r_omega_1_in_axes5_y +
+        v.six_r_e_2_in_axes5_y*six_r_qd_1_t_9;
+    const real six_r_omega_2_in_axes5_z = six_r_omega_1_in_axes5_z +
+        v.six_r_c_4*six_r_qd_1_t_9;
+    /* (six_r-W_2) centripetal tensor of link 2 */
+    const real six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_9;
+    const real six_r_W_2_in_axes5_xy = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_y;
+    const real six_r_W_2_in_axes5_xz = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_z;
+    const real six_r_W_2_in_axes5_yz = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_z;
+    /* (six_r-omega_3) angular velocity of link 3 */
+    const real six_r_omega_3_in_axes3_z = six_r_qd_1_t_9 - six_r_qd_1_t_8;
+    const real six_r_omega_3_in_axes4_x = six_r_omega_3_in_axes3_z*v.six_r_s_4 -
+        v.six_r_c_4*six_r_omega_2_in_axes3_x;
+    const real six_r_omega_3_in_axes4_y = v.six_r_c_4*six_r_omega_3_in_axes3_z +
+        six_r_omega_2_in_axes3_x*v.six_r_s_4;
+    const real six_r_omega_3_t = six_r_omega_3_in_axes4_x*v.six_r_s_5;
+    const real six_r_omega_3_t_2 = v.six_r_c_5*six_r_omega_3_in_axes4_x;
+    const real six_r_omega_3_in_axes5_x = six_r_omega_3_t +
+        v.six_r_c_5*six_r_omega_2_in_axes3_y;
+    const real six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 -
+        six_r_omega_2_in_axes3_y*v.six_r_s_5;
+    /* (six_r-W_3) centripetal tensor of link 3 */
+    const real six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y;
+    /* (six_r-omega_4) angular velocity of link 4 */
+    const real six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y - six_r_qd_4_t;
+    const real six_r_omega_4_in_axes5_x = six_r_omega_3_t +
+        v.six_r_c_5*six_r_omega_4_in_axes4_z;
+    const real six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 -
+        six_r_omega_4_in_axes4_z*v.six_r_s_5;
+    /* (six_r-W_4) centripetal tensor of link 4 */
+    const real six_r_W_4_in_axes5_xy = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_y;
+    /* (six_r-omega_5) angular velocity of link 5 */
+    const real six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_y - six_r_qd_5_t;
+    /* (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+    const real six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_9;
+    const real six_r_zeta_2_in_axes3_x = six_r_W_2_in_axes2_yz*v.six_r_s_3 -
+        v.six_r_c_3*six_r_zeta_2_in_axes2_y;
+    const real six_r_zeta_2_in_axes3_y = six_r_W_2_in_axes2_yz*v.six_r_c_3 +
+        v.six_r_s_3*six_r_zeta_2_in_axes2_y;
+    const real six_r_zeta_2_t = v.six_r_c_4*six_r_zeta_2_in_axes3_x;
+    const real six_r_zeta_2_in_axes5_z = v.six_r_s_4*six_r_zeta_2_in_axes3_x;
+    const real six_r_zeta_2_in_axes5_x = v.six_r_c_5*six_r_zeta_2_in_axes3_y -
+        v.six_r_s_5*six_r_zeta_2_t;
+    const real six_r_zeta_2_in_axes5_y = -v.six_r_c_5*six_r_zeta_2_t -
+        v.six_r_s_5*six_r_zeta_2_in_axes3_y;
+    /* (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations */
+    const real six_r_beta_3_in_axes3_x = six_r_zeta_2_in_axes3_x -
+        six_r_omega_2_in_axes3_y*six_r_qd_1_t_8;
+    const real six_r_beta_3_in_axes3_y = six_r_zeta_2_in_axes3_y +
+        six_r_omega_2_in_axes3_x*six_r_qd_1_t_8;
+    const real six_r_beta_3_t = six_r_beta_3_in_axes3_x*v.six_r_c_4;
+    const real six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*v.six_r_s_4;
+    /* (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations */
+    const real six_r_beta_4_in_axes4_x = -six_r_beta_3_t -
+        six_r_omega_3_in_axes4_y*six_r_qd_4_t;
+    const real six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y +
+        six_r_omega_3_in_axes4_x*six_r_qd_4_t;
+    const real six_r_beta_4_t = six_r_beta_3_in_axes3_y*v.six_r_c_5;
+    const real six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_beta_4_in_axes4_x*v.six_r_s_5;
+    const real six_r_beta_4_t_2 = six_r_beta_3_in_axes3_y*v.six_r_s_5;
+    const real six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*v.six_r_c_5 -
+        six_r_beta_4_t_2;
+    /* (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations */
+    const real six_r_beta_5_in_axes5_x = six_r_beta_4_in_axes5_x -
+        six_r_omega_4_in_axes5_y*six_r_qd_5_t;
+    const real six_r_beta_5_in_axes5_y = six_r_beta_4_in_axes5_y +
+        six_r_omega_4_in_axes5_x*six_r_qd_5_t;
+    /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
+    const real six_r_bias_t_10 = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y;
+    const real six_r_bias_t_11 = six_r_omega_4_in_axes5_y*six_r_omega_4_in_axes5_y;
+    const real six_r_bias_t_12 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_x;
+    const real six_r_bias_t_13 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_y;
+    const real six_r_bias_t_14 = six_r_omega_1_in_axes5_z*six_r_omega_1_in_axes5_z;
+    const real six_r_bias_t_15 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x;
+    const real six_r_bias_t_16 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y;
+    const real six_r_bias_t_17 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z;
+    const real six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y;
+    const real six_r_bias_in_axes5_x = six_r_W_1_in_axes5_xy*v.six_r_d_2_in_axes5_y +
+        six_r_W_1_in_axes5_xz*v.six_r_d_2_in_axes5_z +
+        v.six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
+        v.six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) -
+        v.six_r_bias_t_8*(six_r_W_3_in_axes5_xy - six_r_beta_3_in_axes4_y) -
+        v.six_r_bias_t_9*(six_r_W_4_in_axes5_xy - six_r_beta_4_in_axes4_y) -
+        v.six_r_d_2_in_axes5_x*(six_r_bias_t_13 + six_r_bias_t_14) -
+        v.six_r_d_3_in_axes5_x*(six_r_bias_t_16 + six_r_bias_t_17) -
+        v.six_r_d_4_in_axes5_x*(six_r_bias_t_10 +
+        six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) -
+        v.six_r_d_5_in_axes5_x*(six_r_bias_t_10 + six_r_bias_t_11) -
+        m->six_r_platform_joint_offset_x[i]*(six_r_bias_t_11 +
+        six_r_omega_5_in_axes5_z*six_r_omega_5_in_axes5_z);
+    const real six_r_bias_in_axes5_y = six_r_W_1_in_axes5_xy*v.six_r_d_2_in_axes5_x +
+        six_r_W_1_in_axes5_yz*v.six_r_d_2_in_axes5_z + six_r_bias_t_18*v.six_r_d_5_in_axes5_x
+        + six_r_bias_t_18*m->six_r_platform_joint_offset_x[i] +
+        v.six_r_bias_t_8*(six_r_bias_t_10 + six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x)
+        + v.six_r_bias_t_9*(six_r_bias_t_10 +
+        six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x) +
+        v.six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
+        v.six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
+        v.six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_y) -
+        v.six_r_d_2_in_axes5_y*(six_r_bias_t_12 + six_r_bias_t_14) -
+        v.six_r_d_3_in_axes5_y*(six_r_bias_t_15 + six_r_bias_t_17);
+    const real six_r_bias_in_axes5_z = six_r_W_1_in_axes5_xz*v.six_r_d_2_in_axes5_x +
+        six_r_W_1_in_axes5_yz*v.six_r_d_2_in_axes5_y +
+        v.six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
+        v.six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
+        v.six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*v.six_r_c_5 +
+        six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) +
+        v.six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
+        six_r_beta_4_in_axes5_y) +
+        m->six_r_platform_joint_offset_x[i]*(six_r_omega_4_in_axes5_x*six_r_omega_5_in_axes5_z
+        - six_r_beta_5_in_axes5_y) - v.six_r_bias_t_8*(six_r_beta_4_t +
+        six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - six_r_beta_3_t*v.six_r_s_5) -
+        v.six_r_bias_t_9*(six_r_beta_4_in_axes5_x +
+        six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y) -
+        v.six_r_d_2_in_axes5_z*(six_r_bias_t_12 + six_r_bias_t_13) -
+        v.six_r_d_3_in_axes5_z*(six_r_bias_t_15 + six_r_bias_t_16);
+    /* (six_r-rel) acceleration of the connection point left to the joint accelerations */
+    const real six_r_rel_in_axes5_x = v.axis_x_six_r_axes5_x*v.six_r_S_ddot_x +
+        v.axis_x_six_r_axes5_y*v.six_r_S_ddot_y + v.axis_x_six_r_axes5_z*v.six_r_S_ddot_z -
+        six_r_bias_in_axes5_x;
+    const real six_r_rel_in_axes5_y = v.axis_y_six_r_axes5_x*v.six_r_S_ddot_x +
+        v.axis_y_six_r_axes5_y*v.six_r_S_ddot_y + v.axis_y_six_r_axes5_z*v.six_r_S_ddot_z -
+        six_r_bias_in_axes5_y;
+    const real six_r_rel_in_axes5_z = v.axis_z_six_r_axes5_x*v.six_r_S_ddot_x +
+        v.axis_z_six_r_axes5_y*v.six_r_S_ddot_y + v.axis_z_six_r_axes5_z*v.six_r_S_ddot_z -
+        six_r_bias_in_axes5_z;
+    /* (six_r-nd_m1) rate of moment direction 1 */
+    const real six_r_nd_m1_in_axes5_x = -v.six_r_nd_m1_t -
+        v.six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_x;
+    const real six_r_nd_m1_in_axes5_y = v.six_r_eta_2_t -
+        v.six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y;
+    /* (six_r-nu_1) bias of the angular acceleration along moment direction 1 */
+    const real six_r_nu_1_t = v.six_r_n_m2_in_axes5_z*six_r_omega_4_in_axes5_y;
+    const real six_r_nu_1_t_2 = six_r_beta_5_in_axes5_x*v.six_r_n_m2_in_axes5_z -
+        six_r_beta_5_in_axes5_y*v.six_r_n_m1_in_axes5_y;
+    const real six_r_nu_1_t_3 = six_r_omega_4_in_axes5_x - v.six_r_omega_in_axes5_x;
+    const real six_r_nu_1_t_4 = six_r_omega_4_in_axes5_y - v.six_r_omega_in_axes5_y;
+    const real six_r_nu_1_t_5 = six_r_omega_5_in_axes5_z - v.six_r_omega_in_axes5_z;
+    const real six_r_nu_1_t_6 = six_r_nd_m1_in_axes5_x*six_r_nu_1_t_3 +
+        six_r_nd_m1_in_axes5_y*six_r_nu_1_t_4 + six_r_nu_1_t_5*(six_r_nu_1_t +
+        v.six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x);
+    const real six_r_nu_1 = six_r_nu_1_t_2 - six_r_nu_1_t_6;
+    /* (six_r-nd_m2) rate of moment direction 2 */
+    const real six_r_nd_m2_in_axes5_y = v.six_r_eta_1 -
+        v.six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y;
+    const real six_r_nd_m2_in_axes5_z = v.six_r_nd_m1_t -
+        v.six_r_n_m1_in_axes5_y*six_r_omega_5_in_axes5_z;
+    /* (six_r-nu_2) bias of the angular acceleration along moment direction 2 */
+    const real six_r_nu_2_t = six_r_beta_5_in_axes5_y*v.six_r_end_p1_in_axes5_z -
+        six_r_beta_4_in_axes4_y*v.six_r_n_m2_in_axes5_z;
+    const real six_r_nu_2_t_2 = six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 +
+        six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 + six_r_nu_1_t_3*(six_r_nu_1_t +
+        v.six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z);
+    const real six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2;
+    /* (six_r-etad_1) acceleration with which the joints turn along moment direction 1 */
+    const real six_r_etad_1 = six_r_nu_1 - v.six_r_etad_1_t;
+    /* (six_r-etad_2) acceleration with which the joints turn along moment direction 2 */
+    const real six_r_etad_2 = six_r_nu_2 - v.six_r_etad_2_t;
+    /* (six_r-qdd_1) acceleration of joint 1 */
+    const real six_r_qdd_1_t = six_r_etad_1*m->six_r_size[i];
+    const real six_r_qdd_1_t_2 = six_r_etad_2*m->six_r_size[i];
+    const real six_r_qdd_1_t_3 = v.inv_six_r_w_1_t_79*(v.six_r_qd_1_t*six_r_rel_in_axes5_x +
+        v.six_r_qd_1_t_3*six_r_rel_in_axes5_z + v.six_r_qd_1_t_4*six_r_qdd_1_t +
+        v.six_r_qd_1_t_5*six_r_qdd_1_t_2 - v.six_r_qd_1_t_2*six_r_rel_in_axes5_y);
+    const real six_r_qdd_1_t_4 = v.inv_six_r_w_1_t_67*(six_r_qdd_1_t*v.six_r_w_1_t_71 +
+        six_r_qdd_1_t_2*v.six_r_w_1_t_72 + six_r_rel_in_axes5_x*v.six_r_w_1_t_68 +
+        six_r_rel_in_axes5_z*v.six_r_w_1_t_70 - six_r_qdd_1_t_3*v.six_r_w_1_t_73 -
+        six_r_rel_in_axes5_y*v.six_r_w_1_t_69);
+    const real six_r_qdd_1_t_5 = v.inv_six_r_w_1_t_49*(six_r_qdd_1_t_3*v.six_r_w_1_t_61 +
+        six_r_qdd_1_t_4*v.six_r_w_1_t_55 + six_r_rel_in_axes5_y*v.six_r_w_1_t_51 -
+        six_r_qdd_1_t*v.six_r_w_1_t_53 - six_r_qdd_1_t_2*v.six_r_w_1_t_54 -
+        six_r_rel_in_axes5_x*v.six_r_w_1_t_50 - six_r_rel_in_axes5_z*v.six_r_w_1_t_52);
+    /* (six_r-qdd_4) acceleration of joint 4 */
+    const real six_r_qdd_4 = v.inv_six_r_w_1_t_28*(six_r_qdd_1_t*v.six_r_w_1_t_31 +
+        six_r_qdd_1_t_2*v.six_r_w_1_t_32 + six_r_qdd_1_t_3*v.six_r_w_1_t_44 +
+        six_r_qdd_1_t_4*v.six_r_w_1_t_39 + six_r_rel_in_axes5_z*v.six_r_w_1_t_30 -
+        six_r_qdd_1_t_5*v.six_r_w_1_t_33 - six_r_rel_in_axes5_y*v.six_r_w_1_t_29);
+    /* (six_r-qdd_5) acceleration of joint 5 */
+    const real six_r_qdd_5 = v.inv_six_r_w_1_t_12*(six_r_qdd_1_t_2*v.six_r_w_1_t_14 +
+        six_r_qdd_1_t_3*v.six_r_w_1_t_25 + six_r_qdd_1_t_5*v.six_r_w_1_t_18 +
+        six_r_rel_in_axes5_y*v.six_r_w_1_t_13 - six_r_qdd_1_t_4*v.six_r_w_1_t_22 -
+        six_r_qdd_4*v.six_r_w_1_t_15);
+    /* (six_r-qdd_1) */
+    o[0*count + k] = -six_r_qdd_1_t_5;
+    /* (six_r-qdd_2) acceleration of joint 2 */
+    o[1*count + k] = six_r_qdd_1_t_4;
+    /* (six_r-qdd_3) acceleration of joint 3 */
+    o[2*count + k] = six_r_qdd_1_t_3;
+    /* (six_r-qdd_4) */
+    o[3*count + k] = six_r_qdd_4;
+    /* (six_r-qdd_5) */
+    o[4*count + k] = six_r_qdd_5;
+    o[6*count + k] = (six_r_qdd_1_t_5 + six_r_qdd_1_t_4) + (six_r_qdd_1_t_3 + (six_r_qdd_4 +
+        six_r_qdd_5));
+    o[5*count + k] = UNLESS(magnitude(v.six_r_w_1_t_12) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_28) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_49) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_67) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_79) > TOLERANCE*m->six_r_size[i]);
 }
 
-INLINE void joint_accelerations_place_six_r(size_t w, size_t count, const real *o, size_t leg,
-    size_t first, real *qdd, verdict *t)
+INLINE void joint_accelerations_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t count,
+    const real *o, real *qdd, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        qdd[5*leg*w + k] = o[0*count + first + k];
-        qdd[(1 + 5*leg)*w + k] = o[1*count + first + k];
-        qdd[(2 + 5*leg)*w + k] = o[2*count + first + k];
-        qdd[(3 + 5*leg)*w + k] = o[3*count + first + k];
-        qdd[(4 + 5*leg)*w + k] = o[4*count + first + k];
-        t->singular[k] += o[5*count + first + k];
-        t->total[k] += o[6*count + first + k];
-    }
+    qdd[5*i*w + k] = o[0*count + at];
+    qdd[(1 + 5*i)*w + k] = o[1*count + at];
+    qdd[(2 + 5*i)*w + k] = o[2*count + at];
+    qdd[(3 + 5*i)*w + k] = o[3*count + at];
+    qdd[(4 + 5*i)*w + k] = o[4*count + at];
+    t->singular[k] += o[5*count + at];
+    t->total[k] += o[6*count + at];
 }
 
-INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
-    *A, const real *joints, real *qdd, verdict *t)
+APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
+    const real *joints, real *qdd, verdict *t)
 {
     real s[9] = {0};
     real o_six_r[7*LEGS(LEGS_OF_six_r)] = {0};
-    joint_accelerations_before(m, 1, X, s, t);
-    joint_accelerations_legs_six_r(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_six_r), V, A, joints, o_six_r);
-    for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
-        joint_accelerations_place_six_r(1, LEGS(LEGS_OF_six_r), o_six_r, leg, leg, qdd, t);
+    joint_accelerations_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
+        joint_accelerations_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), s, V, A, joints, o_six_r);
+    }
+    for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
+        joint_accelerations_place_six_r(1, i, 0, i, LEGS(LEGS_OF_six_r), o_six_r, qdd, t);
     }
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, const real *joints, real *qdd, verdict *t)
+    real *A, const real *joints, real *restrict qdd, verdict *restrict t)
 {
     real s[9*LANES];
     real o_six_r[7*LANES];
-    joint_accelerations_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
-        joint_accelerations_legs_six_r(m, LANES, leg, 0, s, 1, LANES, V, A, joints, o_six_r);
-        joint_accelerations_place_six_r(LANES, LANES, o_six_r, leg, 0, qdd, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        joint_accelerations_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_legs_six_r(m, LANES, i, k, k, LANES, s, V, A, joints, o_six_r);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_place_six_r(LANES, i, k, k, LANES, o_six_r, qdd, t);
+        }
     }
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void legs_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, const real *V, const real *A, const real *joints, real *o)
+INLINE void legs_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, const real *s, const real *V, const real *A, const real *joints, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_six_r v;
-        stage_six_r_X(m, w, i, j, s, &v);
-        stage_six_r_q(m, w, i, j, joints, &v);
-        stage_six_r_A_X(w, j, A, &v);
-        stage_six_r_A_q(w, j, A, &v);
-        stage_six_r_V_X(w, j, V, &v);
-        stage_six_r_V_q(w, j, V, &v);
-        stage_six_r_X_q(m, i, &v);
-        stage_six_r_A_V_X(w, j, V, &v);
-        stage_six_r_A_X_q(w, j, A, &v);
-        stage_six_r_V_X_q(&v);
-        stage_six_r_legs_required(m, i, &v);
-        /* (six_r-o_2) moment part of reciprocal wrench 2 */
-        const real six_r_o_2_x = v.axis_y_six_r_axes5_x*v.six_r_o_2_in_axes5_y +
-            v.axis_z_six_r_axes5_x*v.six_r_o_2_in_axes5_z - v.axis_x_six_r_axes5_x*v.six_r_o_2_t;
-        const real six_r_o_2_y = v.axis_y_six_r_axes5_y*v.six_r_o_2_in_axes5_y +
-            v.axis_z_six_r_axes5_y*v.six_r_o_2_in_axes5_z - v.axis_x_six_r_axes5_y*v.six_r_o_2_t;
-        const real six_r_o_2_z = v.axis_y_six_r_axes5_z*v.six_r_o_2_in_axes5_y +
-            v.axis_z_six_r_axes5_z*v.six_r_o_2_in_axes5_z - v.axis_x_six_r_axes5_z*v.six_r_o_2_t;
-        /* (six_r-c_m) moment of the leg on the platform without actuation */
-        const real six_r_c_m_x = v.axis_z_six_r_axes5_x*v.six_r_c_m_in_axes5_z -
-            v.axis_x_six_r_axes5_x*v.six_r_G_m_in_axes5_x -
-            v.axis_y_six_r_axes5_x*v.six_r_G_m_in_axes5_y;
-        const real six_r_c_m_y = v.axis_z_six_r_axes5_y*v.six_r_c_m_in_axes5_z -
-            v.axis_x_six_r_axes5_y*v.six_r_G_m_in_axes5_x -
-            v.axis_y_six_r_axes5_y*v.six_r_G_m_in_axes5_y;
-        const real six_r_c_m_z = v.axis_z_six_r_axes5_z*v.six_r_c_m_in_axes5_z -
-            v.axis_x_six_r_axes5_z*v.six_r_G_m_in_axes5_x -
-            v.axis_y_six_r_axes5_z*v.six_r_G_m_in_axes5_y;
-        /* (six_r-c_true) leg force on the platform without actuation, the last link's mass included */
-        const real six_r_link5_mass = m->six_r_link5_mass[i];
-        const real six_r_c_true_in_axes5_x = v.six_r_c_in_axes5_x -
-            v.six_r_acc_5_in_axes5_x*six_r_link5_mass;
-        const real six_r_c_true_in_axes5_y = v.six_r_c_in_axes5_y -
-            v.six_r_acc_5_in_axes5_y*six_r_link5_mass;
-        const real six_r_c_true_in_axes5_z = v.six_r_c_in_axes5_z -
-            v.six_r_acc_5_in_axes5_z*six_r_link5_mass;
-        const real six_r_c_true_x = v.axis_x_six_r_axes5_x*six_r_c_true_in_axes5_x +
-            v.axis_y_six_r_axes5_x*six_r_c_true_in_axes5_y +
-            v.axis_z_six_r_axes5_x*six_r_c_true_in_axes5_z;
-        const real six_r_c_true_y = v.axis_x_six_r_axes5_y*six_r_c_true_in_axes5_x +
-            v.axis_y_six_r_axes5_y*six_r_c_true_in_axes5_y +
-            v.axis_z_six_r_axes5_y*six_r_c_true_in_axes5_z;
-        const real six_r_c_true_z = v.axis_x_six_r_axes5_z*six_r_c_true_in_axes5_x +
-            v.axis_y_six_r_axes5_z*six_r_c_true_in_axes5_y +
-            v.axis_z_six_r_axes5_z*six_r_c_true_in_axes5_z;
-        /* (six_r-c_true) leg force on the platform without actuation, the last link's mass included */
-        o[0*count + k] = six_r_c_true_x;
-        o[1*count + k] = six_r_c_true_y;
-        o[2*count + k] = six_r_c_true_z;
-        /* (six_r-c_m) moment of the leg on the platform without actuation */
-        o[3*count + k] = six_r_c_m_x;
-        o[4*count + k] = six_r_c_m_y;
-        o[5*count + k] = six_r_c_m_z;
-        /* (six_r-w_2) force part of reciprocal wrench 2 */
-        o[6*count + k] = v.six_r_w_2_x;
-        o[7*count + k] = v.six_r_w_2_y;
-        o[8*count + k] = v.six_r_w_2_z;
-        /* (six_r-o_2) moment part of reciprocal wrench 2 */
-        o[9*count + k] = six_r_o_2_x;
-        o[10*count + k] = six_r_o_2_y;
-        o[11*count + k] = six_r_o_2_z;
-        const real six_r_size = m->six_r_size[i];
-        o[12*count + k] = UNLESS(magnitude(v.six_r_w_1_t_12) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(v.six_r_w_1_t_28) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(v.six_r_w_1_t_49) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(v.six_r_w_1_t_67) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(v.six_r_w_1_t_79) > TOLERANCE*six_r_size);
-    }
+    values_six_r v;
+    stage_six_r_X(m, w, i, j, s, &v);
+    stage_six_r_q(m, w, i, j, joints, &v);
+    stage_six_r_A_X(w, j, A, &v);
+    stage_six_r_A_q(w, j, A, &v);
+    stage_six_r_V_X(w, j, V, &v);
+    stage_six_r_V_q(w, j, V, &v);
+    stage_six_r_X_q(m, i, &v);
+    stage_six_r_A_V_X(w, j, V, &v);
+    stage_six_r_A_X_q(w, j, A, &v);
+    stage_six_r_V_X_q(&v);
+    stage_six_r_legs_required(m, i, &v);
+    /* (six_r-o_2) moment part of reciprocal wrench 2 */
+    const real six_r_o_2_x = v.axis_y_six_r_axes5_x*v.six_r_o_2_in_axes5_y +
+        v.axis_z_six_r_axes5_x*v.six_r_o_2_in_axes5_z - v.axis_x_six_r_axes5_x*v.six_r_o_2_t;
+    const real six_r_o_2_y = v.axis_y_six_r_axes5_y*v.six_r_o_2_in_axes5_y +
+        v.axis_z_six_r_axes5_y*v.six_r_o_2_in_axes5_z - v.axis_x_six_r_axes5_y*v.six_r_o_2_t;
+    const real six_r_o_2_z = v.axis_y_six_r_axes5_z*v.six_r_o_2_in_axes5_y +
+        v.axis_z_six_r_axes5_z*v.six_r_o_2_in_axes5_z - v.axis_x_six_r_axes5_z*v.six_r_o_2_t;
+    /* (six_r-c_m) moment of the leg on the platform without actuation */
+    const real six_r_c_m_x = v.axis_z_six_r_axes5_x*v.six_r_c_m_in_axes5_z -
+        v.axis_x_six_r_axes5_x*v.six_r_G_m_in_axes5_x -
+        v.axis_y_six_r_axes5_x*v.six_r_G_m_in_axes5_y;
+    const real six_r_c_m_y = v.axis_z_six_r_axes5_y*v.six_r_c_m_in_axes5_z -
+        v.axis_x_six_r_axes5_y*v.six_r_G_m_in_axes5_x -
+        v.axis_y_six_r_axes5_y*v.six_r_G_m_in_axes5_y;
+    const real six_r_c_m_z = v.axis_z_six_r_axes5_z*v.six_r_c_m_in_axes5_z -
+        v.axis_x_six_r_axes5_z*v.six_r_G_m_in_axes5_x -
+        v.axis_y_six_r_axes5_z*v.six_r_G_m_in_axes5_y;
+    /* (six_r-c_true) leg force on the platform without actuation, the last link's mass included */
+    const real six_r_c_true_in_axes5_x = v.six_r_c_in_axes5_x -
+        v.six_r_acc_5_in_axes5_x*m->six_r_link5_mass[i];
+    const real six_r_c_true_in_axes5_y = v.six_r_c_in_axes5_y -
+        v.six_r_acc_5_in_axes5_y*m->six_r_link5_mass[i];
+    const real six_r_c_true_in_axes5_z = v.six_r_c_in_axes5_z -
+        v.six_r_acc_5_in_axes5_z*m->six_r_link5_mass[i];
+    const real six_r_c_true_x = v.axis_x_six_r_axes5_x*six_r_c_true_in_axes5_x +
+        v.axis_y_six_r_axes5_x*six_r_c_true_in_axes5_y +
+        v.axis_z_six_r_axes5_x*six_r_c_true_in_axes5_z;
+    const real six_r_c_true_y = v.axis_x_six_r_axes5_y*six_r_c_true_in_axes5_x +
+        v.axis_y_six_r_axes5_y*six_r_c_true_in_axes5_y +
+        v.axis_z_six_r_axes5_y*six_r_c_true_in_axes5_z;
+    const real six_r_c_true_z = v.axis_x_six_r_axes5_z*six_r_c_true_in_axes5_x +
+        v.axis_y_six_r_axes5_z*six_r_c_true_in_axes5_y +
+        v.axis_z_six_r_axes5_z*six_r_c_true_in_axes5_z;
+    /* (six_r-c_true) */
+    o[0*count + k] = six_r_c_true_x;
+    o[1*count + k] = six_r_c_true_y;
+    o[2*count + k] = six_r_c_true_z;
+    /* (six_r-c_m) */
+    o[3*count + k] = six_r_c_m_x;
+    o[4*count + k] = six_r_c_m_y;
+    o[5*count + k] = six_r_c_m_z;
+    /* (six_r-w_2) force part of reciprocal wrench 2 */
+    o[6*count + k] = v.six_r_w_2_x;
+    o[7*count + k] = v.six_r_w_2_y;
+    o[8*count + k] = v.six_r_w_2_z;
+    /* (six_r-o_2) */
+    o[9*count + k] = six_r_o_2_x;
+    o[10*count + k] = six_r_o_2_y;
+    o[11*count + k] = six_r_o_2_z;
+    o[12*count + k] = UNLESS(magnitude(v.six_r_w_1_t_12) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_28) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_49) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_67) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_79) > TOLERANCE*m->six_r_size[i]);
 }
 
-INLINE void legs_place_six_r(size_t w, size_t count, const real *o, size_t leg, size_t first, real
-    *leg_force, real *actuator, verdict *t)
+INLINE void legs_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *leg_force, real *actuator, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        leg_force[6*leg*w + k] = o[0*count + first + k];
-        leg_force[(6*leg + 1)*w + k] = o[1*count + first + k];
-        leg_force[(6*leg + 2)*w + k] = o[2*count + first + k];
-        leg_force[(6*leg + 3)*w + k] = o[3*count + first + k];
-        leg_force[(6*leg + 4)*w + k] = o[4*count + first + k];
-        leg_force[(6*leg + 5)*w + k] = o[5*count + first + k];
-        actuator[6*leg*w + k] = o[6*count + first + k];
-        actuator[(6*leg + 1)*w + k] = o[7*count + first + k];
-        actuator[(6*leg + 2)*w + k] = o[8*count + first + k];
-        actuator[(6*leg + 3)*w + k] = o[9*count + first + k];
-        actuator[(6*leg + 4)*w + k] = o[10*count + first + k];
-        actuator[(6*leg + 5)*w + k] = o[11*count + first + k];
-        t->singular[k] += o[12*count + first + k];
-    }
+    leg_force[6*i*w + k] = o[0*count + at];
+    leg_force[(6*i + 1)*w + k] = o[1*count + at];
+    leg_force[(6*i + 2)*w + k] = o[2*count + at];
+    leg_force[(6*i + 3)*w + k] = o[3*count + at];
+    leg_force[(6*i + 4)*w + k] = o[4*count + at];
+    leg_force[(6*i + 5)*w + k] = o[5*count + at];
+    actuator[6*i*w + k] = o[6*count + at];
+    actuator[(6*i + 1)*w + k] = o[7*count + at];
+    actuator[(6*i + 2)*w + k] = o[8*count + at];
+    actuator[(6*i + 3)*w + k] = o[9*count + at];
+    actuator[(6*i + 4)*w + k] = o[10*count + at];
+    actuator[(6*i + 5)*w + k] = o[11*count + at];
+    t->singular[k] += o[12*count + at];
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, const real
@@ -8536,141 +8304,106 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 {
     real s[9] = {0};
     real o_six_r[13*LEGS(LEGS_OF_six_r)] = {0};
-    legs_before(m, 1, X, s, t);
-    legs_legs_six_r(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_six_r), V, A, joints, o_six_r);
-    for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
-        legs_place_six_r(1, LEGS(LEGS_OF_six_r), o_six_r, leg, leg, leg_force, actuator, t);
+    legs_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
+        legs_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), s, V, A, joints, o_six_r);
+    }
+    for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
+        legs_place_six_r(1, i, 0, i, LEGS(LEGS_OF_six_r), o_six_r, leg_force, actuator, t);
     }
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        /* (potential) potential energy */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real m_star = m->m_star;
-        const real t_x = X[0*w + k];
-        const real t_y = X[1*w + k];
-        const real t_z = X[2*w + k];
-        const real potential_t = gravity_x*(v.R_xx*h_star_in_platform_x +
-            v.R_xy*h_star_in_platform_y + v.R_xz*h_star_in_platform_z + m_star*t_x) +
-            gravity_y*(v.R_yx*h_star_in_platform_x + v.R_yy*h_star_in_platform_y +
-            v.R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(v.R_zx*h_star_in_platform_x +
-            v.R_zy*h_star_in_platform_y + v.R_zz*h_star_in_platform_z + m_star*t_z);
-        s[0*w + k] = potential_t;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    /* (potential) potential energy */
+    const real t_x = X[0*w + k];
+    const real t_y = X[1*w + k];
+    const real t_z = X[2*w + k];
+    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x +
+        v.R_xy*m->h_star_in_platform_y + v.R_xz*m->h_star_in_platform_z + m->m_star*t_x) +
+        m->gravity_y*(v.R_yx*m->h_star_in_platform_x + v.R_yy*m->h_star_in_platform_y +
+        v.R_yz*m->h_star_in_platform_z + m->m_star*t_y) +
+        m->gravity_z*(v.R_zx*m->h_star_in_platform_x + v.R_zy*m->h_star_in_platform_y +
+        v.R_zz*m->h_star_in_platform_z + m->m_star*t_z);
+    s[0*w + k] = potential_t;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void potential_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, size_t
-    states, size_t count, int add, const real *joints, real *terms)
+INLINE void potential_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *joints, real *terms)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_six_r v;
-        stage_six_r_q(m, w, i, j, joints, &v);
-        /* (potential) potential energy */
-        const real six_r_h_5_in_spec5_x = m->six_r_h_5_in_spec5_x[i];
-        const real six_r_h_5_in_spec5_y = m->six_r_h_5_in_spec5_y[i];
-        const real six_r_potential_t_4 = v.six_r_c_5*six_r_h_5_in_spec5_y +
-            six_r_h_5_in_spec5_x*v.six_r_s_5;
-        const real six_r_joint2_offset_x = m->six_r_joint2_offset_x[i];
-        const real six_r_potential_t_5 = six_r_joint2_offset_x*v.six_r_s_2;
-        const real six_r_potential_t = m->six_r_potential_t[i];
-        const real six_r_potential_t_2 = m->six_r_potential_t_2[i];
-        const real six_r_potential_t_6 = v.six_r_c_1*six_r_potential_t +
-            six_r_potential_t_2*v.six_r_s_1;
-        const real six_r_b_in_spec2_z = v.six_r_c_1*six_r_potential_t_2 -
-            six_r_potential_t*v.six_r_s_1;
-        const real six_r_potential_t_3 = m->six_r_potential_t_3[i];
-        const real six_r_b_in_spec2_x = v.six_r_c_2*six_r_potential_t_3 +
-            six_r_potential_t_6*v.six_r_s_2;
-        const real six_r_b_in_spec2_y = v.six_r_c_2*six_r_potential_t_6 -
-            six_r_potential_t_3*v.six_r_s_2;
-        const real six_r_potential_t_7 = six_r_b_in_spec2_y - six_r_potential_t_5;
-        const real six_r_potential_t_8 = v.six_r_c_5*six_r_h_5_in_spec5_x -
-            six_r_h_5_in_spec5_y*v.six_r_s_5;
-        const real six_r_h_5_in_spec5_z = m->six_r_h_5_in_spec5_z[i];
-        const real six_r_potential_t_9 = v.six_r_e_2_in_axes5_z*six_r_potential_t_4 -
-            v.six_r_h_4_t*six_r_h_5_in_spec5_z;
-        const real six_r_h_1_in_spec1_x = m->six_r_h_1_in_spec1_x[i];
-        const real six_r_h_1_in_spec1_y = m->six_r_h_1_in_spec1_y[i];
-        const real six_r_h_2_in_spec2_x = m->six_r_h_2_in_spec2_x[i];
-        const real six_r_h_3_in_spec3_x = m->six_r_h_3_in_spec3_x[i];
-        const real six_r_h_3_in_spec3_y = m->six_r_h_3_in_spec3_y[i];
-        const real six_r_h_4_in_spec4_x = m->six_r_h_4_in_spec4_x[i];
-        const real six_r_joint3_offset_x = m->six_r_joint3_offset_x[i];
-        const real six_r_joint4_offset_x = m->six_r_joint4_offset_x[i];
-        const real six_r_link1_mass = m->six_r_link1_mass[i];
-        const real six_r_link2_mass = m->six_r_link2_mass[i];
-        const real six_r_link3_mass = m->six_r_link3_mass[i];
-        const real six_r_link4_mass = m->six_r_link4_mass[i];
-        const real six_r_potential_t_10 = six_r_h_2_in_spec2_x +
-            six_r_b_in_spec2_x*six_r_link1_mass + v.six_r_c_2*six_r_h_1_in_spec1_x +
-            v.six_r_c_3*six_r_h_3_in_spec3_x + v.six_r_c_3*six_r_h_4_in_spec4_x +
-            v.six_r_c_3*six_r_potential_t_8 + six_r_h_1_in_spec1_y*v.six_r_s_2 +
-            six_r_link2_mass*(six_r_b_in_spec2_x + v.six_r_d_2_in_spec2_x) +
-            six_r_link3_mass*(six_r_b_in_spec2_x + v.six_r_d_2_in_spec2_x + six_r_joint3_offset_x)
-            + six_r_link4_mass*(six_r_b_in_spec2_x + v.six_r_d_2_in_spec2_x +
-            six_r_joint3_offset_x + v.six_r_c_3*six_r_joint4_offset_x) -
-            six_r_h_3_in_spec3_y*v.six_r_s_3 - v.six_r_h_4_in_spec3_y*v.six_r_s_3 -
-            six_r_potential_t_9*v.six_r_s_3;
-        const real six_r_h_2_in_spec2_y = m->six_r_h_2_in_spec2_y[i];
-        const real six_r_potential_t_11 = six_r_h_2_in_spec2_y +
-            six_r_b_in_spec2_y*six_r_link1_mass + v.six_r_c_2*six_r_h_1_in_spec1_y +
-            v.six_r_c_3*six_r_h_3_in_spec3_y + v.six_r_c_3*v.six_r_h_4_in_spec3_y +
-            v.six_r_c_3*six_r_potential_t_9 + six_r_h_3_in_spec3_x*v.six_r_s_3 +
-            six_r_h_4_in_spec4_x*v.six_r_s_3 + six_r_link2_mass*six_r_potential_t_7 +
-            six_r_link3_mass*six_r_potential_t_7 + six_r_link4_mass*(six_r_b_in_spec2_y +
-            six_r_joint4_offset_x*v.six_r_s_3 - six_r_potential_t_5) +
-            six_r_potential_t_8*v.six_r_s_3 - six_r_h_1_in_spec1_x*v.six_r_s_2;
-        const real six_r_h_1_in_spec1_z = m->six_r_h_1_in_spec1_z[i];
-        const real six_r_h_2_in_spec2_z = m->six_r_h_2_in_spec2_z[i];
-        const real six_r_h_3_in_spec3_z = m->six_r_h_3_in_spec3_z[i];
-        const real six_r_h_4_in_spec4_y = m->six_r_h_4_in_spec4_y[i];
-        const real six_r_h_4_in_spec4_z = m->six_r_h_4_in_spec4_z[i];
-        const real six_r_potential_t_12 = six_r_h_1_in_spec1_z + six_r_h_2_in_spec2_z +
-            six_r_h_3_in_spec3_z + six_r_b_in_spec2_z*six_r_link1_mass +
-            six_r_b_in_spec2_z*six_r_link2_mass + six_r_b_in_spec2_z*six_r_link3_mass +
-            six_r_b_in_spec2_z*six_r_link4_mass + v.six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_z +
-            v.six_r_e_2_in_axes5_z*six_r_h_5_in_spec5_z + six_r_h_4_in_spec4_y*v.six_r_h_4_t +
-            v.six_r_h_4_t*six_r_potential_t_4;
-        const real six_r_acc_3_t = m->six_r_acc_3_t[i];
-        const real six_r_acc_3_t_2 = m->six_r_acc_3_t_2[i];
-        const real six_r_g_in_axes1_z = m->six_r_g_in_axes1_z[i];
-        const real six_r_potential_t_13 = six_r_potential_t_10*(v.six_r_c_2*six_r_g_in_axes1_z +
-            v.six_r_g_in_axes1_x*v.six_r_s_2) +
-            six_r_potential_t_11*(v.six_r_c_2*v.six_r_g_in_axes1_x -
-            six_r_g_in_axes1_z*v.six_r_s_2) + six_r_potential_t_12*(six_r_acc_3_t_2*v.six_r_c_1 -
-            six_r_acc_3_t*v.six_r_s_1);
-        /* (potential) potential energy */
-        gather(&terms[0*count + k], add, six_r_potential_t_13);  /* potential_of_legs */
-    }
+    values_six_r v;
+    stage_six_r_q(m, w, i, j, joints, &v);
+    /* (potential) */
+    const real six_r_potential_t_4 = v.six_r_c_5*m->six_r_h_5_in_spec5_y[i] +
+        m->six_r_h_5_in_spec5_x[i]*v.six_r_s_5;
+    const real six_r_potential_t_5 = m->six_r_joint2_offset_x[i]*v.six_r_s_2;
+    const real six_r_potential_t_6 = v.six_r_c_1*m->six_r_potential_t[i] +
+        m->six_r_potential_t_2[i]*v.six_r_s_1;
+    const real six_r_b_in_spec2_z = v.six_r_c_1*m->six_r_potential_t_2[i] -
+        m->six_r_potential_t[i]*v.six_r_s_1;
+    const real six_r_b_in_spec2_x = v.six_r_c_2*m->six_r_potential_t_3[i] +
+        six_r_potential_t_6*v.six_r_s_2;
+    const real six_r_b_in_spec2_y = v.six_r_c_2*six_r_potential_t_6 -
+        m->six_r_potential_t_3[i]*v.six_r_s_2;
+    const real six_r_potential_t_7 = six_r_b_in_spec2_y - six_r_potential_t_5;
+    const real six_r_potential_t_8 = v.six_r_c_5*m->six_r_h_5_in_spec5_x[i] -
+        m->six_r_h_5_in_spec5_y[i]*v.six_r_s_5;
+    const real six_r_potential_t_9 = v.six_r_e_2_in_axes5_z*six_r_potential_t_4 -
+        v.six_r_h_4_t*m->six_r_h_5_in_spec5_z[i];
+    const real six_r_potential_t_10 = m->six_r_h_2_in_spec2_x[i] +
+        six_r_b_in_spec2_x*m->six_r_link1_mass[i] + v.six_r_c_2*m->six_r_h_1_in_spec1_x[i] +
+        v.six_r_c_3*m->six_r_h_3_in_spec3_x[i] + v.six_r_c_3*m->six_r_h_4_in_spec4_x[i] +
+        v.six_r_c_3*six_r_potential_t_8 + m->six_r_h_1_in_spec1_y[i]*v.six_r_s_2 +
+        m->six_r_link2_mass[i]*(six_r_b_in_spec2_x + v.six_r_d_2_in_spec2_x) +
+        m->six_r_link3_mass[i]*(six_r_b_in_spec2_x + v.six_r_d_2_in_spec2_x +
+        m->six_r_joint3_offset_x[i]) + m->six_r_link4_mass[i]*(six_r_b_in_spec2_x +
+        v.six_r_d_2_in_spec2_x + m->six_r_joint3_offset_x[i] +
+        v.six_r_c_3*m->six_r_joint4_offset_x[i]) - m->six_r_h_3_in_spec3_y[i]*v.six_r_s_3 -
+        v.six_r_h_4_in_spec3_y*v.six_r_s_3 - six_r_potential_t_9*v.six_r_s_3;
+    const real six_r_potential_t_11 = m->six_r_h_2_in_spec2_y[i] +
+        six_r_b_in_spec2_y*m->six_r_link1_mass[i] + v.six_r_c_2*m->six_r_h_1_in_spec1_y[i] +
+        v.six_r_c_3*m->six_r_h_3_in_spec3_y[i] + v.six_r_c_3*v.six_r_h_4_in_spec3_y +
+        v.six_r_c_3*six_r_potential_t_9 + m->six_r_h_3_in_spec3_x[i]*v.six_r_s_3 +
+        m->six_r_h_4_in_spec4_x[i]*v.six_r_s_3 + m->six_r_link2_mass[i]*six_r_potential_t_7 +
+        m->six_r_link3_mass[i]*six_r_potential_t_7 +
+        m->six_r_link4_mass[i]*(six_r_b_in_spec2_y + m->six_r_joint4_offset_x[i]*v.six_r_s_3 -
+        six_r_potential_t_5) + six_r_potential_t_8*v.six_r_s_3 -
+        m->six_r_h_1_in_spec1_x[i]*v.six_r_s_2;
+    const real six_r_potential_t_12 = m->six_r_h_1_in_spec1_z[i] + m->six_r_h_2_in_spec2_z[i]
+        + m->six_r_h_3_in_spec3_z[i] + six_r_b_in_spec2_z*m->six_r_link1_mass[i] +
+        six_r_b_in_spec2_z*m->six_r_link2_mass[i] + six_r_b_in_spec2_z*m->six_r_link3_mass[i]
+        + six_r_b_in_spec2_z*m->six_r_link4_mass[i] +
+        v.six_r_e_2_in_axes5_z*m->six_r_h_4_in_spec4_z[i] +
+        v.six_r_e_2_in_axes5_z*m->six_r_h_5_in_spec5_z[i] +
+        m->six_r_h_4_in_spec4_y[i]*v.six_r_h_4_t + v.six_r_h_4_t*six_r_potential_t_4;
+    const real six_r_potential_t_13 =
+        six_r_potential_t_10*(v.six_r_c_2*m->six_r_g_in_axes1_z[i] +
+        v.six_r_g_in_axes1_x*v.six_r_s_2) +
+        six_r_potential_t_11*(v.six_r_c_2*v.six_r_g_in_axes1_x -
+        m->six_r_g_in_axes1_z[i]*v.six_r_s_2) +
+        six_r_potential_t_12*(m->six_r_acc_3_t_2[i]*v.six_r_c_1 -
+        m->six_r_acc_3_t[i]*v.six_r_s_1);
+    /* (potential) */
+    gather(&terms[0*count + k], add, six_r_potential_t_13);  /* potential_of_legs */
 }
 
 INLINE void potential_place_six_r()
 {
 }
 
-INLINE void potential_after(size_t w, const real *s, const real *sums, real *potential)
+INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (potential) potential energy */
-        const real potential_of_legs = sums[0*w + k];
-        const real potential_t = s[0*w + k];
-        const real potential_ = -potential_of_legs - potential_t;
-        /* (potential) potential energy */
-        potential[0*w + k] = potential_;
-    }
+    /* (potential) */
+    const real potential_of_legs = sums[0*w + k];
+    const real potential_t = s[0*w + k];
+    const real potential_ = -potential_of_legs - potential_t;
+    /* (potential) */
+    potential[0*w + k] = potential_;
 }
 
 INLINE void potential_run(const prepared *m, const real *X, const real *joints, real *potential,
@@ -8678,145 +8411,129 @@ INLINE void potential_run(const prepared *m, const real *X, const real *joints, 
 {
     real s[1] = {0}, sums[1] = {0};
     real terms_six_r[LEGS(LEGS_OF_six_r)] = {0};
-    potential_before(m, 1, X, s, t);
-    potential_legs_six_r(m, 1, 0, 1, 0, LEGS(LEGS_OF_six_r), 0, joints, terms_six_r);
+    potential_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
+        potential_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), 0, joints, terms_six_r);
+    }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_six_r + n*LEGS(LEGS_OF_six_r), LEGS_OF_six_r);
     }
-    potential_after(1, s, sums, potential);
+    potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
-    verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
+    *lengths, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        const real legs_size = m->legs_size;
-        lengths[1*w + k] = legs_size;
-        t->total[k] += legs_size;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    lengths[1*w + k] = m->legs_size;
+    t->total[k] += m->legs_size;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void condition_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *joints, real *terms, real *o)
+INLINE void condition_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *joints, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_six_r v;
-        stage_six_r_X(m, w, i, j, s, &v);
-        stage_six_r_q(m, w, i, j, joints, &v);
-        stage_six_r_X_q(m, i, &v);
-        stage_six_r_H_condition(m, i, &v);
-        /* (six_r-w_1) force part of reciprocal wrench 1 */
-        const real six_r_pivot_size = magnitude(v.six_r_w_1_t_12);
-        const real six_r_pivot_size_2 = magnitude(v.six_r_w_1_t_28);
-        const real six_r_pivot_size_3 = magnitude(v.six_r_w_1_t_49);
-        const real six_r_pivot_size_4 = magnitude(v.six_r_w_1_t_67);
-        const real six_r_pivot_size_5 = magnitude(v.six_r_w_1_t_79);
-        const real inv_six_r_size = m->inv_six_r_size[i];
-        const real six_r_least_pivots =
-            lesser(lesser(lesser(lesser(inv_six_r_size*six_r_pivot_size,
-            inv_six_r_size*six_r_pivot_size_2), inv_six_r_size*six_r_pivot_size_3),
-            inv_six_r_size*six_r_pivot_size_4), inv_six_r_size*six_r_pivot_size_5);
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_in_platform_x = m->b_c_in_platform_x;
-        const real six_r_platform_point_x = m->six_r_platform_point_x[i];
-        const real six_r_spread_t = b_c_in_platform_x - six_r_platform_point_x;
-        const real b_c_in_platform_y = m->b_c_in_platform_y;
-        const real six_r_platform_point_y = m->six_r_platform_point_y[i];
-        const real six_r_spread_t_2 = b_c_in_platform_y - six_r_platform_point_y;
-        const real b_c_in_platform_z = m->b_c_in_platform_z;
-        const real six_r_platform_point_z = m->six_r_platform_point_z[i];
-        const real six_r_spread_t_3 = b_c_in_platform_z - six_r_platform_point_z;
-        const real six_r_spread_t_4 = six_r_spread_t*six_r_spread_t +
-            six_r_spread_t_2*six_r_spread_t_2 + six_r_spread_t_3*six_r_spread_t_3;
-        /* (spread) rms distance of the platform points from their centroid */
-        gather(&terms[0*count + k], add, six_r_spread_t_4);  /* spread_six_r */
-        /* (six_r-w_2) force part of reciprocal wrench 2 */
-        o[0*count + k] = v.six_r_w_2_x;
-        o[1*count + k] = v.six_r_w_2_y;
-        o[2*count + k] = v.six_r_w_2_z;
-        /* (six_r-H_a_2) moment of the column's unit force about the platform origin */
-        o[3*count + k] = v.six_r_H_a_2_x;
-        o[4*count + k] = v.six_r_H_a_2_y;
-        o[5*count + k] = v.six_r_H_a_2_z;
-        /* (six_r-w_1) force part of reciprocal wrench 1 */
-        o[6*count + k] = six_r_least_pivots;
-        o[8*count + k] = (v.six_r_w_2_x + (v.six_r_w_2_y + v.six_r_w_2_z)) + ((v.six_r_H_a_2_x +
-            v.six_r_H_a_2_y) + (v.six_r_H_a_2_z + six_r_least_pivots));
-        const real six_r_size = m->six_r_size[i];
-        o[7*count + k] = UNLESS(magnitude(v.six_r_w_1_t_12) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(v.six_r_w_1_t_28) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(v.six_r_w_1_t_49) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(v.six_r_w_1_t_67) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(v.six_r_w_1_t_79) > TOLERANCE*six_r_size);
-    }
+    values_six_r v;
+    stage_six_r_X(m, w, i, j, s, &v);
+    stage_six_r_q(m, w, i, j, joints, &v);
+    stage_six_r_X_q(m, i, &v);
+    stage_six_r_H_condition(m, i, &v);
+    /* (six_r-w_1) force part of reciprocal wrench 1 */
+    const real six_r_pivot_size = magnitude(v.six_r_w_1_t_12);
+    const real six_r_pivot_size_2 = magnitude(v.six_r_w_1_t_28);
+    const real six_r_pivot_size_3 = magnitude(v.six_r_w_1_t_49);
+    const real six_r_pivot_size_4 = magnitude(v.six_r_w_1_t_67);
+    const real six_r_pivot_size_5 = magnitude(v.six_r_w_1_t_79);
+    const real six_r_least_pivots =
+        lesser(lesser(lesser(lesser(m->inv_six_r_size[i]*six_r_pivot_size,
+        m->inv_six_r_size[i]*six_r_pivot_size_2), m->inv_six_r_size[i]*six_r_pivot_size_3),
+        m->inv_six_r_size[i]*six_r_pivot_size_4), m->inv_six_r_size[i]*six_r_pivot_size_5);
+    /* (spread) rms distance of the platform points from their centroid */
+    const real six_r_spread_t = m->b_c_in_platform_x - m->six_r_platform_point_x[i];
+    const real six_r_spread_t_2 = m->b_c_in_platform_y - m->six_r_platform_point_y[i];
+    const real six_r_spread_t_3 = m->b_c_in_platform_z - m->six_r_platform_point_z[i];
+    const real six_r_spread_t_4 = six_r_spread_t*six_r_spread_t +
+        six_r_spread_t_2*six_r_spread_t_2 + six_r_spread_t_3*six_r_spread_t_3;
+    /* (spread) */
+    gather(&terms[0*count + k], add, six_r_spread_t_4);  /* spread_six_r */
+    /* (six_r-w_2) force part of reciprocal wrench 2 */
+    o[0*count + k] = v.six_r_w_2_x;
+    o[1*count + k] = v.six_r_w_2_y;
+    o[2*count + k] = v.six_r_w_2_z;
+    /* (six_r-H_a_2) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.six_r_H_a_2_x;
+    o[4*count + k] = v.six_r_H_a_2_y;
+    o[5*count + k] = v.six_r_H_a_2_z;
+    /* (six_r-w_1) */
+    o[6*count + k] = six_r_least_pivots;
+    o[8*count + k] = (v.six_r_w_2_x + (v.six_r_w_2_y + v.six_r_w_2_z)) + ((v.six_r_H_a_2_x +
+        v.six_r_H_a_2_y) + (v.six_r_H_a_2_z + six_r_least_pivots));
+    o[7*count + k] = UNLESS(magnitude(v.six_r_w_1_t_12) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_28) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_49) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_67) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v.six_r_w_1_t_79) > TOLERANCE*m->six_r_size[i]);
 }
 
-INLINE void condition_place_six_r(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *H, real *pivots, verdict *t)
+INLINE void condition_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t count, const
+    real *o, real *H, real *pivots, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        H[(3*NU + leg)*w + k] = o[3*count + first + k];
-        H[(4*NU + leg)*w + k] = o[4*count + first + k];
-        H[(5*NU + leg)*w + k] = o[5*count + first + k];
-        pivots[leg*w + k] = o[6*count + first + k];
-        t->singular[k] += o[7*count + first + k];
-        t->total[k] += o[8*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    H[(3*NU + i)*w + k] = o[3*count + at];
+    H[(4*NU + i)*w + k] = o[4*count + at];
+    H[(5*NU + i)*w + k] = o[5*count + at];
+    pivots[i*w + k] = o[6*count + at];
+    t->singular[k] += o[7*count + at];
+    t->total[k] += o[8*count + at];
 }
 
-INLINE void condition_after(const prepared *m, size_t w, const real *sums, real *lengths, verdict
-    *t)
+INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
+    *lengths, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (spread) rms distance of the platform points from their centroid */
-        const real spread_six_r = sums[0*w + k];
-        const real spread_t = m->spread_t;
-        const real spread_ = root(spread_six_r)*spread_t;
-        /* (spread) rms distance of the platform points from their centroid */
-        lengths[0*w + k] = spread_;
-        t->total[k] += spread_;
-    }
+    /* (spread) */
+    const real spread_six_r = sums[0*w + k];
+    const real spread_ = root(spread_six_r)*m->spread_t;
+    /* (spread) */
+    lengths[0*w + k] = spread_;
+    t->total[k] += spread_;
 }
 
-INLINE void condition_run(const prepared *m, const real *X, const real *joints, real *H, real
+APART void condition_run(const prepared *m, const real *X, const real *joints, real *H, real
     *lengths, real *pivots, real *reach, verdict *t)
 {
     real s[9] = {0}, sums[1] = {0};
     real terms_six_r[LEGS(LEGS_OF_six_r)] = {0}, o_six_r[9*LEGS(LEGS_OF_six_r)] = {0};
     clear(reach, NL);
-    condition_before(m, 1, X, s, lengths, t);
-    condition_legs_six_r(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_six_r), 0, joints, terms_six_r, o_six_r);
-    for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
-        condition_place_six_r(1, LEGS(LEGS_OF_six_r), o_six_r, leg, leg, H, pivots, t);
+    condition_before(m, 1, 0, X, s, lengths, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
+        condition_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), 0, s, joints, terms_six_r, o_six_r);
+    }
+    for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
+        condition_place_six_r(1, i, 0, i, LEGS(LEGS_OF_six_r), o_six_r, H, pivots, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_six_r + n*LEGS(LEGS_OF_six_r), LEGS_OF_six_r);
     }
-    condition_after(m, 1, sums, lengths, t);
+    condition_after(m, 1, 0, sums, lengths, t);
 }
 
 /* ---- what users call, as steps over these ---- */
 
-INLINE void M_one(const prepared *m, const real *X, const real *q0, real *M_out, int *code)
+int hexapod_6x6r_M(const prepared *m, const real *X, const real *q0, real *M_out)
 {
     real joints[NJ] = {0}, M[NV*NV] = {0};
     verdict why;
@@ -8828,9 +8545,11 @@ INLINE void M_one(const prepared *m, const real *X, const real *q0, real *M_out,
         check(NV*NV, 1, M, why.overflow);
     }
     copy(NV*NV, M, M_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NV, M_out);
     }
+    return code;
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, const real *q0, real *M_out, int *code)
@@ -8845,8 +8564,7 @@ INLINE void M_lanes(const prepared *m, const real *X, const real *q0, real *M_ou
     deliver(NV*NV, M, M_out);
 }
 
-INLINE void Z_one(const prepared *m, const real *X, const real *q0, const real *V, real *Z_out,
-    int *code)
+int hexapod_6x6r_Z(const prepared *m, const real *X, const real *q0, const real *V, real *Z_out)
 {
     real joints[NJ] = {0}, Z[NV] = {0};
     verdict why;
@@ -8862,9 +8580,11 @@ INLINE void Z_one(const prepared *m, const real *X, const real *q0, const real *
         check(NV, 1, Z, why.overflow);
     }
     copy(NV, Z, Z_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, Z_out);
     }
+    return code;
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *q0, const real *V, real *Z_out,
@@ -8881,7 +8601,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *q0, const real
     deliver(NV, Z, Z_out);
 }
 
-INLINE void H_one(const prepared *m, const real *X, const real *q0, real *H_out, int *code)
+int hexapod_6x6r_H(const prepared *m, const real *X, const real *q0, real *H_out)
 {
     real joints[NJ] = {0}, H[NV*NU] = {0};
     verdict why;
@@ -8893,9 +8613,11 @@ INLINE void H_one(const prepared *m, const real *X, const real *q0, real *H_out,
         check(NV*NU, 1, H, why.overflow);
     }
     copy(NV*NU, H, H_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NU, H_out);
     }
+    return code;
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, const real *q0, real *H_out, int *code)
@@ -8910,8 +8632,7 @@ INLINE void H_lanes(const prepared *m, const real *X, const real *q0, real *H_ou
     deliver(NV*NU, H, H_out);
 }
 
-INLINE void inverse_kinematics_one(const prepared *m, const real *X, const real *q0, real *q_out,
-    int *code)
+int hexapod_6x6r_inverse_kinematics(const prepared *m, const real *X, const real *q0, real *q_out)
 {
     real joints[NJ] = {0}, q[NJ] = {0};
     verdict why;
@@ -8923,9 +8644,11 @@ INLINE void inverse_kinematics_one(const prepared *m, const real *X, const real 
         check(NJ, 1, q, why.overflow);
     }
     copy(NJ, q, q_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, q_out);
     }
+    return code;
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, const real *q0, real
@@ -8941,8 +8664,8 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, const rea
     deliver(NJ, q, q_out);
 }
 
-INLINE void joint_rates_one(const prepared *m, const real *X, const real *q0, const real *V, real
-    *qd_out, int *code)
+int hexapod_6x6r_joint_rates(const prepared *m, const real *X, const real *q0, const real *V, real
+    *qd_out)
 {
     real joints[NJ] = {0}, qd[NJ] = {0};
     verdict why;
@@ -8958,9 +8681,11 @@ INLINE void joint_rates_one(const prepared *m, const real *X, const real *q0, co
         check(NJ, 1, qd, why.overflow);
     }
     copy(NJ, qd, qd_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, qd_out);
     }
+    return code;
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *q0, const real *V,
@@ -8977,8 +8702,8 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *q0, 
     deliver(NJ, qd, qd_out);
 }
 
-INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *q0, const real
-    *V, const real *A, real *qdd_out, int *code)
+int hexapod_6x6r_joint_accelerations(const prepared *m, const real *X, const real *q0, const real
+    *V, const real *A, real *qdd_out)
 {
     real joints[NJ] = {0}, qdd[NJ] = {0};
     verdict why;
@@ -8995,9 +8720,11 @@ INLINE void joint_accelerations_one(const prepared *m, const real *X, const real
         check(NJ, 1, qdd, why.overflow);
     }
     copy(NJ, qdd, qdd_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, qdd_out);
     }
+    return code;
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *q0, const real
@@ -9015,8 +8742,8 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
     deliver(NJ, qdd, qdd_out);
 }
 
-INLINE void dynamics_one(const prepared *m, const real *X, const real *q0, const real *V, real
-    *M_out, real *Z_out, real *H_out, int *code)
+int hexapod_6x6r_dynamics(const prepared *m, const real *X, const real *q0, const real *V, real
+    *M_out, real *Z_out, real *H_out)
 {
     real joints[NJ] = {0}, M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0};
     verdict why;
@@ -9036,11 +8763,13 @@ INLINE void dynamics_one(const prepared *m, const real *X, const real *q0, const
     copy(NV*NV, M, M_out);
     copy(NV, Z, Z_out);
     copy(NV*NU, H, H_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NV, M_out);
         refuse(NV, Z_out);
         refuse(NV*NU, H_out);
     }
+    return code;
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *q0, const real *V, real
@@ -9233,8 +8962,8 @@ INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real
 static const size_t order_tau[] = {0, 5, 2, 3, 4, 1};
 static const real sizes_tau[] = {0.25, 0.015625, 4.0, 1.0, 1.0, 0.25};
 
-INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *q0, const real *V,
-    const real *A, const real *wrench, real *tau_out, int *code)
+int hexapod_6x6r_inverse_dynamics(const prepared *m, const real *X, const real *q0, const real *V,
+    const real *A, const real *wrench, real *tau_out)
 {
     real wrench_in[NW], joints[NJ] = {0}, required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0},
         unsure_tau[1] = {0}, work[NV*PADDED(NV)];
@@ -9261,9 +8990,11 @@ INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *q
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, tau_out);
     }
+    return code;
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *q0, const real
@@ -9290,8 +9021,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 static const size_t order_A[] = {0, 1, 2, 3, 4, 5};
 static const real sizes_A[] = {16.0, 16.0, 16.0, 1.0, 1.0, 1.0};
 
-INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *q0, const real *V,
-    const real *tau, const real *wrench, real *A_out, int *code)
+int hexapod_6x6r_forward_dynamics(const prepared *m, const real *X, const real *q0, const real *V,
+    const real *tau, const real *wrench, real *A_out)
 {
     real wrench_in[NW], joints[NJ] = {0}, M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] =
         {0}, add_1[NV] = {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
@@ -9322,9 +9053,11 @@ INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *q
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, A_out);
     }
+    return code;
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *q0, const real
@@ -9353,21 +9086,29 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     deliver(NV, A, A_out);
 }
 
-INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
+int hexapod_6x6r_complete_acceleration(const prepared *m, const real *X, const real *q0, const
+    real *V, const real *A, const real *wrench, real *completed_out)
 {
+    (void)m;
+    (void)X;
+    (void)q0;
+    (void)V;
+    (void)wrench;
     verdict why;
     start(1, &why);
     check(NV, 1, A, why.invalid);
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, completed_out);
     }
+    return code;
 }
 
-INLINE void leg_reactions_one(const prepared *m, const real *X, const real *q0, const real *V,
-    const real *A, const real *wrench, real *forces_out, int *code)
+int hexapod_6x6r_leg_reactions(const prepared *m, const real *X, const real *q0, const real *V,
+    const real *A, const real *wrench, real *forces_out)
 {
     static const size_t places_forces[] = {0, 1, 2, 3, 4, 5};
     real wrench_in[NW], joints[NJ] = {0}, required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0},
@@ -9400,13 +9141,15 @@ INLINE void leg_reactions_one(const prepared *m, const real *X, const real *q0, 
     add_forces(NL, 6, 1, places_forces, solve_1, actuator, forces);
     check(NL*NL, 1, forces, why.overflow);
     copy(NL*NL, forces, forces_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NL*NL, forces_out);
     }
+    return code;
 }
 
-INLINE void energy_one(const prepared *m, const real *X, const real *q0, const real *V, real
-    *kinetic_out, real *potential_out, int *code)
+int hexapod_6x6r_energy(const prepared *m, const real *X, const real *q0, const real *V, real
+    *kinetic_out, real *potential_out)
 {
     real joints[NJ] = {0}, M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
@@ -9425,15 +9168,18 @@ INLINE void energy_one(const prepared *m, const real *X, const real *q0, const r
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, kinetic_out);
         refuse(1, potential_out);
     }
+    return code;
 }
 
-INLINE void condition_one(const prepared *m, const real *X, const real *q0, const real *length,
-    real *sigma_out, real *legs_out, int *code)
+int hexapod_6x6r_condition(const prepared *m, const real *X, const real *q0, real *sigma_out, real
+    *legs_out)
 {
+    const real *length = NULL;
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real length_in[1], joints[NJ] = {0}, H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] =
         {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
@@ -9460,14 +9206,16 @@ INLINE void condition_one(const prepared *m, const real *X, const real *q0, cons
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, sigma_out);
         refuse(NL, legs_out);
     }
+    return code;
 }
 
-INLINE void manipulability_one(const prepared *m, const real *X, const real *q0, real
-    *measure_out, real *isotropy_out, int *code)
+int hexapod_6x6r_manipulability(const prepared *m, const real *X, const real *q0, real
+    *measure_out, real *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real joints[NJ] = {0}, H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
@@ -9498,14 +9246,16 @@ INLINE void manipulability_one(const prepared *m, const real *X, const real *q0,
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, measure_out);
         refuse(1, isotropy_out);
     }
+    return code;
 }
 
-INLINE void singularity_distance_one(const prepared *m, const real *X, const real *q0, real
-    *actuators_out, real *legs_out, int *code)
+int hexapod_6x6r_singularity_distance(const prepared *m, const real *X, const real *q0, real
+    *actuators_out, real *legs_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real joints[NJ] = {0}, H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
@@ -9536,14 +9286,16 @@ INLINE void singularity_distance_one(const prepared *m, const real *X, const rea
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, actuators_out);
         refuse(1, legs_out);
     }
+    return code;
 }
 
-static void mismatch_one(const prepared *m, const real *X, const real *q0, const real *q_actuated,
-    real *gap_out, int *code)
+static int mismatch_one(const prepared *m, const real *X, const real *q0, const real *q_actuated,
+    real *gap_out)
 {
     static const size_t places_gap[] = {0, 1, 2, 3, 4, 5};
     real joints[NJ] = {0}, q[NJ] = {0}, q_of_inverse_kinematics_from_1[6] = {0}, subtract_1[NU] = {0},
@@ -9567,13 +9319,14 @@ static void mismatch_one(const prepared *m, const real *X, const real *q0, const
     wrap_turns(NU, 1, places_gap, gap);
     check(NU, 1, gap, why.overflow);
     copy(NU, gap, gap_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, gap_out);
     }
+    return code;
 }
 
-static void slope_one(const prepared *m, const real *X, const real *q0, real *slope_out, int
-    *code)
+static int slope_one(const prepared *m, const real *X, const real *q0, real *slope_out)
 {
     real joints[NJ] = {0}, slope[NV*NU] = {0};
     verdict why;
@@ -9585,9 +9338,11 @@ static void slope_one(const prepared *m, const real *X, const real *q0, real *sl
         check(NV*NU, 1, slope, why.overflow);
     }
     copy(NV*NU, slope, slope_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NU, slope_out);
     }
+    return code;
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -9598,12 +9353,12 @@ static int search_mismatch(const prepared *m, const real *q0, const real *q_actu
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    mismatch_one(m, found, q0, q_actuated, gap, &code);
+    code = mismatch_one(m, found, q0, q_actuated, gap);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        slope_one(m, found, q0, slope, &code);
+        code = slope_one(m, found, q0, slope);
         if (code != OK) {
             break;
         }
@@ -9617,7 +9372,7 @@ static int search_mismatch(const prepared *m, const real *q0, const real *q_actu
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            mismatch_one(m, trial, q0, q_actuated, next, &tried);
+            tried = mismatch_one(m, trial, q0, q_actuated, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -9635,8 +9390,8 @@ static int search_mismatch(const prepared *m, const real *q0, const real *q_actu
 }
 
 
-INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0,
-    const real *q0, real *X_out, int *code)
+int hexapod_6x6r_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0,
+    const real *q0, real *X_out)
 {
     real X[NQ] = {0};
     verdict why;
@@ -9649,13 +9404,19 @@ INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, co
     blame(search_mismatch(m, q0, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
-INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
+int hexapod_6x6r_dissipation(const prepared *m, const real *X, const real *q0, const real *V, real
+    *dissipation_out)
 {
+    (void)m;
+    (void)X;
+    (void)q0;
     real subtract_1[NV] = {0};
     verdict why;
     start(1, &why);
@@ -9666,13 +9427,15 @@ INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, dissipation_out);
     }
+    return code;
 }
 
-INLINE void momentum_one(const prepared *m, const real *X, const real *q0, const real *V, real
-    *momentum_out, int *code)
+int hexapod_6x6r_momentum(const prepared *m, const real *X, const real *q0, const real *V, real
+    *momentum_out)
 {
     real joints[NJ] = {0}, M[NV*NV] = {0}, momentum[NV] = {0};
     verdict why;
@@ -9687,29 +9450,15 @@ INLINE void momentum_one(const prepared *m, const real *X, const real *q0, const
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, momentum_out);
     }
+    return code;
 }
 
-INLINE void momentum_lanes(const prepared *m, const real *X, const real *q0, const real *V, real
-    *momentum_out, int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], joints[NJ*LANES], M[NV*NV*LANES], momentum[NV*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    close_loops(m, LANES, X, q0, joints, &why);
-    M_run_lanes(m, X, joints, M, &why);
-    product(NV, NV, 1, LANES, M, V, momentum);
-    add_up(NV, momentum, why.total);
-    suspect(&why, code);
-    deliver(NV, momentum, momentum_out);
-}
-
-INLINE void joint_margins_one(const prepared *m, const real *X, const real *q0, real *margins_out,
-    int *code)
+int hexapod_6x6r_joint_margins(const prepared *m, const real *X, const real *q0, real
+    *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16,
         17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29};
@@ -9724,32 +9473,14 @@ INLINE void joint_margins_one(const prepared *m, const real *X, const real *q0, 
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, margins_out);
     }
+    return code;
 }
 
-INLINE void joint_margins_lanes(const prepared *m, const real *X, const real *q0, real
-    *margins_out, int *code)
-{
-    static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16,
-        17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29};
-    real X_in[NQ*LANES], joints[NJ*LANES], q[NJ*LANES], margins[NJ*LANES];
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    close_loops(m, LANES, X, q0, joints, &why);
-    inverse_kinematics_run_lanes(joints, q, &why);
-    for (size_t i = 0; i < NJ*LANES; ++i) {
-        margins[i] = q[i];
-    }
-    unlimited(NJ, NJ, LANES, places_margins, margins, why.invalid);
-    suspect(&why, code);
-    deliver(NJ, margins, margins_out);
-}
-
-INLINE void within_limits_one(const prepared *m, const real *X, const real *q0, real *within_out,
-    int *code)
+int hexapod_6x6r_within_limits(const prepared *m, const real *X, const real *q0, real *within_out)
 {
     real joints[NJ] = {0}, q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
     verdict why;
@@ -9763,31 +9494,14 @@ INLINE void within_limits_one(const prepared *m, const real *X, const real *q0, 
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, within_out);
     }
+    return code;
 }
 
-INLINE void within_limits_lanes(const prepared *m, const real *X, const real *q0, real
-    *within_out, int *code)
-{
-    real X_in[NQ*LANES], joints[NJ*LANES], q[NJ*LANES], subtract_1[NJ*LANES], within[LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    close_loops(m, LANES, X, q0, joints, &why);
-    inverse_kinematics_run_lanes(joints, q, &why);
-    for (size_t i = 0; i < NJ*LANES; ++i) {
-        subtract_1[i] = q[i] - q[i];
-    }
-    not_negative(NJ, LANES, subtract_1, within, why.invalid);
-    add_up(1, within, why.total);
-    suspect(&why, code);
-    deliver(1, within, within_out);
-}
-
-INLINE void actuator_positions_one(const prepared *m, const real *X, const real *q0, real *q_out,
-    int *code)
+int hexapod_6x6r_actuator_positions(const prepared *m, const real *X, const real *q0, real *q_out)
 {
     real joints[NJ] = {0}, q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
     verdict why;
@@ -9798,28 +9512,15 @@ INLINE void actuator_positions_one(const prepared *m, const real *X, const real 
     take(NU, 1, hexapod_6x6r_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, q_out);
     }
+    return code;
 }
 
-INLINE void actuator_positions_lanes(const prepared *m, const real *X, const real *q0, real
-    *q_out, int *code)
-{
-    real X_in[NQ*LANES], joints[NJ*LANES], q_of_inverse_kinematics[NJ*LANES], q[NU*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    close_loops(m, LANES, X, q0, joints, &why);
-    inverse_kinematics_run_lanes(joints, q_of_inverse_kinematics, &why);
-    take(NU, LANES, hexapod_6x6r_ACTUATED, q_of_inverse_kinematics, q);
-    add_up(NU, q, why.total);
-    suspect(&why, code);
-    deliver(NU, q, q_out);
-}
-
-INLINE void actuator_rates_one(const prepared *m, const real *X, const real *q0, const real *V,
-    real *qd_out, int *code)
+int hexapod_6x6r_actuator_rates(const prepared *m, const real *X, const real *q0, const real *V,
+    real *qd_out)
 {
     real joints[NJ] = {0}, qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
     verdict why;
@@ -9834,30 +9535,15 @@ INLINE void actuator_rates_one(const prepared *m, const real *X, const real *q0,
     take(NU, 1, hexapod_6x6r_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, qd_out);
     }
+    return code;
 }
 
-INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *q0, const real *V,
-    real *qd_out, int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], joints[NJ*LANES], qd_of_joint_rates[NJ*LANES], qd[NU*LANES] =
-        {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    close_loops(m, LANES, X, q0, joints, &why);
-    joint_rates_run_lanes(m, X, V, joints, qd_of_joint_rates, &why);
-    take(NU, LANES, hexapod_6x6r_ACTUATED, qd_of_joint_rates, qd);
-    add_up(NU, qd, why.total);
-    suspect(&why, code);
-    deliver(NU, qd, qd_out);
-}
-
-INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *q0, const
-    real *V, const real *A, real *qdd_out, int *code)
+int hexapod_6x6r_actuator_accelerations(const prepared *m, const real *X, const real *q0, const
+    real *V, const real *A, real *qdd_out)
 {
     real joints[NJ] = {0}, qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
     verdict why;
@@ -9873,31 +9559,15 @@ INLINE void actuator_accelerations_one(const prepared *m, const real *X, const r
     take(NU, 1, hexapod_6x6r_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, qdd_out);
     }
+    return code;
 }
 
-INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *q0, const
-    real *V, const real *A, real *qdd_out, int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], joints[NJ*LANES],
-        qdd_of_joint_accelerations[NJ*LANES], qdd[NU*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    A = side_by_side(NV, A, A_in, why.total);
-    close_loops(m, LANES, X, q0, joints, &why);
-    joint_accelerations_run_lanes(m, X, V, A, joints, qdd_of_joint_accelerations, &why);
-    take(NU, LANES, hexapod_6x6r_ACTUATED, qdd_of_joint_accelerations, qdd);
-    add_up(NU, qdd, why.total);
-    suspect(&why, code);
-    deliver(NU, qdd, qdd_out);
-}
-
-INLINE void power_one(const prepared *m, const real *X, const real *q0, const real *V, const real
-    *tau, real *power_out, int *code)
+int hexapod_6x6r_power(const prepared *m, const real *X, const real *q0, const real *V, const real
+    *tau, real *power_out)
 {
     real joints[NJ] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
     verdict why;
@@ -9914,31 +9584,14 @@ INLINE void power_one(const prepared *m, const real *X, const real *q0, const re
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, power_out);
     }
+    return code;
 }
 
-INLINE void power_lanes(const prepared *m, const real *X, const real *q0, const real *V, const
-    real *tau, real *power_out, int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], joints[NJ*LANES], H[NV*NU*LANES],
-        times_1[NV*LANES] = {0}, power[LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    tau = side_by_side(NU, tau, tau_in, why.total);
-    close_loops(m, LANES, X, q0, joints, &why);
-    H_run_lanes(m, X, joints, H, &why);
-    product(NV, NU, 1, LANES, H, tau, times_1);
-    inner(NV, LANES, times_1, V, power);
-    add_up(1, power, why.total);
-    suspect(&why, code);
-    deliver(1, power, power_out);
-}
-
-INLINE void rotation_one(const real *X, real *R_out, int *code)
+int hexapod_6x6r_rotation(const real *X, real *R_out)
 {
     real R[9] = {0};
     verdict why;
@@ -9948,12 +9601,14 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     copy(9, R, R_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(9, R_out);
     }
+    return code;
 }
 
-INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
+int hexapod_6x6r_pose(const real *t, const real *R, real *X_out)
 {
     real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0};
     verdict why;
@@ -9968,12 +9623,14 @@ INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
-INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
+int hexapod_6x6r_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     real quaternion_rate_1[4] = {0}, X_dot[NQ] = {0};
     verdict why;
@@ -9990,12 +9647,14 @@ INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
     beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_dot_out);
     }
+    return code;
 }
 
-INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *code)
+int hexapod_6x6r_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
     real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0};
     verdict why;
@@ -10010,12 +9669,14 @@ INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
-INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
+int hexapod_6x6r_retract(const real *X, const real *step, real *X_moved_out)
 {
     real turn_quaternion_1[4] = {0}, add_1[3] = {0}, X_moved[NQ] = {0};
     verdict why;
@@ -10036,12 +9697,14 @@ INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int 
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_moved_out);
     }
+    return code;
 }
 
-INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
+int hexapod_6x6r_difference(const real *X0, const real *X1, real *step_out)
 {
     real turn_between_1[3] = {0}, subtract_1[3] = {0}, step[NV] = {0};
     verdict why;
@@ -10062,12 +9725,14 @@ INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, step_out);
     }
+    return code;
 }
 
-INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
+int hexapod_6x6r_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     real turn_between_1[3] = {0}, subtract_1[3] = {0}, join_1[6] = {0}, scale_1[6] = {0},
         turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
@@ -10102,756 +9767,217 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
 /* ---- one state, and batches ---- */
 
-int hexapod_6x6r_M(const prepared *model, const real *X, const real *q0, real *M)
+size_t hexapod_6x6r_M_batch(const prepared *m, size_t n, const real *X, const real *q0, real *M,
+    int *status)
 {
-    int code;
-    M_one(model, X, q0, M, &code);
-    return code;
+    SIDE_BY_SIDE(M_lanes(m, X + NQ*i, q0 ? q0 + NJ*i : NULL, M + NV*NV*i, codes), hexapod_6x6r_M(m, X
+        + NQ*j, q0 ? q0 + NJ*j : NULL, M + NV*NV*j));
 }
 
-size_t hexapod_6x6r_M_batch(const prepared *model, size_t n, const real *X, const real *q0, real
-    *M, int *status)
+size_t hexapod_6x6r_Z_batch(const prepared *m, size_t n, const real *X, const real *q0, const real
+    *V, real *Z, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            M_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, M + NV*NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hexapod_6x6r_M(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL, M + NV*NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(Z_lanes(m, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, Z + NV*i, codes),
+        hexapod_6x6r_Z(m, X + NQ*j, q0 ? q0 + NJ*j : NULL, V + NV*j, Z + NV*j));
 }
 
-int hexapod_6x6r_Z(const prepared *model, const real *X, const real *q0, const real *V, real *Z)
+size_t hexapod_6x6r_H_batch(const prepared *m, size_t n, const real *X, const real *q0, real *H,
+    int *status)
 {
-    int code;
-    Z_one(model, X, q0, V, Z, &code);
-    return code;
+    SIDE_BY_SIDE(H_lanes(m, X + NQ*i, q0 ? q0 + NJ*i : NULL, H + NV*NU*i, codes), hexapod_6x6r_H(m, X
+        + NQ*j, q0 ? q0 + NJ*j : NULL, H + NV*NU*j));
 }
 
-size_t hexapod_6x6r_Z_batch(const prepared *model, size_t n, const real *X, const real *q0, const
-    real *V, real *Z, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            Z_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, Z + NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hexapod_6x6r_Z(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL, V + NV*(i + k), Z +
-                    NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hexapod_6x6r_H(const prepared *model, const real *X, const real *q0, real *H)
-{
-    int code;
-    H_one(model, X, q0, H, &code);
-    return code;
-}
-
-size_t hexapod_6x6r_H_batch(const prepared *model, size_t n, const real *X, const real *q0, real
-    *H, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            H_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, H + NV*NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hexapod_6x6r_H(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL, H + NV*NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hexapod_6x6r_inverse_kinematics(const prepared *model, const real *X, const real *q0, real *q)
-{
-    int code;
-    inverse_kinematics_one(model, X, q0, q, &code);
-    return code;
-}
-
-size_t hexapod_6x6r_inverse_kinematics_batch(const prepared *model, size_t n, const real *X, const
+size_t hexapod_6x6r_inverse_kinematics_batch(const prepared *m, size_t n, const real *X, const
     real *q0, real *q, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            inverse_kinematics_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, q + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hexapod_6x6r_inverse_kinematics(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL, q +
-                    NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(inverse_kinematics_lanes(m, X + NQ*i, q0 ? q0 + NJ*i : NULL, q + NJ*i, codes),
+        hexapod_6x6r_inverse_kinematics(m, X + NQ*j, q0 ? q0 + NJ*j : NULL, q + NJ*j));
 }
 
-int hexapod_6x6r_joint_rates(const prepared *model, const real *X, const real *q0, const real *V,
-    real *rates)
+size_t hexapod_6x6r_joint_rates_batch(const prepared *m, size_t n, const real *X, const real *q0,
+    const real *V, real *rates, int *status)
 {
-    int code;
-    joint_rates_one(model, X, q0, V, rates, &code);
-    return code;
+    SIDE_BY_SIDE(joint_rates_lanes(m, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, rates + NJ*i, codes),
+        hexapod_6x6r_joint_rates(m, X + NQ*j, q0 ? q0 + NJ*j : NULL, V + NV*j, rates + NJ*j));
 }
 
-size_t hexapod_6x6r_joint_rates_batch(const prepared *model, size_t n, const real *X, const real
-    *q0, const real *V, real *rates, int *status)
+size_t hexapod_6x6r_joint_accelerations_batch(const prepared *m, size_t n, const real *X, const
+    real *q0, const real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_rates_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, rates + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hexapod_6x6r_joint_rates(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL, V + NV*(i
-                    + k), rates + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(joint_accelerations_lanes(m, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, A + NV*i,
+        accelerations + NJ*i, codes), hexapod_6x6r_joint_accelerations(m, X + NQ*j, q0 ? q0 + NJ*j :
+        NULL, V + NV*j, A + NV*j, accelerations + NJ*j));
 }
 
-int hexapod_6x6r_joint_accelerations(const prepared *model, const real *X, const real *q0, const
-    real *V, const real *A, real *accelerations)
-{
-    int code;
-    joint_accelerations_one(model, X, q0, V, A, accelerations, &code);
-    return code;
-}
-
-size_t hexapod_6x6r_joint_accelerations_batch(const prepared *model, size_t n, const real *X,
-    const real *q0, const real *V, const real *A, real *accelerations, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_accelerations_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, A + NV*i,
-                accelerations + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hexapod_6x6r_joint_accelerations(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL, V
-                    + NV*(i + k), A + NV*(i + k), accelerations + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hexapod_6x6r_dynamics(const prepared *model, const real *X, const real *q0, const real *V,
-    real *M, real *Z, real *H)
-{
-    int code;
-    dynamics_one(model, X, q0, V, M, Z, H, &code);
-    return code;
-}
-
-size_t hexapod_6x6r_dynamics_batch(const prepared *model, size_t n, const real *X, const real *q0,
+size_t hexapod_6x6r_dynamics_batch(const prepared *m, size_t n, const real *X, const real *q0,
     const real *V, real *M, real *Z, real *H, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            dynamics_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, M + NV*NV*i, Z + NV*i, H +
-                NV*NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hexapod_6x6r_dynamics(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL, V + NV*(i +
-                    k), M + NV*NV*(i + k), Z + NV*(i + k), H + NV*NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(dynamics_lanes(m, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, M + NV*NV*i, Z + NV*i, H
+        + NV*NU*i, codes), hexapod_6x6r_dynamics(m, X + NQ*j, q0 ? q0 + NJ*j : NULL, V + NV*j, M +
+        NV*NV*j, Z + NV*j, H + NV*NU*j));
 }
 
-int hexapod_6x6r_inverse_dynamics(const prepared *model, const real *X, const real *q0, const real
-    *V, const real *A, const real *wrench, real *tau)
+size_t hexapod_6x6r_inverse_dynamics_batch(const prepared *m, size_t n, const real *X, const real
+    *q0, const real *V, const real *A, const real *wrench, real *tau, int *status)
 {
-    int code;
-    inverse_dynamics_one(model, X, q0, V, A, wrench, tau, &code);
-    return code;
+    SIDE_BY_SIDE(inverse_dynamics_lanes(m, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, A + NV*i, wrench
+        ? wrench + NW*i : NULL, tau + NU*i, codes), hexapod_6x6r_inverse_dynamics(m, X + NQ*j, q0 ? q0
+        + NJ*j : NULL, V + NV*j, A + NV*j, wrench ? wrench + NW*j : NULL, tau + NU*j));
 }
 
-size_t hexapod_6x6r_inverse_dynamics_batch(const prepared *model, size_t n, const real *X, const
-    real *q0, const real *V, const real *A, const real *wrench, real *tau, int *status)
+size_t hexapod_6x6r_forward_dynamics_batch(const prepared *m, size_t n, const real *X, const real
+    *q0, const real *V, const real *tau, const real *wrench, real *A, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            inverse_dynamics_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, A + NV*i, wrench ? wrench
-                + NW*i : NULL, tau + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hexapod_6x6r_inverse_dynamics(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL, V +
-                    NV*(i + k), A + NV*(i + k), wrench ? wrench + NW*(i + k) : NULL, tau + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(forward_dynamics_lanes(m, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, tau + NU*i,
+        wrench ? wrench + NW*i : NULL, A + NV*i, codes), hexapod_6x6r_forward_dynamics(m, X + NQ*j, q0
+        ? q0 + NJ*j : NULL, V + NV*j, tau + NU*j, wrench ? wrench + NW*j : NULL, A + NV*j));
 }
 
-int hexapod_6x6r_forward_dynamics(const prepared *model, const real *X, const real *q0, const real
-    *V, const real *tau, const real *wrench, real *A)
+size_t hexapod_6x6r_complete_acceleration_batch(const prepared *m, size_t n, const real *X, const
+    real *q0, const real *V, const real *A, const real *wrench, real *completed, int *status)
 {
-    int code;
-    forward_dynamics_one(model, X, q0, V, tau, wrench, A, &code);
-    return code;
+    ONE_BY_ONE(hexapod_6x6r_complete_acceleration(m, X + NQ*j, q0 ? q0 + NJ*j : NULL, V + NV*j, A +
+        NV*j, wrench ? wrench + NW*j : NULL, completed + NV*j));
 }
 
-size_t hexapod_6x6r_forward_dynamics_batch(const prepared *model, size_t n, const real *X, const
-    real *q0, const real *V, const real *tau, const real *wrench, real *A, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            forward_dynamics_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, tau + NU*i, wrench ?
-                wrench + NW*i : NULL, A + NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hexapod_6x6r_forward_dynamics(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL, V +
-                    NV*(i + k), tau + NU*(i + k), wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hexapod_6x6r_complete_acceleration(const prepared *model, const real *X, const real *q0, const
-    real *V, const real *A, const real *wrench, real *completed)
-{
-    int code;
-    (void)model, (void)X, (void)q0, (void)V, (void)wrench;
-    complete_acceleration_one(A, completed, &code);
-    return code;
-}
-
-size_t hexapod_6x6r_complete_acceleration_batch(const prepared *model, size_t n, const real *X,
-    const real *q0, const real *V, const real *A, const real *wrench, real *completed, int
-    *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hexapod_6x6r_complete_acceleration(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V +
-            NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, completed + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hexapod_6x6r_leg_reactions(const prepared *model, const real *X, const real *q0, const real
-    *V, const real *A, const real *wrench, real *forces)
-{
-    int code;
-    leg_reactions_one(model, X, q0, V, A, wrench, forces, &code);
-    return code;
-}
-
-size_t hexapod_6x6r_leg_reactions_batch(const prepared *model, size_t n, const real *X, const real
+size_t hexapod_6x6r_leg_reactions_batch(const prepared *m, size_t n, const real *X, const real
     *q0, const real *V, const real *A, const real *wrench, real *forces, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hexapod_6x6r_leg_reactions(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, A +
-            NV*i, wrench ? wrench + NW*i : NULL, forces + 36*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(hexapod_6x6r_leg_reactions(m, X + NQ*j, q0 ? q0 + NJ*j : NULL, V + NV*j, A + NV*j,
+        wrench ? wrench + NW*j : NULL, forces + 36*j));
 }
 
-int hexapod_6x6r_energy(const prepared *model, const real *X, const real *q0, const real *V, real
-    *kinetic, real *potential)
+size_t hexapod_6x6r_energy_batch(const prepared *m, size_t n, const real *X, const real *q0, const
+    real *V, real *kinetic, real *potential, int *status)
 {
-    int code;
-    energy_one(model, X, q0, V, kinetic, potential, &code);
-    return code;
+    ONE_BY_ONE(hexapod_6x6r_energy(m, X + NQ*j, q0 ? q0 + NJ*j : NULL, V + NV*j, kinetic + j,
+        potential + j));
 }
 
-size_t hexapod_6x6r_energy_batch(const prepared *model, size_t n, const real *X, const real *q0,
-    const real *V, real *kinetic, real *potential, int *status)
+size_t hexapod_6x6r_condition_batch(const prepared *m, size_t n, const real *X, const real *q0,
+    real *sigma, real *legs, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hexapod_6x6r_energy(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, kinetic +
-            i, potential + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(hexapod_6x6r_condition(m, X + NQ*j, q0 ? q0 + NJ*j : NULL, sigma + 6*j, legs + 6*j));
 }
 
-int hexapod_6x6r_condition(const prepared *model, const real *X, const real *q0, real *sigma, real
-    *legs)
+size_t hexapod_6x6r_manipulability_batch(const prepared *m, size_t n, const real *X, const real
+    *q0, real *measure, real *isotropy, int *status)
 {
-    int code;
-    condition_one(model, X, q0, NULL, sigma, legs, &code);
-    return code;
+    ONE_BY_ONE(hexapod_6x6r_manipulability(m, X + NQ*j, q0 ? q0 + NJ*j : NULL, measure + j, isotropy +
+        j));
 }
 
-size_t hexapod_6x6r_condition_batch(const prepared *model, size_t n, const real *X, const real
-    *q0, real *sigma, real *legs, int *status)
+size_t hexapod_6x6r_singularity_distance_batch(const prepared *m, size_t n, const real *X, const
+    real *q0, real *actuators, real *legs, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hexapod_6x6r_condition(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, sigma + 6*i, legs
-            + 6*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(hexapod_6x6r_singularity_distance(m, X + NQ*j, q0 ? q0 + NJ*j : NULL, actuators + j,
+        legs + j));
 }
 
-int hexapod_6x6r_manipulability(const prepared *model, const real *X, const real *q0, real
-    *measure, real *isotropy)
+size_t hexapod_6x6r_forward_kinematics_batch(const prepared *m, size_t n, const real *q_actuated,
+    const real *X0, const real *q0, real *X, int *status)
 {
-    int code;
-    manipulability_one(model, X, q0, measure, isotropy, &code);
-    return code;
+    ONE_BY_ONE(hexapod_6x6r_forward_kinematics(m, q_actuated + NU*j, X0 + NQ*j, q0 ? q0 + NJ*j : NULL,
+        X + NQ*j));
 }
 
-size_t hexapod_6x6r_manipulability_batch(const prepared *model, size_t n, const real *X, const
-    real *q0, real *measure, real *isotropy, int *status)
+size_t hexapod_6x6r_dissipation_batch(const prepared *m, size_t n, const real *X, const real *q0,
+    const real *V, real *dissipation, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hexapod_6x6r_manipulability(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, measure + i,
-            isotropy + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(hexapod_6x6r_dissipation(m, X + NQ*j, q0 ? q0 + NJ*j : NULL, V + NV*j, dissipation +
+        j));
 }
 
-int hexapod_6x6r_singularity_distance(const prepared *model, const real *X, const real *q0, real
-    *actuators, real *legs)
-{
-    int code;
-    singularity_distance_one(model, X, q0, actuators, legs, &code);
-    return code;
-}
-
-size_t hexapod_6x6r_singularity_distance_batch(const prepared *model, size_t n, const real *X,
-    const real *q0, real *actuators, real *legs, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hexapod_6x6r_singularity_distance(model, X + NQ*i, q0 ? q0 + NJ*i : NULL,
-            actuators + i, legs + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hexapod_6x6r_forward_kinematics(const prepared *model, const real *q_actuated, const real *X0,
-    const real *q0, real *X)
-{
-    int code;
-    forward_kinematics_one(model, q_actuated, X0, q0, X, &code);
-    return code;
-}
-
-size_t hexapod_6x6r_forward_kinematics_batch(const prepared *model, size_t n, const real
-    *q_actuated, const real *X0, const real *q0, real *X, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hexapod_6x6r_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, q0 ? q0 +
-            NJ*i : NULL, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hexapod_6x6r_dissipation(const prepared *model, const real *X, const real *q0, const real *V,
-    real *dissipation)
-{
-    int code;
-    (void)model, (void)X, (void)q0;
-    dissipation_one(V, dissipation, &code);
-    return code;
-}
-
-size_t hexapod_6x6r_dissipation_batch(const prepared *model, size_t n, const real *X, const real
-    *q0, const real *V, real *dissipation, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hexapod_6x6r_dissipation(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i,
-            dissipation + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hexapod_6x6r_momentum(const prepared *model, const real *X, const real *q0, const real *V,
-    real *momentum)
-{
-    int code;
-    momentum_one(model, X, q0, V, momentum, &code);
-    return code;
-}
-
-size_t hexapod_6x6r_momentum_batch(const prepared *model, size_t n, const real *X, const real *q0,
+size_t hexapod_6x6r_momentum_batch(const prepared *m, size_t n, const real *X, const real *q0,
     const real *V, real *momentum, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            momentum_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, momentum + NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hexapod_6x6r_momentum(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL, V + NV*(i +
-                    k), momentum + NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(hexapod_6x6r_momentum(m, X + NQ*j, q0 ? q0 + NJ*j : NULL, V + NV*j, momentum + NV*j));
 }
 
-int hexapod_6x6r_joint_margins(const prepared *model, const real *X, const real *q0, real
-    *margins)
-{
-    int code;
-    joint_margins_one(model, X, q0, margins, &code);
-    return code;
-}
-
-size_t hexapod_6x6r_joint_margins_batch(const prepared *model, size_t n, const real *X, const real
+size_t hexapod_6x6r_joint_margins_batch(const prepared *m, size_t n, const real *X, const real
     *q0, real *margins, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_margins_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, margins + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hexapod_6x6r_joint_margins(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL, margins
-                    + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(hexapod_6x6r_joint_margins(m, X + NQ*j, q0 ? q0 + NJ*j : NULL, margins + NJ*j));
 }
 
-int hexapod_6x6r_within_limits(const prepared *model, const real *X, const real *q0, real *within)
-{
-    int code;
-    within_limits_one(model, X, q0, within, &code);
-    return code;
-}
-
-size_t hexapod_6x6r_within_limits_batch(const prepared *model, size_t n, const real *X, const real
+size_t hexapod_6x6r_within_limits_batch(const prepared *m, size_t n, const real *X, const real
     *q0, real *within, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            within_limits_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, within + i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hexapod_6x6r_within_limits(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL, within +
-                    (i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(hexapod_6x6r_within_limits(m, X + NQ*j, q0 ? q0 + NJ*j : NULL, within + j));
 }
 
-int hexapod_6x6r_actuator_positions(const prepared *model, const real *X, const real *q0, real *q)
-{
-    int code;
-    actuator_positions_one(model, X, q0, q, &code);
-    return code;
-}
-
-size_t hexapod_6x6r_actuator_positions_batch(const prepared *model, size_t n, const real *X, const
+size_t hexapod_6x6r_actuator_positions_batch(const prepared *m, size_t n, const real *X, const
     real *q0, real *q, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_positions_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, q + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hexapod_6x6r_actuator_positions(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL, q +
-                    NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(hexapod_6x6r_actuator_positions(m, X + NQ*j, q0 ? q0 + NJ*j : NULL, q + NU*j));
 }
 
-int hexapod_6x6r_actuator_rates(const prepared *model, const real *X, const real *q0, const real
-    *V, real *rates)
+size_t hexapod_6x6r_actuator_rates_batch(const prepared *m, size_t n, const real *X, const real
+    *q0, const real *V, real *rates, int *status)
 {
-    int code;
-    actuator_rates_one(model, X, q0, V, rates, &code);
-    return code;
+    ONE_BY_ONE(hexapod_6x6r_actuator_rates(m, X + NQ*j, q0 ? q0 + NJ*j : NULL, V + NV*j, rates +
+        NU*j));
 }
 
-size_t hexapod_6x6r_actuator_rates_batch(const prepared *model, size_t n, const real *X, const
-    real *q0, const real *V, real *rates, int *status)
+size_t hexapod_6x6r_actuator_accelerations_batch(const prepared *m, size_t n, const real *X, const
+    real *q0, const real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_rates_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, rates + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hexapod_6x6r_actuator_rates(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL, V +
-                    NV*(i + k), rates + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(hexapod_6x6r_actuator_accelerations(m, X + NQ*j, q0 ? q0 + NJ*j : NULL, V + NV*j, A +
+        NV*j, accelerations + NU*j));
 }
 
-int hexapod_6x6r_actuator_accelerations(const prepared *model, const real *X, const real *q0,
-    const real *V, const real *A, real *accelerations)
+size_t hexapod_6x6r_power_batch(const prepared *m, size_t n, const real *X, const real *q0, const
+    real *V, const real *tau, real *power, int *status)
 {
-    int code;
-    actuator_accelerations_one(model, X, q0, V, A, accelerations, &code);
-    return code;
-}
-
-size_t hexapod_6x6r_actuator_accelerations_batch(const prepared *model, size_t n, const real *X,
-    const real *q0, const real *V, const real *A, real *accelerations, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_accelerations_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, A + NV*i,
-                accelerations + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hexapod_6x6r_actuator_accelerations(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL,
-                    V + NV*(i + k), A + NV*(i + k), accelerations + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hexapod_6x6r_power(const prepared *model, const real *X, const real *q0, const real *V, const
-    real *tau, real *power)
-{
-    int code;
-    power_one(model, X, q0, V, tau, power, &code);
-    return code;
-}
-
-size_t hexapod_6x6r_power_batch(const prepared *model, size_t n, const real *X, const real *q0,
-    const real *V, const real *tau, real *power, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            power_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, tau + NU*i, power + i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hexapod_6x6r_power(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL, V + NV*(i + k),
-                    tau + NU*(i + k), power + (i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hexapod_6x6r_rotation(const real *X, real *R)
-{
-    int code;
-    rotation_one(X, R, &code);
-    return code;
+    ONE_BY_ONE(hexapod_6x6r_power(m, X + NQ*j, q0 ? q0 + NJ*j : NULL, V + NV*j, tau + NU*j, power +
+        j));
 }
 
 size_t hexapod_6x6r_rotation_batch(size_t n, const real *X, real *R, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hexapod_6x6r_rotation(X + NQ*i, R + 9*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hexapod_6x6r_pose(const real *t, const real *R, real *X)
-{
-    int code;
-    pose_one(t, R, X, &code);
-    return code;
+    ONE_BY_ONE(hexapod_6x6r_rotation(X + NQ*j, R + 9*j));
 }
 
 size_t hexapod_6x6r_pose_batch(size_t n, const real *t, const real *R, real *X, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hexapod_6x6r_pose(t + 3*i, R + 9*i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hexapod_6x6r_X_dot(const real *X, const real *V, real *X_dot)
-{
-    int code;
-    X_dot_one(X, V, X_dot, &code);
-    return code;
+    ONE_BY_ONE(hexapod_6x6r_pose(t + 3*j, R + 9*j, X + NQ*j));
 }
 
 size_t hexapod_6x6r_X_dot_batch(size_t n, const real *X, const real *V, real *X_dot, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hexapod_6x6r_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hexapod_6x6r_pose_from_rpy(const real *t, const real *rpy, real *X)
-{
-    int code;
-    pose_from_rpy_one(t, rpy, X, &code);
-    return code;
+    ONE_BY_ONE(hexapod_6x6r_X_dot(X + NQ*j, V + NV*j, X_dot + NQ*j));
 }
 
 size_t hexapod_6x6r_pose_from_rpy_batch(size_t n, const real *t, const real *rpy, real *X, int
     *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hexapod_6x6r_pose_from_rpy(t + 3*i, rpy + 3*i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hexapod_6x6r_retract(const real *X, const real *step, real *X_moved)
-{
-    int code;
-    retract_one(X, step, X_moved, &code);
-    return code;
+    ONE_BY_ONE(hexapod_6x6r_pose_from_rpy(t + 3*j, rpy + 3*j, X + NQ*j));
 }
 
 size_t hexapod_6x6r_retract_batch(size_t n, const real *X, const real *step, real *X_moved, int
     *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hexapod_6x6r_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hexapod_6x6r_difference(const real *X0, const real *X1, real *step)
-{
-    int code;
-    difference_one(X0, X1, step, &code);
-    return code;
+    ONE_BY_ONE(hexapod_6x6r_retract(X + NQ*j, step + NV*j, X_moved + NQ*j));
 }
 
 size_t hexapod_6x6r_difference_batch(size_t n, const real *X0, const real *X1, real *step, int
     *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hexapod_6x6r_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hexapod_6x6r_interpolate(const real *X0, const real *X1, const real *s, real *X)
-{
-    int code;
-    interpolate_one(X0, X1, s, X, &code);
-    return code;
+    ONE_BY_ONE(hexapod_6x6r_difference(X0 + NQ*j, X1 + NQ*j, step + NV*j));
 }
 
 size_t hexapod_6x6r_interpolate_batch(size_t n, const real *X0, const real *X1, const real *s,
     real *X, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hexapod_6x6r_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(hexapod_6x6r_interpolate(X0 + NQ*j, X1 + NQ*j, s + j, X + NQ*j));
 }

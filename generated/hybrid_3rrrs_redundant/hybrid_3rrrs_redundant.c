@@ -185,13 +185,27 @@ INLINE int sum_is_finite(const real *x, size_t n)
     return is_finite(total(sum, LANES));
 }
 
+/* How many of some numbers are not finite. */
+APART real not_finite(size_t n, const real *x)
+{
+    real count = 0;
+    if (!sum_is_finite(x, n)) {
+        for (size_t i = 0; i < n; ++i) {
+            count += UNLESS(is_finite(x[i]));
+        }
+    }
+    return count;
+}
+
 /* Flag the states with entries that are not finite; the states stand side by side. */
 INLINE void check(size_t size, size_t w, const real *x, real *flags)
 {
-    if (!sum_is_finite(x, size*w)) {
-        for (size_t i = 0; i < size*w; ++i) {
-            flags[i%w] += UNLESS(is_finite(x[i]));
-        }
+    if (w == 1) {
+        flags[0] += not_finite(size, x);
+        return;
+    }
+    for (size_t i = 0; i < size*w; ++i) {
+        flags[i%w] += UNLESS(is_finite(x[i]));
     }
 }
 
@@ -246,18 +260,17 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE int judge(const verdict *t, int *code)
+INLINE int judge(const verdict *t)
 {
-    *code = t->invalid[0] > 0 ? INVALID
+    return t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
         : t->unreachable[0] > 0 ? UNREACHABLE
         : t->singular[0] > 0 ? SINGULAR
         : t->overflow[0] > 0 ? INVALID : OK;
-    return *code;
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
-INLINE void suspect(const verdict *t, int *code)
+APART void suspect(const verdict *t, int *code)
 {
     real flags[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -279,7 +292,7 @@ INLINE void blame(int code, verdict *t)
 }
 
 /* Outputs of an impossible state. */
-INLINE void refuse(size_t size, real *out)
+APART void refuse(size_t size, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
@@ -315,6 +328,32 @@ INLINE size_t record(const int *code, size_t w, int *status)
     }
     return failed;
 }
+
+/* Bodies of batches.  lanes: settles the states from number i on, side by side, in codes; one: settles
+   state j, what fails and what is left too. */
+#define SIDE_BY_SIDE(lanes, one) \
+    size_t failed = 0, w; \
+    for (size_t i = 0; i < n; i += w) { \
+        int codes[LANES] = {INVALID}; \
+        w = LANES > 1 && i + LANES <= n ? LANES : 1; \
+        if (w > 1) { \
+            lanes; \
+        } \
+        for (size_t j = i; j < i + w; ++j) { \
+            if (codes[j - i] != OK) { \
+                codes[j - i] = one; \
+            } \
+        } \
+        failed += record(codes, w, status ? status + i : NULL); \
+    } \
+    return failed
+#define ONE_BY_ONE(one) \
+    size_t failed = 0; \
+    for (size_t j = 0; j < n; ++j) { \
+        const int code = one; \
+        failed += record(&code, 1, status ? status + j : NULL); \
+    } \
+    return failed
 
 /* What the reader of specifications allows; floats have less to offer. */
 #define ROUNDED BY_TYPE(1e-5, 1e-06, 1e-06)  /* lengths and products of unit vectors */
@@ -863,11 +902,11 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         /* (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra
            degree of freedom of joint 2 */
         const real rrrrs_d_P_2_t = rrrrs_h_3_in_spec3_z*rrrrs_joint3_offset_x;
-        /* (h_star) first moment about the platform origin */
+        /* (h_star) */
         const real rrrrs_h_star_t = rrrrs_link4_mass*rrrrs_platform_point_x;
         const real rrrrs_h_star_t_2 = rrrrs_link4_mass*rrrrs_platform_point_y;
         const real rrrrs_h_star_t_3 = rrrrs_link4_mass*rrrrs_platform_point_z;
-        /* (J_star) inertia tensor about the platform origin */
+        /* (J_star) */
         const real rrrrs_J_star_t = rrrrs_platform_point_x*rrrrs_platform_point_x;
         const real rrrrs_J_star_t_2 = rrrrs_platform_point_y*rrrrs_platform_point_y;
         const real rrrrs_J_star_t_3 = rrrrs_platform_point_z*rrrrs_platform_point_z;
@@ -1159,11 +1198,11 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
            without the mass at the connection point */
         const real rrrs_d_c_in_axes3_yy = -rrrs_d_Gamma_3_in_axes3_y*rrrs_w_3_in_axes3_y -
             rrrs_h_3_in_spec3_x*rrrs_w_3_in_axes3_y;
-        /* (h_star) first moment about the platform origin */
+        /* (h_star) */
         const real rrrs_h_star_t = rrrs_link3_mass*rrrs_platform_point_x;
         const real rrrs_h_star_t_2 = rrrs_link3_mass*rrrs_platform_point_y;
         const real rrrs_h_star_t_3 = rrrs_link3_mass*rrrs_platform_point_z;
-        /* (J_star) inertia tensor about the platform origin */
+        /* (J_star) */
         const real rrrs_J_star_t = rrrs_platform_point_x*rrrs_platform_point_x;
         const real rrrs_J_star_t_2 = rrrs_platform_point_y*rrrs_platform_point_y;
         const real rrrs_J_star_t_3 = rrrs_platform_point_z*rrrs_platform_point_z;
@@ -1174,7 +1213,7 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         const real rrrs_J_star_t_8 = rrrs_link3_mass*(rrrs_J_star_t_2 - rrrs_J_star_t_4);
         const real rrrs_J_star_t_9 = rrrs_link3_mass*rrrs_platform_point_y*rrrs_platform_point_z;
         const real rrrs_J_star_t_10 = rrrs_link3_mass*(rrrs_J_star_t_3 - rrrs_J_star_t_4);
-        /* (potential) potential energy */
+        /* (potential) */
         const real rrrs_potential_t = rrrs_base_frame_xy*rrrs_base_point_x +
             rrrs_base_frame_yy*rrrs_base_point_y + rrrs_base_frame_zy*rrrs_base_point_z;
         const real rrrs_potential_t_2 = rrrs_base_frame_xz*rrrs_base_point_x +
@@ -1274,11 +1313,11 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
     }
     /* (m_star) mass of the platform with the gathered masses */
     const real m_star = m_star_of_legs + platform_mass;
-    /* (h_star) first moment about the platform origin */
+    /* (h_star) */
     const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
     const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
     const real h_star_in_platform_z = h_star_in_platform_z_of_legs + h_star_t_3;
-    /* (J_star) inertia tensor about the platform origin */
+    /* (J_star) */
     const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + platform_inertia_xx -
         J_star_t_5;
     const real J_star_in_platform_xy = J_star_in_platform_xy_of_legs + platform_inertia_xy -
@@ -2015,15 +2054,12 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real R_zy = quaternion_wx + quaternion_yz;
     const real R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (h_star) first moment about the platform origin */
-    const real h_star_in_platform_x = m->h_star_in_platform_x;
-    const real h_star_in_platform_y = m->h_star_in_platform_y;
-    const real h_star_in_platform_z = m->h_star_in_platform_z;
-    const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-        R_xz*h_star_in_platform_z;
-    const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-        R_yz*h_star_in_platform_z;
-    const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-        R_zz*h_star_in_platform_z;
+    const real h_star_x = R_xx*m->h_star_in_platform_x + R_xy*m->h_star_in_platform_y +
+        R_xz*m->h_star_in_platform_z;
+    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yy*m->h_star_in_platform_y +
+        R_yz*m->h_star_in_platform_z;
+    const real h_star_z = R_zx*m->h_star_in_platform_x + R_zy*m->h_star_in_platform_y +
+        R_zz*m->h_star_in_platform_z;
     v->quaternion_scale = quaternion_scale;
     v->R_xx = R_xx;
     v->R_xy = R_xy;
@@ -2056,33 +2092,27 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
 INLINE void stage_M_dynamics(const prepared *m, values *v)
 {
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-    const real J_star_t_12 = m->J_star_t_12;
-    const real J_star_t = J_star_in_platform_xy*v->R_xx + J_star_in_platform_yz*v->R_xz -
-        J_star_t_12*v->R_xy;
-    const real J_star_t_2 = J_star_in_platform_xy*v->R_yx + J_star_in_platform_yz*v->R_yz -
-        J_star_t_12*v->R_yy;
-    const real J_star_t_3 = J_star_in_platform_xy*v->R_zx + J_star_in_platform_yz*v->R_zz -
-        J_star_t_12*v->R_zy;
-    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-    const real J_star_t_14 = m->J_star_t_14;
-    const real J_star_t_4 = J_star_t_14*v->R_xz - J_star_in_platform_xz*v->R_xx;
-    const real J_star_t_5 = J_star_t_14*v->R_yz - J_star_in_platform_xz*v->R_yx;
-    const real J_star_t_6 = J_star_t_14*v->R_zz - J_star_in_platform_xz*v->R_zx;
+    const real J_star_t = m->J_star_in_platform_xy*v->R_xx + m->J_star_in_platform_yz*v->R_xz
+        - m->J_star_t_12*v->R_xy;
+    const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
+        m->J_star_in_platform_yz*v->R_yz - m->J_star_t_12*v->R_yy;
+    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx +
+        m->J_star_in_platform_yz*v->R_zz - m->J_star_t_12*v->R_zy;
+    const real J_star_t_4 = m->J_star_t_14*v->R_xz - m->J_star_in_platform_xz*v->R_xx;
+    const real J_star_t_5 = m->J_star_t_14*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
+    const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
-    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-    const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+    const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
     const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
         J_star_t_5*v->R_xz;
     const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
     const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
-    const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+    const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
     const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
         J_star_t_6*v->R_yz;
     const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
-    const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
+    const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
     v->J_star_xx = J_star_xx;
     v->J_star_xy = J_star_xy;
     v->J_star_xz = J_star_xz;
@@ -2100,46 +2130,34 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real omega_x = V[3*w + k];
     const real Z_p_t_5 = v->h_star_x*omega_z - v->h_star_z*omega_x;
     const real Z_p_t_6 = v->h_star_y*omega_x - v->h_star_x*omega_y;
-    const real Z_p_t = m->Z_p_t;
-    const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-    const real Z_p_t_2 = m->Z_p_t_2;
-    const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-    const real Z_p_t_3 = m->Z_p_t_3;
-    const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
+    const real Z_p_x = Z_p_t_6*omega_y - m->Z_p_t - Z_p_t_5*omega_z;
+    const real Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
+    const real Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real gravity_x = m->gravity_x;
-    const real gravity_y = m->gravity_y;
-    const real gravity_z = m->gravity_z;
-    const real g_in_platform_x = v->R_xx*gravity_x + v->R_yx*gravity_y + v->R_zx*gravity_z;
-    const real g_in_platform_y = v->R_xy*gravity_x + v->R_yy*gravity_y + v->R_zy*gravity_z;
-    const real g_in_platform_z = v->R_xz*gravity_x + v->R_yz*gravity_y + v->R_zz*gravity_z;
-    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-    const real Z_q_t = J_star_in_platform_xx*v->omega_in_platform_x +
-        J_star_in_platform_xy*v->omega_in_platform_y +
-        J_star_in_platform_xz*v->omega_in_platform_z;
-    const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-    const real Z_q_t_2 = J_star_in_platform_xy*v->omega_in_platform_x +
-        J_star_in_platform_yy*v->omega_in_platform_y +
-        J_star_in_platform_yz*v->omega_in_platform_z;
-    const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-    const real Z_q_t_3 = J_star_in_platform_xz*v->omega_in_platform_x +
-        J_star_in_platform_yz*v->omega_in_platform_y +
-        J_star_in_platform_zz*v->omega_in_platform_z;
-    const real h_star_in_platform_y = m->h_star_in_platform_y;
-    const real h_star_in_platform_z = m->h_star_in_platform_z;
+    const real g_in_platform_x = v->R_xx*m->gravity_x + v->R_yx*m->gravity_y +
+        v->R_zx*m->gravity_z;
+    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_yy*m->gravity_y +
+        v->R_zy*m->gravity_z;
+    const real g_in_platform_z = v->R_xz*m->gravity_x + v->R_yz*m->gravity_y +
+        v->R_zz*m->gravity_z;
+    const real Z_q_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
+        m->J_star_in_platform_xy*v->omega_in_platform_y +
+        m->J_star_in_platform_xz*v->omega_in_platform_z;
+    const real Z_q_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
+        m->J_star_in_platform_yy*v->omega_in_platform_y +
+        m->J_star_in_platform_yz*v->omega_in_platform_z;
+    const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
+        m->J_star_in_platform_yz*v->omega_in_platform_y +
+        m->J_star_in_platform_zz*v->omega_in_platform_z;
     const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
-        g_in_platform_y*h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
-        g_in_platform_z*h_star_in_platform_y;
-    const real h_star_in_platform_x = m->h_star_in_platform_x;
+        g_in_platform_y*m->h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
+        g_in_platform_z*m->h_star_in_platform_y;
     const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
-        g_in_platform_z*h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
-        g_in_platform_x*h_star_in_platform_z;
+        g_in_platform_z*m->h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
+        g_in_platform_x*m->h_star_in_platform_z;
     const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
-        g_in_platform_x*h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
-        g_in_platform_y*h_star_in_platform_x;
+        g_in_platform_x*m->h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
+        g_in_platform_y*m->h_star_in_platform_x;
     const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
         v->R_xz*Z_q_in_platform_z;
     const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
@@ -2200,49 +2218,34 @@ INLINE void stage_rrrrs_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real rrrrs_platform_point_x = m->rrrrs_platform_point_x[i];
-    const real rrrrs_platform_point_y = m->rrrrs_platform_point_y[i];
-    const real rrrrs_platform_point_z = m->rrrrs_platform_point_z[i];
-    const real rrrrs_q_x = R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y +
-        R_xz*rrrrs_platform_point_z;
+    const real rrrrs_q_x = R_xx*m->rrrrs_platform_point_x[i] +
+        R_xy*m->rrrrs_platform_point_y[i] + R_xz*m->rrrrs_platform_point_z[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real rrrrs_q_y = R_yx*rrrrs_platform_point_x + R_yy*rrrrs_platform_point_y +
-        R_yz*rrrrs_platform_point_z;
+    const real rrrrs_q_y = R_yx*m->rrrrs_platform_point_x[i] +
+        R_yy*m->rrrrs_platform_point_y[i] + R_yz*m->rrrrs_platform_point_z[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
-    const real rrrrs_q_z = R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y +
-        R_zz*rrrrs_platform_point_z;
+    const real rrrrs_q_z = R_zx*m->rrrrs_platform_point_x[i] +
+        R_zy*m->rrrrs_platform_point_y[i] + R_zz*m->rrrrs_platform_point_z[i];
     const real rrrrs_y_2_extra = X[7*w + j];
     const real rrrrs_h_3_t_6 = cosine(rrrrs_y_2_extra);
     const real rrrrs_h_3_t_7 = sine(rrrrs_y_2_extra);
     /* (rrrrs-S) from the base point to the connection point */
-    const real rrrrs_base_point_x = m->rrrrs_base_point_x[i];
     const real t_x = X[0*w + j];
-    const real rrrrs_S_x = rrrrs_q_x + t_x - rrrrs_base_point_x;
-    const real rrrrs_base_point_y = m->rrrrs_base_point_y[i];
+    const real rrrrs_S_x = rrrrs_q_x + t_x - m->rrrrs_base_point_x[i];
     const real t_y = X[1*w + j];
-    const real rrrrs_S_y = rrrrs_q_y + t_y - rrrrs_base_point_y;
-    const real rrrrs_base_point_z = m->rrrrs_base_point_z[i];
+    const real rrrrs_S_y = rrrrs_q_y + t_y - m->rrrrs_base_point_y[i];
     const real t_z = X[2*w + j];
-    const real rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z;
-    const real rrrrs_base_frame_xy = m->rrrrs_base_frame_xy[i];
-    const real rrrrs_base_frame_yy = m->rrrrs_base_frame_yy[i];
-    const real rrrrs_base_frame_zy = m->rrrrs_base_frame_zy[i];
-    const real rrrrs_S_in_turn1_x = rrrrs_S_x*rrrrs_base_frame_xy +
-        rrrrs_S_y*rrrrs_base_frame_yy + rrrrs_S_z*rrrrs_base_frame_zy;
-    const real rrrrs_base_frame_xz = m->rrrrs_base_frame_xz[i];
-    const real rrrrs_base_frame_yz = m->rrrrs_base_frame_yz[i];
-    const real rrrrs_base_frame_zz = m->rrrrs_base_frame_zz[i];
-    const real rrrrs_S_in_turn1_y = rrrrs_S_x*rrrrs_base_frame_xz +
-        rrrrs_S_y*rrrrs_base_frame_yz + rrrrs_S_z*rrrrs_base_frame_zz;
-    const real rrrrs_base_frame_xx = m->rrrrs_base_frame_xx[i];
-    const real rrrrs_base_frame_yx = m->rrrrs_base_frame_yx[i];
-    const real rrrrs_base_frame_zx = m->rrrrs_base_frame_zx[i];
-    const real rrrrs_S_in_turn1_z = rrrrs_S_x*rrrrs_base_frame_xx +
-        rrrrs_S_y*rrrrs_base_frame_yx + rrrrs_S_z*rrrrs_base_frame_zx;
+    const real rrrrs_S_z = rrrrs_q_z + t_z - m->rrrrs_base_point_z[i];
+    const real rrrrs_S_in_turn1_x = rrrrs_S_x*m->rrrrs_base_frame_xy[i] +
+        rrrrs_S_y*m->rrrrs_base_frame_yy[i] + rrrrs_S_z*m->rrrrs_base_frame_zy[i];
+    const real rrrrs_S_in_turn1_y = rrrrs_S_x*m->rrrrs_base_frame_xz[i] +
+        rrrrs_S_y*m->rrrrs_base_frame_yz[i] + rrrrs_S_z*m->rrrrs_base_frame_zz[i];
+    const real rrrrs_S_in_turn1_z = rrrrs_S_x*m->rrrrs_base_frame_xx[i] +
+        rrrrs_S_y*m->rrrrs_base_frame_yx[i] + rrrrs_S_z*m->rrrrs_base_frame_zx[i];
     /* (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction */
     const real rrrrs_c_2 = cosine(rrrrs_y_2_extra);
     /* (rrrrs-s_2) sine of the angle of joint 2 from its reference direction */
@@ -2251,63 +2254,54 @@ INLINE void stage_rrrrs_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real rrrrs_rho2_1 = rrrrs_S_in_turn1_x*rrrrs_S_in_turn1_x +
         rrrrs_S_in_turn1_y*rrrrs_S_in_turn1_y;
     /* (rrrrs-root_1) root, with the sign of the branch */
-    const real rrrrs_branch_1 = m->rrrrs_branch_1[i];
-    const real rrrrs_root_1 = rrrrs_branch_1*root(rrrrs_rho2_1);
+    const real rrrrs_root_1 = m->rrrrs_branch_1[i]*root(rrrrs_rho2_1);
     /* (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction */
     const real inv_rrrrs_rho2_1 = 1/rrrrs_rho2_1;
     const real rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_x*rrrrs_root_1;
     /* (rrrrs-s_1) sine of the angle of joint 1 from its reference direction */
     const real rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_y*rrrrs_root_1;
     /* (rrrrs-x_2) from the origin of joint 2 to the connection point */
-    const real rrrrs_joint2_offset_x = m->rrrrs_joint2_offset_x[i];
-    const real rrrrs_x_2_in_axes1_z = rrrrs_S_in_turn1_z - rrrrs_joint2_offset_x;
+    const real rrrrs_x_2_in_axes1_z = rrrrs_S_in_turn1_z - m->rrrrs_joint2_offset_x[i];
     const real rrrrs_x_2_t = rrrrs_root_1*rrrrs_s_2;
     const real rrrrs_x_2_in_axes2_x = rrrrs_x_2_t + rrrrs_c_2*rrrrs_x_2_in_axes1_z;
     const real rrrrs_x_2_t_2 = rrrrs_c_2*rrrrs_root_1;
     const real rrrrs_x_2_in_axes2_y = rrrrs_x_2_t_2 - rrrrs_s_2*rrrrs_x_2_in_axes1_z;
     /* (rrrrs-x_3) from the origin of joint 3 to the connection point */
-    const real rrrrs_joint3_offset_x = m->rrrrs_joint3_offset_x[i];
-    const real rrrrs_x_3_in_axes2_x = rrrrs_x_2_in_axes2_x - rrrrs_joint3_offset_x;
+    const real rrrrs_x_3_in_axes2_x = rrrrs_x_2_in_axes2_x - m->rrrrs_joint3_offset_x[i];
     /* (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 3 */
     const real rrrrs_Kd_3_t = rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y +
         rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x;
-    const real rrrrs_h_3_t = m->rrrrs_h_3_t[i];
-    const real rrrrs_h_3_t_2 = m->rrrrs_h_3_t_2[i];
-    const real rrrrs_Kd_3 = R(0.5)*rrrrs_Kd_3_t + rrrrs_h_3_t - rrrrs_h_3_t_2;
+    const real rrrrs_Kd_3 = R(0.5)*rrrrs_Kd_3_t + m->rrrrs_h_3_t[i] - m->rrrrs_h_3_t_2[i];
     /* (rrrrs-Kc_3) factor of the cosine in the equation of joint 3 */
-    const real rrrrs_joint4_offset_x = m->rrrrs_joint4_offset_x[i];
-    const real rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_in_axes2_x;
+    const real rrrrs_Kc_3 = m->rrrrs_joint4_offset_x[i]*rrrrs_x_3_in_axes2_x;
     /* (rrrrs-Ks_3) factor of the sine in the equation of joint 3 */
-    const real rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_in_axes2_y;
+    const real rrrrs_Ks_3 = m->rrrrs_joint4_offset_x[i]*rrrrs_x_2_in_axes2_y;
     /* (rrrrs-rho2_3) squared amplitude */
     const real rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3;
     /* (rrrrs-disc_3) discriminant */
     const real rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3;
     /* (rrrrs-root_3) root, with the sign of the branch */
-    const real rrrrs_branch_3 = m->rrrrs_branch_3[i];
-    const real rrrrs_root_3 = rrrrs_branch_3*root(rrrrs_disc_3);
+    const real rrrrs_root_3 = m->rrrrs_branch_3[i]*root(rrrrs_disc_3);
     /* (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction */
     const real inv_rrrrs_rho2_3 = 1/rrrrs_rho2_3;
     const real rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3);
     /* (rrrrs-s_3) sine of the angle of joint 3 from its reference direction */
     const real rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3);
     /* (rrrrs-x_4) from the origin of joint 4 to the connection point */
-    const real inv_rrrrs_size_t = m->inv_rrrrs_size_t[i];
-    const real rrrrs_x_4_in_axes3_x = inv_rrrrs_size_t*rrrrs_Kd_3*rrrrs_joint4_offset_x -
-        rrrrs_joint4_offset_x;
+    const real rrrrs_x_4_in_axes3_x =
+        m->inv_rrrrs_size_t[i]*rrrrs_Kd_3*m->rrrrs_joint4_offset_x[i] -
+        m->rrrrs_joint4_offset_x[i];
     /* (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction */
-    const real inv_rrrrs_size_t_2 = m->inv_rrrrs_size_t_2[i];
-    const real rrrrs_platform_joint_offset_x = m->rrrrs_platform_joint_offset_x[i];
     const real rrrrs_c_4 =
-        inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x;
+        m->inv_rrrrs_size_t_2[i]*m->rrrrs_platform_joint_offset_x[i]*rrrrs_x_4_in_axes3_x;
     /* (rrrrs-s_4) sine of the angle of joint 4 from its reference direction */
     const real rrrrs_s_4_t =
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3;
+        m->inv_rrrrs_size_t[i]*m->inv_rrrrs_size_t_2[i]*m->rrrrs_joint4_offset_x[i]*m->rrrrs_platform_joint_offset_x[i]*rrrrs_root_3;
     /* (rrrrs-r_3) from joint 3 to the connection point, along the links */
-    const real rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4_t;
-    const real rrrrs_r_3_in_axes3_x = rrrrs_joint4_offset_x +
-        rrrrs_c_4*rrrrs_platform_joint_offset_x;
+    const real rrrrs_r_3_t = m->rrrrs_platform_joint_offset_x[i]*rrrrs_s_4_t;
+    const real rrrrs_r_3_in_axes3_x = m->rrrrs_joint4_offset_x[i] +
+        rrrrs_c_4*m->rrrrs_platform_joint_offset_x[i];
     const real rrrrs_r_3_in_axes4_x = rrrrs_c_4*rrrrs_r_3_in_axes3_x +
         rrrrs_r_3_t*rrrrs_s_4_t;
     const real rrrrs_r_3_in_axes4_y = rrrrs_r_3_in_axes3_x*rrrrs_s_4_t -
@@ -2334,12 +2328,12 @@ INLINE void stage_rrrrs_X(const prepared *m, size_t w, size_t i, size_t j, const
     /* (rrrrs-w_3) reciprocal vector 2 */
     const real rrrrs_w_3_in_axes4_x = -1/rrrrs_r_3_in_axes4_y;
     /* (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-    const real axis_z_rrrrs_axes4_x = rrrrs_base_frame_xz*rrrrs_c_1 -
-        rrrrs_base_frame_xy*rrrrs_s_1;
-    const real axis_z_rrrrs_axes4_y = rrrrs_base_frame_yz*rrrrs_c_1 -
-        rrrrs_base_frame_yy*rrrrs_s_1;
-    const real axis_z_rrrrs_axes4_z = rrrrs_base_frame_zz*rrrrs_c_1 -
-        rrrrs_base_frame_zy*rrrrs_s_1;
+    const real axis_z_rrrrs_axes4_x = m->rrrrs_base_frame_xz[i]*rrrrs_c_1 -
+        m->rrrrs_base_frame_xy[i]*rrrrs_s_1;
+    const real axis_z_rrrrs_axes4_y = m->rrrrs_base_frame_yz[i]*rrrrs_c_1 -
+        m->rrrrs_base_frame_yy[i]*rrrrs_s_1;
+    const real axis_z_rrrrs_axes4_z = m->rrrrs_base_frame_zz[i]*rrrrs_c_1 -
+        m->rrrrs_base_frame_zy[i]*rrrrs_s_1;
     const real rrrrs_S_dot_rest_t = rrrrs_c_3*rrrrs_s_4_t - rrrrs_c_4*rrrrs_s_3;
     const real rrrrs_S_dot_rest_t_2 = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4_t;
     const real rrrrs_S_dot_rest_t_3 = rrrrs_S_dot_rest_t*rrrrs_c_2 -
@@ -2349,47 +2343,46 @@ INLINE void stage_rrrrs_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real rrrrs_S_dot_rest_t_5 = rrrrs_S_dot_rest_t_4*rrrrs_c_1;
     const real rrrrs_S_dot_rest_t_6 = rrrrs_S_dot_rest_t_4*rrrrs_s_1;
     /* (rrrrs-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrrrs_d_2_in_axes2_x = rrrrs_c_2*rrrrs_joint2_offset_x;
-    const real rrrrs_d_2_in_axes2_y = -rrrrs_joint2_offset_x*rrrrs_s_2;
+    const real rrrrs_d_2_in_axes2_x = rrrrs_c_2*m->rrrrs_joint2_offset_x[i];
+    const real rrrrs_d_2_in_axes2_y = -m->rrrrs_joint2_offset_x[i]*rrrrs_s_2;
     const real rrrrs_bias_t_3 = rrrrs_c_3*rrrrs_d_2_in_axes2_x +
         rrrrs_d_2_in_axes2_y*rrrrs_s_3;
     const real rrrrs_bias_t_4 = rrrrs_c_3*rrrrs_d_2_in_axes2_y -
         rrrrs_d_2_in_axes2_x*rrrrs_s_3;
     const real rrrrs_d_2_in_axes4_x = rrrrs_bias_t_3*rrrrs_c_4 - rrrrs_bias_t_4*rrrrs_s_4_t;
     const real rrrrs_d_2_in_axes4_y = rrrrs_bias_t_3*rrrrs_s_4_t + rrrrs_bias_t_4*rrrrs_c_4;
-    const real rrrrs_bias_t_5 = rrrrs_c_3*rrrrs_joint3_offset_x;
-    const real rrrrs_bias_t_6 = rrrrs_joint3_offset_x*rrrrs_s_3;
+    const real rrrrs_bias_t_5 = rrrrs_c_3*m->rrrrs_joint3_offset_x[i];
+    const real rrrrs_bias_t_6 = m->rrrrs_joint3_offset_x[i]*rrrrs_s_3;
     const real rrrrs_d_3_in_axes4_x = rrrrs_bias_t_5*rrrrs_c_4 + rrrrs_bias_t_6*rrrrs_s_4_t;
     const real rrrrs_d_3_in_axes4_y = rrrrs_bias_t_5*rrrrs_s_4_t - rrrrs_bias_t_6*rrrrs_c_4;
-    const real rrrrs_d_4_in_axes4_x = rrrrs_c_4*rrrrs_joint4_offset_x;
-    const real rrrrs_d_4_in_axes4_y = rrrrs_joint4_offset_x*rrrrs_s_4_t;
+    const real rrrrs_d_4_in_axes4_x = rrrrs_c_4*m->rrrrs_joint4_offset_x[i];
+    const real rrrrs_d_4_in_axes4_y = m->rrrrs_joint4_offset_x[i]*rrrrs_s_4_t;
     /* (rrrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real rrrrs_acc_3_t = m->rrrrs_acc_3_t[i];
-    const real rrrrs_acc_3_t_2 = m->rrrrs_acc_3_t_2[i];
-    const real rrrrs_g_in_axes1_x = rrrrs_acc_3_t*rrrrs_c_1 + rrrrs_acc_3_t_2*rrrrs_s_1;
-    const real rrrrs_g_in_axes1_y = rrrrs_acc_3_t_2*rrrrs_c_1 - rrrrs_acc_3_t*rrrrs_s_1;
-    const real rrrrs_g_in_axes1_z = m->rrrrs_g_in_axes1_z[i];
-    const real rrrrs_g_in_axes2_x = rrrrs_c_2*rrrrs_g_in_axes1_z +
+    const real rrrrs_g_in_axes1_x = m->rrrrs_acc_3_t[i]*rrrrs_c_1 +
+        m->rrrrs_acc_3_t_2[i]*rrrrs_s_1;
+    const real rrrrs_g_in_axes1_y = m->rrrrs_acc_3_t_2[i]*rrrrs_c_1 -
+        m->rrrrs_acc_3_t[i]*rrrrs_s_1;
+    const real rrrrs_g_in_axes2_x = rrrrs_c_2*m->rrrrs_g_in_axes1_z[i] +
         rrrrs_g_in_axes1_x*rrrrs_s_2;
     const real rrrrs_g_in_axes2_y = rrrrs_c_2*rrrrs_g_in_axes1_x -
-        rrrrs_g_in_axes1_z*rrrrs_s_2;
-    /* (rrrrs-w_1) reciprocal vector 1 */
+        m->rrrrs_g_in_axes1_z[i]*rrrrs_s_2;
+    /* (rrrrs-w_1) */
     const real rrrrs_w_1_x = axis_z_rrrrs_axes4_x*rrrrs_w_1_in_axes4_z;
     const real rrrrs_w_1_y = axis_z_rrrrs_axes4_y*rrrrs_w_1_in_axes4_z;
     const real rrrrs_w_1_z = axis_z_rrrrs_axes4_z*rrrrs_w_1_in_axes4_z;
-    /* (rrrrs-w_3) reciprocal vector 2 */
+    /* (rrrrs-w_3) */
     const real rrrrs_w_3_t = rrrrs_c_3*rrrrs_s_4_t - rrrrs_c_4*rrrrs_s_3;
     const real rrrrs_w_3_t_2 = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4_t;
     const real rrrrs_w_3_t_3 = rrrrs_c_2*rrrrs_w_3_t - rrrrs_s_2*rrrrs_w_3_t_2;
     const real rrrrs_w_3_t_4 = rrrrs_c_2*rrrrs_w_3_t_2 + rrrrs_s_2*rrrrs_w_3_t;
     const real rrrrs_w_3_t_5 = rrrrs_c_1*rrrrs_w_3_t_4;
     const real rrrrs_w_3_t_6 = rrrrs_s_1*rrrrs_w_3_t_4;
-    const real axis_y_rrrrs_axes4_x = rrrrs_base_frame_xx*rrrrs_w_3_t_3 +
-        rrrrs_base_frame_xy*rrrrs_w_3_t_5 + rrrrs_base_frame_xz*rrrrs_w_3_t_6;
-    const real axis_y_rrrrs_axes4_y = rrrrs_base_frame_yx*rrrrs_w_3_t_3 +
-        rrrrs_base_frame_yy*rrrrs_w_3_t_5 + rrrrs_base_frame_yz*rrrrs_w_3_t_6;
-    const real axis_y_rrrrs_axes4_z = rrrrs_base_frame_zx*rrrrs_w_3_t_3 +
-        rrrrs_base_frame_zy*rrrrs_w_3_t_5 + rrrrs_base_frame_zz*rrrrs_w_3_t_6;
+    const real axis_y_rrrrs_axes4_x = m->rrrrs_base_frame_xx[i]*rrrrs_w_3_t_3 +
+        m->rrrrs_base_frame_xy[i]*rrrrs_w_3_t_5 + m->rrrrs_base_frame_xz[i]*rrrrs_w_3_t_6;
+    const real axis_y_rrrrs_axes4_y = m->rrrrs_base_frame_yx[i]*rrrrs_w_3_t_3 +
+        m->rrrrs_base_frame_yy[i]*rrrrs_w_3_t_5 + m->rrrrs_base_frame_yz[i]*rrrrs_w_3_t_6;
+    const real axis_y_rrrrs_axes4_z = m->rrrrs_base_frame_zx[i]*rrrrs_w_3_t_3 +
+        m->rrrrs_base_frame_zy[i]*rrrrs_w_3_t_5 + m->rrrrs_base_frame_zz[i]*rrrrs_w_3_t_6;
     /* (rrrrs-H_a_1) moment of the column's unit force about the platform origin */
     const real rrrrs_H_a_1_x = rrrrs_q_y*rrrrs_w_1_z - rrrrs_q_z*rrrrs_w_1_y;
     const real rrrrs_H_a_1_y = rrrrs_q_z*rrrrs_w_1_x - rrrrs_q_x*rrrrs_w_1_z;
@@ -2506,9 +2499,8 @@ INLINE void stage_rrrrs_A_V_X(size_t w, size_t j, const real *V, values_rrrrs *v
 INLINE void stage_rrrrs_H_condition(const prepared *m, size_t i, values_rrrrs *v)
 {
     /* (rrrrs-r_3) from joint 3 to the connection point, along the links */
-    const real rrrrs_platform_joint_offset_x = m->rrrrs_platform_joint_offset_x[i];
     const real rrrrs_r_3_in_axes4_y = v->rrrrs_r_3_in_axes3_x*v->rrrrs_s_4_t -
-        v->rrrrs_c_4*rrrrs_platform_joint_offset_x*v->rrrrs_s_4_t;
+        v->rrrrs_c_4*m->rrrrs_platform_joint_offset_x[i]*v->rrrrs_s_4_t;
     /* (rrrrs-w_3) reciprocal vector 2 */
     const real rrrrs_w_3_in_axes4_x = -1/rrrrs_r_3_in_axes4_y;
     const real rrrrs_w_3_t_7 =
@@ -2543,82 +2535,60 @@ INLINE void stage_rrrrs_M_dynamics(const prepared *m, size_t w, size_t i, size_t
     values_rrrrs *v)
 {
     /* (rrrrs-h_3) first moment of link 3 about the origin of link 3 */
-    const real rrrrs_base_point_x = m->rrrrs_base_point_x[i];
     const real t_x = X[0*w + j];
-    const real rrrrs_h_3_t_3 = v->rrrrs_q_x + t_x - rrrrs_base_point_x;
-    const real rrrrs_base_point_y = m->rrrrs_base_point_y[i];
+    const real rrrrs_h_3_t_3 = v->rrrrs_q_x + t_x - m->rrrrs_base_point_x[i];
     const real t_y = X[1*w + j];
-    const real rrrrs_h_3_t_4 = v->rrrrs_q_y + t_y - rrrrs_base_point_y;
-    const real rrrrs_base_point_z = m->rrrrs_base_point_z[i];
+    const real rrrrs_h_3_t_4 = v->rrrrs_q_y + t_y - m->rrrrs_base_point_y[i];
     const real t_z = X[2*w + j];
-    const real rrrrs_h_3_t_5 = v->rrrrs_q_z + t_z - rrrrs_base_point_z;
-    const real rrrrs_base_frame_xy = m->rrrrs_base_frame_xy[i];
-    const real rrrrs_base_frame_yy = m->rrrrs_base_frame_yy[i];
-    const real rrrrs_base_frame_zy = m->rrrrs_base_frame_zy[i];
-    const real rrrrs_h_3_t_8 = rrrrs_base_frame_xy*rrrrs_h_3_t_3 +
-        rrrrs_base_frame_yy*rrrrs_h_3_t_4 + rrrrs_base_frame_zy*rrrrs_h_3_t_5;
-    const real rrrrs_base_frame_xz = m->rrrrs_base_frame_xz[i];
-    const real rrrrs_base_frame_yz = m->rrrrs_base_frame_yz[i];
-    const real rrrrs_base_frame_zz = m->rrrrs_base_frame_zz[i];
-    const real rrrrs_h_3_t_9 = rrrrs_base_frame_xz*rrrrs_h_3_t_3 +
-        rrrrs_base_frame_yz*rrrrs_h_3_t_4 + rrrrs_base_frame_zz*rrrrs_h_3_t_5;
-    const real rrrrs_base_frame_xx = m->rrrrs_base_frame_xx[i];
-    const real rrrrs_base_frame_yx = m->rrrrs_base_frame_yx[i];
-    const real rrrrs_base_frame_zx = m->rrrrs_base_frame_zx[i];
-    const real rrrrs_h_3_t_10 = rrrrs_base_frame_xx*rrrrs_h_3_t_3 +
-        rrrrs_base_frame_yx*rrrrs_h_3_t_4 + rrrrs_base_frame_zx*rrrrs_h_3_t_5;
+    const real rrrrs_h_3_t_5 = v->rrrrs_q_z + t_z - m->rrrrs_base_point_z[i];
+    const real rrrrs_h_3_t_8 = m->rrrrs_base_frame_xy[i]*rrrrs_h_3_t_3 +
+        m->rrrrs_base_frame_yy[i]*rrrrs_h_3_t_4 + m->rrrrs_base_frame_zy[i]*rrrrs_h_3_t_5;
+    const real rrrrs_h_3_t_9 = m->rrrrs_base_frame_xz[i]*rrrrs_h_3_t_3 +
+        m->rrrrs_base_frame_yz[i]*rrrrs_h_3_t_4 + m->rrrrs_base_frame_zz[i]*rrrrs_h_3_t_5;
+    const real rrrrs_h_3_t_10 = m->rrrrs_base_frame_xx[i]*rrrrs_h_3_t_3 +
+        m->rrrrs_base_frame_yx[i]*rrrrs_h_3_t_4 + m->rrrrs_base_frame_zx[i]*rrrrs_h_3_t_5;
     const real rrrrs_h_3_t_11 = rrrrs_h_3_t_8*rrrrs_h_3_t_8 + rrrrs_h_3_t_9*rrrrs_h_3_t_9;
-    const real rrrrs_branch_1 = m->rrrrs_branch_1[i];
-    const real rrrrs_h_3_t_12 = rrrrs_branch_1*root(rrrrs_h_3_t_11);
-    const real rrrrs_joint2_offset_x = m->rrrrs_joint2_offset_x[i];
-    const real rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x;
+    const real rrrrs_h_3_t_12 = m->rrrrs_branch_1[i]*root(rrrrs_h_3_t_11);
+    const real rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - m->rrrrs_joint2_offset_x[i];
     const real rrrrs_h_3_t_14 = rrrrs_h_3_t_12*v->rrrrs_h_3_t_7;
     const real rrrrs_h_3_t_15 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*v->rrrrs_h_3_t_6;
     const real rrrrs_h_3_t_16 = rrrrs_h_3_t_12*v->rrrrs_h_3_t_6;
     const real rrrrs_h_3_t_17 = rrrrs_h_3_t_16 - rrrrs_h_3_t_13*v->rrrrs_h_3_t_7;
-    const real rrrrs_joint3_offset_x = m->rrrrs_joint3_offset_x[i];
-    const real rrrrs_h_3_t_18 = rrrrs_h_3_t_15 - rrrrs_joint3_offset_x;
+    const real rrrrs_h_3_t_18 = rrrrs_h_3_t_15 - m->rrrrs_joint3_offset_x[i];
     const real rrrrs_h_3_t_19 = rrrrs_h_3_t_17*rrrrs_h_3_t_17 + rrrrs_h_3_t_18*rrrrs_h_3_t_18;
-    const real rrrrs_h_3_t = m->rrrrs_h_3_t[i];
-    const real rrrrs_h_3_t_2 = m->rrrrs_h_3_t_2[i];
-    const real rrrrs_h_3_t_20 = rrrrs_h_3_t + R(0.5)*rrrrs_h_3_t_19 - rrrrs_h_3_t_2;
-    const real rrrrs_joint4_offset_x = m->rrrrs_joint4_offset_x[i];
-    const real rrrrs_h_3_t_21 = rrrrs_h_3_t_18*rrrrs_joint4_offset_x;
-    const real rrrrs_h_3_t_22 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x;
+    const real rrrrs_h_3_t_20 = m->rrrrs_h_3_t[i] + R(0.5)*rrrrs_h_3_t_19 -
+        m->rrrrs_h_3_t_2[i];
+    const real rrrrs_h_3_t_21 = rrrrs_h_3_t_18*m->rrrrs_joint4_offset_x[i];
+    const real rrrrs_h_3_t_22 = rrrrs_h_3_t_17*m->rrrrs_joint4_offset_x[i];
     const real rrrrs_h_3_t_23 = rrrrs_h_3_t_21*rrrrs_h_3_t_21 + rrrrs_h_3_t_22*rrrrs_h_3_t_22;
     const real rrrrs_h_3_t_24 = rrrrs_h_3_t_23 - rrrrs_h_3_t_20*rrrrs_h_3_t_20;
-    const real rrrrs_branch_3 = m->rrrrs_branch_3[i];
-    const real rrrrs_h_3_t_25 = rrrrs_branch_3*root(rrrrs_h_3_t_24);
+    const real rrrrs_h_3_t_25 = m->rrrrs_branch_3[i]*root(rrrrs_h_3_t_24);
     const real inv_rrrrs_h_3_t_23 = 1/rrrrs_h_3_t_23;
     const real rrrrs_h_3_t_26 = inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_21 -
         rrrrs_h_3_t_22*rrrrs_h_3_t_25);
     const real rrrrs_h_3_t_27 = inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_22 +
         rrrrs_h_3_t_21*rrrrs_h_3_t_25);
-    const real rrrrs_h_3_in_spec3_x = m->rrrrs_h_3_in_spec3_x[i];
-    const real rrrrs_h_3_in_spec3_y = m->rrrrs_h_3_in_spec3_y[i];
-    const real rrrrs_h_3_in_axes2_x = rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_26 -
-        rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_27;
+    const real rrrrs_h_3_in_axes2_x = m->rrrrs_h_3_in_spec3_x[i]*rrrrs_h_3_t_26 -
+        m->rrrrs_h_3_in_spec3_y[i]*rrrrs_h_3_t_27;
     /* (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction */
     const real inv_rrrrs_h_3_t_11 = 1/rrrrs_h_3_t_11;
     const real rrrrs_c_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_8;
     /* (rrrrs-s_1) sine of the angle of joint 1 from its reference direction */
     const real rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9;
     /* (rrrrs-x_4) from the origin of joint 4 to the connection point */
-    const real inv_rrrrs_size_t = m->inv_rrrrs_size_t[i];
-    const real rrrrs_x_4_in_axes3_x = inv_rrrrs_size_t*rrrrs_h_3_t_20*rrrrs_joint4_offset_x -
-        rrrrs_joint4_offset_x;
+    const real rrrrs_x_4_in_axes3_x =
+        m->inv_rrrrs_size_t[i]*rrrrs_h_3_t_20*m->rrrrs_joint4_offset_x[i] -
+        m->rrrrs_joint4_offset_x[i];
     /* (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction */
-    const real inv_rrrrs_size_t_2 = m->inv_rrrrs_size_t_2[i];
-    const real rrrrs_platform_joint_offset_x = m->rrrrs_platform_joint_offset_x[i];
     const real rrrrs_c_4 =
-        inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x;
+        m->inv_rrrrs_size_t_2[i]*m->rrrrs_platform_joint_offset_x[i]*rrrrs_x_4_in_axes3_x;
     /* (rrrrs-s_4) sine of the angle of joint 4 from its reference direction */
     const real rrrrs_s_4_t =
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_25*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x;
+        m->inv_rrrrs_size_t[i]*m->inv_rrrrs_size_t_2[i]*rrrrs_h_3_t_25*m->rrrrs_joint4_offset_x[i]*m->rrrrs_platform_joint_offset_x[i];
     /* (rrrrs-r_3) from joint 3 to the connection point, along the links */
-    const real rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4_t;
-    const real rrrrs_r_3_in_axes3_x = rrrrs_joint4_offset_x +
-        rrrrs_c_4*rrrrs_platform_joint_offset_x;
+    const real rrrrs_r_3_t = m->rrrrs_platform_joint_offset_x[i]*rrrrs_s_4_t;
+    const real rrrrs_r_3_in_axes3_x = m->rrrrs_joint4_offset_x[i] +
+        rrrrs_c_4*m->rrrrs_platform_joint_offset_x[i];
     const real rrrrs_r_3_in_axes4_x = rrrrs_c_4*rrrrs_r_3_in_axes3_x +
         rrrrs_r_3_t*rrrrs_s_4_t;
     const real rrrrs_r_3_in_axes4_y = rrrrs_r_3_in_axes3_x*rrrrs_s_4_t -
@@ -2643,147 +2613,122 @@ INLINE void stage_rrrrs_M_dynamics(const prepared *m, size_t w, size_t i, size_t
         rrrrs_s_4_t*rrrrs_v_1_t_5) - rrrrs_e_1_in_axes4_y*(rrrrs_c_4*rrrrs_v_1_t_5 -
         rrrrs_s_4_t*rrrrs_v_1_t_6);
     /* (rrrrs-w_1) reciprocal vector 1 */
-    const real axis_z_rrrrs_axes4_x = rrrrs_base_frame_xz*rrrrs_c_1 -
-        rrrrs_base_frame_xy*rrrrs_s_1;
-    const real axis_z_rrrrs_axes4_y = rrrrs_base_frame_yz*rrrrs_c_1 -
-        rrrrs_base_frame_yy*rrrrs_s_1;
-    const real axis_z_rrrrs_axes4_z = rrrrs_base_frame_zz*rrrrs_c_1 -
-        rrrrs_base_frame_zy*rrrrs_s_1;
+    const real axis_z_rrrrs_axes4_x = m->rrrrs_base_frame_xz[i]*rrrrs_c_1 -
+        m->rrrrs_base_frame_xy[i]*rrrrs_s_1;
+    const real axis_z_rrrrs_axes4_y = m->rrrrs_base_frame_yz[i]*rrrrs_c_1 -
+        m->rrrrs_base_frame_yy[i]*rrrrs_s_1;
+    const real axis_z_rrrrs_axes4_z = m->rrrrs_base_frame_zz[i]*rrrrs_c_1 -
+        m->rrrrs_base_frame_zy[i]*rrrrs_s_1;
     const real rrrrs_w_1_in_axes4_z = 1/rrrrs_v_1_in_axes4_z;
     /* (rrrrs-w_3) reciprocal vector 2 */
     const real rrrrs_w_3_in_axes4_x = -1/rrrrs_r_3_in_axes4_y;
     /* (rrrrs-w_4) reciprocal vector 3 */
-    const real rrrrs_w_4_in_axes4_y = m->rrrrs_w_4_in_axes4_y[i];
     const real rrrrs_w_4_in_axes4_x =
-        -rrrrs_r_3_in_axes4_x*rrrrs_w_3_in_axes4_x*rrrrs_w_4_in_axes4_y;
+        -rrrrs_r_3_in_axes4_x*rrrrs_w_3_in_axes4_x*m->rrrrs_w_4_in_axes4_y[i];
     /* (rrrrs-d_alpha_4) coefficient of the acceleration in: angular acceleration of link 4 */
     const real rrrrs_d_alpha_4_in_axes4_xz = rrrrs_e_1_in_axes4_x*rrrrs_w_1_in_axes4_z;
     const real rrrrs_d_alpha_4_in_axes4_yz = rrrrs_e_1_in_axes4_y*rrrrs_w_1_in_axes4_z;
     /* (rrrrs-D_1_4) inertia of joint 4 along joint 1 */
-    const real rrrrs_J_4_in_spec4_xz = m->rrrrs_J_4_in_spec4_xz[i];
-    const real rrrrs_J_4_in_spec4_yz = m->rrrrs_J_4_in_spec4_yz[i];
-    const real rrrrs_D_1_4 = rrrrs_J_4_in_spec4_xz*rrrrs_e_1_in_axes4_x +
-        rrrrs_J_4_in_spec4_yz*rrrrs_e_1_in_axes4_y;
+    const real rrrrs_D_1_4 = m->rrrrs_J_4_in_spec4_xz[i]*rrrrs_e_1_in_axes4_x +
+        m->rrrrs_J_4_in_spec4_yz[i]*rrrrs_e_1_in_axes4_y;
     /* (rrrrs-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link
        about the connection point */
-    const real rrrrs_J_4_in_spec4_xy = m->rrrrs_J_4_in_spec4_xy[i];
-    const real rrrrs_Jc_3_t = rrrrs_J_4_in_spec4_xy*rrrrs_s_4_t;
-    const real rrrrs_J_4_in_spec4_xx = m->rrrrs_J_4_in_spec4_xx[i];
-    const real rrrrs_Jc_3_t_2 = rrrrs_Jc_3_t + rrrrs_J_4_in_spec4_xx*rrrrs_c_4;
-    const real rrrrs_Jc_3_t_3 = rrrrs_J_4_in_spec4_xy*rrrrs_c_4;
-    const real rrrrs_J_4_in_spec4_yy = m->rrrrs_J_4_in_spec4_yy[i];
-    const real rrrrs_Jc_3_t_4 = rrrrs_Jc_3_t_3 + rrrrs_J_4_in_spec4_yy*rrrrs_s_4_t;
-    const real rrrrs_J_3_in_spec3_xx = m->rrrrs_J_3_in_spec3_xx[i];
-    const real rrrrs_Jc_3_in_axes3_xx = rrrrs_J_3_in_spec3_xx + rrrrs_Jc_3_t_2*rrrrs_c_4 +
-        rrrrs_Jc_3_t_4*rrrrs_s_4_t;
-    const real rrrrs_J_3_in_spec3_xy = m->rrrrs_J_3_in_spec3_xy[i];
-    const real rrrrs_Jc_3_in_axes3_xy = rrrrs_J_3_in_spec3_xy + rrrrs_Jc_3_t_4*rrrrs_c_4 -
-        rrrrs_Jc_3_t_2*rrrrs_s_4_t;
-    const real rrrrs_J_3_in_spec3_xz = m->rrrrs_J_3_in_spec3_xz[i];
-    const real rrrrs_Jc_3_in_axes3_xz = rrrrs_J_3_in_spec3_xz +
-        rrrrs_J_4_in_spec4_xz*rrrrs_c_4 + rrrrs_J_4_in_spec4_yz*rrrrs_s_4_t;
-    const real rrrrs_J_3_in_spec3_yy = m->rrrrs_J_3_in_spec3_yy[i];
-    const real rrrrs_Jc_3_in_axes3_yy = rrrrs_J_3_in_spec3_yy +
-        rrrrs_c_4*(rrrrs_J_4_in_spec4_yy*rrrrs_c_4 - rrrrs_Jc_3_t) -
-        rrrrs_s_4_t*(rrrrs_Jc_3_t_3 - rrrrs_J_4_in_spec4_xx*rrrrs_s_4_t);
-    const real rrrrs_J_3_in_spec3_yz = m->rrrrs_J_3_in_spec3_yz[i];
-    const real rrrrs_Jc_3_in_axes3_yz = rrrrs_J_3_in_spec3_yz +
-        rrrrs_J_4_in_spec4_yz*rrrrs_c_4 - rrrrs_J_4_in_spec4_xz*rrrrs_s_4_t;
+    const real rrrrs_Jc_3_t = m->rrrrs_J_4_in_spec4_xy[i]*rrrrs_s_4_t;
+    const real rrrrs_Jc_3_t_2 = rrrrs_Jc_3_t + m->rrrrs_J_4_in_spec4_xx[i]*rrrrs_c_4;
+    const real rrrrs_Jc_3_t_3 = m->rrrrs_J_4_in_spec4_xy[i]*rrrrs_c_4;
+    const real rrrrs_Jc_3_t_4 = rrrrs_Jc_3_t_3 + m->rrrrs_J_4_in_spec4_yy[i]*rrrrs_s_4_t;
+    const real rrrrs_Jc_3_in_axes3_xx = m->rrrrs_J_3_in_spec3_xx[i] + rrrrs_Jc_3_t_2*rrrrs_c_4
+        + rrrrs_Jc_3_t_4*rrrrs_s_4_t;
+    const real rrrrs_Jc_3_in_axes3_xy = m->rrrrs_J_3_in_spec3_xy[i] + rrrrs_Jc_3_t_4*rrrrs_c_4
+        - rrrrs_Jc_3_t_2*rrrrs_s_4_t;
+    const real rrrrs_Jc_3_in_axes3_xz = m->rrrrs_J_3_in_spec3_xz[i] +
+        m->rrrrs_J_4_in_spec4_xz[i]*rrrrs_c_4 + m->rrrrs_J_4_in_spec4_yz[i]*rrrrs_s_4_t;
+    const real rrrrs_Jc_3_in_axes3_yy = m->rrrrs_J_3_in_spec3_yy[i] +
+        rrrrs_c_4*(m->rrrrs_J_4_in_spec4_yy[i]*rrrrs_c_4 - rrrrs_Jc_3_t) -
+        rrrrs_s_4_t*(rrrrs_Jc_3_t_3 - m->rrrrs_J_4_in_spec4_xx[i]*rrrrs_s_4_t);
+    const real rrrrs_Jc_3_in_axes3_yz = m->rrrrs_J_3_in_spec3_yz[i] +
+        m->rrrrs_J_4_in_spec4_yz[i]*rrrrs_c_4 - m->rrrrs_J_4_in_spec4_xz[i]*rrrrs_s_4_t;
     const real rrrrs_Jc_3_in_axes2_xz = rrrrs_Jc_3_in_axes3_xz*rrrrs_h_3_t_26 -
         rrrrs_Jc_3_in_axes3_yz*rrrrs_h_3_t_27;
     const real rrrrs_Jc_3_in_axes2_yz = rrrrs_Jc_3_in_axes3_xz*rrrrs_h_3_t_27 +
         rrrrs_Jc_3_in_axes3_yz*rrrrs_h_3_t_26;
     /* (rrrrs-P_c_3) force that accelerates joint 3, per unit */
-    const real rrrrs_P_c_3_in_axes2_x = -rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_27 -
-        rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_26;
+    const real rrrrs_P_c_3_in_axes2_x = -m->rrrrs_h_3_in_spec3_x[i]*rrrrs_h_3_t_27 -
+        m->rrrrs_h_3_in_spec3_y[i]*rrrrs_h_3_t_26;
     /* (rrrrs-L_c_3_2) moment about joint 2 that accelerates joint 3, per unit */
-    const real rrrrs_Jc_3_in_axes3_zz = m->rrrrs_Jc_3_in_axes3_zz[i];
-    const real rrrrs_L_c_3_2_in_axes2_z = rrrrs_Jc_3_in_axes3_zz +
-        rrrrs_h_3_in_axes2_x*rrrrs_joint3_offset_x;
+    const real rrrrs_L_c_3_2_in_axes2_z = m->rrrrs_Jc_3_in_axes3_zz[i] +
+        rrrrs_h_3_in_axes2_x*m->rrrrs_joint3_offset_x[i];
     /* (rrrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
        about the connection point */
     const real rrrrs_Jc_2_t_2 = rrrrs_Jc_3_in_axes3_xy*rrrrs_h_3_t_27;
     const real rrrrs_Jc_2_t_3 = rrrrs_Jc_3_in_axes3_xx*rrrrs_h_3_t_26 - rrrrs_Jc_2_t_2;
     const real rrrrs_Jc_2_t_4 = rrrrs_Jc_3_in_axes3_xy*rrrrs_h_3_t_26;
     const real rrrrs_Jc_2_t_5 = rrrrs_Jc_2_t_4 - rrrrs_Jc_3_in_axes3_yy*rrrrs_h_3_t_27;
-    const real rrrrs_Jc_2_t = m->rrrrs_Jc_2_t[i];
-    const real rrrrs_Jc_2_t_6 = rrrrs_joint3_offset_x*(rrrrs_Jc_2_t + rrrrs_h_3_in_axes2_x);
+    const real rrrrs_Jc_2_t_6 = m->rrrrs_joint3_offset_x[i]*(m->rrrrs_Jc_2_t[i] +
+        rrrrs_h_3_in_axes2_x);
     const real rrrrs_Jc_2_t_7 = 2*rrrrs_Jc_2_t_6;
-    const real rrrrs_J_2_in_spec2_xy = m->rrrrs_J_2_in_spec2_xy[i];
-    const real rrrrs_Jc_2_in_axes2_xy = rrrrs_J_2_in_spec2_xy + rrrrs_Jc_2_t_3*rrrrs_h_3_t_27
-        + rrrrs_Jc_2_t_5*rrrrs_h_3_t_26 + rrrrs_P_c_3_in_axes2_x*rrrrs_joint3_offset_x;
-    const real rrrrs_J_2_in_spec2_xx = m->rrrrs_J_2_in_spec2_xx[i];
-    const real rrrrs_J_2_in_spec2_yy = m->rrrrs_J_2_in_spec2_yy[i];
+    const real rrrrs_Jc_2_in_axes2_xy = m->rrrrs_J_2_in_spec2_xy[i] +
+        rrrrs_Jc_2_t_3*rrrrs_h_3_t_27 + rrrrs_Jc_2_t_5*rrrrs_h_3_t_26 +
+        rrrrs_P_c_3_in_axes2_x*m->rrrrs_joint3_offset_x[i];
     const real rrrrs_Jc_2_in_axes1_zz =
-        v->rrrrs_h_3_t_6*(v->rrrrs_h_3_t_6*(rrrrs_J_2_in_spec2_xx + rrrrs_Jc_2_t_7 +
+        v->rrrrs_h_3_t_6*(v->rrrrs_h_3_t_6*(m->rrrrs_J_2_in_spec2_xx[i] + rrrrs_Jc_2_t_7 +
         rrrrs_Jc_2_t_3*rrrrs_h_3_t_26 - 2*rrrrs_Jc_2_t_6 - rrrrs_Jc_2_t_5*rrrrs_h_3_t_27) -
         rrrrs_Jc_2_in_axes2_xy*v->rrrrs_h_3_t_7) -
         v->rrrrs_h_3_t_7*(rrrrs_Jc_2_in_axes2_xy*v->rrrrs_h_3_t_6 -
-        v->rrrrs_h_3_t_7*(rrrrs_J_2_in_spec2_yy + rrrrs_Jc_2_t_7 +
+        v->rrrrs_h_3_t_7*(m->rrrrs_J_2_in_spec2_yy[i] + rrrrs_Jc_2_t_7 +
         rrrrs_h_3_t_26*(rrrrs_Jc_2_t_2 + rrrrs_Jc_3_in_axes3_yy*rrrrs_h_3_t_26) +
         rrrrs_h_3_t_27*(rrrrs_Jc_2_t_4 + rrrrs_Jc_3_in_axes3_xx*rrrrs_h_3_t_27)));
     /* (rrrrs-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
        inertia and weight */
     const real rrrrs_d_Gamma_4_in_axes4_z = rrrrs_D_1_4*rrrrs_w_1_in_axes4_z;
-    const real rrrrs_d_Gamma_4_t = m->rrrrs_d_Gamma_4_t[i];
-    const real rrrrs_d_Gamma_4_t_2 = rrrrs_d_Gamma_4_t*rrrrs_r_3_in_axes4_x;
-    const real rrrrs_J_4_in_spec4_zz = m->rrrrs_J_4_in_spec4_zz[i];
-    const real rrrrs_h_4_in_spec4_y = m->rrrrs_h_4_in_spec4_y[i];
-    const real rrrrs_d_Gamma_4_in_axes4_x = rrrrs_w_3_in_axes4_x*(rrrrs_J_4_in_spec4_zz -
-        rrrrs_d_Gamma_4_t_2) - rrrrs_h_4_in_spec4_y;
+    const real rrrrs_d_Gamma_4_t_2 = m->rrrrs_d_Gamma_4_t[i]*rrrrs_r_3_in_axes4_x;
+    const real rrrrs_d_Gamma_4_in_axes4_x = rrrrs_w_3_in_axes4_x*(m->rrrrs_J_4_in_spec4_zz[i]
+        - rrrrs_d_Gamma_4_t_2) - m->rrrrs_h_4_in_spec4_y[i];
     /* (rrrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
        inertia and weight */
-    const real rrrrs_d_Gamma_3_in_axes4_x = rrrrs_w_3_in_axes4_x*(rrrrs_Jc_3_in_axes3_zz -
-        rrrrs_d_Gamma_4_t_2) - rrrrs_h_4_in_spec4_y;
+    const real rrrrs_d_Gamma_3_in_axes4_x = rrrrs_w_3_in_axes4_x*(m->rrrrs_Jc_3_in_axes3_zz[i]
+        - rrrrs_d_Gamma_4_t_2) - m->rrrrs_h_4_in_spec4_y[i];
     /* (rrrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
        inertia and weight */
     const real rrrrs_d_Gamma_2_in_axes4_x = rrrrs_w_3_in_axes4_x*(rrrrs_L_c_3_2_in_axes2_z -
-        rrrrs_d_Gamma_4_t_2) - rrrrs_h_4_in_spec4_y;
+        rrrrs_d_Gamma_4_t_2) - m->rrrrs_h_4_in_spec4_y[i];
     /* (rrrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
-    const real rrrrs_J_1_in_spec1_xx = m->rrrrs_J_1_in_spec1_xx[i];
-    const real rrrrs_h_4_in_spec4_x = m->rrrrs_h_4_in_spec4_x[i];
-    const real rrrrs_d_Gamma_1_in_axes4_z = rrrrs_e_1_in_axes4_x*rrrrs_h_4_in_spec4_y +
-        rrrrs_w_1_in_axes4_z*(rrrrs_J_1_in_spec1_xx + rrrrs_Jc_2_in_axes1_zz) -
-        rrrrs_e_1_in_axes4_y*rrrrs_h_4_in_spec4_x;
+    const real rrrrs_d_Gamma_1_in_axes4_z = rrrrs_e_1_in_axes4_x*m->rrrrs_h_4_in_spec4_y[i] +
+        rrrrs_w_1_in_axes4_z*(m->rrrrs_J_1_in_spec1_xx[i] + rrrrs_Jc_2_in_axes1_zz) -
+        rrrrs_e_1_in_axes4_y*m->rrrrs_h_4_in_spec4_x[i];
     /* (rrrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the
        leg's inertia and weight along all degrees of freedom */
-    const real rrrrs_d_G_in_axes4_yz = rrrrs_d_Gamma_4_in_axes4_z*rrrrs_w_4_in_axes4_y;
+    const real rrrrs_d_G_in_axes4_yz = rrrrs_d_Gamma_4_in_axes4_z*m->rrrrs_w_4_in_axes4_y[i];
     const real rrrrs_d_G_in_axes4_xx = rrrrs_d_Gamma_3_in_axes4_x*rrrrs_w_3_in_axes4_x +
         rrrrs_d_Gamma_4_in_axes4_x*rrrrs_w_4_in_axes4_x;
-    const real rrrrs_d_Gamma_4_in_axes4_y = m->rrrrs_d_Gamma_4_in_axes4_y[i];
-    const real rrrrs_d_G_in_axes4_xy = rrrrs_d_Gamma_4_in_axes4_y*rrrrs_w_3_in_axes4_x +
-        rrrrs_d_Gamma_4_in_axes4_y*rrrrs_w_4_in_axes4_x;
+    const real rrrrs_d_G_in_axes4_xy = m->rrrrs_d_Gamma_4_in_axes4_y[i]*rrrrs_w_3_in_axes4_x +
+        m->rrrrs_d_Gamma_4_in_axes4_y[i]*rrrrs_w_4_in_axes4_x;
     const real rrrrs_d_G_in_axes4_xz = rrrrs_d_Gamma_4_in_axes4_z*rrrrs_w_4_in_axes4_x +
         rrrrs_w_1_in_axes4_z*rrrrs_w_3_in_axes4_x*(rrrrs_Jc_3_in_axes2_xz*v->rrrrs_h_3_t_6 -
         rrrrs_Jc_3_in_axes2_yz*v->rrrrs_h_3_t_7);
     /* (rrrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
        without the mass at the connection point */
-    const real rrrrs_d_c_in_axes4_xx = rrrrs_h_4_in_spec4_y*(rrrrs_w_3_in_axes4_x +
+    const real rrrrs_d_c_in_axes4_xx = m->rrrrs_h_4_in_spec4_y[i]*(rrrrs_w_3_in_axes4_x +
         rrrrs_w_4_in_axes4_x) - rrrrs_d_G_in_axes4_xx;
-    const real rrrrs_d_phi_4_t = m->rrrrs_d_phi_4_t[i];
-    const real rrrrs_d_c_in_axes4_xy = rrrrs_d_phi_4_t - rrrrs_d_G_in_axes4_xy;
-    const real rrrrs_h_4_in_spec4_z = m->rrrrs_h_4_in_spec4_z[i];
+    const real rrrrs_d_c_in_axes4_xy = m->rrrrs_d_phi_4_t[i] - rrrrs_d_G_in_axes4_xy;
     const real rrrrs_d_c_in_axes4_xz = -rrrrs_d_G_in_axes4_xz -
-        rrrrs_d_alpha_4_in_axes4_yz*rrrrs_h_4_in_spec4_z;
-    const real rrrrs_d_c_in_axes4_yz = rrrrs_d_alpha_4_in_axes4_xz*rrrrs_h_4_in_spec4_z -
-        rrrrs_d_G_in_axes4_yz;
+        rrrrs_d_alpha_4_in_axes4_yz*m->rrrrs_h_4_in_spec4_z[i];
+    const real rrrrs_d_c_in_axes4_yz = rrrrs_d_alpha_4_in_axes4_xz*m->rrrrs_h_4_in_spec4_z[i]
+        - rrrrs_d_G_in_axes4_yz;
     /* (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra
        degree of freedom of joint 2 */
     const real rrrrs_d_P_2_in_axes4_x = rrrrs_d_Gamma_2_in_axes4_x +
         rrrrs_d_G_in_axes4_xx*rrrrs_r_2_in_axes4_y -
-        rrrrs_d_Gamma_4_in_axes4_x*rrrrs_r_2_in_axes4_x*rrrrs_w_4_in_axes4_y;
-    const real rrrrs_d_G_in_axes4_yy = m->rrrrs_d_G_in_axes4_yy[i];
-    const real rrrrs_d_P_2_in_axes4_y = rrrrs_d_Gamma_4_in_axes4_y +
+        rrrrs_d_Gamma_4_in_axes4_x*rrrrs_r_2_in_axes4_x*m->rrrrs_w_4_in_axes4_y[i];
+    const real rrrrs_d_P_2_in_axes4_y = m->rrrrs_d_Gamma_4_in_axes4_y[i] +
         rrrrs_d_G_in_axes4_xy*rrrrs_r_2_in_axes4_y -
-        rrrrs_d_G_in_axes4_yy*rrrrs_r_2_in_axes4_x;
-    const real rrrrs_J_2_in_spec2_xz = m->rrrrs_J_2_in_spec2_xz[i];
-    const real rrrrs_J_2_in_spec2_yz = m->rrrrs_J_2_in_spec2_yz[i];
-    const real rrrrs_d_P_2_t = m->rrrrs_d_P_2_t[i];
+        m->rrrrs_d_G_in_axes4_yy[i]*rrrrs_r_2_in_axes4_x;
     const real rrrrs_d_P_2_in_axes4_z = rrrrs_d_G_in_axes4_xz*rrrrs_r_2_in_axes4_y +
-        rrrrs_w_1_in_axes4_z*(v->rrrrs_h_3_t_6*(rrrrs_J_2_in_spec2_xz + rrrrs_Jc_3_in_axes2_xz
-        - rrrrs_d_P_2_t) - v->rrrrs_h_3_t_7*(rrrrs_J_2_in_spec2_yz + rrrrs_Jc_3_in_axes2_yz))
-        - rrrrs_d_G_in_axes4_yz*rrrrs_r_2_in_axes4_x;
+        rrrrs_w_1_in_axes4_z*(v->rrrrs_h_3_t_6*(m->rrrrs_J_2_in_spec2_xz[i] +
+        rrrrs_Jc_3_in_axes2_xz - m->rrrrs_d_P_2_t[i]) -
+        v->rrrrs_h_3_t_7*(m->rrrrs_J_2_in_spec2_yz[i] + rrrrs_Jc_3_in_axes2_yz)) -
+        rrrrs_d_G_in_axes4_yz*rrrrs_r_2_in_axes4_x;
     v->rrrrs_h_3_t_11 = rrrrs_h_3_t_11;
     v->rrrrs_h_3_t_23 = rrrrs_h_3_t_23;
     v->rrrrs_h_3_t_24 = rrrrs_h_3_t_24;
@@ -2850,8 +2795,8 @@ INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, siz
     const real rrrrs_qd_3 = v->rrrrs_w_3_in_axes4_x*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
         axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_x_rrrrs_axes4_z*rrrrs_S_dot_rest_z);
     /* (rrrrs-qd_4) rate of joint 4 */
-    const real rrrrs_w_4_in_axes4_y = m->rrrrs_w_4_in_axes4_y[i];
-    const real rrrrs_qd_4 = rrrrs_w_4_in_axes4_y*(v->axis_y_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+    const real rrrrs_qd_4 =
+        m->rrrrs_w_4_in_axes4_y[i]*(v->axis_y_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
         v->axis_y_rrrrs_axes4_y*rrrrs_S_dot_rest_y +
         v->axis_y_rrrrs_axes4_z*rrrrs_S_dot_rest_z - rrrrs_qd_3*v->rrrrs_r_3_in_axes4_x);
     /* (rrrrs-omega_1) angular velocity of link 1 */
@@ -2909,16 +2854,16 @@ INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, siz
     const real rrrrs_beta_4_in_axes4_y = rrrrs_beta_3_in_axes4_y - rrrrs_zeta_4_t;
     /* (rrrrs-bias) acceleration of the connection point at zero joint accelerations */
     const real rrrrs_bias_t_2 = rrrrs_omega_3_in_axes3_z*rrrrs_omega_3_in_axes3_z;
-    const real rrrrs_platform_joint_offset_x = m->rrrrs_platform_joint_offset_x[i];
     const real rrrrs_bias_in_axes4_x = rrrrs_W_1_in_axes4_xy*v->rrrrs_d_2_in_axes4_y +
         rrrrs_W_1_in_axes4_xy*v->rrrrs_d_3_in_axes4_y +
         rrrrs_W_1_in_axes4_xy*v->rrrrs_d_4_in_axes4_y - rrrrs_W_1_t_2*v->rrrrs_d_2_in_axes4_x
-        - rrrrs_W_4_t_2*rrrrs_platform_joint_offset_x - v->rrrrs_d_3_in_axes4_x*(rrrrs_W_1_t_2
-        + v->rrrrs_bias_t) - v->rrrrs_d_4_in_axes4_x*(rrrrs_W_1_t_2 + rrrrs_bias_t_2);
+        - rrrrs_W_4_t_2*m->rrrrs_platform_joint_offset_x[i] -
+        v->rrrrs_d_3_in_axes4_x*(rrrrs_W_1_t_2 + v->rrrrs_bias_t) -
+        v->rrrrs_d_4_in_axes4_x*(rrrrs_W_1_t_2 + rrrrs_bias_t_2);
     const real rrrrs_bias_in_axes4_y = rrrrs_W_1_in_axes4_xy*v->rrrrs_d_2_in_axes4_x +
         rrrrs_W_1_in_axes4_xy*v->rrrrs_d_3_in_axes4_x +
         rrrrs_W_1_in_axes4_xy*v->rrrrs_d_4_in_axes4_x +
-        rrrrs_W_1_in_axes4_xy*rrrrs_platform_joint_offset_x -
+        rrrrs_W_1_in_axes4_xy*m->rrrrs_platform_joint_offset_x[i] -
         rrrrs_W_1_t*v->rrrrs_d_2_in_axes4_y - v->rrrrs_d_3_in_axes4_y*(rrrrs_W_1_t +
         v->rrrrs_bias_t) - v->rrrrs_d_4_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t_2);
     const real rrrrs_bias_in_axes4_z =
@@ -2927,8 +2872,8 @@ INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, siz
         v->rrrrs_d_4_in_axes4_y*(rrrrs_beta_3_in_axes3_x*v->rrrrs_c_4 +
         rrrrs_omega_1_in_axes4_y*rrrrs_omega_3_in_axes3_z -
         rrrrs_beta_3_in_axes3_y*v->rrrrs_s_4_t) +
-        rrrrs_platform_joint_offset_x*(rrrrs_W_4_in_axes4_xz - rrrrs_beta_4_in_axes4_y) +
-        2*v->rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
+        m->rrrrs_platform_joint_offset_x[i]*(rrrrs_W_4_in_axes4_xz - rrrrs_beta_4_in_axes4_y)
+        + 2*v->rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
         2*v->rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2;
     /* (rrrrs-rel) acceleration of the connection point left to the joint accelerations */
     const real rrrrs_ydd_2 = A[6*w + j];
@@ -2970,7 +2915,8 @@ INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, siz
     const real rrrrs_alpha_4_in_axes4_y = rrrrs_alpha_3_in_axes3_x*v->rrrrs_s_4_t +
         rrrrs_alpha_3_in_axes3_y*v->rrrrs_c_4 - rrrrs_zeta_4_t;
     const real rrrrs_alpha_4_in_axes4_z = rrrrs_alpha_3_in_axes3_z +
-        rrrrs_w_4_in_axes4_y*(rrrrs_rel_in_axes4_y - rrrrs_qdd_3*v->rrrrs_r_3_in_axes4_x);
+        m->rrrrs_w_4_in_axes4_y[i]*(rrrrs_rel_in_axes4_y -
+        rrrrs_qdd_3*v->rrrrs_r_3_in_axes4_x);
     /* (rrrrs-B_4) acceleration tensor of link 4 */
     const real rrrrs_B_4_in_axes4_xy = rrrrs_W_1_in_axes4_xy - rrrrs_alpha_4_in_axes4_z;
     const real rrrrs_B_4_in_axes4_xz = rrrrs_W_4_in_axes4_xz + rrrrs_alpha_4_in_axes4_y;
@@ -2980,10 +2926,9 @@ INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, siz
     const real rrrrs_B_4_in_axes4_zy = rrrrs_W_4_in_axes4_yz + rrrrs_alpha_4_in_axes4_x;
     /* (rrrrs-a_o_3) acceleration of the origin of joint 3 */
     const real rrrrs_a_o_3_t = rrrrs_omega_1_in_axes2_y*rrrrs_omega_1_in_axes2_y;
-    const real rrrrs_joint3_offset_x = m->rrrrs_joint3_offset_x[i];
-    const real rrrrs_a_o_3_in_axes2_x = -rrrrs_joint3_offset_x*(rrrrs_a_o_3_t +
+    const real rrrrs_a_o_3_in_axes2_x = -m->rrrrs_joint3_offset_x[i]*(rrrrs_a_o_3_t +
         v->rrrrs_bias_t);
-    const real rrrrs_a_o_3_in_axes2_y = rrrrs_B_2_in_axes2_yx*rrrrs_joint3_offset_x;
+    const real rrrrs_a_o_3_in_axes2_y = rrrrs_B_2_in_axes2_yx*m->rrrrs_joint3_offset_x[i];
     /* (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity */
     const real rrrrs_acc_3_in_axes3_x = rrrrs_a_o_3_in_axes2_x*v->rrrrs_c_3 +
         rrrrs_a_o_3_in_axes2_y*v->rrrrs_s_3 - v->rrrrs_c_3*v->rrrrs_g_in_axes2_x -
@@ -2991,84 +2936,69 @@ INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, siz
     const real rrrrs_acc_3_in_axes3_y = rrrrs_a_o_3_in_axes2_y*v->rrrrs_c_3 +
         v->rrrrs_g_in_axes2_x*v->rrrrs_s_3 - rrrrs_a_o_3_in_axes2_x*v->rrrrs_s_3 -
         v->rrrrs_c_3*v->rrrrs_g_in_axes2_y;
-    const real rrrrs_acc_3_in_axes3_z = rrrrs_B_2_in_axes2_zx*rrrrs_joint3_offset_x -
+    const real rrrrs_acc_3_in_axes3_z = rrrrs_B_2_in_axes2_zx*m->rrrrs_joint3_offset_x[i] -
         v->rrrrs_g_in_axes1_y;
     /* (rrrrs-f_3) inertia force of link 3 less its weight */
     const real rrrrs_f_3_t = rrrrs_omega_1_t*rrrrs_omega_1_t;
     const real rrrrs_f_3_t_2 = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2;
-    const real rrrrs_h_3_in_spec3_x = m->rrrrs_h_3_in_spec3_x[i];
-    const real rrrrs_h_3_in_spec3_y = m->rrrrs_h_3_in_spec3_y[i];
-    const real rrrrs_h_3_in_spec3_z = m->rrrrs_h_3_in_spec3_z[i];
-    const real rrrrs_link3_mass = m->rrrrs_link3_mass[i];
-    const real rrrrs_f_3_in_axes3_z = rrrrs_B_3_in_axes3_zx*rrrrs_h_3_in_spec3_x +
-        rrrrs_B_3_in_axes3_zy*rrrrs_h_3_in_spec3_y + rrrrs_acc_3_in_axes3_z*rrrrs_link3_mass -
-        rrrrs_h_3_in_spec3_z*(rrrrs_f_3_t + rrrrs_f_3_t_2);
+    const real rrrrs_f_3_in_axes3_z = rrrrs_B_3_in_axes3_zx*m->rrrrs_h_3_in_spec3_x[i] +
+        rrrrs_B_3_in_axes3_zy*m->rrrrs_h_3_in_spec3_y[i] +
+        rrrrs_acc_3_in_axes3_z*m->rrrrs_link3_mass[i] -
+        m->rrrrs_h_3_in_spec3_z[i]*(rrrrs_f_3_t + rrrrs_f_3_t_2);
     /* (rrrrs-acc_4) acceleration of the reference point of link 4, less gravity */
-    const real gravity_x = m->gravity_x;
-    const real gravity_y = m->gravity_y;
-    const real gravity_z = m->gravity_z;
     const real rrrrs_acc_4_in_axes4_x = rrrrs_S_ddot_in_axes4_x -
-        axis_x_rrrrs_axes4_x*gravity_x - axis_x_rrrrs_axes4_y*gravity_y -
-        axis_x_rrrrs_axes4_z*gravity_z;
+        axis_x_rrrrs_axes4_x*m->gravity_x - axis_x_rrrrs_axes4_y*m->gravity_y -
+        axis_x_rrrrs_axes4_z*m->gravity_z;
     const real rrrrs_acc_4_in_axes4_y = rrrrs_S_ddot_in_axes4_y -
-        v->axis_y_rrrrs_axes4_x*gravity_x - v->axis_y_rrrrs_axes4_y*gravity_y -
-        v->axis_y_rrrrs_axes4_z*gravity_z;
+        v->axis_y_rrrrs_axes4_x*m->gravity_x - v->axis_y_rrrrs_axes4_y*m->gravity_y -
+        v->axis_y_rrrrs_axes4_z*m->gravity_z;
     const real rrrrs_acc_4_in_axes4_z = rrrrs_S_ddot_in_axes4_z -
-        v->axis_z_rrrrs_axes4_x*gravity_x - v->axis_z_rrrrs_axes4_y*gravity_y -
-        v->axis_z_rrrrs_axes4_z*gravity_z;
+        v->axis_z_rrrrs_axes4_x*m->gravity_x - v->axis_z_rrrrs_axes4_y*m->gravity_y -
+        v->axis_z_rrrrs_axes4_z*m->gravity_z;
     /* (rrrrs-mu_4) inertia moment of the links that turn with link 4, about their reference points */
-    const real rrrrs_J_4_in_spec4_xy = m->rrrrs_J_4_in_spec4_xy[i];
-    const real rrrrs_J_4_in_spec4_xz = m->rrrrs_J_4_in_spec4_xz[i];
-    const real rrrrs_J_4_in_spec4_yz = m->rrrrs_J_4_in_spec4_yz[i];
-    const real rrrrs_Sigma_4_in_axes4_yy = m->rrrrs_Sigma_4_in_axes4_yy[i];
-    const real rrrrs_Sigma_4_in_axes4_zz = m->rrrrs_Sigma_4_in_axes4_zz[i];
-    const real rrrrs_h_4_in_spec4_y = m->rrrrs_h_4_in_spec4_y[i];
-    const real rrrrs_h_4_in_spec4_z = m->rrrrs_h_4_in_spec4_z[i];
-    const real rrrrs_mu_4_in_axes4_x = rrrrs_B_4_in_axes4_yx*rrrrs_J_4_in_spec4_xz +
-        rrrrs_B_4_in_axes4_zy*rrrrs_Sigma_4_in_axes4_yy + rrrrs_J_4_in_spec4_yz*(rrrrs_W_1_t_2
-        - rrrrs_W_4_t) + rrrrs_acc_4_in_axes4_z*rrrrs_h_4_in_spec4_y -
-        rrrrs_B_4_in_axes4_yz*rrrrs_Sigma_4_in_axes4_zz -
-        rrrrs_B_4_in_axes4_zx*rrrrs_J_4_in_spec4_xy -
-        rrrrs_acc_4_in_axes4_y*rrrrs_h_4_in_spec4_z;
-    const real rrrrs_Sigma_4_in_axes4_xx = m->rrrrs_Sigma_4_in_axes4_xx[i];
-    const real rrrrs_h_4_in_spec4_x = m->rrrrs_h_4_in_spec4_x[i];
-    const real rrrrs_mu_4_in_axes4_y = rrrrs_B_4_in_axes4_xz*rrrrs_Sigma_4_in_axes4_zz +
-        rrrrs_B_4_in_axes4_zy*rrrrs_J_4_in_spec4_xy +
-        rrrrs_acc_4_in_axes4_x*rrrrs_h_4_in_spec4_z -
-        rrrrs_B_4_in_axes4_xy*rrrrs_J_4_in_spec4_yz -
-        rrrrs_B_4_in_axes4_zx*rrrrs_Sigma_4_in_axes4_xx - rrrrs_J_4_in_spec4_xz*(rrrrs_W_1_t -
-        rrrrs_W_4_t) - rrrrs_acc_4_in_axes4_z*rrrrs_h_4_in_spec4_x;
-    const real rrrrs_mu_4_in_axes4_z = rrrrs_B_4_in_axes4_xz*rrrrs_J_4_in_spec4_yz +
-        rrrrs_B_4_in_axes4_yx*rrrrs_Sigma_4_in_axes4_xx + rrrrs_J_4_in_spec4_xy*(rrrrs_W_1_t -
-        rrrrs_W_1_t_2) + rrrrs_acc_4_in_axes4_y*rrrrs_h_4_in_spec4_x -
-        rrrrs_B_4_in_axes4_xy*rrrrs_Sigma_4_in_axes4_yy -
-        rrrrs_B_4_in_axes4_yz*rrrrs_J_4_in_spec4_xz -
-        rrrrs_acc_4_in_axes4_x*rrrrs_h_4_in_spec4_y;
+    const real rrrrs_mu_4_in_axes4_x = rrrrs_B_4_in_axes4_yx*m->rrrrs_J_4_in_spec4_xz[i] +
+        rrrrs_B_4_in_axes4_zy*m->rrrrs_Sigma_4_in_axes4_yy[i] +
+        m->rrrrs_J_4_in_spec4_yz[i]*(rrrrs_W_1_t_2 - rrrrs_W_4_t) +
+        rrrrs_acc_4_in_axes4_z*m->rrrrs_h_4_in_spec4_y[i] -
+        rrrrs_B_4_in_axes4_yz*m->rrrrs_Sigma_4_in_axes4_zz[i] -
+        rrrrs_B_4_in_axes4_zx*m->rrrrs_J_4_in_spec4_xy[i] -
+        rrrrs_acc_4_in_axes4_y*m->rrrrs_h_4_in_spec4_z[i];
+    const real rrrrs_mu_4_in_axes4_y = rrrrs_B_4_in_axes4_xz*m->rrrrs_Sigma_4_in_axes4_zz[i] +
+        rrrrs_B_4_in_axes4_zy*m->rrrrs_J_4_in_spec4_xy[i] +
+        rrrrs_acc_4_in_axes4_x*m->rrrrs_h_4_in_spec4_z[i] -
+        rrrrs_B_4_in_axes4_xy*m->rrrrs_J_4_in_spec4_yz[i] -
+        rrrrs_B_4_in_axes4_zx*m->rrrrs_Sigma_4_in_axes4_xx[i] -
+        m->rrrrs_J_4_in_spec4_xz[i]*(rrrrs_W_1_t - rrrrs_W_4_t) -
+        rrrrs_acc_4_in_axes4_z*m->rrrrs_h_4_in_spec4_x[i];
+    const real rrrrs_mu_4_in_axes4_z = rrrrs_B_4_in_axes4_xz*m->rrrrs_J_4_in_spec4_yz[i] +
+        rrrrs_B_4_in_axes4_yx*m->rrrrs_Sigma_4_in_axes4_xx[i] +
+        m->rrrrs_J_4_in_spec4_xy[i]*(rrrrs_W_1_t - rrrrs_W_1_t_2) +
+        rrrrs_acc_4_in_axes4_y*m->rrrrs_h_4_in_spec4_x[i] -
+        rrrrs_B_4_in_axes4_xy*m->rrrrs_Sigma_4_in_axes4_yy[i] -
+        rrrrs_B_4_in_axes4_yz*m->rrrrs_J_4_in_spec4_xz[i] -
+        rrrrs_acc_4_in_axes4_x*m->rrrrs_h_4_in_spec4_y[i];
     /* (rrrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-    const real rrrrs_J_3_in_spec3_xy = m->rrrrs_J_3_in_spec3_xy[i];
-    const real rrrrs_J_3_in_spec3_xz = m->rrrrs_J_3_in_spec3_xz[i];
-    const real rrrrs_J_3_in_spec3_yz = m->rrrrs_J_3_in_spec3_yz[i];
-    const real rrrrs_Sigma_3_in_axes3_yy = m->rrrrs_Sigma_3_in_axes3_yy[i];
-    const real rrrrs_Sigma_3_in_axes3_zz = m->rrrrs_Sigma_3_in_axes3_zz[i];
-    const real rrrrs_mu_3_in_axes3_x = rrrrs_B_3_in_axes3_yx*rrrrs_J_3_in_spec3_xz +
-        rrrrs_B_3_in_axes3_zy*rrrrs_Sigma_3_in_axes3_yy + rrrrs_J_3_in_spec3_yz*(rrrrs_f_3_t_2
-        - rrrrs_bias_t_2) + rrrrs_acc_3_in_axes3_z*rrrrs_h_3_in_spec3_y -
-        rrrrs_B_3_in_axes3_yz*rrrrs_Sigma_3_in_axes3_zz -
-        rrrrs_B_3_in_axes3_zx*rrrrs_J_3_in_spec3_xy -
-        rrrrs_acc_3_in_axes3_y*rrrrs_h_3_in_spec3_z;
-    const real rrrrs_Sigma_3_in_axes3_xx = m->rrrrs_Sigma_3_in_axes3_xx[i];
-    const real rrrrs_mu_3_in_axes3_y = rrrrs_B_3_in_axes3_xz*rrrrs_Sigma_3_in_axes3_zz +
-        rrrrs_B_3_in_axes3_zy*rrrrs_J_3_in_spec3_xy +
-        rrrrs_acc_3_in_axes3_x*rrrrs_h_3_in_spec3_z -
-        rrrrs_B_3_in_axes3_xy*rrrrs_J_3_in_spec3_yz -
-        rrrrs_B_3_in_axes3_zx*rrrrs_Sigma_3_in_axes3_xx - rrrrs_J_3_in_spec3_xz*(rrrrs_f_3_t -
-        rrrrs_bias_t_2) - rrrrs_acc_3_in_axes3_z*rrrrs_h_3_in_spec3_x;
-    const real rrrrs_mu_3_in_axes3_z = rrrrs_B_3_in_axes3_xz*rrrrs_J_3_in_spec3_yz +
-        rrrrs_B_3_in_axes3_yx*rrrrs_Sigma_3_in_axes3_xx + rrrrs_J_3_in_spec3_xy*(rrrrs_f_3_t -
-        rrrrs_f_3_t_2) + rrrrs_acc_3_in_axes3_y*rrrrs_h_3_in_spec3_x -
-        rrrrs_B_3_in_axes3_xy*rrrrs_Sigma_3_in_axes3_yy -
-        rrrrs_B_3_in_axes3_yz*rrrrs_J_3_in_spec3_xz -
-        rrrrs_acc_3_in_axes3_x*rrrrs_h_3_in_spec3_y;
+    const real rrrrs_mu_3_in_axes3_x = rrrrs_B_3_in_axes3_yx*m->rrrrs_J_3_in_spec3_xz[i] +
+        rrrrs_B_3_in_axes3_zy*m->rrrrs_Sigma_3_in_axes3_yy[i] +
+        m->rrrrs_J_3_in_spec3_yz[i]*(rrrrs_f_3_t_2 - rrrrs_bias_t_2) +
+        rrrrs_acc_3_in_axes3_z*m->rrrrs_h_3_in_spec3_y[i] -
+        rrrrs_B_3_in_axes3_yz*m->rrrrs_Sigma_3_in_axes3_zz[i] -
+        rrrrs_B_3_in_axes3_zx*m->rrrrs_J_3_in_spec3_xy[i] -
+        rrrrs_acc_3_in_axes3_y*m->rrrrs_h_3_in_spec3_z[i];
+    const real rrrrs_mu_3_in_axes3_y = rrrrs_B_3_in_axes3_xz*m->rrrrs_Sigma_3_in_axes3_zz[i] +
+        rrrrs_B_3_in_axes3_zy*m->rrrrs_J_3_in_spec3_xy[i] +
+        rrrrs_acc_3_in_axes3_x*m->rrrrs_h_3_in_spec3_z[i] -
+        rrrrs_B_3_in_axes3_xy*m->rrrrs_J_3_in_spec3_yz[i] -
+        rrrrs_B_3_in_axes3_zx*m->rrrrs_Sigma_3_in_axes3_xx[i] -
+        m->rrrrs_J_3_in_spec3_xz[i]*(rrrrs_f_3_t - rrrrs_bias_t_2) -
+        rrrrs_acc_3_in_axes3_z*m->rrrrs_h_3_in_spec3_x[i];
+    const real rrrrs_mu_3_in_axes3_z = rrrrs_B_3_in_axes3_xz*m->rrrrs_J_3_in_spec3_yz[i] +
+        rrrrs_B_3_in_axes3_yx*m->rrrrs_Sigma_3_in_axes3_xx[i] +
+        m->rrrrs_J_3_in_spec3_xy[i]*(rrrrs_f_3_t - rrrrs_f_3_t_2) +
+        rrrrs_acc_3_in_axes3_y*m->rrrrs_h_3_in_spec3_x[i] -
+        rrrrs_B_3_in_axes3_xy*m->rrrrs_Sigma_3_in_axes3_yy[i] -
+        rrrrs_B_3_in_axes3_yz*m->rrrrs_J_3_in_spec3_xz[i] -
+        rrrrs_acc_3_in_axes3_x*m->rrrrs_h_3_in_spec3_y[i];
     /* (rrrrs-N_3) moment about joint 3 of the links from 3 outwards, the force at the connection
        point left out */
     const real rrrrs_N_3_in_axes3_x = rrrrs_mu_3_in_axes3_x +
@@ -3077,38 +3007,29 @@ INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, siz
         v->rrrrs_c_4*rrrrs_mu_4_in_axes4_y - rrrrs_mu_4_in_axes4_x*v->rrrrs_s_4_t;
     const real rrrrs_N_3_in_axes3_z = rrrrs_mu_3_in_axes3_z + rrrrs_mu_4_in_axes4_z;
     /* (rrrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real rrrrs_J_2_in_spec2_xy = m->rrrrs_J_2_in_spec2_xy[i];
-    const real rrrrs_J_2_in_spec2_xz = m->rrrrs_J_2_in_spec2_xz[i];
-    const real rrrrs_J_2_in_spec2_yz = m->rrrrs_J_2_in_spec2_yz[i];
-    const real rrrrs_Sigma_2_in_axes2_yy = m->rrrrs_Sigma_2_in_axes2_yy[i];
-    const real rrrrs_Sigma_2_in_axes2_zz = m->rrrrs_Sigma_2_in_axes2_zz[i];
-    const real rrrrs_h_2_in_spec2_y = m->rrrrs_h_2_in_spec2_y[i];
-    const real rrrrs_h_2_in_spec2_z = m->rrrrs_h_2_in_spec2_z[i];
-    const real rrrrs_mu_2_in_axes2_x = rrrrs_B_2_in_axes2_yx*rrrrs_J_2_in_spec2_xz +
-        rrrrs_B_2_in_axes2_zy*rrrrs_Sigma_2_in_axes2_yy + rrrrs_J_2_in_spec2_yz*(rrrrs_a_o_3_t
-        - v->rrrrs_bias_t) + rrrrs_Sigma_2_in_axes2_zz*rrrrs_alpha_1_in_axes2_x +
-        v->rrrrs_g_in_axes2_y*rrrrs_h_2_in_spec2_z -
-        rrrrs_B_2_in_axes2_zx*rrrrs_J_2_in_spec2_xy -
-        v->rrrrs_g_in_axes1_y*rrrrs_h_2_in_spec2_y;
+    const real rrrrs_mu_2_in_axes2_x = rrrrs_B_2_in_axes2_yx*m->rrrrs_J_2_in_spec2_xz[i] +
+        rrrrs_B_2_in_axes2_zy*m->rrrrs_Sigma_2_in_axes2_yy[i] +
+        m->rrrrs_J_2_in_spec2_yz[i]*(rrrrs_a_o_3_t - v->rrrrs_bias_t) +
+        m->rrrrs_Sigma_2_in_axes2_zz[i]*rrrrs_alpha_1_in_axes2_x +
+        v->rrrrs_g_in_axes2_y*m->rrrrs_h_2_in_spec2_z[i] -
+        rrrrs_B_2_in_axes2_zx*m->rrrrs_J_2_in_spec2_xy[i] -
+        v->rrrrs_g_in_axes1_y*m->rrrrs_h_2_in_spec2_y[i];
     /* (rrrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection
        point left out */
     const real rrrrs_N_2_in_axes2_x = rrrrs_mu_2_in_axes2_x +
         rrrrs_N_3_in_axes3_x*v->rrrrs_c_3 - rrrrs_N_3_in_axes3_y*v->rrrrs_s_3;
     /* (rrrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-    const real rrrrs_J_1_in_spec1_xx = m->rrrrs_J_1_in_spec1_xx[i];
-    const real rrrrs_h_1_in_spec1_y = m->rrrrs_h_1_in_spec1_y[i];
-    const real rrrrs_h_1_in_spec1_z = m->rrrrs_h_1_in_spec1_z[i];
-    const real rrrrs_mu_1_in_axes1_z = rrrrs_J_1_in_spec1_xx*rrrrs_qdd_1 +
-        v->rrrrs_g_in_axes1_x*rrrrs_h_1_in_spec1_z -
-        v->rrrrs_g_in_axes1_y*rrrrs_h_1_in_spec1_y;
+    const real rrrrs_mu_1_in_axes1_z = m->rrrrs_J_1_in_spec1_xx[i]*rrrrs_qdd_1 +
+        v->rrrrs_g_in_axes1_x*m->rrrrs_h_1_in_spec1_z[i] -
+        v->rrrrs_g_in_axes1_y*m->rrrrs_h_1_in_spec1_y[i];
     /* (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
-    const real rrrrs_G_in_axes4_y = rrrrs_mu_4_in_axes4_z*rrrrs_w_4_in_axes4_y;
+    const real rrrrs_G_in_axes4_y = rrrrs_mu_4_in_axes4_z*m->rrrrs_w_4_in_axes4_y[i];
     /* (rrrrs-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rrrrs_c_in_axes4_y = rrrrs_h_4_in_spec4_y*(rrrrs_W_1_t + rrrrs_W_4_t) -
-        rrrrs_G_in_axes4_y - rrrrs_B_4_in_axes4_yx*rrrrs_h_4_in_spec4_x -
-        rrrrs_B_4_in_axes4_yz*rrrrs_h_4_in_spec4_z;
+    const real rrrrs_c_in_axes4_y = m->rrrrs_h_4_in_spec4_y[i]*(rrrrs_W_1_t + rrrrs_W_4_t) -
+        rrrrs_G_in_axes4_y - rrrrs_B_4_in_axes4_yx*m->rrrrs_h_4_in_spec4_x[i] -
+        rrrrs_B_4_in_axes4_yz*m->rrrrs_h_4_in_spec4_z[i];
     v->axis_x_rrrrs_axes4_x = axis_x_rrrrs_axes4_x;
     v->axis_x_rrrrs_axes4_y = axis_x_rrrrs_axes4_y;
     v->axis_x_rrrrs_axes4_z = axis_x_rrrrs_axes4_z;
@@ -3185,97 +3106,75 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real rrrs_platform_point_x = m->rrrs_platform_point_x[i];
-    const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
-    const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
-    const real rrrs_q_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
-        R_xz*rrrs_platform_point_z;
+    const real rrrs_q_x = R_xx*m->rrrs_platform_point_x[i] + R_xy*m->rrrs_platform_point_y[i]
+        + R_xz*m->rrrs_platform_point_z[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real rrrs_q_y = R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
-        R_yz*rrrs_platform_point_z;
+    const real rrrs_q_y = R_yx*m->rrrs_platform_point_x[i] + R_yy*m->rrrs_platform_point_y[i]
+        + R_yz*m->rrrs_platform_point_z[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
-    const real rrrs_q_z = R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
-        R_zz*rrrs_platform_point_z;
-    const real rrrs_base_point_x = m->rrrs_base_point_x[i];
+    const real rrrs_q_z = R_zx*m->rrrs_platform_point_x[i] + R_zy*m->rrrs_platform_point_y[i]
+        + R_zz*m->rrrs_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x;
-    const real rrrs_base_point_y = m->rrrs_base_point_y[i];
+    const real rrrs_S_x = rrrs_q_x + t_x - m->rrrs_base_point_x[i];
     const real t_y = X[1*w + j];
-    const real rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y;
-    const real rrrs_base_point_z = m->rrrs_base_point_z[i];
+    const real rrrs_S_y = rrrs_q_y + t_y - m->rrrs_base_point_y[i];
     const real t_z = X[2*w + j];
-    const real rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z;
-    const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
-    const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
-    const real rrrs_base_frame_zy = m->rrrs_base_frame_zy[i];
-    const real rrrs_S_in_turn1_x = rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy +
-        rrrs_S_z*rrrs_base_frame_zy;
-    const real rrrs_base_frame_xz = m->rrrs_base_frame_xz[i];
-    const real rrrs_base_frame_yz = m->rrrs_base_frame_yz[i];
-    const real rrrs_base_frame_zz = m->rrrs_base_frame_zz[i];
-    const real rrrs_S_in_turn1_y = rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz +
-        rrrs_S_z*rrrs_base_frame_zz;
-    const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
-    const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
-    const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
-    const real rrrs_S_in_turn1_z = rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx +
-        rrrs_S_z*rrrs_base_frame_zx;
+    const real rrrs_S_z = rrrs_q_z + t_z - m->rrrs_base_point_z[i];
+    const real rrrs_S_in_turn1_x = rrrs_S_x*m->rrrs_base_frame_xy[i] +
+        rrrs_S_y*m->rrrs_base_frame_yy[i] + rrrs_S_z*m->rrrs_base_frame_zy[i];
+    const real rrrs_S_in_turn1_y = rrrs_S_x*m->rrrs_base_frame_xz[i] +
+        rrrs_S_y*m->rrrs_base_frame_yz[i] + rrrs_S_z*m->rrrs_base_frame_zz[i];
+    const real rrrs_S_in_turn1_z = rrrs_S_x*m->rrrs_base_frame_xx[i] +
+        rrrs_S_y*m->rrrs_base_frame_yx[i] + rrrs_S_z*m->rrrs_base_frame_zx[i];
     /* (rrrs-rho2_1) squared amplitude */
     const real rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x +
         rrrs_S_in_turn1_y*rrrs_S_in_turn1_y;
     /* (rrrs-root_1) root, with the sign of the branch */
-    const real rrrs_branch_1 = m->rrrs_branch_1[i];
-    const real rrrs_root_1 = rrrs_branch_1*root(rrrs_rho2_1);
+    const real rrrs_root_1 = m->rrrs_branch_1[i]*root(rrrs_rho2_1);
     /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
     const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
     const real rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1;
     /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
     const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1;
     /* (rrrs-x_2) from the origin of joint 2 to the connection point */
-    const real rrrs_joint2_offset_x = m->rrrs_joint2_offset_x[i];
-    const real rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x;
+    const real rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - m->rrrs_joint2_offset_x[i];
     /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 2 */
     const real rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
-    const real rrrs_Kd_2_t = m->rrrs_Kd_2_t[i];
-    const real rrrs_Kd_2_t_2 = m->rrrs_Kd_2_t_2[i];
-    const real rrrs_Kd_2 = rrrs_Kd_2_t + R(0.5)*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2;
+    const real rrrs_Kd_2 = m->rrrs_Kd_2_t[i] + R(0.5)*rrrs_Kd_2_t_3 - m->rrrs_Kd_2_t_2[i];
     /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
-    const real rrrs_joint3_offset_x = m->rrrs_joint3_offset_x[i];
-    const real rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z;
+    const real rrrs_Kc_2 = m->rrrs_joint3_offset_x[i]*rrrs_x_2_in_axes1_z;
     /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
-    const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1;
+    const real rrrs_Ks_2 = m->rrrs_joint3_offset_x[i]*rrrs_root_1;
     /* (rrrs-rho2_2) squared amplitude */
     const real rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2;
     /* (rrrs-disc_2) discriminant */
     const real rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2;
     /* (rrrs-root_2) root, with the sign of the branch */
-    const real rrrs_branch_2 = m->rrrs_branch_2[i];
-    const real rrrs_root_2 = rrrs_branch_2*root(rrrs_disc_2);
+    const real rrrs_root_2 = m->rrrs_branch_2[i]*root(rrrs_disc_2);
     /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
     const real inv_rrrs_rho2_2 = 1/rrrs_rho2_2;
     const real rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2);
     /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
     const real rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2);
     /* (rrrs-x_3) from the origin of joint 3 to the connection point */
-    const real inv_rrrs_size_t = m->inv_rrrs_size_t[i];
-    const real rrrs_x_3_in_axes2_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
-        rrrs_joint3_offset_x;
+    const real rrrs_x_3_in_axes2_x =
+        m->inv_rrrs_size_t[i]*rrrs_Kd_2*m->rrrs_joint3_offset_x[i] -
+        m->rrrs_joint3_offset_x[i];
     /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
-    const real inv_rrrs_size_t_2 = m->inv_rrrs_size_t_2[i];
-    const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
-    const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x;
+    const real rrrs_c_3 =
+        m->inv_rrrs_size_t_2[i]*m->rrrs_platform_joint_offset_x[i]*rrrs_x_3_in_axes2_x;
     /* (rrrs-s_3) sine of the angle of joint 3 from its reference direction */
     const real rrrs_s_3_t =
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2;
+        m->inv_rrrs_size_t[i]*m->inv_rrrs_size_t_2[i]*m->rrrs_joint3_offset_x[i]*m->rrrs_platform_joint_offset_x[i]*rrrs_root_2;
     /* (rrrs-r_2) from joint 2 to the connection point, along the links */
-    const real rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t;
-    const real rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x +
-        rrrs_c_3*rrrs_platform_joint_offset_x;
+    const real rrrs_r_2_t = m->rrrs_platform_joint_offset_x[i]*rrrs_s_3_t;
+    const real rrrs_r_2_in_axes2_x = m->rrrs_joint3_offset_x[i] +
+        rrrs_c_3*m->rrrs_platform_joint_offset_x[i];
     const real rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t;
     const real rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t;
     /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
@@ -3287,12 +3186,12 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
         rrrs_s_3_t*rrrs_v_1_t) - rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t -
         rrrs_s_3_t*rrrs_v_1_t_2);
     /* (rrrs-w_1) reciprocal vector 1 */
-    const real axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 -
-        rrrs_base_frame_xy*rrrs_s_1;
-    const real axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 -
-        rrrs_base_frame_yy*rrrs_s_1;
-    const real axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 -
-        rrrs_base_frame_zy*rrrs_s_1;
+    const real axis_z_rrrs_axes3_x = m->rrrs_base_frame_xz[i]*rrrs_c_1 -
+        m->rrrs_base_frame_xy[i]*rrrs_s_1;
+    const real axis_z_rrrs_axes3_y = m->rrrs_base_frame_yz[i]*rrrs_c_1 -
+        m->rrrs_base_frame_yy[i]*rrrs_s_1;
+    const real axis_z_rrrs_axes3_z = m->rrrs_base_frame_zz[i]*rrrs_c_1 -
+        m->rrrs_base_frame_zy[i]*rrrs_s_1;
     const real rrrs_w_1_in_axes3_z = 1/rrrs_v_1_in_axes3_z;
     const real rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z;
     const real rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z;
@@ -3300,12 +3199,12 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
     /* (rrrs-w_2) reciprocal vector 2 */
     const real rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x;
     const real rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1;
-    const real axis_y_rrrs_axes3_x = rrrs_base_frame_xx*rrrs_e_1_in_axes3_y +
-        rrrs_base_frame_xy*rrrs_w_2_t + rrrs_base_frame_xz*rrrs_w_2_t_2;
-    const real axis_y_rrrs_axes3_y = rrrs_base_frame_yx*rrrs_e_1_in_axes3_y +
-        rrrs_base_frame_yy*rrrs_w_2_t + rrrs_base_frame_yz*rrrs_w_2_t_2;
-    const real axis_y_rrrs_axes3_z = rrrs_base_frame_zx*rrrs_e_1_in_axes3_y +
-        rrrs_base_frame_zy*rrrs_w_2_t + rrrs_base_frame_zz*rrrs_w_2_t_2;
+    const real axis_y_rrrs_axes3_x = m->rrrs_base_frame_xx[i]*rrrs_e_1_in_axes3_y +
+        m->rrrs_base_frame_xy[i]*rrrs_w_2_t + m->rrrs_base_frame_xz[i]*rrrs_w_2_t_2;
+    const real axis_y_rrrs_axes3_y = m->rrrs_base_frame_yx[i]*rrrs_e_1_in_axes3_y +
+        m->rrrs_base_frame_yy[i]*rrrs_w_2_t + m->rrrs_base_frame_yz[i]*rrrs_w_2_t_2;
+    const real axis_y_rrrs_axes3_z = m->rrrs_base_frame_zx[i]*rrrs_e_1_in_axes3_y +
+        m->rrrs_base_frame_zy[i]*rrrs_w_2_t + m->rrrs_base_frame_zz[i]*rrrs_w_2_t_2;
     const real axis_x_rrrs_axes3_x = axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
         axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y;
     const real axis_x_rrrs_axes3_y = axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
@@ -3317,19 +3216,18 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
     const real rrrs_w_2_y = axis_x_rrrs_axes3_y*rrrs_w_2_in_axes3_x;
     const real rrrs_w_2_z = axis_x_rrrs_axes3_z*rrrs_w_2_in_axes3_x;
     /* (rrrs-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrrs_bias_t = rrrs_c_2*rrrs_joint2_offset_x;
-    const real rrrs_bias_t_2 = rrrs_joint2_offset_x*rrrs_s_2;
-    const real rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x;
-    const real rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t;
+    const real rrrs_bias_t = rrrs_c_2*m->rrrs_joint2_offset_x[i];
+    const real rrrs_bias_t_2 = m->rrrs_joint2_offset_x[i]*rrrs_s_2;
+    const real rrrs_d_3_in_axes3_x = rrrs_c_3*m->rrrs_joint3_offset_x[i];
+    const real rrrs_d_3_in_axes3_y = m->rrrs_joint3_offset_x[i]*rrrs_s_3_t;
     /* (rrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
-    const real rrrs_mu_2_t = m->rrrs_mu_2_t[i];
-    const real rrrs_mu_2_t_2 = m->rrrs_mu_2_t_2[i];
-    const real rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1;
-    const real rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1;
-    const real rrrs_g_in_axes1_z = m->rrrs_g_in_axes1_z[i];
-    const real rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_z + rrrs_g_in_axes1_x*rrrs_s_2;
-    const real rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_x - rrrs_g_in_axes1_z*rrrs_s_2;
+    const real rrrs_g_in_axes1_x = rrrs_c_1*m->rrrs_mu_2_t[i] + m->rrrs_mu_2_t_2[i]*rrrs_s_1;
+    const real rrrs_g_in_axes1_y = rrrs_c_1*m->rrrs_mu_2_t_2[i] - m->rrrs_mu_2_t[i]*rrrs_s_1;
+    const real rrrs_g_in_axes2_x = rrrs_c_2*m->rrrs_g_in_axes1_z[i] +
+        rrrs_g_in_axes1_x*rrrs_s_2;
+    const real rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_x -
+        m->rrrs_g_in_axes1_z[i]*rrrs_s_2;
     /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
     const real rrrs_H_a_1_x = rrrs_q_y*rrrs_w_1_z - rrrs_q_z*rrrs_w_1_y;
     const real rrrs_H_a_1_y = rrrs_q_z*rrrs_w_1_x - rrrs_q_x*rrrs_w_1_z;
@@ -3426,8 +3324,7 @@ INLINE void stage_rrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
     const real rrrs_qd_2_t = -v->rrrs_w_2_in_axes3_x*(v->axis_x_rrrs_axes3_x*rrrs_S_dot_x +
         v->axis_x_rrrs_axes3_y*rrrs_S_dot_y + v->axis_x_rrrs_axes3_z*rrrs_S_dot_z);
     /* (rrrs-qd_3) rate of joint 3 */
-    const real rrrs_w_3_in_axes3_y = m->rrrs_w_3_in_axes3_y[i];
-    const real rrrs_qd_3 = rrrs_w_3_in_axes3_y*(v->axis_y_rrrs_axes3_x*rrrs_S_dot_x +
+    const real rrrs_qd_3 = m->rrrs_w_3_in_axes3_y[i]*(v->axis_y_rrrs_axes3_x*rrrs_S_dot_x +
         v->axis_y_rrrs_axes3_y*rrrs_S_dot_y + v->axis_y_rrrs_axes3_z*rrrs_S_dot_z +
         rrrs_qd_2_t*v->rrrs_r_2_in_axes3_x);
     /* (rrrs-omega_1) angular velocity of link 1 */
@@ -3462,9 +3359,8 @@ INLINE void stage_rrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
     const real rrrs_bias_t_5 = v->rrrs_d_3_in_axes3_x*rrrs_qd_2_t;
     const real rrrs_bias_t_6 = v->rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x -
         v->rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y;
-    const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
-    const real rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x;
-    const real rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x;
+    const real rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*m->rrrs_platform_joint_offset_x[i];
+    const real rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*m->rrrs_platform_joint_offset_x[i];
     const real rrrs_bias_in_axes3_x = rrrs_bias_t_3*rrrs_omega_1_in_axes3_y +
         rrrs_bias_t_6*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_qd_2_t -
         rrrs_bias_t_7*rrrs_omega_3_in_axes3_z - rrrs_bias_t_8*rrrs_omega_1_in_axes3_y;
@@ -3474,7 +3370,7 @@ INLINE void stage_rrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
     const real rrrs_bias_in_axes3_z = rrrs_bias_t_7*rrrs_omega_1_in_axes3_x +
         v->rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*v->rrrs_c_3 -
         v->rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) -
-        rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
+        rrrs_beta_3_in_axes3_y*m->rrrs_platform_joint_offset_x[i] -
         rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
         v->rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y;
     v->rrrs_S_dot_t = rrrs_S_dot_t;
@@ -3525,9 +3421,8 @@ INLINE void stage_rrrs_A_V_X(size_t w, size_t j, const real *V, values_rrrs *v)
 INLINE void stage_rrrs_H_condition(const prepared *m, size_t i, values_rrrs *v)
 {
     /* (rrrs-r_2) from joint 2 to the connection point, along the links */
-    const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
     const real rrrs_r_2_in_axes3_y = v->rrrs_r_2_in_axes2_x*v->rrrs_s_3_t -
-        v->rrrs_c_3*rrrs_platform_joint_offset_x*v->rrrs_s_3_t;
+        v->rrrs_c_3*m->rrrs_platform_joint_offset_x[i]*v->rrrs_s_3_t;
     /* (rrrs-w_2) reciprocal vector 2 */
     const real rrrs_w_2_in_axes3_x = -1/rrrs_r_2_in_axes3_y;
     const real rrrs_w_2_x = rrrs_w_2_in_axes3_x*(v->axis_y_rrrs_axes3_y*v->axis_z_rrrs_axes3_z
@@ -3552,81 +3447,62 @@ INLINE void stage_rrrs_H_condition(const prepared *m, size_t i, values_rrrs *v)
 INLINE void stage_rrrs_M_dynamics(const prepared *m, size_t i, values_rrrs *v)
 {
     /* (rrrs-w_3) reciprocal vector 3 */
-    const real rrrs_w_3_in_axes3_y = m->rrrs_w_3_in_axes3_y[i];
     const real rrrs_w_3_in_axes3_x =
-        -v->rrrs_r_2_in_axes3_x*v->rrrs_w_2_in_axes3_x*rrrs_w_3_in_axes3_y;
+        -v->rrrs_r_2_in_axes3_x*v->rrrs_w_2_in_axes3_x*m->rrrs_w_3_in_axes3_y[i];
     /* (rrrs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
     const real rrrs_d_alpha_3_in_axes3_xz = v->rrrs_e_1_in_axes3_x*v->rrrs_w_1_in_axes3_z;
     const real rrrs_d_alpha_3_in_axes3_yz = v->rrrs_e_1_in_axes3_y*v->rrrs_w_1_in_axes3_z;
     /* (rrrs-D_1_3) inertia of joint 3 along joint 1 */
-    const real rrrs_J_3_in_spec3_xz = m->rrrs_J_3_in_spec3_xz[i];
-    const real rrrs_J_3_in_spec3_yz = m->rrrs_J_3_in_spec3_yz[i];
-    const real rrrs_D_1_3 = rrrs_J_3_in_spec3_xz*v->rrrs_e_1_in_axes3_x +
-        rrrs_J_3_in_spec3_yz*v->rrrs_e_1_in_axes3_y;
+    const real rrrs_D_1_3 = m->rrrs_J_3_in_spec3_xz[i]*v->rrrs_e_1_in_axes3_x +
+        m->rrrs_J_3_in_spec3_yz[i]*v->rrrs_e_1_in_axes3_y;
     /* (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
        about the connection point */
-    const real rrrs_J_3_in_spec3_xy = m->rrrs_J_3_in_spec3_xy[i];
-    const real rrrs_Jc_2_t = rrrs_J_3_in_spec3_xy*v->rrrs_s_3_t;
-    const real rrrs_J_3_in_spec3_xx = m->rrrs_J_3_in_spec3_xx[i];
-    const real rrrs_Jc_2_t_2 = rrrs_Jc_2_t + rrrs_J_3_in_spec3_xx*v->rrrs_c_3;
-    const real rrrs_Jc_2_t_3 = rrrs_J_3_in_spec3_xy*v->rrrs_c_3;
-    const real rrrs_J_3_in_spec3_yy = m->rrrs_J_3_in_spec3_yy[i];
-    const real rrrs_Jc_2_t_4 = rrrs_Jc_2_t_3 + rrrs_J_3_in_spec3_yy*v->rrrs_s_3_t;
-    const real rrrs_J_2_in_spec2_xy = m->rrrs_J_2_in_spec2_xy[i];
-    const real rrrs_Jc_2_in_axes2_xy = rrrs_J_2_in_spec2_xy + rrrs_Jc_2_t_4*v->rrrs_c_3 -
-        rrrs_Jc_2_t_2*v->rrrs_s_3_t;
-    const real rrrs_J_2_in_spec2_xx = m->rrrs_J_2_in_spec2_xx[i];
-    const real rrrs_J_2_in_spec2_yy = m->rrrs_J_2_in_spec2_yy[i];
-    const real rrrs_Jc_2_in_axes1_zz = v->rrrs_c_2*(v->rrrs_c_2*(rrrs_J_2_in_spec2_xx +
+    const real rrrs_Jc_2_t = m->rrrs_J_3_in_spec3_xy[i]*v->rrrs_s_3_t;
+    const real rrrs_Jc_2_t_2 = rrrs_Jc_2_t + m->rrrs_J_3_in_spec3_xx[i]*v->rrrs_c_3;
+    const real rrrs_Jc_2_t_3 = m->rrrs_J_3_in_spec3_xy[i]*v->rrrs_c_3;
+    const real rrrs_Jc_2_t_4 = rrrs_Jc_2_t_3 + m->rrrs_J_3_in_spec3_yy[i]*v->rrrs_s_3_t;
+    const real rrrs_Jc_2_in_axes2_xy = m->rrrs_J_2_in_spec2_xy[i] + rrrs_Jc_2_t_4*v->rrrs_c_3
+        - rrrs_Jc_2_t_2*v->rrrs_s_3_t;
+    const real rrrs_Jc_2_in_axes1_zz = v->rrrs_c_2*(v->rrrs_c_2*(m->rrrs_J_2_in_spec2_xx[i] +
         rrrs_Jc_2_t_2*v->rrrs_c_3 + rrrs_Jc_2_t_4*v->rrrs_s_3_t) -
         rrrs_Jc_2_in_axes2_xy*v->rrrs_s_2) - v->rrrs_s_2*(rrrs_Jc_2_in_axes2_xy*v->rrrs_c_2 -
-        v->rrrs_s_2*(rrrs_J_2_in_spec2_yy + v->rrrs_c_3*(rrrs_J_3_in_spec3_yy*v->rrrs_c_3 -
-        rrrs_Jc_2_t) - v->rrrs_s_3_t*(rrrs_Jc_2_t_3 - rrrs_J_3_in_spec3_xx*v->rrrs_s_3_t)));
+        v->rrrs_s_2*(m->rrrs_J_2_in_spec2_yy[i] +
+        v->rrrs_c_3*(m->rrrs_J_3_in_spec3_yy[i]*v->rrrs_c_3 - rrrs_Jc_2_t) -
+        v->rrrs_s_3_t*(rrrs_Jc_2_t_3 - m->rrrs_J_3_in_spec3_xx[i]*v->rrrs_s_3_t)));
     /* (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
        inertia and weight */
     const real rrrs_d_Gamma_3_in_axes3_z = rrrs_D_1_3*v->rrrs_w_1_in_axes3_z;
-    const real rrrs_d_Gamma_3_t = m->rrrs_d_Gamma_3_t[i];
-    const real rrrs_d_Gamma_3_t_2 = rrrs_d_Gamma_3_t*v->rrrs_r_2_in_axes3_x;
-    const real rrrs_J_3_in_spec3_zz = m->rrrs_J_3_in_spec3_zz[i];
-    const real rrrs_h_3_in_spec3_y = m->rrrs_h_3_in_spec3_y[i];
-    const real rrrs_d_Gamma_3_in_axes3_x = v->rrrs_w_2_in_axes3_x*(rrrs_J_3_in_spec3_zz -
-        rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y;
+    const real rrrs_d_Gamma_3_t_2 = m->rrrs_d_Gamma_3_t[i]*v->rrrs_r_2_in_axes3_x;
+    const real rrrs_d_Gamma_3_in_axes3_x = v->rrrs_w_2_in_axes3_x*(m->rrrs_J_3_in_spec3_zz[i]
+        - rrrs_d_Gamma_3_t_2) - m->rrrs_h_3_in_spec3_y[i];
     /* (rrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
        inertia and weight */
-    const real rrrs_Jc_2_in_axes2_zz = m->rrrs_Jc_2_in_axes2_zz[i];
-    const real rrrs_d_Gamma_2_in_axes3_x = v->rrrs_w_2_in_axes3_x*(rrrs_Jc_2_in_axes2_zz -
-        rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y;
+    const real rrrs_d_Gamma_2_in_axes3_x = v->rrrs_w_2_in_axes3_x*(m->rrrs_Jc_2_in_axes2_zz[i]
+        - rrrs_d_Gamma_3_t_2) - m->rrrs_h_3_in_spec3_y[i];
     /* (rrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
-    const real rrrs_J_1_in_spec1_xx = m->rrrs_J_1_in_spec1_xx[i];
-    const real rrrs_h_3_in_spec3_x = m->rrrs_h_3_in_spec3_x[i];
-    const real rrrs_d_Gamma_1_in_axes3_z = v->rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_y +
-        v->rrrs_w_1_in_axes3_z*(rrrs_J_1_in_spec1_xx + rrrs_Jc_2_in_axes1_zz) -
-        v->rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x;
+    const real rrrs_d_Gamma_1_in_axes3_z = v->rrrs_e_1_in_axes3_x*m->rrrs_h_3_in_spec3_y[i] +
+        v->rrrs_w_1_in_axes3_z*(m->rrrs_J_1_in_spec1_xx[i] + rrrs_Jc_2_in_axes1_zz) -
+        v->rrrs_e_1_in_axes3_y*m->rrrs_h_3_in_spec3_x[i];
     /* (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the
        leg's inertia and weight along all degrees of freedom */
-    const real rrrs_J_2_in_spec2_xz = m->rrrs_J_2_in_spec2_xz[i];
-    const real rrrs_J_2_in_spec2_yz = m->rrrs_J_2_in_spec2_yz[i];
     const real rrrs_d_G_in_axes3_xz = rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_x +
-        v->rrrs_w_1_in_axes3_z*v->rrrs_w_2_in_axes3_x*(v->rrrs_c_2*(rrrs_J_2_in_spec2_xz +
-        rrrs_J_3_in_spec3_xz*v->rrrs_c_3 + rrrs_J_3_in_spec3_yz*v->rrrs_s_3_t) -
-        v->rrrs_s_2*(rrrs_J_2_in_spec2_yz + rrrs_J_3_in_spec3_yz*v->rrrs_c_3 -
-        rrrs_J_3_in_spec3_xz*v->rrrs_s_3_t));
+        v->rrrs_w_1_in_axes3_z*v->rrrs_w_2_in_axes3_x*(v->rrrs_c_2*(m->rrrs_J_2_in_spec2_xz[i]
+        + m->rrrs_J_3_in_spec3_xz[i]*v->rrrs_c_3 + m->rrrs_J_3_in_spec3_yz[i]*v->rrrs_s_3_t) -
+        v->rrrs_s_2*(m->rrrs_J_2_in_spec2_yz[i] + m->rrrs_J_3_in_spec3_yz[i]*v->rrrs_c_3 -
+        m->rrrs_J_3_in_spec3_xz[i]*v->rrrs_s_3_t));
     /* (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
        without the mass at the connection point */
-    const real rrrs_d_c_in_axes3_xx = rrrs_h_3_in_spec3_y*(v->rrrs_w_2_in_axes3_x +
+    const real rrrs_d_c_in_axes3_xx = m->rrrs_h_3_in_spec3_y[i]*(v->rrrs_w_2_in_axes3_x +
         rrrs_w_3_in_axes3_x) - rrrs_d_Gamma_2_in_axes3_x*v->rrrs_w_2_in_axes3_x -
         rrrs_d_Gamma_3_in_axes3_x*rrrs_w_3_in_axes3_x;
-    const real rrrs_d_Gamma_3_in_axes3_y = m->rrrs_d_Gamma_3_in_axes3_y[i];
-    const real rrrs_d_phi_3_t = m->rrrs_d_phi_3_t[i];
-    const real rrrs_d_c_in_axes3_xy = rrrs_d_phi_3_t -
-        rrrs_d_Gamma_3_in_axes3_y*v->rrrs_w_2_in_axes3_x -
-        rrrs_d_Gamma_3_in_axes3_y*rrrs_w_3_in_axes3_x;
-    const real rrrs_h_3_in_spec3_z = m->rrrs_h_3_in_spec3_z[i];
+    const real rrrs_d_c_in_axes3_xy = m->rrrs_d_phi_3_t[i] -
+        m->rrrs_d_Gamma_3_in_axes3_y[i]*v->rrrs_w_2_in_axes3_x -
+        m->rrrs_d_Gamma_3_in_axes3_y[i]*rrrs_w_3_in_axes3_x;
     const real rrrs_d_c_in_axes3_xz = -rrrs_d_G_in_axes3_xz -
-        rrrs_d_alpha_3_in_axes3_yz*rrrs_h_3_in_spec3_z;
-    const real rrrs_d_c_in_axes3_yz = rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_z -
-        rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_y;
+        rrrs_d_alpha_3_in_axes3_yz*m->rrrs_h_3_in_spec3_z[i];
+    const real rrrs_d_c_in_axes3_yz = rrrs_d_alpha_3_in_axes3_xz*m->rrrs_h_3_in_spec3_z[i] -
+        rrrs_d_Gamma_3_in_axes3_z*m->rrrs_w_3_in_axes3_y[i];
     v->rrrs_d_alpha_3_in_axes3_xz = rrrs_d_alpha_3_in_axes3_xz;
     v->rrrs_d_alpha_3_in_axes3_yz = rrrs_d_alpha_3_in_axes3_yz;
     v->rrrs_d_Gamma_1_in_axes3_z = rrrs_d_Gamma_1_in_axes3_z;
@@ -3649,12 +3525,9 @@ INLINE void stage_rrrs_Z_dynamics(const prepared *m, size_t w, size_t j, const r
     const real rrrs_u_1_in_axes3_z = v->axis_z_rrrs_axes3_x*rrrs_u_1_x +
         v->axis_z_rrrs_axes3_y*rrrs_u_1_y + v->axis_z_rrrs_axes3_z*rrrs_u_1_z;
     /* (rrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real gravity_x = m->gravity_x;
-    const real gravity_y = m->gravity_y;
-    const real gravity_z = m->gravity_z;
     const real rrrs_acc_3_o_in_axes3_z = rrrs_u_1_in_axes3_z -
-        v->axis_z_rrrs_axes3_x*gravity_x - v->axis_z_rrrs_axes3_y*gravity_y -
-        v->axis_z_rrrs_axes3_z*gravity_z;
+        v->axis_z_rrrs_axes3_x*m->gravity_x - v->axis_z_rrrs_axes3_y*m->gravity_y -
+        v->axis_z_rrrs_axes3_z*m->gravity_z;
     /* (rrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
        reference points */
     const real rrrs_mu_3_o_t = v->rrrs_omega_1_in_axes3_x*v->rrrs_omega_1_in_axes3_x;
@@ -3681,76 +3554,59 @@ INLINE void stage_rrrs_inverse_kinematics_potential(const prepared *m, size_t w,
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real rrrs_base_point_x = m->rrrs_base_point_x[i];
-    const real rrrs_platform_point_x = m->rrrs_platform_point_x[i];
-    const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
-    const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real rrrs_S_x = t_x + R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
-        R_xz*rrrs_platform_point_z - rrrs_base_point_x;
+    const real rrrs_S_x = t_x + R_xx*m->rrrs_platform_point_x[i] +
+        R_xy*m->rrrs_platform_point_y[i] + R_xz*m->rrrs_platform_point_z[i] -
+        m->rrrs_base_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real rrrs_base_point_y = m->rrrs_base_point_y[i];
     const real t_y = X[1*w + j];
-    const real rrrs_S_y = t_y + R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
-        R_yz*rrrs_platform_point_z - rrrs_base_point_y;
+    const real rrrs_S_y = t_y + R_yx*m->rrrs_platform_point_x[i] +
+        R_yy*m->rrrs_platform_point_y[i] + R_yz*m->rrrs_platform_point_z[i] -
+        m->rrrs_base_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
-    const real rrrs_base_point_z = m->rrrs_base_point_z[i];
     const real t_z = X[2*w + j];
-    const real rrrs_S_z = t_z + R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
-        R_zz*rrrs_platform_point_z - rrrs_base_point_z;
-    const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
-    const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
-    const real rrrs_base_frame_zy = m->rrrs_base_frame_zy[i];
-    const real rrrs_S_in_turn1_x = rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy +
-        rrrs_S_z*rrrs_base_frame_zy;
-    const real rrrs_base_frame_xz = m->rrrs_base_frame_xz[i];
-    const real rrrs_base_frame_yz = m->rrrs_base_frame_yz[i];
-    const real rrrs_base_frame_zz = m->rrrs_base_frame_zz[i];
-    const real rrrs_S_in_turn1_y = rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz +
-        rrrs_S_z*rrrs_base_frame_zz;
+    const real rrrs_S_z = t_z + R_zx*m->rrrs_platform_point_x[i] +
+        R_zy*m->rrrs_platform_point_y[i] + R_zz*m->rrrs_platform_point_z[i] -
+        m->rrrs_base_point_z[i];
+    const real rrrs_S_in_turn1_x = rrrs_S_x*m->rrrs_base_frame_xy[i] +
+        rrrs_S_y*m->rrrs_base_frame_yy[i] + rrrs_S_z*m->rrrs_base_frame_zy[i];
+    const real rrrs_S_in_turn1_y = rrrs_S_x*m->rrrs_base_frame_xz[i] +
+        rrrs_S_y*m->rrrs_base_frame_yz[i] + rrrs_S_z*m->rrrs_base_frame_zz[i];
     /* (rrrs-rho2_1) squared amplitude */
     const real rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x +
         rrrs_S_in_turn1_y*rrrs_S_in_turn1_y;
     /* (rrrs-root_1) root, with the sign of the branch */
-    const real rrrs_branch_1 = m->rrrs_branch_1[i];
-    const real rrrs_root_1 = rrrs_branch_1*root(rrrs_rho2_1);
+    const real rrrs_root_1 = m->rrrs_branch_1[i]*root(rrrs_rho2_1);
     /* (rrrs-q_1) displacement of joint 1 */
     const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
     /* (rrrs-x_2) from the origin of joint 2 to the connection point */
-    const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
-    const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
-    const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
-    const real rrrs_joint2_offset_x = m->rrrs_joint2_offset_x[i];
-    const real rrrs_x_2_in_axes1_z = rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx
-        + rrrs_S_z*rrrs_base_frame_zx - rrrs_joint2_offset_x;
+    const real rrrs_x_2_in_axes1_z = rrrs_S_x*m->rrrs_base_frame_xx[i] +
+        rrrs_S_y*m->rrrs_base_frame_yx[i] + rrrs_S_z*m->rrrs_base_frame_zx[i] -
+        m->rrrs_joint2_offset_x[i];
     /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 2 */
     const real rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
-    const real rrrs_Kd_2_t = m->rrrs_Kd_2_t[i];
-    const real rrrs_Kd_2_t_2 = m->rrrs_Kd_2_t_2[i];
-    const real rrrs_Kd_2 = rrrs_Kd_2_t + R(0.5)*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2;
+    const real rrrs_Kd_2 = m->rrrs_Kd_2_t[i] + R(0.5)*rrrs_Kd_2_t_3 - m->rrrs_Kd_2_t_2[i];
     /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
-    const real rrrs_joint3_offset_x = m->rrrs_joint3_offset_x[i];
-    const real rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z;
+    const real rrrs_Kc_2 = m->rrrs_joint3_offset_x[i]*rrrs_x_2_in_axes1_z;
     /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
-    const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1;
+    const real rrrs_Ks_2 = m->rrrs_joint3_offset_x[i]*rrrs_root_1;
     /* (rrrs-rho2_2) squared amplitude */
     const real rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2;
     /* (rrrs-disc_2) discriminant */
     const real rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2;
     /* (rrrs-root_2) root, with the sign of the branch */
-    const real rrrs_branch_2 = m->rrrs_branch_2[i];
-    const real rrrs_root_2 = rrrs_branch_2*root(rrrs_disc_2);
+    const real rrrs_root_2 = m->rrrs_branch_2[i]*root(rrrs_disc_2);
     /* (rrrs-q_2) displacement of joint 2 */
     const real inv_rrrs_rho2_2 = 1/rrrs_rho2_2;
     /* (rrrs-x_3) from the origin of joint 3 to the connection point */
-    const real inv_rrrs_size_t = m->inv_rrrs_size_t[i];
-    const real rrrs_x_3_in_axes2_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
-        rrrs_joint3_offset_x;
+    const real rrrs_x_3_in_axes2_x =
+        m->inv_rrrs_size_t[i]*rrrs_Kd_2*m->rrrs_joint3_offset_x[i] -
+        m->rrrs_joint3_offset_x[i];
     v->rrrs_S_in_turn1_x = rrrs_S_in_turn1_x;
     v->rrrs_S_in_turn1_y = rrrs_S_in_turn1_y;
     v->rrrs_rho2_1 = rrrs_rho2_1;
@@ -3799,9 +3655,8 @@ INLINE void stage_rrrs_legs_required(const prepared *m, size_t i, values_rrrs *v
         v->rrrs_omega_1_in_axes3_y*v->rrrs_qd_3 - rrrs_alpha_2_in_axes2_y*v->rrrs_s_3_t;
     const real rrrs_alpha_3_in_axes3_y = rrrs_alpha_2_in_axes2_x*v->rrrs_s_3_t +
         rrrs_alpha_2_in_axes2_y*v->rrrs_c_3 - v->rrrs_zeta_3_t;
-    const real rrrs_w_3_in_axes3_y = m->rrrs_w_3_in_axes3_y[i];
-    const real rrrs_alpha_3_in_axes3_z = rrrs_qdd_2 + rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y
-        - rrrs_qdd_2*v->rrrs_r_2_in_axes3_x);
+    const real rrrs_alpha_3_in_axes3_z = rrrs_qdd_2 +
+        m->rrrs_w_3_in_axes3_y[i]*(rrrs_rel_in_axes3_y - rrrs_qdd_2*v->rrrs_r_2_in_axes3_x);
     /* (rrrs-B_3) acceleration tensor of link 3 */
     const real rrrs_B_3_in_axes3_xy = v->rrrs_W_3_in_axes3_xy - rrrs_alpha_3_in_axes3_z;
     const real rrrs_B_3_in_axes3_xz = v->rrrs_W_3_in_axes3_xz + rrrs_alpha_3_in_axes3_y;
@@ -3810,75 +3665,65 @@ INLINE void stage_rrrs_legs_required(const prepared *m, size_t i, values_rrrs *v
     const real rrrs_B_3_in_axes3_zx = v->rrrs_W_3_in_axes3_xz - rrrs_alpha_3_in_axes3_y;
     const real rrrs_B_3_in_axes3_zy = v->rrrs_W_3_in_axes3_yz + rrrs_alpha_3_in_axes3_x;
     /* (rrrs-acc_3) acceleration of the reference point of link 3, less gravity */
-    const real gravity_x = m->gravity_x;
-    const real gravity_y = m->gravity_y;
-    const real gravity_z = m->gravity_z;
     const real rrrs_acc_3_in_axes3_x = rrrs_S_ddot_in_axes3_x -
-        v->axis_x_rrrs_axes3_x*gravity_x - v->axis_x_rrrs_axes3_y*gravity_y -
-        v->axis_x_rrrs_axes3_z*gravity_z;
+        v->axis_x_rrrs_axes3_x*m->gravity_x - v->axis_x_rrrs_axes3_y*m->gravity_y -
+        v->axis_x_rrrs_axes3_z*m->gravity_z;
     const real rrrs_acc_3_in_axes3_y = rrrs_S_ddot_in_axes3_y -
-        v->axis_y_rrrs_axes3_x*gravity_x - v->axis_y_rrrs_axes3_y*gravity_y -
-        v->axis_y_rrrs_axes3_z*gravity_z;
+        v->axis_y_rrrs_axes3_x*m->gravity_x - v->axis_y_rrrs_axes3_y*m->gravity_y -
+        v->axis_y_rrrs_axes3_z*m->gravity_z;
     const real rrrs_acc_3_in_axes3_z = rrrs_S_ddot_in_axes3_z -
-        v->axis_z_rrrs_axes3_x*gravity_x - v->axis_z_rrrs_axes3_y*gravity_y -
-        v->axis_z_rrrs_axes3_z*gravity_z;
+        v->axis_z_rrrs_axes3_x*m->gravity_x - v->axis_z_rrrs_axes3_y*m->gravity_y -
+        v->axis_z_rrrs_axes3_z*m->gravity_z;
     /* (rrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
     const real rrrs_mu_3_t = v->rrrs_omega_1_in_axes3_x*v->rrrs_omega_1_in_axes3_x;
     const real rrrs_mu_3_t_2 = v->rrrs_omega_1_in_axes3_y*v->rrrs_omega_1_in_axes3_y;
     const real rrrs_mu_3_t_3 = v->rrrs_omega_3_in_axes3_z*v->rrrs_omega_3_in_axes3_z;
-    const real rrrs_J_3_in_spec3_xy = m->rrrs_J_3_in_spec3_xy[i];
-    const real rrrs_J_3_in_spec3_xz = m->rrrs_J_3_in_spec3_xz[i];
-    const real rrrs_J_3_in_spec3_yz = m->rrrs_J_3_in_spec3_yz[i];
-    const real rrrs_Sigma_3_in_axes3_yy = m->rrrs_Sigma_3_in_axes3_yy[i];
-    const real rrrs_Sigma_3_in_axes3_zz = m->rrrs_Sigma_3_in_axes3_zz[i];
-    const real rrrs_h_3_in_spec3_y = m->rrrs_h_3_in_spec3_y[i];
-    const real rrrs_h_3_in_spec3_z = m->rrrs_h_3_in_spec3_z[i];
-    const real rrrs_mu_3_in_axes3_x = rrrs_B_3_in_axes3_yx*rrrs_J_3_in_spec3_xz +
-        rrrs_B_3_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy + rrrs_J_3_in_spec3_yz*(rrrs_mu_3_t_2 -
-        rrrs_mu_3_t_3) + rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_y -
-        rrrs_B_3_in_axes3_yz*rrrs_Sigma_3_in_axes3_zz -
-        rrrs_B_3_in_axes3_zx*rrrs_J_3_in_spec3_xy - rrrs_acc_3_in_axes3_y*rrrs_h_3_in_spec3_z;
-    const real rrrs_Sigma_3_in_axes3_xx = m->rrrs_Sigma_3_in_axes3_xx[i];
-    const real rrrs_h_3_in_spec3_x = m->rrrs_h_3_in_spec3_x[i];
-    const real rrrs_mu_3_in_axes3_y = rrrs_B_3_in_axes3_xz*rrrs_Sigma_3_in_axes3_zz +
-        rrrs_B_3_in_axes3_zy*rrrs_J_3_in_spec3_xy + rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_z
-        - rrrs_B_3_in_axes3_xy*rrrs_J_3_in_spec3_yz -
-        rrrs_B_3_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx - rrrs_J_3_in_spec3_xz*(rrrs_mu_3_t -
-        rrrs_mu_3_t_3) - rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_x;
-    const real rrrs_mu_3_in_axes3_z = rrrs_B_3_in_axes3_xz*rrrs_J_3_in_spec3_yz +
-        rrrs_B_3_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx + rrrs_J_3_in_spec3_xy*(rrrs_mu_3_t -
-        rrrs_mu_3_t_2) + rrrs_acc_3_in_axes3_y*rrrs_h_3_in_spec3_x -
-        rrrs_B_3_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
-        rrrs_B_3_in_axes3_yz*rrrs_J_3_in_spec3_xz - rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_y;
+    const real rrrs_mu_3_in_axes3_x = rrrs_B_3_in_axes3_yx*m->rrrs_J_3_in_spec3_xz[i] +
+        rrrs_B_3_in_axes3_zy*m->rrrs_Sigma_3_in_axes3_yy[i] +
+        m->rrrs_J_3_in_spec3_yz[i]*(rrrs_mu_3_t_2 - rrrs_mu_3_t_3) +
+        rrrs_acc_3_in_axes3_z*m->rrrs_h_3_in_spec3_y[i] -
+        rrrs_B_3_in_axes3_yz*m->rrrs_Sigma_3_in_axes3_zz[i] -
+        rrrs_B_3_in_axes3_zx*m->rrrs_J_3_in_spec3_xy[i] -
+        rrrs_acc_3_in_axes3_y*m->rrrs_h_3_in_spec3_z[i];
+    const real rrrs_mu_3_in_axes3_y = rrrs_B_3_in_axes3_xz*m->rrrs_Sigma_3_in_axes3_zz[i] +
+        rrrs_B_3_in_axes3_zy*m->rrrs_J_3_in_spec3_xy[i] +
+        rrrs_acc_3_in_axes3_x*m->rrrs_h_3_in_spec3_z[i] -
+        rrrs_B_3_in_axes3_xy*m->rrrs_J_3_in_spec3_yz[i] -
+        rrrs_B_3_in_axes3_zx*m->rrrs_Sigma_3_in_axes3_xx[i] -
+        m->rrrs_J_3_in_spec3_xz[i]*(rrrs_mu_3_t - rrrs_mu_3_t_3) -
+        rrrs_acc_3_in_axes3_z*m->rrrs_h_3_in_spec3_x[i];
+    const real rrrs_mu_3_in_axes3_z = rrrs_B_3_in_axes3_xz*m->rrrs_J_3_in_spec3_yz[i] +
+        rrrs_B_3_in_axes3_yx*m->rrrs_Sigma_3_in_axes3_xx[i] +
+        m->rrrs_J_3_in_spec3_xy[i]*(rrrs_mu_3_t - rrrs_mu_3_t_2) +
+        rrrs_acc_3_in_axes3_y*m->rrrs_h_3_in_spec3_x[i] -
+        rrrs_B_3_in_axes3_xy*m->rrrs_Sigma_3_in_axes3_yy[i] -
+        rrrs_B_3_in_axes3_yz*m->rrrs_J_3_in_spec3_xz[i] -
+        rrrs_acc_3_in_axes3_x*m->rrrs_h_3_in_spec3_y[i];
     /* (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real rrrs_mu_2_t_3 = v->rrrs_omega_1_in_axes2_x*v->rrrs_omega_1_in_axes2_x;
     const real rrrs_mu_2_t_4 = v->rrrs_omega_1_t*v->rrrs_omega_1_t;
     const real rrrs_mu_2_t_5 = v->rrrs_qd_2_t*v->rrrs_qd_2_t;
-    const real rrrs_J_2_in_spec2_xy = m->rrrs_J_2_in_spec2_xy[i];
-    const real rrrs_J_2_in_spec2_xz = m->rrrs_J_2_in_spec2_xz[i];
-    const real rrrs_J_2_in_spec2_yz = m->rrrs_J_2_in_spec2_yz[i];
-    const real rrrs_Sigma_2_in_axes2_yy = m->rrrs_Sigma_2_in_axes2_yy[i];
-    const real rrrs_Sigma_2_in_axes2_zz = m->rrrs_Sigma_2_in_axes2_zz[i];
-    const real rrrs_h_2_in_spec2_y = m->rrrs_h_2_in_spec2_y[i];
-    const real rrrs_h_2_in_spec2_z = m->rrrs_h_2_in_spec2_z[i];
-    const real rrrs_mu_2_in_axes2_x = rrrs_B_2_in_axes2_yx*rrrs_J_2_in_spec2_xz +
-        rrrs_B_2_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy + rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 -
-        rrrs_mu_2_t_5) + rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_in_axes2_x +
-        v->rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z - rrrs_B_2_in_axes2_zx*rrrs_J_2_in_spec2_xy -
-        v->rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_y;
-    const real rrrs_Sigma_2_in_axes2_xx = m->rrrs_Sigma_2_in_axes2_xx[i];
-    const real rrrs_h_2_in_spec2_x = m->rrrs_h_2_in_spec2_x[i];
-    const real rrrs_mu_2_in_axes2_y = rrrs_B_2_in_axes2_zy*rrrs_J_2_in_spec2_xy +
-        v->rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_x - rrrs_B_2_in_axes2_xy*rrrs_J_2_in_spec2_yz -
-        rrrs_B_2_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx - rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 -
-        rrrs_mu_2_t_5) - rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_t -
-        v->rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z;
-    const real rrrs_mu_2_in_axes2_z = rrrs_B_2_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx +
-        rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 - rrrs_mu_2_t_4) +
-        rrrs_J_2_in_spec2_xz*rrrs_alpha_1_in_axes2_x +
-        v->rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y -
-        rrrs_B_2_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy - rrrs_J_2_in_spec2_yz*rrrs_alpha_1_t -
-        v->rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x;
+    const real rrrs_mu_2_in_axes2_x = rrrs_B_2_in_axes2_yx*m->rrrs_J_2_in_spec2_xz[i] +
+        rrrs_B_2_in_axes2_zy*m->rrrs_Sigma_2_in_axes2_yy[i] +
+        m->rrrs_J_2_in_spec2_yz[i]*(rrrs_mu_2_t_4 - rrrs_mu_2_t_5) +
+        m->rrrs_Sigma_2_in_axes2_zz[i]*rrrs_alpha_1_in_axes2_x +
+        v->rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_z[i] -
+        rrrs_B_2_in_axes2_zx*m->rrrs_J_2_in_spec2_xy[i] -
+        v->rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_y[i];
+    const real rrrs_mu_2_in_axes2_y = rrrs_B_2_in_axes2_zy*m->rrrs_J_2_in_spec2_xy[i] +
+        v->rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_x[i] -
+        rrrs_B_2_in_axes2_xy*m->rrrs_J_2_in_spec2_yz[i] -
+        rrrs_B_2_in_axes2_zx*m->rrrs_Sigma_2_in_axes2_xx[i] -
+        m->rrrs_J_2_in_spec2_xz[i]*(rrrs_mu_2_t_3 - rrrs_mu_2_t_5) -
+        m->rrrs_Sigma_2_in_axes2_zz[i]*rrrs_alpha_1_t -
+        v->rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_z[i];
+    const real rrrs_mu_2_in_axes2_z = rrrs_B_2_in_axes2_yx*m->rrrs_Sigma_2_in_axes2_xx[i] +
+        m->rrrs_J_2_in_spec2_xy[i]*(rrrs_mu_2_t_3 - rrrs_mu_2_t_4) +
+        m->rrrs_J_2_in_spec2_xz[i]*rrrs_alpha_1_in_axes2_x +
+        v->rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_y[i] -
+        rrrs_B_2_in_axes2_xy*m->rrrs_Sigma_2_in_axes2_yy[i] -
+        m->rrrs_J_2_in_spec2_yz[i]*rrrs_alpha_1_t -
+        v->rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_x[i];
     /* (rrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
        left out */
     const real rrrs_N_2_in_axes2_x = rrrs_mu_2_in_axes2_x + v->rrrs_c_3*rrrs_mu_3_in_axes3_x +
@@ -3887,29 +3732,28 @@ INLINE void stage_rrrs_legs_required(const prepared *m, size_t i, values_rrrs *v
         rrrs_mu_3_in_axes3_x*v->rrrs_s_3_t;
     const real rrrs_N_2_in_axes2_z = rrrs_mu_2_in_axes2_z + rrrs_mu_3_in_axes3_z;
     /* (rrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-    const real rrrs_J_1_in_spec1_xx = m->rrrs_J_1_in_spec1_xx[i];
-    const real rrrs_h_1_in_spec1_y = m->rrrs_h_1_in_spec1_y[i];
-    const real rrrs_h_1_in_spec1_z = m->rrrs_h_1_in_spec1_z[i];
-    const real rrrs_mu_1_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1 +
-        v->rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z - v->rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y;
+    const real rrrs_mu_1_in_axes1_z = m->rrrs_J_1_in_spec1_xx[i]*rrrs_qdd_1 +
+        v->rrrs_g_in_axes1_x*m->rrrs_h_1_in_spec1_z[i] -
+        v->rrrs_g_in_axes1_y*m->rrrs_h_1_in_spec1_y[i];
     /* (rrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real rrrs_N_1_in_axes1_z = rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*v->rrrs_c_2 -
         rrrs_N_2_in_axes2_y*v->rrrs_s_2;
     /* (rrrs-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
-    const real rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*rrrs_w_3_in_axes3_y;
+    const real rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*m->rrrs_w_3_in_axes3_y[i];
     /* (rrrs-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rrrs_c_in_axes3_x = rrrs_h_3_in_spec3_x*(rrrs_mu_3_t_2 + rrrs_mu_3_t_3) +
+    const real rrrs_c_in_axes3_x = m->rrrs_h_3_in_spec3_x[i]*(rrrs_mu_3_t_2 + rrrs_mu_3_t_3) +
         v->rrrs_w_2_in_axes3_x*(rrrs_G_in_axes3_y*v->rrrs_r_2_in_axes3_x -
-        rrrs_N_2_in_axes2_z) - rrrs_B_3_in_axes3_xy*rrrs_h_3_in_spec3_y -
-        rrrs_B_3_in_axes3_xz*rrrs_h_3_in_spec3_z;
-    const real rrrs_c_in_axes3_y = rrrs_h_3_in_spec3_y*(rrrs_mu_3_t + rrrs_mu_3_t_3) -
-        rrrs_G_in_axes3_y - rrrs_B_3_in_axes3_yx*rrrs_h_3_in_spec3_x -
-        rrrs_B_3_in_axes3_yz*rrrs_h_3_in_spec3_z;
-    const real rrrs_c_in_axes3_z = rrrs_h_3_in_spec3_z*(rrrs_mu_3_t + rrrs_mu_3_t_2) -
-        rrrs_B_3_in_axes3_zx*rrrs_h_3_in_spec3_x - rrrs_B_3_in_axes3_zy*rrrs_h_3_in_spec3_y -
+        rrrs_N_2_in_axes2_z) - rrrs_B_3_in_axes3_xy*m->rrrs_h_3_in_spec3_y[i] -
+        rrrs_B_3_in_axes3_xz*m->rrrs_h_3_in_spec3_z[i];
+    const real rrrs_c_in_axes3_y = m->rrrs_h_3_in_spec3_y[i]*(rrrs_mu_3_t + rrrs_mu_3_t_3) -
+        rrrs_G_in_axes3_y - rrrs_B_3_in_axes3_yx*m->rrrs_h_3_in_spec3_x[i] -
+        rrrs_B_3_in_axes3_yz*m->rrrs_h_3_in_spec3_z[i];
+    const real rrrs_c_in_axes3_z = m->rrrs_h_3_in_spec3_z[i]*(rrrs_mu_3_t + rrrs_mu_3_t_2) -
+        rrrs_B_3_in_axes3_zx*m->rrrs_h_3_in_spec3_x[i] -
+        rrrs_B_3_in_axes3_zy*m->rrrs_h_3_in_spec3_y[i] -
         rrrs_N_1_in_axes1_z*v->rrrs_w_1_in_axes3_z;
     v->rrrs_acc_3_in_axes3_x = rrrs_acc_3_in_axes3_x;
     v->rrrs_acc_3_in_axes3_y = rrrs_acc_3_in_axes3_y;
@@ -3922,2465 +3766,2280 @@ INLINE void stage_rrrs_legs_required(const prepared *m, size_t i, values_rrrs *v
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s,
-    verdict *t)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        stage_V_X(w, k, V, &v);
-        stage_M_dynamics(m, &v);
-        stage_Z_dynamics(m, w, k, V, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = v.h_star_x;
-        s[10*w + k] = v.h_star_y;
-        s[11*w + k] = v.h_star_z;
-        s[12*w + k] = v.J_star_xx;
-        s[13*w + k] = v.J_star_xy;
-        s[14*w + k] = v.J_star_xz;
-        s[15*w + k] = v.J_star_yy;
-        s[16*w + k] = v.J_star_yz;
-        s[17*w + k] = v.J_star_zz;
-        s[18*w + k] = v.Z_p_x;
-        s[19*w + k] = v.Z_p_y;
-        s[20*w + k] = v.Z_p_z;
-        s[21*w + k] = v.Z_q_x;
-        s[22*w + k] = v.Z_q_y;
-        s[23*w + k] = v.Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    stage_V_X(w, k, V, &v);
+    stage_M_dynamics(m, &v);
+    stage_Z_dynamics(m, w, k, V, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = v.h_star_x;
+    s[10*w + k] = v.h_star_y;
+    s[11*w + k] = v.h_star_z;
+    s[12*w + k] = v.J_star_xx;
+    s[13*w + k] = v.J_star_xy;
+    s[14*w + k] = v.J_star_xz;
+    s[15*w + k] = v.J_star_yy;
+    s[16*w + k] = v.J_star_yz;
+    s[17*w + k] = v.J_star_zz;
+    s[18*w + k] = v.Z_p_x;
+    s[19*w + k] = v.Z_p_y;
+    s[20*w + k] = v.Z_p_z;
+    s[21*w + k] = v.Z_q_x;
+    s[22*w + k] = v.Z_q_y;
+    s[23*w + k] = v.Z_q_z;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
+INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrrrs v;
-        stage_rrrrs_V(w, j, V, &v);
-        stage_rrrrs_X(m, w, i, j, s, X, &v);
-        stage_rrrrs_V_X(w, j, V, &v);
-        stage_rrrrs_M_dynamics(m, w, i, j, X, &v);
-        /* (rrrrs-w_1) reciprocal vector 1 */
-        const real rrrrs_w_1_x = v.axis_z_rrrrs_axes4_x*v.rrrrs_w_1_in_axes4_z;
-        const real rrrrs_w_1_y = v.axis_z_rrrrs_axes4_y*v.rrrrs_w_1_in_axes4_z;
-        const real rrrrs_w_1_z = v.axis_z_rrrrs_axes4_z*v.rrrrs_w_1_in_axes4_z;
-        /* (rrrrs-w_3) reciprocal vector 2 */
-        const real rrrrs_w_3_t = v.rrrrs_h_3_t_26*v.rrrrs_s_4_t - v.rrrrs_c_4*v.rrrrs_h_3_t_27;
-        const real rrrrs_w_3_t_2 = v.rrrrs_c_4*v.rrrrs_h_3_t_26 + v.rrrrs_h_3_t_27*v.rrrrs_s_4_t;
-        const real rrrrs_w_3_t_3 = v.rrrrs_h_3_t_6*rrrrs_w_3_t - v.rrrrs_h_3_t_7*rrrrs_w_3_t_2;
-        const real rrrrs_w_3_t_4 = v.rrrrs_h_3_t_6*rrrrs_w_3_t_2 + v.rrrrs_h_3_t_7*rrrrs_w_3_t;
-        const real rrrrs_w_3_t_5 = v.rrrrs_c_1*rrrrs_w_3_t_4;
-        const real rrrrs_w_3_t_6 = v.rrrrs_s_1*rrrrs_w_3_t_4;
-        const real rrrrs_base_frame_xx = m->rrrrs_base_frame_xx[i];
-        const real rrrrs_base_frame_xy = m->rrrrs_base_frame_xy[i];
-        const real rrrrs_base_frame_xz = m->rrrrs_base_frame_xz[i];
-        const real axis_y_rrrrs_axes4_x = rrrrs_base_frame_xx*rrrrs_w_3_t_3 +
-            rrrrs_base_frame_xy*rrrrs_w_3_t_5 + rrrrs_base_frame_xz*rrrrs_w_3_t_6;
-        const real rrrrs_base_frame_yx = m->rrrrs_base_frame_yx[i];
-        const real rrrrs_base_frame_yy = m->rrrrs_base_frame_yy[i];
-        const real rrrrs_base_frame_yz = m->rrrrs_base_frame_yz[i];
-        const real axis_y_rrrrs_axes4_y = rrrrs_base_frame_yx*rrrrs_w_3_t_3 +
-            rrrrs_base_frame_yy*rrrrs_w_3_t_5 + rrrrs_base_frame_yz*rrrrs_w_3_t_6;
-        const real rrrrs_base_frame_zx = m->rrrrs_base_frame_zx[i];
-        const real rrrrs_base_frame_zy = m->rrrrs_base_frame_zy[i];
-        const real rrrrs_base_frame_zz = m->rrrrs_base_frame_zz[i];
-        const real axis_y_rrrrs_axes4_z = rrrrs_base_frame_zx*rrrrs_w_3_t_3 +
-            rrrrs_base_frame_zy*rrrrs_w_3_t_5 + rrrrs_base_frame_zz*rrrrs_w_3_t_6;
-        const real axis_x_rrrrs_axes4_x = axis_y_rrrrs_axes4_y*v.axis_z_rrrrs_axes4_z -
-            axis_y_rrrrs_axes4_z*v.axis_z_rrrrs_axes4_y;
-        const real axis_x_rrrrs_axes4_y = axis_y_rrrrs_axes4_z*v.axis_z_rrrrs_axes4_x -
-            axis_y_rrrrs_axes4_x*v.axis_z_rrrrs_axes4_z;
-        const real axis_x_rrrrs_axes4_z = axis_y_rrrrs_axes4_x*v.axis_z_rrrrs_axes4_y -
-            axis_y_rrrrs_axes4_y*v.axis_z_rrrrs_axes4_x;
-        const real rrrrs_w_3_t_7 = v.rrrrs_r_2_in_axes4_y*v.rrrrs_w_3_in_axes4_x;
-        const real rrrrs_w_3_x = axis_x_rrrrs_axes4_x*v.rrrrs_w_3_in_axes4_x;
-        const real rrrrs_w_3_y = axis_x_rrrrs_axes4_y*v.rrrrs_w_3_in_axes4_x;
-        const real rrrrs_w_3_z = axis_x_rrrrs_axes4_z*v.rrrrs_w_3_in_axes4_x;
-        /* (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-        const real rrrrs_yd_2 = V[6*w + j];
-        const real rrrrs_S_dot_rest_x = v.rrrrs_S_dot_x -
-            rrrrs_yd_2*(axis_y_rrrrs_axes4_x*v.rrrrs_r_2_in_axes4_x -
-            axis_x_rrrrs_axes4_x*v.rrrrs_r_2_in_axes4_y);
-        const real rrrrs_S_dot_rest_y = v.rrrrs_S_dot_y -
-            rrrrs_yd_2*(axis_y_rrrrs_axes4_y*v.rrrrs_r_2_in_axes4_x -
-            axis_x_rrrrs_axes4_y*v.rrrrs_r_2_in_axes4_y);
-        const real rrrrs_S_dot_rest_z = v.rrrrs_S_dot_z -
-            rrrrs_yd_2*(axis_y_rrrrs_axes4_z*v.rrrrs_r_2_in_axes4_x -
-            axis_x_rrrrs_axes4_z*v.rrrrs_r_2_in_axes4_y);
-        /* (rrrrs-qd_1) rate of joint 1 */
-        const real rrrrs_qd_1 = v.rrrrs_w_1_in_axes4_z*(v.axis_z_rrrrs_axes4_x*rrrrs_S_dot_rest_x
-            + v.axis_z_rrrrs_axes4_y*rrrrs_S_dot_rest_y +
-            v.axis_z_rrrrs_axes4_z*rrrrs_S_dot_rest_z);
-        /* (rrrrs-qd_3) rate of joint 3 */
-        const real rrrrs_qd_3 = v.rrrrs_w_3_in_axes4_x*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
-            axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_x_rrrrs_axes4_z*rrrrs_S_dot_rest_z);
-        /* (rrrrs-qd_4) rate of joint 4 */
-        const real rrrrs_w_4_in_axes4_y = m->rrrrs_w_4_in_axes4_y[i];
-        const real rrrrs_qd_4 = rrrrs_w_4_in_axes4_y*(axis_y_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
-            axis_y_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_y_rrrrs_axes4_z*rrrrs_S_dot_rest_z -
-            rrrrs_qd_3*v.rrrrs_r_3_in_axes4_x);
-        /* (rrrrs-omega_1) angular velocity of link 1 */
-        const real rrrrs_omega_1_in_axes2_x = v.rrrrs_h_3_t_6*rrrrs_qd_1;
-        const real rrrrs_omega_1_in_axes2_y = -v.rrrrs_h_3_t_7*rrrrs_qd_1;
-        const real rrrrs_omega_1_t = v.rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_x +
-            v.rrrrs_h_3_t_27*rrrrs_omega_1_in_axes2_y;
-        const real rrrrs_omega_1_t_2 = v.rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_y -
-            v.rrrrs_h_3_t_27*rrrrs_omega_1_in_axes2_x;
-        const real rrrrs_omega_1_in_axes4_x = v.rrrrs_c_4*rrrrs_omega_1_t -
-            rrrrs_omega_1_t_2*v.rrrrs_s_4_t;
-        const real rrrrs_omega_1_in_axes4_y = v.rrrrs_c_4*rrrrs_omega_1_t_2 +
-            rrrrs_omega_1_t*v.rrrrs_s_4_t;
-        /* (rrrrs-W_1) centripetal tensor of link 1 */
-        const real rrrrs_W_1_t = rrrrs_omega_1_in_axes4_x*rrrrs_omega_1_in_axes4_x;
-        const real rrrrs_W_1_t_2 = rrrrs_omega_1_in_axes4_y*rrrrs_omega_1_in_axes4_y;
-        const real rrrrs_W_1_in_axes4_xy = rrrrs_omega_1_in_axes4_x*rrrrs_omega_1_in_axes4_y;
-        /* (rrrrs-W_2) centripetal tensor of link 2 */
-        const real rrrrs_W_2_in_axes2_yz = rrrrs_omega_1_in_axes2_y*rrrrs_yd_2;
-        const real rrrrs_W_2_in_axes2_xz = rrrrs_omega_1_in_axes2_x*rrrrs_yd_2;
-        const real rrrrs_W_2_in_axes2_xy = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_y;
-        /* (rrrrs-omega_3) angular velocity of link 3 */
-        const real rrrrs_omega_3_in_axes3_z = rrrrs_qd_3 + rrrrs_yd_2;
-        /* (rrrrs-W_3) centripetal tensor of link 3 */
-        const real rrrrs_W_3_in_axes3_xy = rrrrs_omega_1_t*rrrrs_omega_1_t_2;
-        const real rrrrs_W_3_in_axes3_xz = rrrrs_omega_1_t*rrrrs_omega_3_in_axes3_z;
-        const real rrrrs_W_3_in_axes3_yz = rrrrs_omega_1_t_2*rrrrs_omega_3_in_axes3_z;
-        /* (rrrrs-omega_4) angular velocity of link 4 */
-        const real rrrrs_omega_4_in_axes4_z = rrrrs_omega_3_in_axes3_z + rrrrs_qd_4;
-        /* (rrrrs-W_4) centripetal tensor of link 4 */
-        const real rrrrs_W_4_t = rrrrs_omega_4_in_axes4_z*rrrrs_omega_4_in_axes4_z;
-        const real rrrrs_W_4_t_2 = rrrrs_W_1_t_2 + rrrrs_W_4_t;
-        const real rrrrs_W_4_in_axes4_xz = rrrrs_omega_1_in_axes4_x*rrrrs_omega_4_in_axes4_z;
-        const real rrrrs_W_4_in_axes4_yz = rrrrs_omega_1_in_axes4_y*rrrrs_omega_4_in_axes4_z;
-        /* (rrrrs-u_1) centripetal acceleration of the connection point */
-        const real omega_y = V[4*w + j];
-        const real omega_z = V[5*w + j];
-        const real rrrrs_u_1_x = omega_y*v.rrrrs_S_dot_t_3 - omega_z*v.rrrrs_S_dot_t_2;
-        const real omega_x = V[3*w + j];
-        const real rrrrs_u_1_y = omega_z*v.rrrrs_S_dot_t - omega_x*v.rrrrs_S_dot_t_3;
-        const real rrrrs_u_1_z = omega_x*v.rrrrs_S_dot_t_2 - omega_y*v.rrrrs_S_dot_t;
-        const real rrrrs_u_1_in_axes4_x = axis_x_rrrrs_axes4_x*rrrrs_u_1_x +
-            axis_x_rrrrs_axes4_y*rrrrs_u_1_y + axis_x_rrrrs_axes4_z*rrrrs_u_1_z;
-        const real rrrrs_u_1_in_axes4_y = axis_y_rrrrs_axes4_x*rrrrs_u_1_x +
-            axis_y_rrrrs_axes4_y*rrrrs_u_1_y + axis_y_rrrrs_axes4_z*rrrrs_u_1_z;
-        const real rrrrs_u_1_in_axes4_z = v.axis_z_rrrrs_axes4_x*rrrrs_u_1_x +
-            v.axis_z_rrrrs_axes4_y*rrrrs_u_1_y + v.axis_z_rrrrs_axes4_z*rrrrs_u_1_z;
-        /* (rrrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real rrrrs_zeta_3_in_axes3_x = rrrrs_omega_1_t_2*rrrrs_qd_3;
-        const real rrrrs_zeta_3_in_axes3_y = -rrrrs_omega_1_t*rrrrs_qd_3;
-        /* (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real rrrrs_beta_3_in_axes3_x = rrrrs_zeta_3_in_axes3_x +
-            rrrrs_W_2_in_axes2_yz*v.rrrrs_h_3_t_26 - rrrrs_W_2_in_axes2_xz*v.rrrrs_h_3_t_27;
-        const real rrrrs_beta_3_in_axes3_y = rrrrs_zeta_3_in_axes3_y -
-            rrrrs_W_2_in_axes2_xz*v.rrrrs_h_3_t_26 - rrrrs_W_2_in_axes2_yz*v.rrrrs_h_3_t_27;
-        const real rrrrs_beta_3_in_axes4_y = rrrrs_beta_3_in_axes3_x*v.rrrrs_s_4_t +
-            rrrrs_beta_3_in_axes3_y*v.rrrrs_c_4;
-        /* (rrrrs-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
-        const real rrrrs_zeta_4_t = rrrrs_omega_1_in_axes4_x*rrrrs_qd_4;
-        /* (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations */
-        const real rrrrs_beta_4_in_axes4_y = rrrrs_beta_3_in_axes4_y - rrrrs_zeta_4_t;
-        /* (rrrrs-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrrrs_joint2_offset_x = m->rrrrs_joint2_offset_x[i];
-        const real rrrrs_d_2_in_axes2_x = v.rrrrs_h_3_t_6*rrrrs_joint2_offset_x;
-        const real rrrrs_d_2_in_axes2_y = -v.rrrrs_h_3_t_7*rrrrs_joint2_offset_x;
-        const real rrrrs_bias_t_2 = rrrrs_omega_3_in_axes3_z*rrrrs_omega_3_in_axes3_z;
-        const real rrrrs_bias_t_3 = rrrrs_d_2_in_axes2_x*v.rrrrs_h_3_t_26 +
-            rrrrs_d_2_in_axes2_y*v.rrrrs_h_3_t_27;
-        const real rrrrs_bias_t_4 = rrrrs_d_2_in_axes2_y*v.rrrrs_h_3_t_26 -
-            rrrrs_d_2_in_axes2_x*v.rrrrs_h_3_t_27;
-        const real rrrrs_d_2_in_axes4_x = rrrrs_bias_t_3*v.rrrrs_c_4 -
-            rrrrs_bias_t_4*v.rrrrs_s_4_t;
-        const real rrrrs_d_2_in_axes4_y = rrrrs_bias_t_3*v.rrrrs_s_4_t +
-            rrrrs_bias_t_4*v.rrrrs_c_4;
-        const real rrrrs_joint3_offset_x = m->rrrrs_joint3_offset_x[i];
-        const real rrrrs_bias_t_5 = v.rrrrs_h_3_t_26*rrrrs_joint3_offset_x;
-        const real rrrrs_bias_t_6 = v.rrrrs_h_3_t_27*rrrrs_joint3_offset_x;
-        const real rrrrs_d_3_in_axes4_x = rrrrs_bias_t_5*v.rrrrs_c_4 +
-            rrrrs_bias_t_6*v.rrrrs_s_4_t;
-        const real rrrrs_d_3_in_axes4_y = rrrrs_bias_t_5*v.rrrrs_s_4_t -
-            rrrrs_bias_t_6*v.rrrrs_c_4;
-        const real rrrrs_joint4_offset_x = m->rrrrs_joint4_offset_x[i];
-        const real rrrrs_d_4_in_axes4_x = v.rrrrs_c_4*rrrrs_joint4_offset_x;
-        const real rrrrs_d_4_in_axes4_y = rrrrs_joint4_offset_x*v.rrrrs_s_4_t;
-        const real rrrrs_platform_joint_offset_x = m->rrrrs_platform_joint_offset_x[i];
-        const real rrrrs_bias_in_axes4_x = rrrrs_W_1_in_axes4_xy*rrrrs_d_2_in_axes4_y +
-            rrrrs_W_1_in_axes4_xy*rrrrs_d_3_in_axes4_y +
-            rrrrs_W_1_in_axes4_xy*rrrrs_d_4_in_axes4_y - rrrrs_W_1_t_2*rrrrs_d_2_in_axes4_x -
-            rrrrs_W_4_t_2*rrrrs_platform_joint_offset_x - rrrrs_d_3_in_axes4_x*(rrrrs_W_1_t_2 +
-            v.rrrrs_bias_t) - rrrrs_d_4_in_axes4_x*(rrrrs_W_1_t_2 + rrrrs_bias_t_2);
-        const real rrrrs_bias_in_axes4_y = rrrrs_W_1_in_axes4_xy*rrrrs_d_2_in_axes4_x +
-            rrrrs_W_1_in_axes4_xy*rrrrs_d_3_in_axes4_x +
-            rrrrs_W_1_in_axes4_xy*rrrrs_d_4_in_axes4_x +
-            rrrrs_W_1_in_axes4_xy*rrrrs_platform_joint_offset_x - rrrrs_W_1_t*rrrrs_d_2_in_axes4_y
-            - rrrrs_d_3_in_axes4_y*(rrrrs_W_1_t + v.rrrrs_bias_t) -
-            rrrrs_d_4_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t_2);
-        const real rrrrs_bias_in_axes4_z =
-            rrrrs_d_4_in_axes4_x*(rrrrs_omega_1_in_axes4_x*rrrrs_omega_3_in_axes3_z -
-            rrrrs_beta_3_in_axes4_y) + rrrrs_d_4_in_axes4_y*(rrrrs_beta_3_in_axes3_x*v.rrrrs_c_4 +
-            rrrrs_omega_1_in_axes4_y*rrrrs_omega_3_in_axes3_z -
-            rrrrs_beta_3_in_axes3_y*v.rrrrs_s_4_t) +
-            rrrrs_platform_joint_offset_x*(rrrrs_W_4_in_axes4_xz - rrrrs_beta_4_in_axes4_y) +
-            2*rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
-            2*rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2;
-        /* (rrrrs-rel_o) remainder of: acceleration of the connection point left to the joint
-           accelerations */
-        const real rrrrs_rel_o_in_axes4_x = rrrrs_u_1_in_axes4_x - rrrrs_bias_in_axes4_x;
-        const real rrrrs_rel_o_in_axes4_y = rrrrs_u_1_in_axes4_y - rrrrs_bias_in_axes4_y;
-        const real rrrrs_rel_o_in_axes4_z = rrrrs_u_1_in_axes4_z - rrrrs_bias_in_axes4_z;
-        /* (rrrrs-qdd_1_o) remainder of: acceleration of joint 1 */
-        const real rrrrs_qdd_1_o = rrrrs_rel_o_in_axes4_z*v.rrrrs_w_1_in_axes4_z;
-        /* (rrrrs-qdd_3_o) remainder of: acceleration of joint 3 */
-        const real rrrrs_qdd_3_o = rrrrs_rel_o_in_axes4_x*v.rrrrs_w_3_in_axes4_x;
-        /* (rrrrs-alpha_1_o) remainder of: angular acceleration of link 1 */
-        const real rrrrs_alpha_1_o_in_axes2_x = v.rrrrs_h_3_t_6*rrrrs_qdd_1_o;
-        const real rrrrs_alpha_1_o_in_axes2_y = -v.rrrrs_h_3_t_7*rrrrs_qdd_1_o;
-        /* (rrrrs-alpha_2_o) remainder of: angular acceleration of link 2 */
-        const real rrrrs_alpha_2_o_in_axes2_x = rrrrs_W_2_in_axes2_yz +
-            rrrrs_alpha_1_o_in_axes2_x;
-        const real rrrrs_alpha_2_o_in_axes2_y = rrrrs_alpha_1_o_in_axes2_y -
-            rrrrs_W_2_in_axes2_xz;
-        /* (rrrrs-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real rrrrs_B_2_o_in_axes2_zx = rrrrs_W_2_in_axes2_xz - rrrrs_alpha_2_o_in_axes2_y;
-        const real rrrrs_B_2_o_in_axes2_zy = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_2_o_in_axes2_x;
-        /* (rrrrs-alpha_3_o) remainder of: angular acceleration of link 3 */
-        const real rrrrs_alpha_3_o_in_axes3_x = rrrrs_zeta_3_in_axes3_x +
-            rrrrs_alpha_2_o_in_axes2_x*v.rrrrs_h_3_t_26 +
-            rrrrs_alpha_2_o_in_axes2_y*v.rrrrs_h_3_t_27;
-        const real rrrrs_alpha_3_o_in_axes3_y = rrrrs_zeta_3_in_axes3_y +
-            rrrrs_alpha_2_o_in_axes2_y*v.rrrrs_h_3_t_26 -
-            rrrrs_alpha_2_o_in_axes2_x*v.rrrrs_h_3_t_27;
-        /* (rrrrs-B_3_o) remainder of the acceleration tensor of link 3 */
-        const real rrrrs_B_3_o_in_axes3_xy = rrrrs_W_3_in_axes3_xy - rrrrs_qdd_3_o;
-        const real rrrrs_B_3_o_in_axes3_xz = rrrrs_W_3_in_axes3_xz + rrrrs_alpha_3_o_in_axes3_y;
-        const real rrrrs_B_3_o_in_axes3_yx = rrrrs_W_3_in_axes3_xy + rrrrs_qdd_3_o;
-        const real rrrrs_B_3_o_in_axes3_yz = rrrrs_W_3_in_axes3_yz - rrrrs_alpha_3_o_in_axes3_x;
-        const real rrrrs_B_3_o_in_axes3_zx = rrrrs_W_3_in_axes3_xz - rrrrs_alpha_3_o_in_axes3_y;
-        const real rrrrs_B_3_o_in_axes3_zy = rrrrs_W_3_in_axes3_yz + rrrrs_alpha_3_o_in_axes3_x;
-        /* (rrrrs-alpha_4_o) remainder of: angular acceleration of link 4 */
-        const real rrrrs_alpha_4_o_in_axes4_x = rrrrs_alpha_3_o_in_axes3_x*v.rrrrs_c_4 +
-            rrrrs_omega_1_in_axes4_y*rrrrs_qd_4 - rrrrs_alpha_3_o_in_axes3_y*v.rrrrs_s_4_t;
-        const real rrrrs_alpha_4_o_in_axes4_y = rrrrs_alpha_3_o_in_axes3_x*v.rrrrs_s_4_t +
-            rrrrs_alpha_3_o_in_axes3_y*v.rrrrs_c_4 - rrrrs_zeta_4_t;
-        const real rrrrs_alpha_4_o_in_axes4_z = rrrrs_qdd_3_o +
-            rrrrs_w_4_in_axes4_y*(rrrrs_rel_o_in_axes4_y - rrrrs_qdd_3_o*v.rrrrs_r_3_in_axes4_x);
-        /* (rrrrs-B_4_o) remainder of the acceleration tensor of link 4 */
-        const real rrrrs_B_4_o_in_axes4_xy = rrrrs_W_1_in_axes4_xy - rrrrs_alpha_4_o_in_axes4_z;
-        const real rrrrs_B_4_o_in_axes4_xz = rrrrs_W_4_in_axes4_xz + rrrrs_alpha_4_o_in_axes4_y;
-        const real rrrrs_B_4_o_in_axes4_yx = rrrrs_W_1_in_axes4_xy + rrrrs_alpha_4_o_in_axes4_z;
-        const real rrrrs_B_4_o_in_axes4_yz = rrrrs_W_4_in_axes4_yz - rrrrs_alpha_4_o_in_axes4_x;
-        const real rrrrs_B_4_o_in_axes4_zx = rrrrs_W_4_in_axes4_xz - rrrrs_alpha_4_o_in_axes4_y;
-        const real rrrrs_B_4_o_in_axes4_zy = rrrrs_W_4_in_axes4_yz + rrrrs_alpha_4_o_in_axes4_x;
-        /* (rrrrs-a_o_3) acceleration of the origin of joint 3 */
-        const real rrrrs_a_o_3_t = rrrrs_omega_1_in_axes2_y*rrrrs_omega_1_in_axes2_y;
-        const real rrrrs_a_o_3_in_axes2_x = -rrrrs_joint3_offset_x*(rrrrs_a_o_3_t +
-            v.rrrrs_bias_t);
-        /* (rrrrs-a_o_3_o) remainder of: acceleration of the origin of joint 3 */
-        const real rrrrs_a_o_3_o_in_axes2_y = rrrrs_W_2_in_axes2_xy*rrrrs_joint3_offset_x;
-        /* (rrrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-        const real rrrrs_acc_3_t = m->rrrrs_acc_3_t[i];
-        const real rrrrs_acc_3_t_2 = m->rrrrs_acc_3_t_2[i];
-        const real rrrrs_g_in_axes1_x = rrrrs_acc_3_t*v.rrrrs_c_1 + rrrrs_acc_3_t_2*v.rrrrs_s_1;
-        const real rrrrs_g_in_axes1_y = rrrrs_acc_3_t_2*v.rrrrs_c_1 - rrrrs_acc_3_t*v.rrrrs_s_1;
-        const real rrrrs_g_in_axes1_z = m->rrrrs_g_in_axes1_z[i];
-        const real rrrrs_g_in_axes2_x = rrrrs_g_in_axes1_x*v.rrrrs_h_3_t_7 +
-            rrrrs_g_in_axes1_z*v.rrrrs_h_3_t_6;
-        const real rrrrs_g_in_axes2_y = rrrrs_g_in_axes1_x*v.rrrrs_h_3_t_6 -
-            rrrrs_g_in_axes1_z*v.rrrrs_h_3_t_7;
-        const real rrrrs_acc_3_o_in_axes3_x = rrrrs_a_o_3_in_axes2_x*v.rrrrs_h_3_t_26 +
-            rrrrs_a_o_3_o_in_axes2_y*v.rrrrs_h_3_t_27 - rrrrs_g_in_axes2_x*v.rrrrs_h_3_t_26 -
-            rrrrs_g_in_axes2_y*v.rrrrs_h_3_t_27;
-        const real rrrrs_acc_3_o_in_axes3_y = rrrrs_a_o_3_o_in_axes2_y*v.rrrrs_h_3_t_26 +
-            rrrrs_g_in_axes2_x*v.rrrrs_h_3_t_27 - rrrrs_a_o_3_in_axes2_x*v.rrrrs_h_3_t_27 -
-            rrrrs_g_in_axes2_y*v.rrrrs_h_3_t_26;
-        const real rrrrs_acc_3_o_in_axes3_z = rrrrs_B_2_o_in_axes2_zx*rrrrs_joint3_offset_x -
-            rrrrs_g_in_axes1_y;
-        /* (rrrrs-f_3_o) remainder of: inertia force of link 3 less its weight */
-        const real rrrrs_f_3_o_t = rrrrs_omega_1_t*rrrrs_omega_1_t;
-        const real rrrrs_f_3_o_t_2 = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2;
-        const real rrrrs_h_3_in_spec3_x = m->rrrrs_h_3_in_spec3_x[i];
-        const real rrrrs_h_3_in_spec3_y = m->rrrrs_h_3_in_spec3_y[i];
-        const real rrrrs_h_3_in_spec3_z = m->rrrrs_h_3_in_spec3_z[i];
-        const real rrrrs_link3_mass = m->rrrrs_link3_mass[i];
-        const real rrrrs_f_3_o_in_axes3_x = rrrrs_B_3_o_in_axes3_xy*rrrrs_h_3_in_spec3_y +
-            rrrrs_B_3_o_in_axes3_xz*rrrrs_h_3_in_spec3_z +
-            rrrrs_acc_3_o_in_axes3_x*rrrrs_link3_mass - rrrrs_h_3_in_spec3_x*(rrrrs_bias_t_2 +
-            rrrrs_f_3_o_t_2);
-        const real rrrrs_f_3_o_in_axes3_y = rrrrs_B_3_o_in_axes3_yx*rrrrs_h_3_in_spec3_x +
-            rrrrs_B_3_o_in_axes3_yz*rrrrs_h_3_in_spec3_z +
-            rrrrs_acc_3_o_in_axes3_y*rrrrs_link3_mass - rrrrs_h_3_in_spec3_y*(rrrrs_bias_t_2 +
-            rrrrs_f_3_o_t);
-        const real rrrrs_f_3_o_in_axes3_z = rrrrs_B_3_o_in_axes3_zx*rrrrs_h_3_in_spec3_x +
-            rrrrs_B_3_o_in_axes3_zy*rrrrs_h_3_in_spec3_y +
-            rrrrs_acc_3_o_in_axes3_z*rrrrs_link3_mass - rrrrs_h_3_in_spec3_z*(rrrrs_f_3_o_t +
-            rrrrs_f_3_o_t_2);
-        /* (rrrrs-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real rrrrs_acc_4_o_in_axes4_x = rrrrs_u_1_in_axes4_x -
-            axis_x_rrrrs_axes4_x*gravity_x - axis_x_rrrrs_axes4_y*gravity_y -
-            axis_x_rrrrs_axes4_z*gravity_z;
-        const real rrrrs_acc_4_o_in_axes4_y = rrrrs_u_1_in_axes4_y -
-            axis_y_rrrrs_axes4_x*gravity_x - axis_y_rrrrs_axes4_y*gravity_y -
-            axis_y_rrrrs_axes4_z*gravity_z;
-        const real rrrrs_acc_4_o_in_axes4_z = rrrrs_u_1_in_axes4_z -
-            v.axis_z_rrrrs_axes4_x*gravity_x - v.axis_z_rrrrs_axes4_y*gravity_y -
-            v.axis_z_rrrrs_axes4_z*gravity_z;
-        /* (rrrrs-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their
-           reference points */
-        const real rrrrs_J_4_in_spec4_xy = m->rrrrs_J_4_in_spec4_xy[i];
-        const real rrrrs_J_4_in_spec4_xz = m->rrrrs_J_4_in_spec4_xz[i];
-        const real rrrrs_J_4_in_spec4_yz = m->rrrrs_J_4_in_spec4_yz[i];
-        const real rrrrs_Sigma_4_in_axes4_yy = m->rrrrs_Sigma_4_in_axes4_yy[i];
-        const real rrrrs_Sigma_4_in_axes4_zz = m->rrrrs_Sigma_4_in_axes4_zz[i];
-        const real rrrrs_h_4_in_spec4_y = m->rrrrs_h_4_in_spec4_y[i];
-        const real rrrrs_h_4_in_spec4_z = m->rrrrs_h_4_in_spec4_z[i];
-        const real rrrrs_mu_4_o_in_axes4_x = rrrrs_B_4_o_in_axes4_yx*rrrrs_J_4_in_spec4_xz +
-            rrrrs_B_4_o_in_axes4_zy*rrrrs_Sigma_4_in_axes4_yy +
-            rrrrs_J_4_in_spec4_yz*(rrrrs_W_1_t_2 - rrrrs_W_4_t) +
-            rrrrs_acc_4_o_in_axes4_z*rrrrs_h_4_in_spec4_y -
-            rrrrs_B_4_o_in_axes4_yz*rrrrs_Sigma_4_in_axes4_zz -
-            rrrrs_B_4_o_in_axes4_zx*rrrrs_J_4_in_spec4_xy -
-            rrrrs_acc_4_o_in_axes4_y*rrrrs_h_4_in_spec4_z;
-        const real rrrrs_Sigma_4_in_axes4_xx = m->rrrrs_Sigma_4_in_axes4_xx[i];
-        const real rrrrs_h_4_in_spec4_x = m->rrrrs_h_4_in_spec4_x[i];
-        const real rrrrs_mu_4_o_in_axes4_y = rrrrs_B_4_o_in_axes4_xz*rrrrs_Sigma_4_in_axes4_zz +
-            rrrrs_B_4_o_in_axes4_zy*rrrrs_J_4_in_spec4_xy +
-            rrrrs_acc_4_o_in_axes4_x*rrrrs_h_4_in_spec4_z -
-            rrrrs_B_4_o_in_axes4_xy*rrrrs_J_4_in_spec4_yz -
-            rrrrs_B_4_o_in_axes4_zx*rrrrs_Sigma_4_in_axes4_xx - rrrrs_J_4_in_spec4_xz*(rrrrs_W_1_t
-            - rrrrs_W_4_t) - rrrrs_acc_4_o_in_axes4_z*rrrrs_h_4_in_spec4_x;
-        const real rrrrs_mu_4_o_in_axes4_z = rrrrs_B_4_o_in_axes4_xz*rrrrs_J_4_in_spec4_yz +
-            rrrrs_B_4_o_in_axes4_yx*rrrrs_Sigma_4_in_axes4_xx + rrrrs_J_4_in_spec4_xy*(rrrrs_W_1_t
-            - rrrrs_W_1_t_2) + rrrrs_acc_4_o_in_axes4_y*rrrrs_h_4_in_spec4_x -
-            rrrrs_B_4_o_in_axes4_xy*rrrrs_Sigma_4_in_axes4_yy -
-            rrrrs_B_4_o_in_axes4_yz*rrrrs_J_4_in_spec4_xz -
-            rrrrs_acc_4_o_in_axes4_x*rrrrs_h_4_in_spec4_y;
-        /* (rrrrs-dy_2_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal
-           links' inertia and weight */
-        const real rrrrs_J_4_in_spec4_zz = m->rrrrs_J_4_in_spec4_zz[i];
-        const real rrrrs_dy_2_Gamma_4_t =
-            rrrrs_J_4_in_spec4_zz*rrrrs_w_4_in_axes4_y*(-v.rrrrs_r_2_in_axes4_x -
-            v.rrrrs_r_3_in_axes4_x*rrrrs_w_3_t_7);
-        const real rrrrs_dy_2_Gamma_4 = rrrrs_J_4_in_spec4_zz + rrrrs_dy_2_Gamma_4_t +
-            rrrrs_J_4_in_spec4_zz*rrrrs_w_3_t_7;
-        /* (rrrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
-           reference points */
-        const real rrrrs_J_3_in_spec3_xy = m->rrrrs_J_3_in_spec3_xy[i];
-        const real rrrrs_J_3_in_spec3_xz = m->rrrrs_J_3_in_spec3_xz[i];
-        const real rrrrs_J_3_in_spec3_yz = m->rrrrs_J_3_in_spec3_yz[i];
-        const real rrrrs_Sigma_3_in_axes3_yy = m->rrrrs_Sigma_3_in_axes3_yy[i];
-        const real rrrrs_Sigma_3_in_axes3_zz = m->rrrrs_Sigma_3_in_axes3_zz[i];
-        const real rrrrs_mu_3_o_in_axes3_x = rrrrs_B_3_o_in_axes3_yx*rrrrs_J_3_in_spec3_xz +
-            rrrrs_B_3_o_in_axes3_zy*rrrrs_Sigma_3_in_axes3_yy +
-            rrrrs_J_3_in_spec3_yz*(rrrrs_f_3_o_t_2 - rrrrs_bias_t_2) +
-            rrrrs_acc_3_o_in_axes3_z*rrrrs_h_3_in_spec3_y -
-            rrrrs_B_3_o_in_axes3_yz*rrrrs_Sigma_3_in_axes3_zz -
-            rrrrs_B_3_o_in_axes3_zx*rrrrs_J_3_in_spec3_xy -
-            rrrrs_acc_3_o_in_axes3_y*rrrrs_h_3_in_spec3_z;
-        const real rrrrs_Sigma_3_in_axes3_xx = m->rrrrs_Sigma_3_in_axes3_xx[i];
-        const real rrrrs_mu_3_o_in_axes3_y = rrrrs_B_3_o_in_axes3_xz*rrrrs_Sigma_3_in_axes3_zz +
-            rrrrs_B_3_o_in_axes3_zy*rrrrs_J_3_in_spec3_xy +
-            rrrrs_acc_3_o_in_axes3_x*rrrrs_h_3_in_spec3_z -
-            rrrrs_B_3_o_in_axes3_xy*rrrrs_J_3_in_spec3_yz -
-            rrrrs_B_3_o_in_axes3_zx*rrrrs_Sigma_3_in_axes3_xx -
-            rrrrs_J_3_in_spec3_xz*(rrrrs_f_3_o_t - rrrrs_bias_t_2) -
-            rrrrs_acc_3_o_in_axes3_z*rrrrs_h_3_in_spec3_x;
-        const real rrrrs_mu_3_o_in_axes3_z = rrrrs_B_3_o_in_axes3_xz*rrrrs_J_3_in_spec3_yz +
-            rrrrs_B_3_o_in_axes3_yx*rrrrs_Sigma_3_in_axes3_xx +
-            rrrrs_J_3_in_spec3_xy*(rrrrs_f_3_o_t - rrrrs_f_3_o_t_2) +
-            rrrrs_acc_3_o_in_axes3_y*rrrrs_h_3_in_spec3_x -
-            rrrrs_B_3_o_in_axes3_xy*rrrrs_Sigma_3_in_axes3_yy -
-            rrrrs_B_3_o_in_axes3_yz*rrrrs_J_3_in_spec3_xz -
-            rrrrs_acc_3_o_in_axes3_x*rrrrs_h_3_in_spec3_y;
-        /* (rrrrs-N_3_o) remainder of: moment about joint 3 of the links from 3 outwards, the force at the
-           connection point left out */
-        const real rrrrs_N_3_o_in_axes3_x = rrrrs_mu_3_o_in_axes3_x +
-            v.rrrrs_c_4*rrrrs_mu_4_o_in_axes4_x + rrrrs_mu_4_o_in_axes4_y*v.rrrrs_s_4_t;
-        const real rrrrs_N_3_o_in_axes3_y = rrrrs_mu_3_o_in_axes3_y +
-            v.rrrrs_c_4*rrrrs_mu_4_o_in_axes4_y - rrrrs_mu_4_o_in_axes4_x*v.rrrrs_s_4_t;
-        const real rrrrs_N_3_o_in_axes3_z = rrrrs_mu_3_o_in_axes3_z + rrrrs_mu_4_o_in_axes4_z;
-        /* (rrrrs-dy_2_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
-           links' inertia and weight */
-        const real rrrrs_Jc_3_in_axes3_zz = m->rrrrs_Jc_3_in_axes3_zz[i];
-        const real rrrrs_dy_2_Gamma_3 = v.rrrrs_L_c_3_2_in_axes2_z + rrrrs_dy_2_Gamma_4_t +
-            rrrrs_Jc_3_in_axes3_zz*rrrrs_w_3_t_7;
-        /* (rrrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-           reference points */
-        const real rrrrs_mu_2_o_t = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_x;
-        const real rrrrs_J_2_in_spec2_xy = m->rrrrs_J_2_in_spec2_xy[i];
-        const real rrrrs_J_2_in_spec2_xz = m->rrrrs_J_2_in_spec2_xz[i];
-        const real rrrrs_J_2_in_spec2_yz = m->rrrrs_J_2_in_spec2_yz[i];
-        const real rrrrs_Sigma_2_in_axes2_yy = m->rrrrs_Sigma_2_in_axes2_yy[i];
-        const real rrrrs_Sigma_2_in_axes2_zz = m->rrrrs_Sigma_2_in_axes2_zz[i];
-        const real rrrrs_h_2_in_spec2_y = m->rrrrs_h_2_in_spec2_y[i];
-        const real rrrrs_h_2_in_spec2_z = m->rrrrs_h_2_in_spec2_z[i];
-        const real rrrrs_mu_2_o_in_axes2_x = rrrrs_B_2_o_in_axes2_zy*rrrrs_Sigma_2_in_axes2_yy +
-            rrrrs_J_2_in_spec2_xz*rrrrs_W_2_in_axes2_xy + rrrrs_J_2_in_spec2_yz*(rrrrs_a_o_3_t -
-            v.rrrrs_bias_t) + rrrrs_Sigma_2_in_axes2_zz*rrrrs_alpha_1_o_in_axes2_x +
-            rrrrs_g_in_axes2_y*rrrrs_h_2_in_spec2_z -
-            rrrrs_B_2_o_in_axes2_zx*rrrrs_J_2_in_spec2_xy -
-            rrrrs_g_in_axes1_y*rrrrs_h_2_in_spec2_y;
-        const real rrrrs_Sigma_2_in_axes2_xx = m->rrrrs_Sigma_2_in_axes2_xx[i];
-        const real rrrrs_h_2_in_spec2_x = m->rrrrs_h_2_in_spec2_x[i];
-        const real rrrrs_mu_2_o_in_axes2_y = rrrrs_B_2_o_in_axes2_zy*rrrrs_J_2_in_spec2_xy +
-            rrrrs_Sigma_2_in_axes2_zz*rrrrs_alpha_1_o_in_axes2_y +
-            rrrrs_g_in_axes1_y*rrrrs_h_2_in_spec2_x -
-            rrrrs_B_2_o_in_axes2_zx*rrrrs_Sigma_2_in_axes2_xx -
-            rrrrs_J_2_in_spec2_xz*(rrrrs_mu_2_o_t - v.rrrrs_bias_t) -
-            rrrrs_J_2_in_spec2_yz*rrrrs_W_2_in_axes2_xy - rrrrs_g_in_axes2_x*rrrrs_h_2_in_spec2_z;
-        const real rrrrs_mu_2_o_in_axes2_z = rrrrs_J_2_in_spec2_xy*(rrrrs_mu_2_o_t -
-            rrrrs_a_o_3_t) + rrrrs_J_2_in_spec2_xz*rrrrs_alpha_1_o_in_axes2_x +
-            rrrrs_J_2_in_spec2_yz*rrrrs_alpha_1_o_in_axes2_y +
-            rrrrs_Sigma_2_in_axes2_xx*rrrrs_W_2_in_axes2_xy +
-            rrrrs_g_in_axes2_x*rrrrs_h_2_in_spec2_y -
-            rrrrs_Sigma_2_in_axes2_yy*rrrrs_W_2_in_axes2_xy -
-            rrrrs_g_in_axes2_y*rrrrs_h_2_in_spec2_x;
-        /* (rrrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
-           connection point left out */
-        const real rrrrs_N_2_o_in_axes2_x = rrrrs_mu_2_o_in_axes2_x +
-            rrrrs_N_3_o_in_axes3_x*v.rrrrs_h_3_t_26 - rrrrs_N_3_o_in_axes3_y*v.rrrrs_h_3_t_27;
-        const real rrrrs_N_2_o_in_axes2_y = rrrrs_mu_2_o_in_axes2_y +
-            rrrrs_N_3_o_in_axes3_x*v.rrrrs_h_3_t_27 + rrrrs_N_3_o_in_axes3_y*v.rrrrs_h_3_t_26 -
-            rrrrs_f_3_o_in_axes3_z*rrrrs_joint3_offset_x;
-        const real rrrrs_N_2_o_in_axes2_z = rrrrs_N_3_o_in_axes3_z + rrrrs_mu_2_o_in_axes2_z +
-            rrrrs_joint3_offset_x*(rrrrs_f_3_o_in_axes3_x*v.rrrrs_h_3_t_27 +
-            rrrrs_f_3_o_in_axes3_y*v.rrrrs_h_3_t_26);
-        /* (rrrrs-dy_2_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
-           links' inertia and weight */
-        const real rrrrs_J_2_in_spec2_zz = m->rrrrs_J_2_in_spec2_zz[i];
-        const real rrrrs_dy_2_Gamma_2 = rrrrs_J_2_in_spec2_zz + v.rrrrs_Jc_2_t_7 +
-            rrrrs_Jc_3_in_axes3_zz + rrrrs_dy_2_Gamma_4_t +
-            v.rrrrs_L_c_3_2_in_axes2_z*rrrrs_w_3_t_7;
-        /* (rrrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-           reference points */
-        const real rrrrs_J_1_in_spec1_xx = m->rrrrs_J_1_in_spec1_xx[i];
-        const real rrrrs_h_1_in_spec1_y = m->rrrrs_h_1_in_spec1_y[i];
-        const real rrrrs_h_1_in_spec1_z = m->rrrrs_h_1_in_spec1_z[i];
-        const real rrrrs_mu_1_o_in_axes1_z = rrrrs_J_1_in_spec1_xx*rrrrs_qdd_1_o +
-            rrrrs_g_in_axes1_x*rrrrs_h_1_in_spec1_z - rrrrs_g_in_axes1_y*rrrrs_h_1_in_spec1_y;
-        /* (rrrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
-           connection point left out */
-        const real rrrrs_N_1_o_in_axes1_z = rrrrs_mu_1_o_in_axes1_z +
-            rrrrs_N_2_o_in_axes2_x*v.rrrrs_h_3_t_6 - rrrrs_N_2_o_in_axes2_y*v.rrrrs_h_3_t_7;
-        /* (rrrrs-dy_2_G) coefficient of the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
-        const real rrrrs_dy_2_G_in_axes4_y = rrrrs_dy_2_Gamma_4*rrrrs_w_4_in_axes4_y;
-        /* (rrrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real rrrrs_G_o_in_axes4_y = rrrrs_mu_4_o_in_axes4_z*rrrrs_w_4_in_axes4_y;
-        const real rrrrs_G_o_in_axes4_x =
-            -v.rrrrs_w_3_in_axes4_x*(rrrrs_G_o_in_axes4_y*v.rrrrs_r_3_in_axes4_x -
-            rrrrs_N_3_o_in_axes3_z);
-        /* (rrrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at
-           the connection point */
-        const real rrrrs_c_o_in_axes4_x = rrrrs_W_4_t_2*rrrrs_h_4_in_spec4_x -
-            rrrrs_G_o_in_axes4_x - rrrrs_B_4_o_in_axes4_xy*rrrrs_h_4_in_spec4_y -
-            rrrrs_B_4_o_in_axes4_xz*rrrrs_h_4_in_spec4_z;
-        const real rrrrs_c_o_in_axes4_y = rrrrs_h_4_in_spec4_y*(rrrrs_W_1_t + rrrrs_W_4_t) -
-            rrrrs_G_o_in_axes4_y - rrrrs_B_4_o_in_axes4_yx*rrrrs_h_4_in_spec4_x -
-            rrrrs_B_4_o_in_axes4_yz*rrrrs_h_4_in_spec4_z;
-        const real rrrrs_c_o_in_axes4_z = rrrrs_h_4_in_spec4_z*(rrrrs_W_1_t + rrrrs_W_1_t_2) -
-            rrrrs_B_4_o_in_axes4_zx*rrrrs_h_4_in_spec4_x -
-            rrrrs_B_4_o_in_axes4_zy*rrrrs_h_4_in_spec4_y -
-            rrrrs_N_1_o_in_axes1_z*v.rrrrs_w_1_in_axes4_z;
-        /* (rrrrs-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rrrrs_d_c_in_axes4_yy = m->rrrrs_d_c_in_axes4_yy[i];
-        const real rrrrs_Q_t = v.rrrrs_d_c_in_axes4_xx - rrrrs_d_c_in_axes4_yy;
-        const real rrrrs_Q_t_2 = R(0.5)*rrrrs_Q_t;
-        const real rrrrs_Q_t_3 = v.rrrrs_d_c_in_axes4_xx +
-            v.rrrrs_d_Gamma_1_in_axes4_z*v.rrrrs_w_1_in_axes4_z +
-            v.rrrrs_d_alpha_4_in_axes4_xz*rrrrs_h_4_in_spec4_y -
-            v.rrrrs_d_alpha_4_in_axes4_yz*rrrrs_h_4_in_spec4_x;
-        const real rrrrs_Q_t_4 = R(0.5)*rrrrs_Q_t_3;
-        const real rrrrs_Q_t_5 = axis_x_rrrrs_axes4_x*v.rrrrs_d_c_in_axes4_xy +
-            v.axis_z_rrrrs_axes4_x*v.rrrrs_d_c_in_axes4_yz - axis_y_rrrrs_axes4_x*rrrrs_Q_t_2;
-        const real rrrrs_Q_t_6 = axis_x_rrrrs_axes4_y*v.rrrrs_d_c_in_axes4_xy +
-            v.axis_z_rrrrs_axes4_y*v.rrrrs_d_c_in_axes4_yz - axis_y_rrrrs_axes4_y*rrrrs_Q_t_2;
-        const real rrrrs_Q_t_7 = axis_x_rrrrs_axes4_z*v.rrrrs_d_c_in_axes4_xy +
-            v.axis_z_rrrrs_axes4_z*v.rrrrs_d_c_in_axes4_yz - axis_y_rrrrs_axes4_z*rrrrs_Q_t_2;
-        const real rrrrs_Q_t_8 = v.axis_z_rrrrs_axes4_x*rrrrs_Q_t_4 -
-            axis_x_rrrrs_axes4_x*v.rrrrs_d_c_in_axes4_xz;
-        const real rrrrs_Q_t_9 = v.axis_z_rrrrs_axes4_y*rrrrs_Q_t_4 -
-            axis_x_rrrrs_axes4_y*v.rrrrs_d_c_in_axes4_xz;
-        const real rrrrs_Q_t_10 = v.axis_z_rrrrs_axes4_z*rrrrs_Q_t_4 -
-            axis_x_rrrrs_axes4_z*v.rrrrs_d_c_in_axes4_xz;
-        const real rrrrs_Q_t_11 = axis_y_rrrrs_axes4_x*rrrrs_Q_t_5 -
-            v.axis_z_rrrrs_axes4_x*rrrrs_Q_t_8;
-        const real rrrrs_Q_xx = -2*rrrrs_Q_t_11 - v.rrrrs_d_c_in_axes4_xx;
-        const real rrrrs_Q_xy = v.axis_z_rrrrs_axes4_x*rrrrs_Q_t_9 +
-            v.axis_z_rrrrs_axes4_y*rrrrs_Q_t_8 - axis_y_rrrrs_axes4_x*rrrrs_Q_t_6 -
-            axis_y_rrrrs_axes4_y*rrrrs_Q_t_5;
-        const real rrrrs_Q_xz = v.axis_z_rrrrs_axes4_x*rrrrs_Q_t_10 +
-            v.axis_z_rrrrs_axes4_z*rrrrs_Q_t_8 - axis_y_rrrrs_axes4_x*rrrrs_Q_t_7 -
-            axis_y_rrrrs_axes4_z*rrrrs_Q_t_5;
-        const real rrrrs_Q_t_12 = axis_y_rrrrs_axes4_y*rrrrs_Q_t_6 -
-            v.axis_z_rrrrs_axes4_y*rrrrs_Q_t_9;
-        const real rrrrs_Q_yy = -2*rrrrs_Q_t_12 - v.rrrrs_d_c_in_axes4_xx;
-        const real rrrrs_Q_yz = v.axis_z_rrrrs_axes4_y*rrrrs_Q_t_10 +
-            v.axis_z_rrrrs_axes4_z*rrrrs_Q_t_9 - axis_y_rrrrs_axes4_y*rrrrs_Q_t_7 -
-            axis_y_rrrrs_axes4_z*rrrrs_Q_t_6;
-        const real rrrrs_Q_t_13 = axis_y_rrrrs_axes4_z*rrrrs_Q_t_7 -
-            v.axis_z_rrrrs_axes4_z*rrrrs_Q_t_10;
-        const real rrrrs_Q_zz = -2*rrrrs_Q_t_13 - v.rrrrs_d_c_in_axes4_xx;
-        /* (rrrrs-U) velocity and gravity terms of the leg force */
-        const real rrrrs_U_x = -axis_x_rrrrs_axes4_x*rrrrs_c_o_in_axes4_x -
-            axis_y_rrrrs_axes4_x*rrrrs_c_o_in_axes4_y -
-            v.axis_z_rrrrs_axes4_x*rrrrs_c_o_in_axes4_z;
-        const real rrrrs_U_y = -axis_x_rrrrs_axes4_y*rrrrs_c_o_in_axes4_x -
-            axis_y_rrrrs_axes4_y*rrrrs_c_o_in_axes4_y -
-            v.axis_z_rrrrs_axes4_y*rrrrs_c_o_in_axes4_z;
-        const real rrrrs_U_z = -axis_x_rrrrs_axes4_z*rrrrs_c_o_in_axes4_x -
-            axis_y_rrrrs_axes4_z*rrrrs_c_o_in_axes4_y -
-            v.axis_z_rrrrs_axes4_z*rrrrs_c_o_in_axes4_z;
-        /* (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra
-           degree of freedom of joint 2 */
-        const real rrrrs_d_P_2_x = axis_x_rrrrs_axes4_x*v.rrrrs_d_P_2_in_axes4_x +
-            axis_y_rrrrs_axes4_x*v.rrrrs_d_P_2_in_axes4_y +
-            v.axis_z_rrrrs_axes4_x*v.rrrrs_d_P_2_in_axes4_z;
-        const real rrrrs_d_P_2_y = axis_x_rrrrs_axes4_y*v.rrrrs_d_P_2_in_axes4_x +
-            axis_y_rrrrs_axes4_y*v.rrrrs_d_P_2_in_axes4_y +
-            v.axis_z_rrrrs_axes4_y*v.rrrrs_d_P_2_in_axes4_z;
-        const real rrrrs_d_P_2_z = axis_x_rrrrs_axes4_z*v.rrrrs_d_P_2_in_axes4_x +
-            axis_y_rrrrs_axes4_z*v.rrrrs_d_P_2_in_axes4_y +
-            v.axis_z_rrrrs_axes4_z*v.rrrrs_d_P_2_in_axes4_z;
-        /* (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the
-           extra degree of freedom of joint 2 */
-        const real rrrrs_dy_2_P_2_t = rrrrs_dy_2_G_in_axes4_y*v.rrrrs_r_2_in_axes4_x +
-            v.rrrrs_r_2_in_axes4_y*v.rrrrs_w_3_in_axes4_x*(rrrrs_dy_2_G_in_axes4_y*v.rrrrs_r_3_in_axes4_x
-            - rrrrs_dy_2_Gamma_3);
-        const real rrrrs_dy_2_P_2 = rrrrs_dy_2_Gamma_2 - rrrrs_dy_2_P_2_t;
-        /* (rrrrs-P_2_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
-           joint 2 */
-        const real rrrrs_P_2_o_t = rrrrs_G_o_in_axes4_x*v.rrrrs_r_2_in_axes4_y -
-            rrrrs_G_o_in_axes4_y*v.rrrrs_r_2_in_axes4_x;
-        const real rrrrs_P_2_o = rrrrs_N_2_o_in_axes2_z + rrrrs_P_2_o_t;
-        /* (M_ta) coupling block of M */
-        const real rrrrs_M_ta_t = -rrrrs_Q_xy*v.rrrrs_q_z;
-        const real rrrrs_M_ta_t_2 = rrrrs_Q_xz*v.rrrrs_q_y;
-        const real rrrrs_M_ta_t_3 = rrrrs_M_ta_t + rrrrs_M_ta_t_2;
-        const real rrrrs_M_ta_t_4 = rrrrs_Q_xz*v.rrrrs_q_x - rrrrs_Q_xx*v.rrrrs_q_z;
-        const real rrrrs_M_ta_t_5 = rrrrs_Q_xy*v.rrrrs_q_x - rrrrs_Q_xx*v.rrrrs_q_y;
-        const real rrrrs_M_ta_t_6 = rrrrs_Q_yz*v.rrrrs_q_y - rrrrs_Q_yy*v.rrrrs_q_z;
-        const real rrrrs_M_ta_t_7 = -rrrrs_Q_yz*v.rrrrs_q_x;
-        const real rrrrs_M_ta_t_8 = rrrrs_M_ta_t - rrrrs_M_ta_t_7;
-        const real rrrrs_M_ta_t_9 = rrrrs_Q_yy*v.rrrrs_q_x - rrrrs_Q_xy*v.rrrrs_q_y;
-        const real rrrrs_M_ta_t_10 = rrrrs_Q_zz*v.rrrrs_q_y - rrrrs_Q_yz*v.rrrrs_q_z;
-        const real rrrrs_M_ta_t_11 = rrrrs_Q_xz*v.rrrrs_q_z - rrrrs_Q_zz*v.rrrrs_q_x;
-        const real rrrrs_M_ta_t_12 = rrrrs_M_ta_t_2 + rrrrs_M_ta_t_7;
-        /* (M_aa) rotational block of M */
-        const real rrrrs_M_aa_t = rrrrs_M_ta_t_10*v.rrrrs_q_y - rrrrs_M_ta_t_6*v.rrrrs_q_z;
-        const real rrrrs_M_aa_t_2 = rrrrs_M_ta_t_11*v.rrrrs_q_y + rrrrs_M_ta_t_8*v.rrrrs_q_z;
-        const real rrrrs_M_aa_t_3 = rrrrs_M_ta_t_12*v.rrrrs_q_y + rrrrs_M_ta_t_9*v.rrrrs_q_z;
-        const real rrrrs_M_aa_t_4 = rrrrs_M_ta_t_11*v.rrrrs_q_x + rrrrs_M_ta_t_4*v.rrrrs_q_z;
-        const real rrrrs_M_aa_t_5 = rrrrs_M_ta_t_12*v.rrrrs_q_x + rrrrs_M_ta_t_5*v.rrrrs_q_z;
-        const real rrrrs_M_aa_t_6 = rrrrs_M_ta_t_9*v.rrrrs_q_x - rrrrs_M_ta_t_5*v.rrrrs_q_y;
-        /* (Z_a) rotational part of Z */
-        const real rrrrs_Z_a_t = rrrrs_U_z*v.rrrrs_q_y - rrrrs_U_y*v.rrrrs_q_z;
-        const real rrrrs_Z_a_t_2 = rrrrs_U_x*v.rrrrs_q_z - rrrrs_U_z*v.rrrrs_q_x;
-        const real rrrrs_Z_a_t_3 = rrrrs_U_y*v.rrrrs_q_x - rrrrs_U_x*v.rrrrs_q_y;
-        /* (rrrrs-M_ya_2) coupling of extra joint 2 with the rotation of the platform */
-        const real rrrrs_M_ya_2_x = rrrrs_d_P_2_z*v.rrrrs_q_y - rrrrs_d_P_2_y*v.rrrrs_q_z;
-        const real rrrrs_M_ya_2_y = rrrrs_d_P_2_x*v.rrrrs_q_z - rrrrs_d_P_2_z*v.rrrrs_q_x;
-        const real rrrrs_M_ya_2_z = rrrrs_d_P_2_y*v.rrrrs_q_x - rrrrs_d_P_2_x*v.rrrrs_q_y;
-        /* (rrrrs-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrrrs_H_a_1_x = v.rrrrs_q_y*rrrrs_w_1_z - v.rrrrs_q_z*rrrrs_w_1_y;
-        const real rrrrs_H_a_1_y = v.rrrrs_q_z*rrrrs_w_1_x - v.rrrrs_q_x*rrrrs_w_1_z;
-        const real rrrrs_H_a_1_z = v.rrrrs_q_x*rrrrs_w_1_y - v.rrrrs_q_y*rrrrs_w_1_x;
-        /* (rrrrs-H_a_3) moment of the column's unit force about the platform origin */
-        const real rrrrs_H_a_3_x = v.rrrrs_q_y*rrrrs_w_3_z - v.rrrrs_q_z*rrrrs_w_3_y;
-        const real rrrrs_H_a_3_y = v.rrrrs_q_z*rrrrs_w_3_x - v.rrrrs_q_x*rrrrs_w_3_z;
-        const real rrrrs_H_a_3_z = v.rrrrs_q_x*rrrrs_w_3_y - v.rrrrs_q_y*rrrrs_w_3_x;
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, rrrrs_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, rrrrs_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, rrrrs_Q_xz);  /* M_tt_xz */
-        gather(&terms[3*count + k], add, rrrrs_Q_yy);  /* M_tt_yy_of_legs */
-        gather(&terms[4*count + k], add, rrrrs_Q_yz);  /* M_tt_yz */
-        gather(&terms[5*count + k], add, rrrrs_Q_zz);  /* M_tt_zz_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[6*count + k], add, rrrrs_M_ta_t_3);  /* M_ta_xx */
-        gather(&terms[7*count + k], add, -rrrrs_M_ta_t_4);  /* M_ta_xy_of_legs */
-        gather(&terms[8*count + k], add, rrrrs_M_ta_t_5);  /* M_ta_xz_of_legs */
-        gather(&terms[9*count + k], add, rrrrs_M_ta_t_6);  /* M_ta_yx_of_legs */
-        gather(&terms[10*count + k], add, -rrrrs_M_ta_t_8);  /* M_ta_yy */
-        gather(&terms[11*count + k], add, rrrrs_M_ta_t_9);  /* M_ta_yz_of_legs */
-        gather(&terms[12*count + k], add, rrrrs_M_ta_t_10);  /* M_ta_zx_of_legs */
-        gather(&terms[13*count + k], add, rrrrs_M_ta_t_11);  /* M_ta_zy_of_legs */
-        gather(&terms[14*count + k], add, -rrrrs_M_ta_t_12);  /* M_ta_zz */
-        /* (M_aa) rotational block of M */
-        gather(&terms[15*count + k], add, rrrrs_M_aa_t);  /* M_aa_xx_of_legs */
-        gather(&terms[16*count + k], add, rrrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
-        gather(&terms[17*count + k], add, rrrrs_M_aa_t_3);  /* M_aa_t */
-        gather(&terms[18*count + k], add, rrrrs_M_aa_t_4);  /* M_aa_t_2 */
-        gather(&terms[19*count + k], add, rrrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
-        gather(&terms[20*count + k], add, rrrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
-        /* (Z_t) translational part of Z */
-        gather(&terms[21*count + k], add, rrrrs_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[22*count + k], add, rrrrs_U_y);  /* Z_t_y_of_legs */
-        gather(&terms[23*count + k], add, rrrrs_U_z);  /* Z_t_z_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[24*count + k], add, rrrrs_Z_a_t);  /* Z_a_x_of_legs */
-        gather(&terms[25*count + k], add, rrrrs_Z_a_t_2);  /* Z_a_y_of_legs */
-        gather(&terms[26*count + k], add, rrrrs_Z_a_t_3);  /* Z_a_z_of_legs */
-        /* (rrrrs-P_2_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
-           joint 2 */
-        o[0*count + k] = rrrrs_P_2_o;
-        /* (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra
-           degree of freedom of joint 2 */
-        o[1*count + k] = rrrrs_d_P_2_x;
-        o[2*count + k] = rrrrs_d_P_2_x;
-        o[3*count + k] = rrrrs_d_P_2_y;
-        o[4*count + k] = rrrrs_d_P_2_y;
-        o[5*count + k] = rrrrs_d_P_2_z;
-        o[6*count + k] = rrrrs_d_P_2_z;
-        /* (rrrrs-M_ya_2) coupling of extra joint 2 with the rotation of the platform */
-        o[7*count + k] = rrrrs_M_ya_2_x;
-        o[8*count + k] = rrrrs_M_ya_2_x;
-        o[9*count + k] = rrrrs_M_ya_2_y;
-        o[10*count + k] = rrrrs_M_ya_2_y;
-        o[11*count + k] = rrrrs_M_ya_2_z;
-        o[12*count + k] = rrrrs_M_ya_2_z;
-        /* (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the
-           extra degree of freedom of joint 2 */
-        o[13*count + k] = rrrrs_dy_2_P_2;
-        /* (rrrrs-w_1) reciprocal vector 1 */
-        o[14*count + k] = rrrrs_w_1_x;
-        o[15*count + k] = rrrrs_w_1_y;
-        o[16*count + k] = rrrrs_w_1_z;
-        /* (rrrrs-H_a_1) moment of the column's unit force about the platform origin */
-        o[17*count + k] = rrrrs_H_a_1_x;
-        o[18*count + k] = rrrrs_H_a_1_y;
-        o[19*count + k] = rrrrs_H_a_1_z;
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        o[20*count + k] = 1;
-        /* (rrrrs-w_3) reciprocal vector 2 */
-        o[21*count + k] = rrrrs_w_3_x;
-        o[22*count + k] = rrrrs_w_3_y;
-        o[23*count + k] = rrrrs_w_3_z;
-        /* (rrrrs-H_a_3) moment of the column's unit force about the platform origin */
-        o[24*count + k] = rrrrs_H_a_3_x;
-        o[25*count + k] = rrrrs_H_a_3_y;
-        o[26*count + k] = rrrrs_H_a_3_z;
-        /* (rrrrs-w_3) reciprocal vector 2 */
-        o[27*count + k] = rrrrs_w_3_t_7;
-        o[30*count + k] = (((rrrrs_P_2_o + rrrrs_d_P_2_x) + (rrrrs_d_P_2_y + (rrrrs_d_P_2_z +
-            rrrrs_M_ya_2_x))) + ((rrrrs_M_ya_2_y + rrrrs_M_ya_2_z) + (rrrrs_dy_2_P_2 +
-            (rrrrs_w_1_x + rrrrs_w_1_y)))) + (((rrrrs_w_1_z + rrrrs_H_a_1_x) + (rrrrs_H_a_1_y +
-            (rrrrs_H_a_1_z + rrrrs_w_3_x))) + ((rrrrs_w_3_y + (rrrrs_w_3_z + rrrrs_H_a_3_x)) +
-            (rrrrs_H_a_3_y + (rrrrs_H_a_3_z + rrrrs_w_3_t_7))));
-        const real rrrrs_size_t_3 = m->rrrrs_size_t_3[i];
-        const real rrrrs_rho2_3_t = m->rrrrs_rho2_3_t[i];
-        const real rrrrs_size = m->rrrrs_size[i];
-        o[29*count + k] = UNLESS(magnitude(v.rrrrs_h_3_t_11) > TOLERANCE*TOLERANCE*rrrrs_size_t_3)
-            + UNLESS(magnitude(v.rrrrs_h_3_t_23) > TOLERANCE*TOLERANCE*rrrrs_rho2_3_t) +
-            UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) > TOLERANCE*rrrrs_size) +
-            UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) > TOLERANCE*rrrrs_size);
-        o[28*count + k] = UNLESS(v.rrrrs_h_3_t_24 >= 0);
-    }
+    values_rrrrs v;
+    stage_rrrrs_V(w, j, V, &v);
+    stage_rrrrs_X(m, w, i, j, s, X, &v);
+    stage_rrrrs_V_X(w, j, V, &v);
+    stage_rrrrs_M_dynamics(m, w, i, j, X, &v);
+    /* (rrrrs-w_1) reciprocal vector 1 */
+    const real rrrrs_w_1_x = v.axis_z_rrrrs_axes4_x*v.rrrrs_w_1_in_axes4_z;
+    const real rrrrs_w_1_y = v.axis_z_rrrrs_axes4_y*v.rrrrs_w_1_in_axes4_z;
+    const real rrrrs_w_1_z = v.axis_z_rrrrs_axes4_z*v.rrrrs_w_1_in_axes4_z;
+    /* (rrrrs-w_3) reciprocal vector 2 */
+    const real rrrrs_w_3_t = v.rrrrs_h_3_t_26*v.rrrrs_s_4_t - v.rrrrs_c_4*v.rrrrs_h_3_t_27;
+    const real rrrrs_w_3_t_2 = v.rrrrs_c_4*v.rrrrs_h_3_t_26 + v.rrrrs_h_3_t_27*v.rrrrs_s_4_t;
+    const real rrrrs_w_3_t_3 = v.rrrrs_h_3_t_6*rrrrs_w_3_t - v.rrrrs_h_3_t_7*rrrrs_w_3_t_2;
+    const real rrrrs_w_3_t_4 = v.rrrrs_h_3_t_6*rrrrs_w_3_t_2 + v.rrrrs_h_3_t_7*rrrrs_w_3_t;
+    const real rrrrs_w_3_t_5 = v.rrrrs_c_1*rrrrs_w_3_t_4;
+    const real rrrrs_w_3_t_6 = v.rrrrs_s_1*rrrrs_w_3_t_4;
+    const real axis_y_rrrrs_axes4_x = m->rrrrs_base_frame_xx[i]*rrrrs_w_3_t_3 +
+        m->rrrrs_base_frame_xy[i]*rrrrs_w_3_t_5 + m->rrrrs_base_frame_xz[i]*rrrrs_w_3_t_6;
+    const real axis_y_rrrrs_axes4_y = m->rrrrs_base_frame_yx[i]*rrrrs_w_3_t_3 +
+        m->rrrrs_base_frame_yy[i]*rrrrs_w_3_t_5 + m->rrrrs_base_frame_yz[i]*rrrrs_w_3_t_6;
+    const real axis_y_rrrrs_axes4_z = m->rrrrs_base_frame_zx[i]*rrrrs_w_3_t_3 +
+        m->rrrrs_base_frame_zy[i]*rrrrs_w_3_t_5 + m->rrrrs_base_frame_zz[i]*rrrrs_w_3_t_6;
+    const real axis_x_rrrrs_axes4_x = axis_y_rrrrs_axes4_y*v.axis_z_rrrrs_axes4_z -
+        axis_y_rrrrs_axes4_z*v.axis_z_rrrrs_axes4_y;
+    const real axis_x_rrrrs_axes4_y = axis_y_rrrrs_axes4_z*v.axis_z_rrrrs_axes4_x -
+        axis_y_rrrrs_axes4_x*v.axis_z_rrrrs_axes4_z;
+    const real axis_x_rrrrs_axes4_z = axis_y_rrrrs_axes4_x*v.axis_z_rrrrs_axes4_y -
+        axis_y_rrrrs_axes4_y*v.axis_z_rrrrs_axes4_x;
+    const real rrrrs_w_3_t_7 = v.rrrrs_r_2_in_axes4_y*v.rrrrs_w_3_in_axes4_x;
+    const real rrrrs_w_3_x = axis_x_rrrrs_axes4_x*v.rrrrs_w_3_in_axes4_x;
+    const real rrrrs_w_3_y = axis_x_rrrrs_axes4_y*v.rrrrs_w_3_in_axes4_x;
+    const real rrrrs_w_3_z = axis_x_rrrrs_axes4_z*v.rrrrs_w_3_in_axes4_x;
+    /* (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra */
+    const real rrrrs_yd_2 = V[6*w + j];
+    const real rrrrs_S_dot_rest_x = v.rrrrs_S_dot_x -
+        rrrrs_yd_2*(axis_y_rrrrs_axes4_x*v.rrrrs_r_2_in_axes4_x -
+        axis_x_rrrrs_axes4_x*v.rrrrs_r_2_in_axes4_y);
+    const real rrrrs_S_dot_rest_y = v.rrrrs_S_dot_y -
+        rrrrs_yd_2*(axis_y_rrrrs_axes4_y*v.rrrrs_r_2_in_axes4_x -
+        axis_x_rrrrs_axes4_y*v.rrrrs_r_2_in_axes4_y);
+    const real rrrrs_S_dot_rest_z = v.rrrrs_S_dot_z -
+        rrrrs_yd_2*(axis_y_rrrrs_axes4_z*v.rrrrs_r_2_in_axes4_x -
+        axis_x_rrrrs_axes4_z*v.rrrrs_r_2_in_axes4_y);
+    /* (rrrrs-qd_1) rate of joint 1 */
+    const real rrrrs_qd_1 = v.rrrrs_w_1_in_axes4_z*(v.axis_z_rrrrs_axes4_x*rrrrs_S_dot_rest_x
+        + v.axis_z_rrrrs_axes4_y*rrrrs_S_dot_rest_y +
+        v.axis_z_rrrrs_axes4_z*rrrrs_S_dot_rest_z);
+    /* (rrrrs-qd_3) rate of joint 3 */
+    const real rrrrs_qd_3 = v.rrrrs_w_3_in_axes4_x*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+        axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_x_rrrrs_axes4_z*rrrrs_S_dot_rest_z);
+    /* (rrrrs-qd_4) rate of joint 4 */
+    const real rrrrs_qd_4 =
+        m->rrrrs_w_4_in_axes4_y[i]*(axis_y_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+        axis_y_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_y_rrrrs_axes4_z*rrrrs_S_dot_rest_z -
+        rrrrs_qd_3*v.rrrrs_r_3_in_axes4_x);
+    /* (rrrrs-omega_1) angular velocity of link 1 */
+    const real rrrrs_omega_1_in_axes2_x = v.rrrrs_h_3_t_6*rrrrs_qd_1;
+    const real rrrrs_omega_1_in_axes2_y = -v.rrrrs_h_3_t_7*rrrrs_qd_1;
+    const real rrrrs_omega_1_t = v.rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_x +
+        v.rrrrs_h_3_t_27*rrrrs_omega_1_in_axes2_y;
+    const real rrrrs_omega_1_t_2 = v.rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_y -
+        v.rrrrs_h_3_t_27*rrrrs_omega_1_in_axes2_x;
+    const real rrrrs_omega_1_in_axes4_x = v.rrrrs_c_4*rrrrs_omega_1_t -
+        rrrrs_omega_1_t_2*v.rrrrs_s_4_t;
+    const real rrrrs_omega_1_in_axes4_y = v.rrrrs_c_4*rrrrs_omega_1_t_2 +
+        rrrrs_omega_1_t*v.rrrrs_s_4_t;
+    /* (rrrrs-W_1) centripetal tensor of link 1 */
+    const real rrrrs_W_1_t = rrrrs_omega_1_in_axes4_x*rrrrs_omega_1_in_axes4_x;
+    const real rrrrs_W_1_t_2 = rrrrs_omega_1_in_axes4_y*rrrrs_omega_1_in_axes4_y;
+    const real rrrrs_W_1_in_axes4_xy = rrrrs_omega_1_in_axes4_x*rrrrs_omega_1_in_axes4_y;
+    /* (rrrrs-W_2) centripetal tensor of link 2 */
+    const real rrrrs_W_2_in_axes2_yz = rrrrs_omega_1_in_axes2_y*rrrrs_yd_2;
+    const real rrrrs_W_2_in_axes2_xz = rrrrs_omega_1_in_axes2_x*rrrrs_yd_2;
+    const real rrrrs_W_2_in_axes2_xy = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_y;
+    /* (rrrrs-omega_3) angular velocity of link 3 */
+    const real rrrrs_omega_3_in_axes3_z = rrrrs_qd_3 + rrrrs_yd_2;
+    /* (rrrrs-W_3) centripetal tensor of link 3 */
+    const real rrrrs_W_3_in_axes3_xy = rrrrs_omega_1_t*rrrrs_omega_1_t_2;
+    const real rrrrs_W_3_in_axes3_xz = rrrrs_omega_1_t*rrrrs_omega_3_in_axes3_z;
+    const real rrrrs_W_3_in_axes3_yz = rrrrs_omega_1_t_2*rrrrs_omega_3_in_axes3_z;
+    /* (rrrrs-omega_4) angular velocity of link 4 */
+    const real rrrrs_omega_4_in_axes4_z = rrrrs_omega_3_in_axes3_z + rrrrs_qd_4;
+    /* (rrrrs-W_4) centripetal tensor of link 4 */
+    const real rrrrs_W_4_t = rrrrs_omega_4_in_axes4_z*rrrrs_omega_4_in_axes4_z;
+    const real rrrrs_W_4_t_2 = rrrrs_W_1_t_2 + rrrrs_W_4_t;
+    const real rrrrs_W_4_in_axes4_xz = rrrrs_omega_1_in_axes4_x*rrrrs_omega_4_in_axes4_z;
+    const real rrrrs_W_4_in_axes4_yz = rrrrs_omega_1_in_axes4_y*rrrrs_omega_4_in_axes4_z;
+    /* (rrrrs-u_1) centripetal acceleration of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real rrrrs_u_1_x = omega_y*v.rrrrs_S_dot_t_3 - omega_z*v.rrrrs_S_dot_t_2;
+    const real omega_x = V[3*w + j];
+    const real rrrrs_u_1_y = omega_z*v.rrrrs_S_dot_t - omega_x*v.rrrrs_S_dot_t_3;
+    const real rrrrs_u_1_z = omega_x*v.rrrrs_S_dot_t_2 - omega_y*v.rrrrs_S_dot_t;
+    const real rrrrs_u_1_in_axes4_x = axis_x_rrrrs_axes4_x*rrrrs_u_1_x +
+        axis_x_rrrrs_axes4_y*rrrrs_u_1_y + axis_x_rrrrs_axes4_z*rrrrs_u_1_z;
+    const real rrrrs_u_1_in_axes4_y = axis_y_rrrrs_axes4_x*rrrrs_u_1_x +
+        axis_y_rrrrs_axes4_y*rrrrs_u_1_y + axis_y_rrrrs_axes4_z*rrrrs_u_1_z;
+    const real rrrrs_u_1_in_axes4_z = v.axis_z_rrrrs_axes4_x*rrrrs_u_1_x +
+        v.axis_z_rrrrs_axes4_y*rrrrs_u_1_y + v.axis_z_rrrrs_axes4_z*rrrrs_u_1_z;
+    /* (rrrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+    const real rrrrs_zeta_3_in_axes3_x = rrrrs_omega_1_t_2*rrrrs_qd_3;
+    const real rrrrs_zeta_3_in_axes3_y = -rrrrs_omega_1_t*rrrrs_qd_3;
+    /* (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
+    const real rrrrs_beta_3_in_axes3_x = rrrrs_zeta_3_in_axes3_x +
+        rrrrs_W_2_in_axes2_yz*v.rrrrs_h_3_t_26 - rrrrs_W_2_in_axes2_xz*v.rrrrs_h_3_t_27;
+    const real rrrrs_beta_3_in_axes3_y = rrrrs_zeta_3_in_axes3_y -
+        rrrrs_W_2_in_axes2_xz*v.rrrrs_h_3_t_26 - rrrrs_W_2_in_axes2_yz*v.rrrrs_h_3_t_27;
+    const real rrrrs_beta_3_in_axes4_y = rrrrs_beta_3_in_axes3_x*v.rrrrs_s_4_t +
+        rrrrs_beta_3_in_axes3_y*v.rrrrs_c_4;
+    /* (rrrrs-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
+    const real rrrrs_zeta_4_t = rrrrs_omega_1_in_axes4_x*rrrrs_qd_4;
+    /* (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations */
+    const real rrrrs_beta_4_in_axes4_y = rrrrs_beta_3_in_axes4_y - rrrrs_zeta_4_t;
+    /* (rrrrs-bias) acceleration of the connection point at zero joint accelerations */
+    const real rrrrs_d_2_in_axes2_x = v.rrrrs_h_3_t_6*m->rrrrs_joint2_offset_x[i];
+    const real rrrrs_d_2_in_axes2_y = -v.rrrrs_h_3_t_7*m->rrrrs_joint2_offset_x[i];
+    const real rrrrs_bias_t_2 = rrrrs_omega_3_in_axes3_z*rrrrs_omega_3_in_axes3_z;
+    const real rrrrs_bias_t_3 = rrrrs_d_2_in_axes2_x*v.rrrrs_h_3_t_26 +
+        rrrrs_d_2_in_axes2_y*v.rrrrs_h_3_t_27;
+    const real rrrrs_bias_t_4 = rrrrs_d_2_in_axes2_y*v.rrrrs_h_3_t_26 -
+        rrrrs_d_2_in_axes2_x*v.rrrrs_h_3_t_27;
+    const real rrrrs_d_2_in_axes4_x = rrrrs_bias_t_3*v.rrrrs_c_4 -
+        rrrrs_bias_t_4*v.rrrrs_s_4_t;
+    const real rrrrs_d_2_in_axes4_y = rrrrs_bias_t_3*v.rrrrs_s_4_t +
+        rrrrs_bias_t_4*v.rrrrs_c_4;
+    const real rrrrs_bias_t_5 = v.rrrrs_h_3_t_26*m->rrrrs_joint3_offset_x[i];
+    const real rrrrs_bias_t_6 = v.rrrrs_h_3_t_27*m->rrrrs_joint3_offset_x[i];
+    const real rrrrs_d_3_in_axes4_x = rrrrs_bias_t_5*v.rrrrs_c_4 +
+        rrrrs_bias_t_6*v.rrrrs_s_4_t;
+    const real rrrrs_d_3_in_axes4_y = rrrrs_bias_t_5*v.rrrrs_s_4_t -
+        rrrrs_bias_t_6*v.rrrrs_c_4;
+    const real rrrrs_d_4_in_axes4_x = v.rrrrs_c_4*m->rrrrs_joint4_offset_x[i];
+    const real rrrrs_d_4_in_axes4_y = m->rrrrs_joint4_offset_x[i]*v.rrrrs_s_4_t;
+    const real rrrrs_bias_in_axes4_x = rrrrs_W_1_in_axes4_xy*rrrrs_d_2_in_axes4_y +
+        rrrrs_W_1_in_axes4_xy*rrrrs_d_3_in_axes4_y +
+        rrrrs_W_1_in_axes4_xy*rrrrs_d_4_in_axes4_y - rrrrs_W_1_t_2*rrrrs_d_2_in_axes4_x -
+        rrrrs_W_4_t_2*m->rrrrs_platform_joint_offset_x[i] -
+        rrrrs_d_3_in_axes4_x*(rrrrs_W_1_t_2 + v.rrrrs_bias_t) -
+        rrrrs_d_4_in_axes4_x*(rrrrs_W_1_t_2 + rrrrs_bias_t_2);
+    const real rrrrs_bias_in_axes4_y = rrrrs_W_1_in_axes4_xy*rrrrs_d_2_in_axes4_x +
+        rrrrs_W_1_in_axes4_xy*rrrrs_d_3_in_axes4_x +
+        rrrrs_W_1_in_axes4_xy*rrrrs_d_4_in_axes4_x +
+        rrrrs_W_1_in_axes4_xy*m->rrrrs_platform_joint_offset_x[i] -
+        rrrrs_W_1_t*rrrrs_d_2_in_axes4_y - rrrrs_d_3_in_axes4_y*(rrrrs_W_1_t + v.rrrrs_bias_t)
+        - rrrrs_d_4_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t_2);
+    const real rrrrs_bias_in_axes4_z =
+        rrrrs_d_4_in_axes4_x*(rrrrs_omega_1_in_axes4_x*rrrrs_omega_3_in_axes3_z -
+        rrrrs_beta_3_in_axes4_y) + rrrrs_d_4_in_axes4_y*(rrrrs_beta_3_in_axes3_x*v.rrrrs_c_4 +
+        rrrrs_omega_1_in_axes4_y*rrrrs_omega_3_in_axes3_z -
+        rrrrs_beta_3_in_axes3_y*v.rrrrs_s_4_t) +
+        m->rrrrs_platform_joint_offset_x[i]*(rrrrs_W_4_in_axes4_xz - rrrrs_beta_4_in_axes4_y)
+        + 2*rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
+        2*rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2;
+    /* (rrrrs-rel_o) remainder of: acceleration of the connection point left to the joint
+       accelerations */
+    const real rrrrs_rel_o_in_axes4_x = rrrrs_u_1_in_axes4_x - rrrrs_bias_in_axes4_x;
+    const real rrrrs_rel_o_in_axes4_y = rrrrs_u_1_in_axes4_y - rrrrs_bias_in_axes4_y;
+    const real rrrrs_rel_o_in_axes4_z = rrrrs_u_1_in_axes4_z - rrrrs_bias_in_axes4_z;
+    /* (rrrrs-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real rrrrs_qdd_1_o = rrrrs_rel_o_in_axes4_z*v.rrrrs_w_1_in_axes4_z;
+    /* (rrrrs-qdd_3_o) remainder of: acceleration of joint 3 */
+    const real rrrrs_qdd_3_o = rrrrs_rel_o_in_axes4_x*v.rrrrs_w_3_in_axes4_x;
+    /* (rrrrs-alpha_1_o) remainder of: angular acceleration of link 1 */
+    const real rrrrs_alpha_1_o_in_axes2_x = v.rrrrs_h_3_t_6*rrrrs_qdd_1_o;
+    const real rrrrs_alpha_1_o_in_axes2_y = -v.rrrrs_h_3_t_7*rrrrs_qdd_1_o;
+    /* (rrrrs-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real rrrrs_alpha_2_o_in_axes2_x = rrrrs_W_2_in_axes2_yz +
+        rrrrs_alpha_1_o_in_axes2_x;
+    const real rrrrs_alpha_2_o_in_axes2_y = rrrrs_alpha_1_o_in_axes2_y -
+        rrrrs_W_2_in_axes2_xz;
+    /* (rrrrs-B_2_o) remainder of the acceleration tensor of link 2 */
+    const real rrrrs_B_2_o_in_axes2_zx = rrrrs_W_2_in_axes2_xz - rrrrs_alpha_2_o_in_axes2_y;
+    const real rrrrs_B_2_o_in_axes2_zy = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_2_o_in_axes2_x;
+    /* (rrrrs-alpha_3_o) remainder of: angular acceleration of link 3 */
+    const real rrrrs_alpha_3_o_in_axes3_x = rrrrs_zeta_3_in_axes3_x +
+        rrrrs_alpha_2_o_in_axes2_x*v.rrrrs_h_3_t_26 +
+        rrrrs_alpha_2_o_in_axes2_y*v.rrrrs_h_3_t_27;
+    const real rrrrs_alpha_3_o_in_axes3_y = rrrrs_zeta_3_in_axes3_y +
+        rrrrs_alpha_2_o_in_axes2_y*v.rrrrs_h_3_t_26 -
+        rrrrs_alpha_2_o_in_axes2_x*v.rrrrs_h_3_t_27;
+    /* (rrrrs-B_3_o) remainder of the acceleration tensor of link 3 */
+    const real rrrrs_B_3_o_in_axes3_xy = rrrrs_W_3_in_axes3_xy - rrrrs_qdd_3_o;
+    const real rrrrs_B_3_o_in_axes3_xz = rrrrs_W_3_in_axes3_xz + rrrrs_alpha_3_o_in_axes3_y;
+    const real rrrrs_B_3_o_in_axes3_yx = rrrrs_W_3_in_axes3_xy + rrrrs_qdd_3_o;
+    const real rrrrs_B_3_o_in_axes3_yz = rrrrs_W_3_in_axes3_yz - rrrrs_alpha_3_o_in_axes3_x;
+    const real rrrrs_B_3_o_in_axes3_zx = rrrrs_W_3_in_axes3_xz - rrrrs_alpha_3_o_in_axes3_y;
+    const real rrrrs_B_3_o_in_axes3_zy = rrrrs_W_3_in_axes3_yz + rrrrs_alpha_3_o_in_axes3_x;
+    /* (rrrrs-alpha_4_o) remainder of: angular acceleration of link 4 */
+    const real rrrrs_alpha_4_o_in_axes4_x = rrrrs_alpha_3_o_in_axes3_x*v.rrrrs_c_4 +
+        rrrrs_omega_1_in_axes4_y*rrrrs_qd_4 - rrrrs_alpha_3_o_in_axes3_y*v.rrrrs_s_4_t;
+    const real rrrrs_alpha_4_o_in_axes4_y = rrrrs_alpha_3_o_in_axes3_x*v.rrrrs_s_4_t +
+        rrrrs_alpha_3_o_in_axes3_y*v.rrrrs_c_4 - rrrrs_zeta_4_t;
+    const real rrrrs_alpha_4_o_in_axes4_z = rrrrs_qdd_3_o +
+        m->rrrrs_w_4_in_axes4_y[i]*(rrrrs_rel_o_in_axes4_y -
+        rrrrs_qdd_3_o*v.rrrrs_r_3_in_axes4_x);
+    /* (rrrrs-B_4_o) remainder of the acceleration tensor of link 4 */
+    const real rrrrs_B_4_o_in_axes4_xy = rrrrs_W_1_in_axes4_xy - rrrrs_alpha_4_o_in_axes4_z;
+    const real rrrrs_B_4_o_in_axes4_xz = rrrrs_W_4_in_axes4_xz + rrrrs_alpha_4_o_in_axes4_y;
+    const real rrrrs_B_4_o_in_axes4_yx = rrrrs_W_1_in_axes4_xy + rrrrs_alpha_4_o_in_axes4_z;
+    const real rrrrs_B_4_o_in_axes4_yz = rrrrs_W_4_in_axes4_yz - rrrrs_alpha_4_o_in_axes4_x;
+    const real rrrrs_B_4_o_in_axes4_zx = rrrrs_W_4_in_axes4_xz - rrrrs_alpha_4_o_in_axes4_y;
+    const real rrrrs_B_4_o_in_axes4_zy = rrrrs_W_4_in_axes4_yz + rrrrs_alpha_4_o_in_axes4_x;
+    /* (rrrrs-a_o_3) acceleration of the origin of joint 3 */
+    const real rrrrs_a_o_3_t = rrrrs_omega_1_in_axes2_y*rrrrs_omega_1_in_axes2_y;
+    const real rrrrs_a_o_3_in_axes2_x = -m->rrrrs_joint3_offset_x[i]*(rrrrs_a_o_3_t +
+        v.rrrrs_bias_t);
+    /* (rrrrs-a_o_3_o) remainder of: acceleration of the origin of joint 3 */
+    const real rrrrs_a_o_3_o_in_axes2_y = rrrrs_W_2_in_axes2_xy*m->rrrrs_joint3_offset_x[i];
+    /* (rrrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
+    const real rrrrs_g_in_axes1_x = m->rrrrs_acc_3_t[i]*v.rrrrs_c_1 +
+        m->rrrrs_acc_3_t_2[i]*v.rrrrs_s_1;
+    const real rrrrs_g_in_axes1_y = m->rrrrs_acc_3_t_2[i]*v.rrrrs_c_1 -
+        m->rrrrs_acc_3_t[i]*v.rrrrs_s_1;
+    const real rrrrs_g_in_axes2_x = rrrrs_g_in_axes1_x*v.rrrrs_h_3_t_7 +
+        m->rrrrs_g_in_axes1_z[i]*v.rrrrs_h_3_t_6;
+    const real rrrrs_g_in_axes2_y = rrrrs_g_in_axes1_x*v.rrrrs_h_3_t_6 -
+        m->rrrrs_g_in_axes1_z[i]*v.rrrrs_h_3_t_7;
+    const real rrrrs_acc_3_o_in_axes3_x = rrrrs_a_o_3_in_axes2_x*v.rrrrs_h_3_t_26 +
+        rrrrs_a_o_3_o_in_axes2_y*v.rrrrs_h_3_t_27 - rrrrs_g_in_axes2_x*v.rrrrs_h_3_t_26 -
+        rrrrs_g_in_axes2_y*v.rrrrs_h_3_t_27;
+    const real rrrrs_acc_3_o_in_axes3_y = rrrrs_a_o_3_o_in_axes2_y*v.rrrrs_h_3_t_26 +
+        rrrrs_g_in_axes2_x*v.rrrrs_h_3_t_27 - rrrrs_a_o_3_in_axes2_x*v.rrrrs_h_3_t_27 -
+        rrrrs_g_in_axes2_y*v.rrrrs_h_3_t_26;
+    const real rrrrs_acc_3_o_in_axes3_z = rrrrs_B_2_o_in_axes2_zx*m->rrrrs_joint3_offset_x[i]
+        - rrrrs_g_in_axes1_y;
+    /* (rrrrs-f_3_o) remainder of: inertia force of link 3 less its weight */
+    const real rrrrs_f_3_o_t = rrrrs_omega_1_t*rrrrs_omega_1_t;
+    const real rrrrs_f_3_o_t_2 = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2;
+    const real rrrrs_f_3_o_in_axes3_x = rrrrs_B_3_o_in_axes3_xy*m->rrrrs_h_3_in_spec3_y[i] +
+        rrrrs_B_3_o_in_axes3_xz*m->rrrrs_h_3_in_spec3_z[i] +
+        rrrrs_acc_3_o_in_axes3_x*m->rrrrs_link3_mass[i] -
+        m->rrrrs_h_3_in_spec3_x[i]*(rrrrs_bias_t_2 + rrrrs_f_3_o_t_2);
+    const real rrrrs_f_3_o_in_axes3_y = rrrrs_B_3_o_in_axes3_yx*m->rrrrs_h_3_in_spec3_x[i] +
+        rrrrs_B_3_o_in_axes3_yz*m->rrrrs_h_3_in_spec3_z[i] +
+        rrrrs_acc_3_o_in_axes3_y*m->rrrrs_link3_mass[i] -
+        m->rrrrs_h_3_in_spec3_y[i]*(rrrrs_bias_t_2 + rrrrs_f_3_o_t);
+    const real rrrrs_f_3_o_in_axes3_z = rrrrs_B_3_o_in_axes3_zx*m->rrrrs_h_3_in_spec3_x[i] +
+        rrrrs_B_3_o_in_axes3_zy*m->rrrrs_h_3_in_spec3_y[i] +
+        rrrrs_acc_3_o_in_axes3_z*m->rrrrs_link3_mass[i] -
+        m->rrrrs_h_3_in_spec3_z[i]*(rrrrs_f_3_o_t + rrrrs_f_3_o_t_2);
+    /* (rrrrs-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity */
+    const real rrrrs_acc_4_o_in_axes4_x = rrrrs_u_1_in_axes4_x -
+        axis_x_rrrrs_axes4_x*m->gravity_x - axis_x_rrrrs_axes4_y*m->gravity_y -
+        axis_x_rrrrs_axes4_z*m->gravity_z;
+    const real rrrrs_acc_4_o_in_axes4_y = rrrrs_u_1_in_axes4_y -
+        axis_y_rrrrs_axes4_x*m->gravity_x - axis_y_rrrrs_axes4_y*m->gravity_y -
+        axis_y_rrrrs_axes4_z*m->gravity_z;
+    const real rrrrs_acc_4_o_in_axes4_z = rrrrs_u_1_in_axes4_z -
+        v.axis_z_rrrrs_axes4_x*m->gravity_x - v.axis_z_rrrrs_axes4_y*m->gravity_y -
+        v.axis_z_rrrrs_axes4_z*m->gravity_z;
+    /* (rrrrs-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their
+       reference points */
+    const real rrrrs_mu_4_o_in_axes4_x = rrrrs_B_4_o_in_axes4_yx*m->rrrrs_J_4_in_spec4_xz[i] +
+        rrrrs_B_4_o_in_axes4_zy*m->rrrrs_Sigma_4_in_axes4_yy[i] +
+        m->rrrrs_J_4_in_spec4_yz[i]*(rrrrs_W_1_t_2 - rrrrs_W_4_t) +
+        rrrrs_acc_4_o_in_axes4_z*m->rrrrs_h_4_in_spec4_y[i] -
+        rrrrs_B_4_o_in_axes4_yz*m->rrrrs_Sigma_4_in_axes4_zz[i] -
+        rrrrs_B_4_o_in_axes4_zx*m->rrrrs_J_4_in_spec4_xy[i] -
+        rrrrs_acc_4_o_in_axes4_y*m->rrrrs_h_4_in_spec4_z[i];
+    const real rrrrs_mu_4_o_in_axes4_y =
+        rrrrs_B_4_o_in_axes4_xz*m->rrrrs_Sigma_4_in_axes4_zz[i] +
+        rrrrs_B_4_o_in_axes4_zy*m->rrrrs_J_4_in_spec4_xy[i] +
+        rrrrs_acc_4_o_in_axes4_x*m->rrrrs_h_4_in_spec4_z[i] -
+        rrrrs_B_4_o_in_axes4_xy*m->rrrrs_J_4_in_spec4_yz[i] -
+        rrrrs_B_4_o_in_axes4_zx*m->rrrrs_Sigma_4_in_axes4_xx[i] -
+        m->rrrrs_J_4_in_spec4_xz[i]*(rrrrs_W_1_t - rrrrs_W_4_t) -
+        rrrrs_acc_4_o_in_axes4_z*m->rrrrs_h_4_in_spec4_x[i];
+    const real rrrrs_mu_4_o_in_axes4_z = rrrrs_B_4_o_in_axes4_xz*m->rrrrs_J_4_in_spec4_yz[i] +
+        rrrrs_B_4_o_in_axes4_yx*m->rrrrs_Sigma_4_in_axes4_xx[i] +
+        m->rrrrs_J_4_in_spec4_xy[i]*(rrrrs_W_1_t - rrrrs_W_1_t_2) +
+        rrrrs_acc_4_o_in_axes4_y*m->rrrrs_h_4_in_spec4_x[i] -
+        rrrrs_B_4_o_in_axes4_xy*m->rrrrs_Sigma_4_in_axes4_yy[i] -
+        rrrrs_B_4_o_in_axes4_yz*m->rrrrs_J_4_in_spec4_xz[i] -
+        rrrrs_acc_4_o_in_axes4_x*m->rrrrs_h_4_in_spec4_y[i];
+    /* (rrrrs-dy_2_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal
+       links' inertia and weight */
+    const real rrrrs_dy_2_Gamma_4_t =
+        m->rrrrs_J_4_in_spec4_zz[i]*m->rrrrs_w_4_in_axes4_y[i]*(-v.rrrrs_r_2_in_axes4_x -
+        v.rrrrs_r_3_in_axes4_x*rrrrs_w_3_t_7);
+    const real rrrrs_dy_2_Gamma_4 = m->rrrrs_J_4_in_spec4_zz[i] + rrrrs_dy_2_Gamma_4_t +
+        m->rrrrs_J_4_in_spec4_zz[i]*rrrrs_w_3_t_7;
+    /* (rrrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+       reference points */
+    const real rrrrs_mu_3_o_in_axes3_x = rrrrs_B_3_o_in_axes3_yx*m->rrrrs_J_3_in_spec3_xz[i] +
+        rrrrs_B_3_o_in_axes3_zy*m->rrrrs_Sigma_3_in_axes3_yy[i] +
+        m->rrrrs_J_3_in_spec3_yz[i]*(rrrrs_f_3_o_t_2 - rrrrs_bias_t_2) +
+        rrrrs_acc_3_o_in_axes3_z*m->rrrrs_h_3_in_spec3_y[i] -
+        rrrrs_B_3_o_in_axes3_yz*m->rrrrs_Sigma_3_in_axes3_zz[i] -
+        rrrrs_B_3_o_in_axes3_zx*m->rrrrs_J_3_in_spec3_xy[i] -
+        rrrrs_acc_3_o_in_axes3_y*m->rrrrs_h_3_in_spec3_z[i];
+    const real rrrrs_mu_3_o_in_axes3_y =
+        rrrrs_B_3_o_in_axes3_xz*m->rrrrs_Sigma_3_in_axes3_zz[i] +
+        rrrrs_B_3_o_in_axes3_zy*m->rrrrs_J_3_in_spec3_xy[i] +
+        rrrrs_acc_3_o_in_axes3_x*m->rrrrs_h_3_in_spec3_z[i] -
+        rrrrs_B_3_o_in_axes3_xy*m->rrrrs_J_3_in_spec3_yz[i] -
+        rrrrs_B_3_o_in_axes3_zx*m->rrrrs_Sigma_3_in_axes3_xx[i] -
+        m->rrrrs_J_3_in_spec3_xz[i]*(rrrrs_f_3_o_t - rrrrs_bias_t_2) -
+        rrrrs_acc_3_o_in_axes3_z*m->rrrrs_h_3_in_spec3_x[i];
+    const real rrrrs_mu_3_o_in_axes3_z = rrrrs_B_3_o_in_axes3_xz*m->rrrrs_J_3_in_spec3_yz[i] +
+        rrrrs_B_3_o_in_axes3_yx*m->rrrrs_Sigma_3_in_axes3_xx[i] +
+        m->rrrrs_J_3_in_spec3_xy[i]*(rrrrs_f_3_o_t - rrrrs_f_3_o_t_2) +
+        rrrrs_acc_3_o_in_axes3_y*m->rrrrs_h_3_in_spec3_x[i] -
+        rrrrs_B_3_o_in_axes3_xy*m->rrrrs_Sigma_3_in_axes3_yy[i] -
+        rrrrs_B_3_o_in_axes3_yz*m->rrrrs_J_3_in_spec3_xz[i] -
+        rrrrs_acc_3_o_in_axes3_x*m->rrrrs_h_3_in_spec3_y[i];
+    /* (rrrrs-N_3_o) remainder of: moment about joint 3 of the links from 3 outwards, the force at the
+       connection point left out */
+    const real rrrrs_N_3_o_in_axes3_x = rrrrs_mu_3_o_in_axes3_x +
+        v.rrrrs_c_4*rrrrs_mu_4_o_in_axes4_x + rrrrs_mu_4_o_in_axes4_y*v.rrrrs_s_4_t;
+    const real rrrrs_N_3_o_in_axes3_y = rrrrs_mu_3_o_in_axes3_y +
+        v.rrrrs_c_4*rrrrs_mu_4_o_in_axes4_y - rrrrs_mu_4_o_in_axes4_x*v.rrrrs_s_4_t;
+    const real rrrrs_N_3_o_in_axes3_z = rrrrs_mu_3_o_in_axes3_z + rrrrs_mu_4_o_in_axes4_z;
+    /* (rrrrs-dy_2_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
+       links' inertia and weight */
+    const real rrrrs_dy_2_Gamma_3 = v.rrrrs_L_c_3_2_in_axes2_z + rrrrs_dy_2_Gamma_4_t +
+        m->rrrrs_Jc_3_in_axes3_zz[i]*rrrrs_w_3_t_7;
+    /* (rrrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real rrrrs_mu_2_o_t = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_x;
+    const real rrrrs_mu_2_o_in_axes2_x =
+        rrrrs_B_2_o_in_axes2_zy*m->rrrrs_Sigma_2_in_axes2_yy[i] +
+        m->rrrrs_J_2_in_spec2_xz[i]*rrrrs_W_2_in_axes2_xy +
+        m->rrrrs_J_2_in_spec2_yz[i]*(rrrrs_a_o_3_t - v.rrrrs_bias_t) +
+        m->rrrrs_Sigma_2_in_axes2_zz[i]*rrrrs_alpha_1_o_in_axes2_x +
+        rrrrs_g_in_axes2_y*m->rrrrs_h_2_in_spec2_z[i] -
+        rrrrs_B_2_o_in_axes2_zx*m->rrrrs_J_2_in_spec2_xy[i] -
+        rrrrs_g_in_axes1_y*m->rrrrs_h_2_in_spec2_y[i];
+    const real rrrrs_mu_2_o_in_axes2_y = rrrrs_B_2_o_in_axes2_zy*m->rrrrs_J_2_in_spec2_xy[i] +
+        m->rrrrs_Sigma_2_in_axes2_zz[i]*rrrrs_alpha_1_o_in_axes2_y +
+        rrrrs_g_in_axes1_y*m->rrrrs_h_2_in_spec2_x[i] -
+        rrrrs_B_2_o_in_axes2_zx*m->rrrrs_Sigma_2_in_axes2_xx[i] -
+        m->rrrrs_J_2_in_spec2_xz[i]*(rrrrs_mu_2_o_t - v.rrrrs_bias_t) -
+        m->rrrrs_J_2_in_spec2_yz[i]*rrrrs_W_2_in_axes2_xy -
+        rrrrs_g_in_axes2_x*m->rrrrs_h_2_in_spec2_z[i];
+    const real rrrrs_mu_2_o_in_axes2_z = m->rrrrs_J_2_in_spec2_xy[i]*(rrrrs_mu_2_o_t -
+        rrrrs_a_o_3_t) + m->rrrrs_J_2_in_spec2_xz[i]*rrrrs_alpha_1_o_in_axes2_x +
+        m->rrrrs_J_2_in_spec2_yz[i]*rrrrs_alpha_1_o_in_axes2_y +
+        m->rrrrs_Sigma_2_in_axes2_xx[i]*rrrrs_W_2_in_axes2_xy +
+        rrrrs_g_in_axes2_x*m->rrrrs_h_2_in_spec2_y[i] -
+        m->rrrrs_Sigma_2_in_axes2_yy[i]*rrrrs_W_2_in_axes2_xy -
+        rrrrs_g_in_axes2_y*m->rrrrs_h_2_in_spec2_x[i];
+    /* (rrrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+       connection point left out */
+    const real rrrrs_N_2_o_in_axes2_x = rrrrs_mu_2_o_in_axes2_x +
+        rrrrs_N_3_o_in_axes3_x*v.rrrrs_h_3_t_26 - rrrrs_N_3_o_in_axes3_y*v.rrrrs_h_3_t_27;
+    const real rrrrs_N_2_o_in_axes2_y = rrrrs_mu_2_o_in_axes2_y +
+        rrrrs_N_3_o_in_axes3_x*v.rrrrs_h_3_t_27 + rrrrs_N_3_o_in_axes3_y*v.rrrrs_h_3_t_26 -
+        rrrrs_f_3_o_in_axes3_z*m->rrrrs_joint3_offset_x[i];
+    const real rrrrs_N_2_o_in_axes2_z = rrrrs_N_3_o_in_axes3_z + rrrrs_mu_2_o_in_axes2_z +
+        m->rrrrs_joint3_offset_x[i]*(rrrrs_f_3_o_in_axes3_x*v.rrrrs_h_3_t_27 +
+        rrrrs_f_3_o_in_axes3_y*v.rrrrs_h_3_t_26);
+    /* (rrrrs-dy_2_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
+       links' inertia and weight */
+    const real rrrrs_dy_2_Gamma_2 = m->rrrrs_J_2_in_spec2_zz[i] + v.rrrrs_Jc_2_t_7 +
+        m->rrrrs_Jc_3_in_axes3_zz[i] + rrrrs_dy_2_Gamma_4_t +
+        v.rrrrs_L_c_3_2_in_axes2_z*rrrrs_w_3_t_7;
+    /* (rrrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
+    const real rrrrs_mu_1_o_in_axes1_z = m->rrrrs_J_1_in_spec1_xx[i]*rrrrs_qdd_1_o +
+        rrrrs_g_in_axes1_x*m->rrrrs_h_1_in_spec1_z[i] -
+        rrrrs_g_in_axes1_y*m->rrrrs_h_1_in_spec1_y[i];
+    /* (rrrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+       connection point left out */
+    const real rrrrs_N_1_o_in_axes1_z = rrrrs_mu_1_o_in_axes1_z +
+        rrrrs_N_2_o_in_axes2_x*v.rrrrs_h_3_t_6 - rrrrs_N_2_o_in_axes2_y*v.rrrrs_h_3_t_7;
+    /* (rrrrs-dy_2_G) coefficient of the acceleration in: force at the connection point that balances
+       the leg's inertia and weight along all degrees of freedom */
+    const real rrrrs_dy_2_G_in_axes4_y = rrrrs_dy_2_Gamma_4*m->rrrrs_w_4_in_axes4_y[i];
+    /* (rrrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real rrrrs_G_o_in_axes4_y = rrrrs_mu_4_o_in_axes4_z*m->rrrrs_w_4_in_axes4_y[i];
+    const real rrrrs_G_o_in_axes4_x =
+        -v.rrrrs_w_3_in_axes4_x*(rrrrs_G_o_in_axes4_y*v.rrrrs_r_3_in_axes4_x -
+        rrrrs_N_3_o_in_axes3_z);
+    /* (rrrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at
+       the connection point */
+    const real rrrrs_c_o_in_axes4_x = rrrrs_W_4_t_2*m->rrrrs_h_4_in_spec4_x[i] -
+        rrrrs_G_o_in_axes4_x - rrrrs_B_4_o_in_axes4_xy*m->rrrrs_h_4_in_spec4_y[i] -
+        rrrrs_B_4_o_in_axes4_xz*m->rrrrs_h_4_in_spec4_z[i];
+    const real rrrrs_c_o_in_axes4_y = m->rrrrs_h_4_in_spec4_y[i]*(rrrrs_W_1_t + rrrrs_W_4_t) -
+        rrrrs_G_o_in_axes4_y - rrrrs_B_4_o_in_axes4_yx*m->rrrrs_h_4_in_spec4_x[i] -
+        rrrrs_B_4_o_in_axes4_yz*m->rrrrs_h_4_in_spec4_z[i];
+    const real rrrrs_c_o_in_axes4_z = m->rrrrs_h_4_in_spec4_z[i]*(rrrrs_W_1_t + rrrrs_W_1_t_2)
+        - rrrrs_B_4_o_in_axes4_zx*m->rrrrs_h_4_in_spec4_x[i] -
+        rrrrs_B_4_o_in_axes4_zy*m->rrrrs_h_4_in_spec4_y[i] -
+        rrrrs_N_1_o_in_axes1_z*v.rrrrs_w_1_in_axes4_z;
+    /* (rrrrs-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rrrrs_Q_t = v.rrrrs_d_c_in_axes4_xx - m->rrrrs_d_c_in_axes4_yy[i];
+    const real rrrrs_Q_t_2 = R(0.5)*rrrrs_Q_t;
+    const real rrrrs_Q_t_3 = v.rrrrs_d_c_in_axes4_xx +
+        v.rrrrs_d_Gamma_1_in_axes4_z*v.rrrrs_w_1_in_axes4_z +
+        v.rrrrs_d_alpha_4_in_axes4_xz*m->rrrrs_h_4_in_spec4_y[i] -
+        v.rrrrs_d_alpha_4_in_axes4_yz*m->rrrrs_h_4_in_spec4_x[i];
+    const real rrrrs_Q_t_4 = R(0.5)*rrrrs_Q_t_3;
+    const real rrrrs_Q_t_5 = axis_x_rrrrs_axes4_x*v.rrrrs_d_c_in_axes4_xy +
+        v.axis_z_rrrrs_axes4_x*v.rrrrs_d_c_in_axes4_yz - axis_y_rrrrs_axes4_x*rrrrs_Q_t_2;
+    const real rrrrs_Q_t_6 = axis_x_rrrrs_axes4_y*v.rrrrs_d_c_in_axes4_xy +
+        v.axis_z_rrrrs_axes4_y*v.rrrrs_d_c_in_axes4_yz - axis_y_rrrrs_axes4_y*rrrrs_Q_t_2;
+    const real rrrrs_Q_t_7 = axis_x_rrrrs_axes4_z*v.rrrrs_d_c_in_axes4_xy +
+        v.axis_z_rrrrs_axes4_z*v.rrrrs_d_c_in_axes4_yz - axis_y_rrrrs_axes4_z*rrrrs_Q_t_2;
+    const real rrrrs_Q_t_8 = v.axis_z_rrrrs_axes4_x*rrrrs_Q_t_4 -
+        axis_x_rrrrs_axes4_x*v.rrrrs_d_c_in_axes4_xz;
+    const real rrrrs_Q_t_9 = v.axis_z_rrrrs_axes4_y*rrrrs_Q_t_4 -
+        axis_x_rrrrs_axes4_y*v.rrrrs_d_c_in_axes4_xz;
+    const real rrrrs_Q_t_10 = v.axis_z_rrrrs_axes4_z*rrrrs_Q_t_4 -
+        axis_x_rrrrs_axes4_z*v.rrrrs_d_c_in_axes4_xz;
+    const real rrrrs_Q_t_11 = axis_y_rrrrs_axes4_x*rrrrs_Q_t_5 -
+        v.axis_z_rrrrs_axes4_x*rrrrs_Q_t_8;
+    const real rrrrs_Q_xx = -2*rrrrs_Q_t_11 - v.rrrrs_d_c_in_axes4_xx;
+    const real rrrrs_Q_xy = v.axis_z_rrrrs_axes4_x*rrrrs_Q_t_9 +
+        v.axis_z_rrrrs_axes4_y*rrrrs_Q_t_8 - axis_y_rrrrs_axes4_x*rrrrs_Q_t_6 -
+        axis_y_rrrrs_axes4_y*rrrrs_Q_t_5;
+    const real rrrrs_Q_xz = v.axis_z_rrrrs_axes4_x*rrrrs_Q_t_10 +
+        v.axis_z_rrrrs_axes4_z*rrrrs_Q_t_8 - axis_y_rrrrs_axes4_x*rrrrs_Q_t_7 -
+        axis_y_rrrrs_axes4_z*rrrrs_Q_t_5;
+    const real rrrrs_Q_t_12 = axis_y_rrrrs_axes4_y*rrrrs_Q_t_6 -
+        v.axis_z_rrrrs_axes4_y*rrrrs_Q_t_9;
+    const real rrrrs_Q_yy = -2*rrrrs_Q_t_12 - v.rrrrs_d_c_in_axes4_xx;
+    const real rrrrs_Q_yz = v.axis_z_rrrrs_axes4_y*rrrrs_Q_t_10 +
+        v.axis_z_rrrrs_axes4_z*rrrrs_Q_t_9 - axis_y_rrrrs_axes4_y*rrrrs_Q_t_7 -
+        axis_y_rrrrs_axes4_z*rrrrs_Q_t_6;
+    const real rrrrs_Q_t_13 = axis_y_rrrrs_axes4_z*rrrrs_Q_t_7 -
+        v.axis_z_rrrrs_axes4_z*rrrrs_Q_t_10;
+    const real rrrrs_Q_zz = -2*rrrrs_Q_t_13 - v.rrrrs_d_c_in_axes4_xx;
+    /* (rrrrs-U) velocity and gravity terms of the leg force */
+    const real rrrrs_U_x = -axis_x_rrrrs_axes4_x*rrrrs_c_o_in_axes4_x -
+        axis_y_rrrrs_axes4_x*rrrrs_c_o_in_axes4_y -
+        v.axis_z_rrrrs_axes4_x*rrrrs_c_o_in_axes4_z;
+    const real rrrrs_U_y = -axis_x_rrrrs_axes4_y*rrrrs_c_o_in_axes4_x -
+        axis_y_rrrrs_axes4_y*rrrrs_c_o_in_axes4_y -
+        v.axis_z_rrrrs_axes4_y*rrrrs_c_o_in_axes4_z;
+    const real rrrrs_U_z = -axis_x_rrrrs_axes4_z*rrrrs_c_o_in_axes4_x -
+        axis_y_rrrrs_axes4_z*rrrrs_c_o_in_axes4_y -
+        v.axis_z_rrrrs_axes4_z*rrrrs_c_o_in_axes4_z;
+    /* (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra
+       degree of freedom of joint 2 */
+    const real rrrrs_d_P_2_x = axis_x_rrrrs_axes4_x*v.rrrrs_d_P_2_in_axes4_x +
+        axis_y_rrrrs_axes4_x*v.rrrrs_d_P_2_in_axes4_y +
+        v.axis_z_rrrrs_axes4_x*v.rrrrs_d_P_2_in_axes4_z;
+    const real rrrrs_d_P_2_y = axis_x_rrrrs_axes4_y*v.rrrrs_d_P_2_in_axes4_x +
+        axis_y_rrrrs_axes4_y*v.rrrrs_d_P_2_in_axes4_y +
+        v.axis_z_rrrrs_axes4_y*v.rrrrs_d_P_2_in_axes4_z;
+    const real rrrrs_d_P_2_z = axis_x_rrrrs_axes4_z*v.rrrrs_d_P_2_in_axes4_x +
+        axis_y_rrrrs_axes4_z*v.rrrrs_d_P_2_in_axes4_y +
+        v.axis_z_rrrrs_axes4_z*v.rrrrs_d_P_2_in_axes4_z;
+    /* (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the
+       extra degree of freedom of joint 2 */
+    const real rrrrs_dy_2_P_2_t = rrrrs_dy_2_G_in_axes4_y*v.rrrrs_r_2_in_axes4_x +
+        v.rrrrs_r_2_in_axes4_y*v.rrrrs_w_3_in_axes4_x*(rrrrs_dy_2_G_in_axes4_y*v.rrrrs_r_3_in_axes4_x
+        - rrrrs_dy_2_Gamma_3);
+    const real rrrrs_dy_2_P_2 = rrrrs_dy_2_Gamma_2 - rrrrs_dy_2_P_2_t;
+    /* (rrrrs-P_2_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
+       joint 2 */
+    const real rrrrs_P_2_o_t = rrrrs_G_o_in_axes4_x*v.rrrrs_r_2_in_axes4_y -
+        rrrrs_G_o_in_axes4_y*v.rrrrs_r_2_in_axes4_x;
+    const real rrrrs_P_2_o = rrrrs_N_2_o_in_axes2_z + rrrrs_P_2_o_t;
+    /* (M_ta) coupling block of M */
+    const real rrrrs_M_ta_t = -rrrrs_Q_xy*v.rrrrs_q_z;
+    const real rrrrs_M_ta_t_2 = rrrrs_Q_xz*v.rrrrs_q_y;
+    const real rrrrs_M_ta_t_3 = rrrrs_M_ta_t + rrrrs_M_ta_t_2;
+    const real rrrrs_M_ta_t_4 = rrrrs_Q_xz*v.rrrrs_q_x - rrrrs_Q_xx*v.rrrrs_q_z;
+    const real rrrrs_M_ta_t_5 = rrrrs_Q_xy*v.rrrrs_q_x - rrrrs_Q_xx*v.rrrrs_q_y;
+    const real rrrrs_M_ta_t_6 = rrrrs_Q_yz*v.rrrrs_q_y - rrrrs_Q_yy*v.rrrrs_q_z;
+    const real rrrrs_M_ta_t_7 = -rrrrs_Q_yz*v.rrrrs_q_x;
+    const real rrrrs_M_ta_t_8 = rrrrs_M_ta_t - rrrrs_M_ta_t_7;
+    const real rrrrs_M_ta_t_9 = rrrrs_Q_yy*v.rrrrs_q_x - rrrrs_Q_xy*v.rrrrs_q_y;
+    const real rrrrs_M_ta_t_10 = rrrrs_Q_zz*v.rrrrs_q_y - rrrrs_Q_yz*v.rrrrs_q_z;
+    const real rrrrs_M_ta_t_11 = rrrrs_Q_xz*v.rrrrs_q_z - rrrrs_Q_zz*v.rrrrs_q_x;
+    const real rrrrs_M_ta_t_12 = rrrrs_M_ta_t_2 + rrrrs_M_ta_t_7;
+    /* (M_aa) rotational block of M */
+    const real rrrrs_M_aa_t = rrrrs_M_ta_t_10*v.rrrrs_q_y - rrrrs_M_ta_t_6*v.rrrrs_q_z;
+    const real rrrrs_M_aa_t_2 = rrrrs_M_ta_t_11*v.rrrrs_q_y + rrrrs_M_ta_t_8*v.rrrrs_q_z;
+    const real rrrrs_M_aa_t_3 = rrrrs_M_ta_t_12*v.rrrrs_q_y + rrrrs_M_ta_t_9*v.rrrrs_q_z;
+    const real rrrrs_M_aa_t_4 = rrrrs_M_ta_t_11*v.rrrrs_q_x + rrrrs_M_ta_t_4*v.rrrrs_q_z;
+    const real rrrrs_M_aa_t_5 = rrrrs_M_ta_t_12*v.rrrrs_q_x + rrrrs_M_ta_t_5*v.rrrrs_q_z;
+    const real rrrrs_M_aa_t_6 = rrrrs_M_ta_t_9*v.rrrrs_q_x - rrrrs_M_ta_t_5*v.rrrrs_q_y;
+    /* (Z_a) rotational part of Z */
+    const real rrrrs_Z_a_t = rrrrs_U_z*v.rrrrs_q_y - rrrrs_U_y*v.rrrrs_q_z;
+    const real rrrrs_Z_a_t_2 = rrrrs_U_x*v.rrrrs_q_z - rrrrs_U_z*v.rrrrs_q_x;
+    const real rrrrs_Z_a_t_3 = rrrrs_U_y*v.rrrrs_q_x - rrrrs_U_x*v.rrrrs_q_y;
+    /* (rrrrs-M_ya_2) coupling of extra joint 2 with the rotation of the platform */
+    const real rrrrs_M_ya_2_x = rrrrs_d_P_2_z*v.rrrrs_q_y - rrrrs_d_P_2_y*v.rrrrs_q_z;
+    const real rrrrs_M_ya_2_y = rrrrs_d_P_2_x*v.rrrrs_q_z - rrrrs_d_P_2_z*v.rrrrs_q_x;
+    const real rrrrs_M_ya_2_z = rrrrs_d_P_2_y*v.rrrrs_q_x - rrrrs_d_P_2_x*v.rrrrs_q_y;
+    /* (rrrrs-H_a_1) moment of the column's unit force about the platform origin */
+    const real rrrrs_H_a_1_x = v.rrrrs_q_y*rrrrs_w_1_z - v.rrrrs_q_z*rrrrs_w_1_y;
+    const real rrrrs_H_a_1_y = v.rrrrs_q_z*rrrrs_w_1_x - v.rrrrs_q_x*rrrrs_w_1_z;
+    const real rrrrs_H_a_1_z = v.rrrrs_q_x*rrrrs_w_1_y - v.rrrrs_q_y*rrrrs_w_1_x;
+    /* (rrrrs-H_a_3) moment of the column's unit force about the platform origin */
+    const real rrrrs_H_a_3_x = v.rrrrs_q_y*rrrrs_w_3_z - v.rrrrs_q_z*rrrrs_w_3_y;
+    const real rrrrs_H_a_3_y = v.rrrrs_q_z*rrrrs_w_3_x - v.rrrrs_q_x*rrrrs_w_3_z;
+    const real rrrrs_H_a_3_z = v.rrrrs_q_x*rrrrs_w_3_y - v.rrrrs_q_y*rrrrs_w_3_x;
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, rrrrs_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, rrrrs_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, rrrrs_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, rrrrs_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, rrrrs_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, rrrrs_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) */
+    gather(&terms[6*count + k], add, rrrrs_M_ta_t_3);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, -rrrrs_M_ta_t_4);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, rrrrs_M_ta_t_5);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, rrrrs_M_ta_t_6);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, -rrrrs_M_ta_t_8);  /* M_ta_yy */
+    gather(&terms[11*count + k], add, rrrrs_M_ta_t_9);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, rrrrs_M_ta_t_10);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, rrrrs_M_ta_t_11);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, -rrrrs_M_ta_t_12);  /* M_ta_zz */
+    /* (M_aa) */
+    gather(&terms[15*count + k], add, rrrrs_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, rrrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, rrrrs_M_aa_t_3);  /* M_aa_t */
+    gather(&terms[18*count + k], add, rrrrs_M_aa_t_4);  /* M_aa_t_2 */
+    gather(&terms[19*count + k], add, rrrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, rrrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
+    /* (Z_t) translational part of Z */
+    gather(&terms[21*count + k], add, rrrrs_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[22*count + k], add, rrrrs_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[23*count + k], add, rrrrs_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) */
+    gather(&terms[24*count + k], add, rrrrs_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[25*count + k], add, rrrrs_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[26*count + k], add, rrrrs_Z_a_t_3);  /* Z_a_z_of_legs */
+    /* (rrrrs-P_2_o) */
+    o[0*count + k] = rrrrs_P_2_o;
+    /* (rrrrs-d_P_2) */
+    o[1*count + k] = rrrrs_d_P_2_x;
+    o[2*count + k] = rrrrs_d_P_2_x;
+    o[3*count + k] = rrrrs_d_P_2_y;
+    o[4*count + k] = rrrrs_d_P_2_y;
+    o[5*count + k] = rrrrs_d_P_2_z;
+    o[6*count + k] = rrrrs_d_P_2_z;
+    /* (rrrrs-M_ya_2) */
+    o[7*count + k] = rrrrs_M_ya_2_x;
+    o[8*count + k] = rrrrs_M_ya_2_x;
+    o[9*count + k] = rrrrs_M_ya_2_y;
+    o[10*count + k] = rrrrs_M_ya_2_y;
+    o[11*count + k] = rrrrs_M_ya_2_z;
+    o[12*count + k] = rrrrs_M_ya_2_z;
+    /* (rrrrs-dy_2_P_2) */
+    o[13*count + k] = rrrrs_dy_2_P_2;
+    /* (rrrrs-w_1) */
+    o[14*count + k] = rrrrs_w_1_x;
+    o[15*count + k] = rrrrs_w_1_y;
+    o[16*count + k] = rrrrs_w_1_z;
+    /* (rrrrs-H_a_1) */
+    o[17*count + k] = rrrrs_H_a_1_x;
+    o[18*count + k] = rrrrs_H_a_1_y;
+    o[19*count + k] = rrrrs_H_a_1_z;
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    o[20*count + k] = 1;
+    /* (rrrrs-w_3) */
+    o[21*count + k] = rrrrs_w_3_x;
+    o[22*count + k] = rrrrs_w_3_y;
+    o[23*count + k] = rrrrs_w_3_z;
+    /* (rrrrs-H_a_3) */
+    o[24*count + k] = rrrrs_H_a_3_x;
+    o[25*count + k] = rrrrs_H_a_3_y;
+    o[26*count + k] = rrrrs_H_a_3_z;
+    /* (rrrrs-w_3) */
+    o[27*count + k] = rrrrs_w_3_t_7;
+    o[30*count + k] = (((rrrrs_P_2_o + rrrrs_d_P_2_x) + (rrrrs_d_P_2_y + (rrrrs_d_P_2_z +
+        rrrrs_M_ya_2_x))) + ((rrrrs_M_ya_2_y + rrrrs_M_ya_2_z) + (rrrrs_dy_2_P_2 +
+        (rrrrs_w_1_x + rrrrs_w_1_y)))) + (((rrrrs_w_1_z + rrrrs_H_a_1_x) + (rrrrs_H_a_1_y +
+        (rrrrs_H_a_1_z + rrrrs_w_3_x))) + ((rrrrs_w_3_y + (rrrrs_w_3_z + rrrrs_H_a_3_x)) +
+        (rrrrs_H_a_3_y + (rrrrs_H_a_3_z + rrrrs_w_3_t_7))));
+    o[29*count + k] = UNLESS(magnitude(v.rrrrs_h_3_t_11) >
+        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_23) >
+        TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]) + UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) >
+        TOLERANCE*m->rrrrs_size[i]) + UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) >
+        TOLERANCE*m->rrrrs_size[i]);
+    o[28*count + k] = UNLESS(v.rrrrs_h_3_t_24 >= 0);
 }
 
-INLINE void dynamics_place_rrrrs(size_t w, size_t count, const real *o, size_t first, real *M,
-    real *Z, real *H, verdict *t)
+INLINE void dynamics_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const real *o, real
+    *M, real *Z, real *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        Z[6*w + k] = o[0*count + first + k];
-        M[6*NV*w + k] = o[1*count + first + k];
-        M[6*w + k] = o[2*count + first + k];
-        M[(6*NV + 1)*w + k] = o[3*count + first + k];
-        M[(NV + 6)*w + k] = o[4*count + first + k];
-        M[(6*NV + 2)*w + k] = o[5*count + first + k];
-        M[(2*NV + 6)*w + k] = o[6*count + first + k];
-        M[(6*NV + 3)*w + k] = o[7*count + first + k];
-        M[(3*NV + 6)*w + k] = o[8*count + first + k];
-        M[(6*NV + 4)*w + k] = o[9*count + first + k];
-        M[(4*NV + 6)*w + k] = o[10*count + first + k];
-        M[(6*NV + 5)*w + k] = o[11*count + first + k];
-        M[(5*NV + 6)*w + k] = o[12*count + first + k];
-        M[(6*NV + 6)*w + k] = o[13*count + first + k];
-        H[0*w + k] = o[14*count + first + k];
-        H[NU*w + k] = o[15*count + first + k];
-        H[2*NU*w + k] = o[16*count + first + k];
-        H[3*NU*w + k] = o[17*count + first + k];
-        H[4*NU*w + k] = o[18*count + first + k];
-        H[5*NU*w + k] = o[19*count + first + k];
-        H[(6*NU + 1)*w + k] = o[20*count + first + k];
-        H[2*w + k] = o[21*count + first + k];
-        H[(NU + 2)*w + k] = o[22*count + first + k];
-        H[(2*NU + 2)*w + k] = o[23*count + first + k];
-        H[(3*NU + 2)*w + k] = o[24*count + first + k];
-        H[(4*NU + 2)*w + k] = o[25*count + first + k];
-        H[(5*NU + 2)*w + k] = o[26*count + first + k];
-        H[(6*NU + 2)*w + k] = o[27*count + first + k];
-        t->unreachable[k] += o[28*count + first + k];
-        t->singular[k] += o[29*count + first + k];
-        t->total[k] += o[30*count + first + k];
-    }
+    Z[6*w + k] = o[0*count + at];
+    M[6*NV*w + k] = o[1*count + at];
+    M[6*w + k] = o[2*count + at];
+    M[(6*NV + 1)*w + k] = o[3*count + at];
+    M[(NV + 6)*w + k] = o[4*count + at];
+    M[(6*NV + 2)*w + k] = o[5*count + at];
+    M[(2*NV + 6)*w + k] = o[6*count + at];
+    M[(6*NV + 3)*w + k] = o[7*count + at];
+    M[(3*NV + 6)*w + k] = o[8*count + at];
+    M[(6*NV + 4)*w + k] = o[9*count + at];
+    M[(4*NV + 6)*w + k] = o[10*count + at];
+    M[(6*NV + 5)*w + k] = o[11*count + at];
+    M[(5*NV + 6)*w + k] = o[12*count + at];
+    M[(6*NV + 6)*w + k] = o[13*count + at];
+    H[0*w + k] = o[14*count + at];
+    H[NU*w + k] = o[15*count + at];
+    H[2*NU*w + k] = o[16*count + at];
+    H[3*NU*w + k] = o[17*count + at];
+    H[4*NU*w + k] = o[18*count + at];
+    H[5*NU*w + k] = o[19*count + at];
+    H[(6*NU + 1)*w + k] = o[20*count + at];
+    H[2*w + k] = o[21*count + at];
+    H[(NU + 2)*w + k] = o[22*count + at];
+    H[(2*NU + 2)*w + k] = o[23*count + at];
+    H[(3*NU + 2)*w + k] = o[24*count + at];
+    H[(4*NU + 2)*w + k] = o[25*count + at];
+    H[(5*NU + 2)*w + k] = o[26*count + at];
+    H[(6*NU + 2)*w + k] = o[27*count + at];
+    t->unreachable[k] += o[28*count + at];
+    t->singular[k] += o[29*count + at];
+    t->total[k] += o[30*count + at];
 }
 
-INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
+INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrrs v;
-        stage_rrrs_X(m, w, i, j, s, X, &v);
-        stage_rrrs_V_X(m, w, i, j, V, &v);
-        stage_rrrs_M_dynamics(m, i, &v);
-        stage_rrrs_Z_dynamics(m, w, j, V, &v);
-        /* (rrrs-u_1) centripetal acceleration of the connection point */
-        const real rrrs_u_1_in_axes3_x = v.axis_x_rrrs_axes3_x*v.rrrs_u_1_x +
-            v.axis_x_rrrs_axes3_y*v.rrrs_u_1_y + v.axis_x_rrrs_axes3_z*v.rrrs_u_1_z;
-        const real rrrs_u_1_in_axes3_y = v.axis_y_rrrs_axes3_x*v.rrrs_u_1_x +
-            v.axis_y_rrrs_axes3_y*v.rrrs_u_1_y + v.axis_y_rrrs_axes3_z*v.rrrs_u_1_z;
-        /* (rrrs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-           */
-        const real rrrs_rel_o_in_axes3_x = rrrs_u_1_in_axes3_x - v.rrrs_bias_in_axes3_x;
-        const real rrrs_rel_o_in_axes3_y = rrrs_u_1_in_axes3_y - v.rrrs_bias_in_axes3_y;
-        const real rrrs_rel_o_in_axes3_z = v.rrrs_u_1_in_axes3_z - v.rrrs_bias_in_axes3_z;
-        /* (rrrs-qdd_1_o) remainder of: acceleration of joint 1 */
-        const real rrrs_qdd_1_o = rrrs_rel_o_in_axes3_z*v.rrrs_w_1_in_axes3_z;
-        /* (rrrs-qdd_2_o) remainder of: acceleration of joint 2 */
-        const real rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*v.rrrs_w_2_in_axes3_x;
-        /* (rrrs-alpha_1_o) remainder of: angular acceleration of link 1 */
-        const real rrrs_alpha_1_o_in_axes2_x = v.rrrs_c_2*rrrs_qdd_1_o;
-        const real rrrs_alpha_1_o_t = rrrs_qdd_1_o*v.rrrs_s_2;
-        /* (rrrs-alpha_2_o) remainder of: angular acceleration of link 2 */
-        const real rrrs_alpha_2_o_in_axes2_x = v.rrrs_W_2_in_axes2_yz + rrrs_alpha_1_o_in_axes2_x;
-        const real rrrs_alpha_2_o_in_axes2_y = v.rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_o_t;
-        /* (rrrs-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real rrrs_B_2_o_in_axes2_xy = v.rrrs_W_2_in_axes2_xy - rrrs_qdd_2_o;
-        const real rrrs_B_2_o_in_axes2_yx = v.rrrs_W_2_in_axes2_xy + rrrs_qdd_2_o;
-        const real rrrs_B_2_o_in_axes2_zx = -rrrs_alpha_2_o_in_axes2_y - v.rrrs_zeta_2_in_axes2_y;
-        const real rrrs_B_2_o_in_axes2_zy = v.rrrs_W_2_in_axes2_yz + rrrs_alpha_2_o_in_axes2_x;
-        /* (rrrs-alpha_3_o) remainder of: angular acceleration of link 3 */
-        const real rrrs_alpha_3_o_in_axes3_x = rrrs_alpha_2_o_in_axes2_x*v.rrrs_c_3 +
-            v.rrrs_omega_1_in_axes3_y*v.rrrs_qd_3 - rrrs_alpha_2_o_in_axes2_y*v.rrrs_s_3_t;
-        const real rrrs_alpha_3_o_in_axes3_y = rrrs_alpha_2_o_in_axes2_x*v.rrrs_s_3_t +
-            rrrs_alpha_2_o_in_axes2_y*v.rrrs_c_3 - v.rrrs_zeta_3_t;
-        const real rrrs_w_3_in_axes3_y = m->rrrs_w_3_in_axes3_y[i];
-        const real rrrs_alpha_3_o_in_axes3_z = rrrs_qdd_2_o +
-            rrrs_w_3_in_axes3_y*(rrrs_rel_o_in_axes3_y - rrrs_qdd_2_o*v.rrrs_r_2_in_axes3_x);
-        /* (rrrs-B_3_o) remainder of the acceleration tensor of link 3 */
-        const real rrrs_B_3_o_in_axes3_xy = v.rrrs_W_3_in_axes3_xy - rrrs_alpha_3_o_in_axes3_z;
-        const real rrrs_B_3_o_in_axes3_xz = v.rrrs_W_3_in_axes3_xz + rrrs_alpha_3_o_in_axes3_y;
-        const real rrrs_B_3_o_in_axes3_yx = v.rrrs_W_3_in_axes3_xy + rrrs_alpha_3_o_in_axes3_z;
-        const real rrrs_B_3_o_in_axes3_yz = v.rrrs_W_3_in_axes3_yz - rrrs_alpha_3_o_in_axes3_x;
-        const real rrrs_B_3_o_in_axes3_zx = v.rrrs_W_3_in_axes3_xz - rrrs_alpha_3_o_in_axes3_y;
-        const real rrrs_B_3_o_in_axes3_zy = v.rrrs_W_3_in_axes3_yz + rrrs_alpha_3_o_in_axes3_x;
-        /* (rrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real rrrs_acc_3_o_in_axes3_x = rrrs_u_1_in_axes3_x - v.axis_x_rrrs_axes3_x*gravity_x
-            - v.axis_x_rrrs_axes3_y*gravity_y - v.axis_x_rrrs_axes3_z*gravity_z;
-        const real rrrs_acc_3_o_in_axes3_y = rrrs_u_1_in_axes3_y - v.axis_y_rrrs_axes3_x*gravity_x
-            - v.axis_y_rrrs_axes3_y*gravity_y - v.axis_y_rrrs_axes3_z*gravity_z;
-        /* (rrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
-           reference points */
-        const real rrrs_mu_3_o_t_3 = v.rrrs_omega_3_in_axes3_z*v.rrrs_omega_3_in_axes3_z;
-        const real rrrs_J_3_in_spec3_xy = m->rrrs_J_3_in_spec3_xy[i];
-        const real rrrs_J_3_in_spec3_xz = m->rrrs_J_3_in_spec3_xz[i];
-        const real rrrs_J_3_in_spec3_yz = m->rrrs_J_3_in_spec3_yz[i];
-        const real rrrs_Sigma_3_in_axes3_yy = m->rrrs_Sigma_3_in_axes3_yy[i];
-        const real rrrs_Sigma_3_in_axes3_zz = m->rrrs_Sigma_3_in_axes3_zz[i];
-        const real rrrs_h_3_in_spec3_y = m->rrrs_h_3_in_spec3_y[i];
-        const real rrrs_h_3_in_spec3_z = m->rrrs_h_3_in_spec3_z[i];
-        const real rrrs_mu_3_o_in_axes3_x = rrrs_B_3_o_in_axes3_yx*rrrs_J_3_in_spec3_xz +
-            rrrs_B_3_o_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy +
-            rrrs_J_3_in_spec3_yz*(v.rrrs_mu_3_o_t_2 - rrrs_mu_3_o_t_3) +
-            v.rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_y -
-            rrrs_B_3_o_in_axes3_yz*rrrs_Sigma_3_in_axes3_zz -
-            rrrs_B_3_o_in_axes3_zx*rrrs_J_3_in_spec3_xy -
-            rrrs_acc_3_o_in_axes3_y*rrrs_h_3_in_spec3_z;
-        const real rrrs_Sigma_3_in_axes3_xx = m->rrrs_Sigma_3_in_axes3_xx[i];
-        const real rrrs_h_3_in_spec3_x = m->rrrs_h_3_in_spec3_x[i];
-        const real rrrs_mu_3_o_in_axes3_y = rrrs_B_3_o_in_axes3_xz*rrrs_Sigma_3_in_axes3_zz +
-            rrrs_B_3_o_in_axes3_zy*rrrs_J_3_in_spec3_xy +
-            rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_z -
-            rrrs_B_3_o_in_axes3_xy*rrrs_J_3_in_spec3_yz -
-            rrrs_B_3_o_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx -
-            rrrs_J_3_in_spec3_xz*(v.rrrs_mu_3_o_t - rrrs_mu_3_o_t_3) -
-            v.rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_x;
-        const real rrrs_mu_3_o_in_axes3_z = rrrs_B_3_o_in_axes3_xz*rrrs_J_3_in_spec3_yz +
-            rrrs_B_3_o_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx +
-            rrrs_J_3_in_spec3_xy*(v.rrrs_mu_3_o_t - v.rrrs_mu_3_o_t_2) +
-            rrrs_acc_3_o_in_axes3_y*rrrs_h_3_in_spec3_x -
-            rrrs_B_3_o_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
-            rrrs_B_3_o_in_axes3_yz*rrrs_J_3_in_spec3_xz -
-            rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_y;
-        /* (rrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-           reference points */
-        const real rrrs_mu_2_o_t_3 = v.rrrs_qd_2_t*v.rrrs_qd_2_t;
-        const real rrrs_J_2_in_spec2_xy = m->rrrs_J_2_in_spec2_xy[i];
-        const real rrrs_J_2_in_spec2_xz = m->rrrs_J_2_in_spec2_xz[i];
-        const real rrrs_J_2_in_spec2_yz = m->rrrs_J_2_in_spec2_yz[i];
-        const real rrrs_Sigma_2_in_axes2_yy = m->rrrs_Sigma_2_in_axes2_yy[i];
-        const real rrrs_Sigma_2_in_axes2_zz = m->rrrs_Sigma_2_in_axes2_zz[i];
-        const real rrrs_h_2_in_spec2_y = m->rrrs_h_2_in_spec2_y[i];
-        const real rrrs_h_2_in_spec2_z = m->rrrs_h_2_in_spec2_z[i];
-        const real rrrs_mu_2_o_in_axes2_x = rrrs_B_2_o_in_axes2_yx*rrrs_J_2_in_spec2_xz +
-            rrrs_B_2_o_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy +
-            rrrs_J_2_in_spec2_yz*(v.rrrs_mu_2_o_t_2 - rrrs_mu_2_o_t_3) +
-            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_in_axes2_x +
-            v.rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z - rrrs_B_2_o_in_axes2_zx*rrrs_J_2_in_spec2_xy
-            - v.rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_y;
-        const real rrrs_Sigma_2_in_axes2_xx = m->rrrs_Sigma_2_in_axes2_xx[i];
-        const real rrrs_h_2_in_spec2_x = m->rrrs_h_2_in_spec2_x[i];
-        const real rrrs_mu_2_o_in_axes2_y = rrrs_B_2_o_in_axes2_zy*rrrs_J_2_in_spec2_xy +
-            v.rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_x - rrrs_B_2_o_in_axes2_xy*rrrs_J_2_in_spec2_yz
-            - rrrs_B_2_o_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx -
-            rrrs_J_2_in_spec2_xz*(v.rrrs_mu_2_o_t - rrrs_mu_2_o_t_3) -
-            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_t - v.rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z;
-        const real rrrs_mu_2_o_in_axes2_z = rrrs_B_2_o_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx +
-            rrrs_J_2_in_spec2_xy*(v.rrrs_mu_2_o_t - v.rrrs_mu_2_o_t_2) +
-            rrrs_J_2_in_spec2_xz*rrrs_alpha_1_o_in_axes2_x +
-            v.rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y -
-            rrrs_B_2_o_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy -
-            rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_t - v.rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x;
-        /* (rrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
-           connection point left out */
-        const real rrrs_N_2_o_in_axes2_x = rrrs_mu_2_o_in_axes2_x +
-            v.rrrs_c_3*rrrs_mu_3_o_in_axes3_x + rrrs_mu_3_o_in_axes3_y*v.rrrs_s_3_t;
-        const real rrrs_N_2_o_in_axes2_y = rrrs_mu_2_o_in_axes2_y +
-            v.rrrs_c_3*rrrs_mu_3_o_in_axes3_y - rrrs_mu_3_o_in_axes3_x*v.rrrs_s_3_t;
-        const real rrrs_N_2_o_in_axes2_z = rrrs_mu_2_o_in_axes2_z + rrrs_mu_3_o_in_axes3_z;
-        /* (rrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-           reference points */
-        const real rrrs_J_1_in_spec1_xx = m->rrrs_J_1_in_spec1_xx[i];
-        const real rrrs_h_1_in_spec1_y = m->rrrs_h_1_in_spec1_y[i];
-        const real rrrs_h_1_in_spec1_z = m->rrrs_h_1_in_spec1_z[i];
-        const real rrrs_mu_1_o_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o +
-            v.rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z - v.rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y;
-        /* (rrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
-           connection point left out */
-        const real rrrs_N_1_o_in_axes1_z = rrrs_mu_1_o_in_axes1_z +
-            rrrs_N_2_o_in_axes2_x*v.rrrs_c_2 - rrrs_N_2_o_in_axes2_y*v.rrrs_s_2;
-        /* (rrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y;
-        /* (rrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at
-           the connection point */
-        const real rrrs_c_o_in_axes3_x = rrrs_h_3_in_spec3_x*(v.rrrs_mu_3_o_t_2 + rrrs_mu_3_o_t_3)
-            + v.rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*v.rrrs_r_2_in_axes3_x -
-            rrrs_N_2_o_in_axes2_z) - rrrs_B_3_o_in_axes3_xy*rrrs_h_3_in_spec3_y -
-            rrrs_B_3_o_in_axes3_xz*rrrs_h_3_in_spec3_z;
-        const real rrrs_c_o_in_axes3_y = rrrs_h_3_in_spec3_y*(v.rrrs_mu_3_o_t + rrrs_mu_3_o_t_3) -
-            rrrs_G_o_in_axes3_y - rrrs_B_3_o_in_axes3_yx*rrrs_h_3_in_spec3_x -
-            rrrs_B_3_o_in_axes3_yz*rrrs_h_3_in_spec3_z;
-        const real rrrs_c_o_in_axes3_z = rrrs_h_3_in_spec3_z*(v.rrrs_mu_3_o_t + v.rrrs_mu_3_o_t_2)
-            - rrrs_B_3_o_in_axes3_zx*rrrs_h_3_in_spec3_x -
-            rrrs_B_3_o_in_axes3_zy*rrrs_h_3_in_spec3_y -
-            rrrs_N_1_o_in_axes1_z*v.rrrs_w_1_in_axes3_z;
-        /* (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rrrs_d_c_in_axes3_yy = m->rrrs_d_c_in_axes3_yy[i];
-        const real rrrs_Q_t = v.rrrs_d_c_in_axes3_xx - rrrs_d_c_in_axes3_yy;
-        const real rrrs_Q_t_2 = R(0.5)*rrrs_Q_t;
-        const real rrrs_Q_t_3 = v.rrrs_d_c_in_axes3_xx +
-            v.rrrs_d_Gamma_1_in_axes3_z*v.rrrs_w_1_in_axes3_z +
-            v.rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_y -
-            v.rrrs_d_alpha_3_in_axes3_yz*rrrs_h_3_in_spec3_x;
-        const real rrrs_Q_t_4 = R(0.5)*rrrs_Q_t_3;
-        const real rrrs_Q_t_5 = v.axis_x_rrrs_axes3_x*v.rrrs_d_c_in_axes3_xy +
-            v.axis_z_rrrs_axes3_x*v.rrrs_d_c_in_axes3_yz - v.axis_y_rrrs_axes3_x*rrrs_Q_t_2;
-        const real rrrs_Q_t_6 = v.axis_x_rrrs_axes3_y*v.rrrs_d_c_in_axes3_xy +
-            v.axis_z_rrrs_axes3_y*v.rrrs_d_c_in_axes3_yz - v.axis_y_rrrs_axes3_y*rrrs_Q_t_2;
-        const real rrrs_Q_t_7 = v.axis_x_rrrs_axes3_z*v.rrrs_d_c_in_axes3_xy +
-            v.axis_z_rrrs_axes3_z*v.rrrs_d_c_in_axes3_yz - v.axis_y_rrrs_axes3_z*rrrs_Q_t_2;
-        const real rrrs_Q_t_8 = v.axis_z_rrrs_axes3_x*rrrs_Q_t_4 -
-            v.axis_x_rrrs_axes3_x*v.rrrs_d_c_in_axes3_xz;
-        const real rrrs_Q_t_9 = v.axis_z_rrrs_axes3_y*rrrs_Q_t_4 -
-            v.axis_x_rrrs_axes3_y*v.rrrs_d_c_in_axes3_xz;
-        const real rrrs_Q_t_10 = v.axis_z_rrrs_axes3_z*rrrs_Q_t_4 -
-            v.axis_x_rrrs_axes3_z*v.rrrs_d_c_in_axes3_xz;
-        const real rrrs_Q_t_11 = v.axis_y_rrrs_axes3_x*rrrs_Q_t_5 -
-            v.axis_z_rrrs_axes3_x*rrrs_Q_t_8;
-        const real rrrs_Q_xx = -2*rrrs_Q_t_11 - v.rrrs_d_c_in_axes3_xx;
-        const real rrrs_Q_xy = v.axis_z_rrrs_axes3_x*rrrs_Q_t_9 + v.axis_z_rrrs_axes3_y*rrrs_Q_t_8
-            - v.axis_y_rrrs_axes3_x*rrrs_Q_t_6 - v.axis_y_rrrs_axes3_y*rrrs_Q_t_5;
-        const real rrrs_Q_xz = v.axis_z_rrrs_axes3_x*rrrs_Q_t_10 +
-            v.axis_z_rrrs_axes3_z*rrrs_Q_t_8 - v.axis_y_rrrs_axes3_x*rrrs_Q_t_7 -
-            v.axis_y_rrrs_axes3_z*rrrs_Q_t_5;
-        const real rrrs_Q_t_12 = v.axis_y_rrrs_axes3_y*rrrs_Q_t_6 -
-            v.axis_z_rrrs_axes3_y*rrrs_Q_t_9;
-        const real rrrs_Q_yy = -2*rrrs_Q_t_12 - v.rrrs_d_c_in_axes3_xx;
-        const real rrrs_Q_yz = v.axis_z_rrrs_axes3_y*rrrs_Q_t_10 +
-            v.axis_z_rrrs_axes3_z*rrrs_Q_t_9 - v.axis_y_rrrs_axes3_y*rrrs_Q_t_7 -
-            v.axis_y_rrrs_axes3_z*rrrs_Q_t_6;
-        const real rrrs_Q_t_13 = v.axis_y_rrrs_axes3_z*rrrs_Q_t_7 -
-            v.axis_z_rrrs_axes3_z*rrrs_Q_t_10;
-        const real rrrs_Q_zz = -2*rrrs_Q_t_13 - v.rrrs_d_c_in_axes3_xx;
-        /* (rrrs-U) velocity and gravity terms of the leg force */
-        const real rrrs_U_x = -v.axis_x_rrrs_axes3_x*rrrs_c_o_in_axes3_x -
-            v.axis_y_rrrs_axes3_x*rrrs_c_o_in_axes3_y - v.axis_z_rrrs_axes3_x*rrrs_c_o_in_axes3_z;
-        const real rrrs_U_y = -v.axis_x_rrrs_axes3_y*rrrs_c_o_in_axes3_x -
-            v.axis_y_rrrs_axes3_y*rrrs_c_o_in_axes3_y - v.axis_z_rrrs_axes3_y*rrrs_c_o_in_axes3_z;
-        const real rrrs_U_z = -v.axis_x_rrrs_axes3_z*rrrs_c_o_in_axes3_x -
-            v.axis_y_rrrs_axes3_z*rrrs_c_o_in_axes3_y - v.axis_z_rrrs_axes3_z*rrrs_c_o_in_axes3_z;
-        /* (M_ta) coupling block of M */
-        const real rrrs_M_ta_t = rrrs_Q_xy*v.rrrs_q_z;
-        const real rrrs_M_ta_t_2 = rrrs_Q_xz*v.rrrs_q_y;
-        const real rrrs_M_ta_t_3 = rrrs_M_ta_t_2 - rrrs_M_ta_t;
-        const real rrrs_M_ta_t_4 = rrrs_Q_xx*v.rrrs_q_z - rrrs_Q_xz*v.rrrs_q_x;
-        const real rrrs_M_ta_t_5 = rrrs_Q_xy*v.rrrs_q_x - rrrs_Q_xx*v.rrrs_q_y;
-        const real rrrs_M_ta_t_6 = rrrs_Q_yz*v.rrrs_q_y - rrrs_Q_yy*v.rrrs_q_z;
-        const real rrrs_M_ta_t_7 = rrrs_Q_yz*v.rrrs_q_x;
-        const real rrrs_M_ta_t_8 = rrrs_M_ta_t - rrrs_M_ta_t_7;
-        const real rrrs_M_ta_t_9 = rrrs_Q_yy*v.rrrs_q_x - rrrs_Q_xy*v.rrrs_q_y;
-        const real rrrs_M_ta_t_10 = rrrs_Q_zz*v.rrrs_q_y - rrrs_Q_yz*v.rrrs_q_z;
-        const real rrrs_M_ta_t_11 = rrrs_Q_xz*v.rrrs_q_z - rrrs_Q_zz*v.rrrs_q_x;
-        const real rrrs_M_ta_t_12 = rrrs_M_ta_t_7 - rrrs_M_ta_t_2;
-        /* (M_aa) rotational block of M */
-        const real rrrs_M_aa_t = rrrs_M_ta_t_10*v.rrrs_q_y - rrrs_M_ta_t_6*v.rrrs_q_z;
-        const real rrrs_M_aa_t_2 = rrrs_M_ta_t_11*v.rrrs_q_y - rrrs_M_ta_t_8*v.rrrs_q_z;
-        const real rrrs_M_aa_t_3 = rrrs_M_ta_t_12*v.rrrs_q_y - rrrs_M_ta_t_9*v.rrrs_q_z;
-        const real rrrs_M_aa_t_4 = rrrs_M_ta_t_4*v.rrrs_q_z - rrrs_M_ta_t_11*v.rrrs_q_x;
-        const real rrrs_M_aa_t_5 = rrrs_M_ta_t_5*v.rrrs_q_z - rrrs_M_ta_t_12*v.rrrs_q_x;
-        const real rrrs_M_aa_t_6 = rrrs_M_ta_t_9*v.rrrs_q_x - rrrs_M_ta_t_5*v.rrrs_q_y;
-        /* (Z_a) rotational part of Z */
-        const real rrrs_Z_a_t = rrrs_U_z*v.rrrs_q_y - rrrs_U_y*v.rrrs_q_z;
-        const real rrrs_Z_a_t_2 = rrrs_U_x*v.rrrs_q_z - rrrs_U_z*v.rrrs_q_x;
-        const real rrrs_Z_a_t_3 = rrrs_U_y*v.rrrs_q_x - rrrs_U_x*v.rrrs_q_y;
-        /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
-        const real rrrs_H_a_2_x = v.rrrs_q_y*v.rrrs_w_2_z - v.rrrs_q_z*v.rrrs_w_2_y;
-        const real rrrs_H_a_2_y = v.rrrs_q_z*v.rrrs_w_2_x - v.rrrs_q_x*v.rrrs_w_2_z;
-        const real rrrs_H_a_2_z = v.rrrs_q_x*v.rrrs_w_2_y - v.rrrs_q_y*v.rrrs_w_2_x;
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, rrrs_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, rrrs_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, rrrs_Q_xz);  /* M_tt_xz */
-        gather(&terms[3*count + k], add, rrrs_Q_yy);  /* M_tt_yy_of_legs */
-        gather(&terms[4*count + k], add, rrrs_Q_yz);  /* M_tt_yz */
-        gather(&terms[5*count + k], add, rrrs_Q_zz);  /* M_tt_zz_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[6*count + k], add, rrrs_M_ta_t_3);  /* M_ta_xx */
-        gather(&terms[7*count + k], add, rrrs_M_ta_t_4);  /* M_ta_xy_of_legs */
-        gather(&terms[8*count + k], add, rrrs_M_ta_t_5);  /* M_ta_xz_of_legs */
-        gather(&terms[9*count + k], add, rrrs_M_ta_t_6);  /* M_ta_yx_of_legs */
-        gather(&terms[10*count + k], add, rrrs_M_ta_t_8);  /* M_ta_yy */
-        gather(&terms[11*count + k], add, rrrs_M_ta_t_9);  /* M_ta_yz_of_legs */
-        gather(&terms[12*count + k], add, rrrs_M_ta_t_10);  /* M_ta_zx_of_legs */
-        gather(&terms[13*count + k], add, rrrs_M_ta_t_11);  /* M_ta_zy_of_legs */
-        gather(&terms[14*count + k], add, rrrs_M_ta_t_12);  /* M_ta_zz */
-        /* (M_aa) rotational block of M */
-        gather(&terms[15*count + k], add, rrrs_M_aa_t);  /* M_aa_xx_of_legs */
-        gather(&terms[16*count + k], add, rrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
-        gather(&terms[27*count + k], add, rrrs_M_aa_t_3);  /* M_aa_xz_of_legs */
-        gather(&terms[28*count + k], add, rrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
-        gather(&terms[19*count + k], add, rrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
-        gather(&terms[20*count + k], add, rrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
-        /* (Z_t) translational part of Z */
-        gather(&terms[21*count + k], add, rrrs_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[22*count + k], add, rrrs_U_y);  /* Z_t_y_of_legs */
-        gather(&terms[23*count + k], add, rrrs_U_z);  /* Z_t_z_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[24*count + k], add, rrrs_Z_a_t);  /* Z_a_x_of_legs */
-        gather(&terms[25*count + k], add, rrrs_Z_a_t_2);  /* Z_a_y_of_legs */
-        gather(&terms[26*count + k], add, rrrs_Z_a_t_3);  /* Z_a_z_of_legs */
-        /* (rrrs-w_1) reciprocal vector 1 */
-        o[0*count + k] = v.rrrs_w_1_x;
-        o[1*count + k] = v.rrrs_w_1_y;
-        o[2*count + k] = v.rrrs_w_1_z;
-        /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = v.rrrs_H_a_1_x;
-        o[4*count + k] = v.rrrs_H_a_1_y;
-        o[5*count + k] = v.rrrs_H_a_1_z;
-        /* (rrrs-w_2) reciprocal vector 2 */
-        o[6*count + k] = v.rrrs_w_2_x;
-        o[7*count + k] = v.rrrs_w_2_y;
-        o[8*count + k] = v.rrrs_w_2_z;
-        /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
-        o[9*count + k] = rrrs_H_a_2_x;
-        o[10*count + k] = rrrs_H_a_2_y;
-        o[11*count + k] = rrrs_H_a_2_z;
-        o[14*count + k] = ((v.rrrs_w_1_x + (v.rrrs_w_1_y + v.rrrs_w_1_z)) + (v.rrrs_H_a_1_x +
-            (v.rrrs_H_a_1_y + v.rrrs_H_a_1_z))) + ((v.rrrs_w_2_x + (v.rrrs_w_2_y + v.rrrs_w_2_z))
-            + (rrrs_H_a_2_x + (rrrs_H_a_2_y + rrrs_H_a_2_z)));
-        const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
-        const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
-        const real rrrs_size = m->rrrs_size[i];
-        o[13*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
-            UNLESS(magnitude(v.rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
-            UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
-            UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
-        o[12*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
-    }
+    values_rrrs v;
+    stage_rrrs_X(m, w, i, j, s, X, &v);
+    stage_rrrs_V_X(m, w, i, j, V, &v);
+    stage_rrrs_M_dynamics(m, i, &v);
+    stage_rrrs_Z_dynamics(m, w, j, V, &v);
+    /* (rrrs-u_1) centripetal acceleration of the connection point */
+    const real rrrs_u_1_in_axes3_x = v.axis_x_rrrs_axes3_x*v.rrrs_u_1_x +
+        v.axis_x_rrrs_axes3_y*v.rrrs_u_1_y + v.axis_x_rrrs_axes3_z*v.rrrs_u_1_z;
+    const real rrrs_u_1_in_axes3_y = v.axis_y_rrrs_axes3_x*v.rrrs_u_1_x +
+        v.axis_y_rrrs_axes3_y*v.rrrs_u_1_y + v.axis_y_rrrs_axes3_z*v.rrrs_u_1_z;
+    /* (rrrs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real rrrs_rel_o_in_axes3_x = rrrs_u_1_in_axes3_x - v.rrrs_bias_in_axes3_x;
+    const real rrrs_rel_o_in_axes3_y = rrrs_u_1_in_axes3_y - v.rrrs_bias_in_axes3_y;
+    const real rrrs_rel_o_in_axes3_z = v.rrrs_u_1_in_axes3_z - v.rrrs_bias_in_axes3_z;
+    /* (rrrs-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real rrrs_qdd_1_o = rrrs_rel_o_in_axes3_z*v.rrrs_w_1_in_axes3_z;
+    /* (rrrs-qdd_2_o) remainder of: acceleration of joint 2 */
+    const real rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*v.rrrs_w_2_in_axes3_x;
+    /* (rrrs-alpha_1_o) remainder of: angular acceleration of link 1 */
+    const real rrrs_alpha_1_o_in_axes2_x = v.rrrs_c_2*rrrs_qdd_1_o;
+    const real rrrs_alpha_1_o_t = rrrs_qdd_1_o*v.rrrs_s_2;
+    /* (rrrs-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real rrrs_alpha_2_o_in_axes2_x = v.rrrs_W_2_in_axes2_yz + rrrs_alpha_1_o_in_axes2_x;
+    const real rrrs_alpha_2_o_in_axes2_y = v.rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_o_t;
+    /* (rrrs-B_2_o) remainder of the acceleration tensor of link 2 */
+    const real rrrs_B_2_o_in_axes2_xy = v.rrrs_W_2_in_axes2_xy - rrrs_qdd_2_o;
+    const real rrrs_B_2_o_in_axes2_yx = v.rrrs_W_2_in_axes2_xy + rrrs_qdd_2_o;
+    const real rrrs_B_2_o_in_axes2_zx = -rrrs_alpha_2_o_in_axes2_y - v.rrrs_zeta_2_in_axes2_y;
+    const real rrrs_B_2_o_in_axes2_zy = v.rrrs_W_2_in_axes2_yz + rrrs_alpha_2_o_in_axes2_x;
+    /* (rrrs-alpha_3_o) remainder of: angular acceleration of link 3 */
+    const real rrrs_alpha_3_o_in_axes3_x = rrrs_alpha_2_o_in_axes2_x*v.rrrs_c_3 +
+        v.rrrs_omega_1_in_axes3_y*v.rrrs_qd_3 - rrrs_alpha_2_o_in_axes2_y*v.rrrs_s_3_t;
+    const real rrrs_alpha_3_o_in_axes3_y = rrrs_alpha_2_o_in_axes2_x*v.rrrs_s_3_t +
+        rrrs_alpha_2_o_in_axes2_y*v.rrrs_c_3 - v.rrrs_zeta_3_t;
+    const real rrrs_alpha_3_o_in_axes3_z = rrrs_qdd_2_o +
+        m->rrrs_w_3_in_axes3_y[i]*(rrrs_rel_o_in_axes3_y -
+        rrrs_qdd_2_o*v.rrrs_r_2_in_axes3_x);
+    /* (rrrs-B_3_o) remainder of the acceleration tensor of link 3 */
+    const real rrrs_B_3_o_in_axes3_xy = v.rrrs_W_3_in_axes3_xy - rrrs_alpha_3_o_in_axes3_z;
+    const real rrrs_B_3_o_in_axes3_xz = v.rrrs_W_3_in_axes3_xz + rrrs_alpha_3_o_in_axes3_y;
+    const real rrrs_B_3_o_in_axes3_yx = v.rrrs_W_3_in_axes3_xy + rrrs_alpha_3_o_in_axes3_z;
+    const real rrrs_B_3_o_in_axes3_yz = v.rrrs_W_3_in_axes3_yz - rrrs_alpha_3_o_in_axes3_x;
+    const real rrrs_B_3_o_in_axes3_zx = v.rrrs_W_3_in_axes3_xz - rrrs_alpha_3_o_in_axes3_y;
+    const real rrrs_B_3_o_in_axes3_zy = v.rrrs_W_3_in_axes3_yz + rrrs_alpha_3_o_in_axes3_x;
+    /* (rrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
+    const real rrrs_acc_3_o_in_axes3_x = rrrs_u_1_in_axes3_x -
+        v.axis_x_rrrs_axes3_x*m->gravity_x - v.axis_x_rrrs_axes3_y*m->gravity_y -
+        v.axis_x_rrrs_axes3_z*m->gravity_z;
+    const real rrrs_acc_3_o_in_axes3_y = rrrs_u_1_in_axes3_y -
+        v.axis_y_rrrs_axes3_x*m->gravity_x - v.axis_y_rrrs_axes3_y*m->gravity_y -
+        v.axis_y_rrrs_axes3_z*m->gravity_z;
+    /* (rrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+       reference points */
+    const real rrrs_mu_3_o_t_3 = v.rrrs_omega_3_in_axes3_z*v.rrrs_omega_3_in_axes3_z;
+    const real rrrs_mu_3_o_in_axes3_x = rrrs_B_3_o_in_axes3_yx*m->rrrs_J_3_in_spec3_xz[i] +
+        rrrs_B_3_o_in_axes3_zy*m->rrrs_Sigma_3_in_axes3_yy[i] +
+        m->rrrs_J_3_in_spec3_yz[i]*(v.rrrs_mu_3_o_t_2 - rrrs_mu_3_o_t_3) +
+        v.rrrs_acc_3_o_in_axes3_z*m->rrrs_h_3_in_spec3_y[i] -
+        rrrs_B_3_o_in_axes3_yz*m->rrrs_Sigma_3_in_axes3_zz[i] -
+        rrrs_B_3_o_in_axes3_zx*m->rrrs_J_3_in_spec3_xy[i] -
+        rrrs_acc_3_o_in_axes3_y*m->rrrs_h_3_in_spec3_z[i];
+    const real rrrs_mu_3_o_in_axes3_y = rrrs_B_3_o_in_axes3_xz*m->rrrs_Sigma_3_in_axes3_zz[i]
+        + rrrs_B_3_o_in_axes3_zy*m->rrrs_J_3_in_spec3_xy[i] +
+        rrrs_acc_3_o_in_axes3_x*m->rrrs_h_3_in_spec3_z[i] -
+        rrrs_B_3_o_in_axes3_xy*m->rrrs_J_3_in_spec3_yz[i] -
+        rrrs_B_3_o_in_axes3_zx*m->rrrs_Sigma_3_in_axes3_xx[i] -
+        m->rrrs_J_3_in_spec3_xz[i]*(v.rrrs_mu_3_o_t - rrrs_mu_3_o_t_3) -
+        v.rrrs_acc_3_o_in_axes3_z*m->rrrs_h_3_in_spec3_x[i];
+    const real rrrs_mu_3_o_in_axes3_z = rrrs_B_3_o_in_axes3_xz*m->rrrs_J_3_in_spec3_yz[i] +
+        rrrs_B_3_o_in_axes3_yx*m->rrrs_Sigma_3_in_axes3_xx[i] +
+        m->rrrs_J_3_in_spec3_xy[i]*(v.rrrs_mu_3_o_t - v.rrrs_mu_3_o_t_2) +
+        rrrs_acc_3_o_in_axes3_y*m->rrrs_h_3_in_spec3_x[i] -
+        rrrs_B_3_o_in_axes3_xy*m->rrrs_Sigma_3_in_axes3_yy[i] -
+        rrrs_B_3_o_in_axes3_yz*m->rrrs_J_3_in_spec3_xz[i] -
+        rrrs_acc_3_o_in_axes3_x*m->rrrs_h_3_in_spec3_y[i];
+    /* (rrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real rrrs_mu_2_o_t_3 = v.rrrs_qd_2_t*v.rrrs_qd_2_t;
+    const real rrrs_mu_2_o_in_axes2_x = rrrs_B_2_o_in_axes2_yx*m->rrrs_J_2_in_spec2_xz[i] +
+        rrrs_B_2_o_in_axes2_zy*m->rrrs_Sigma_2_in_axes2_yy[i] +
+        m->rrrs_J_2_in_spec2_yz[i]*(v.rrrs_mu_2_o_t_2 - rrrs_mu_2_o_t_3) +
+        m->rrrs_Sigma_2_in_axes2_zz[i]*rrrs_alpha_1_o_in_axes2_x +
+        v.rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_z[i] -
+        rrrs_B_2_o_in_axes2_zx*m->rrrs_J_2_in_spec2_xy[i] -
+        v.rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_y[i];
+    const real rrrs_mu_2_o_in_axes2_y = rrrs_B_2_o_in_axes2_zy*m->rrrs_J_2_in_spec2_xy[i] +
+        v.rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_x[i] -
+        rrrs_B_2_o_in_axes2_xy*m->rrrs_J_2_in_spec2_yz[i] -
+        rrrs_B_2_o_in_axes2_zx*m->rrrs_Sigma_2_in_axes2_xx[i] -
+        m->rrrs_J_2_in_spec2_xz[i]*(v.rrrs_mu_2_o_t - rrrs_mu_2_o_t_3) -
+        m->rrrs_Sigma_2_in_axes2_zz[i]*rrrs_alpha_1_o_t -
+        v.rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_z[i];
+    const real rrrs_mu_2_o_in_axes2_z = rrrs_B_2_o_in_axes2_yx*m->rrrs_Sigma_2_in_axes2_xx[i]
+        + m->rrrs_J_2_in_spec2_xy[i]*(v.rrrs_mu_2_o_t - v.rrrs_mu_2_o_t_2) +
+        m->rrrs_J_2_in_spec2_xz[i]*rrrs_alpha_1_o_in_axes2_x +
+        v.rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_y[i] -
+        rrrs_B_2_o_in_axes2_xy*m->rrrs_Sigma_2_in_axes2_yy[i] -
+        m->rrrs_J_2_in_spec2_yz[i]*rrrs_alpha_1_o_t -
+        v.rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_x[i];
+    /* (rrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+       connection point left out */
+    const real rrrs_N_2_o_in_axes2_x = rrrs_mu_2_o_in_axes2_x +
+        v.rrrs_c_3*rrrs_mu_3_o_in_axes3_x + rrrs_mu_3_o_in_axes3_y*v.rrrs_s_3_t;
+    const real rrrs_N_2_o_in_axes2_y = rrrs_mu_2_o_in_axes2_y +
+        v.rrrs_c_3*rrrs_mu_3_o_in_axes3_y - rrrs_mu_3_o_in_axes3_x*v.rrrs_s_3_t;
+    const real rrrs_N_2_o_in_axes2_z = rrrs_mu_2_o_in_axes2_z + rrrs_mu_3_o_in_axes3_z;
+    /* (rrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
+    const real rrrs_mu_1_o_in_axes1_z = m->rrrs_J_1_in_spec1_xx[i]*rrrs_qdd_1_o +
+        v.rrrs_g_in_axes1_x*m->rrrs_h_1_in_spec1_z[i] -
+        v.rrrs_g_in_axes1_y*m->rrrs_h_1_in_spec1_y[i];
+    /* (rrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+       connection point left out */
+    const real rrrs_N_1_o_in_axes1_z = rrrs_mu_1_o_in_axes1_z +
+        rrrs_N_2_o_in_axes2_x*v.rrrs_c_2 - rrrs_N_2_o_in_axes2_y*v.rrrs_s_2;
+    /* (rrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*m->rrrs_w_3_in_axes3_y[i];
+    /* (rrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at
+       the connection point */
+    const real rrrs_c_o_in_axes3_x = m->rrrs_h_3_in_spec3_x[i]*(v.rrrs_mu_3_o_t_2 +
+        rrrs_mu_3_o_t_3) + v.rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*v.rrrs_r_2_in_axes3_x -
+        rrrs_N_2_o_in_axes2_z) - rrrs_B_3_o_in_axes3_xy*m->rrrs_h_3_in_spec3_y[i] -
+        rrrs_B_3_o_in_axes3_xz*m->rrrs_h_3_in_spec3_z[i];
+    const real rrrs_c_o_in_axes3_y = m->rrrs_h_3_in_spec3_y[i]*(v.rrrs_mu_3_o_t +
+        rrrs_mu_3_o_t_3) - rrrs_G_o_in_axes3_y -
+        rrrs_B_3_o_in_axes3_yx*m->rrrs_h_3_in_spec3_x[i] -
+        rrrs_B_3_o_in_axes3_yz*m->rrrs_h_3_in_spec3_z[i];
+    const real rrrs_c_o_in_axes3_z = m->rrrs_h_3_in_spec3_z[i]*(v.rrrs_mu_3_o_t +
+        v.rrrs_mu_3_o_t_2) - rrrs_B_3_o_in_axes3_zx*m->rrrs_h_3_in_spec3_x[i] -
+        rrrs_B_3_o_in_axes3_zy*m->rrrs_h_3_in_spec3_y[i] -
+        rrrs_N_1_o_in_axes1_z*v.rrrs_w_1_in_axes3_z;
+    /* (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rrrs_Q_t = v.rrrs_d_c_in_axes3_xx - m->rrrs_d_c_in_axes3_yy[i];
+    const real rrrs_Q_t_2 = R(0.5)*rrrs_Q_t;
+    const real rrrs_Q_t_3 = v.rrrs_d_c_in_axes3_xx +
+        v.rrrs_d_Gamma_1_in_axes3_z*v.rrrs_w_1_in_axes3_z +
+        v.rrrs_d_alpha_3_in_axes3_xz*m->rrrs_h_3_in_spec3_y[i] -
+        v.rrrs_d_alpha_3_in_axes3_yz*m->rrrs_h_3_in_spec3_x[i];
+    const real rrrs_Q_t_4 = R(0.5)*rrrs_Q_t_3;
+    const real rrrs_Q_t_5 = v.axis_x_rrrs_axes3_x*v.rrrs_d_c_in_axes3_xy +
+        v.axis_z_rrrs_axes3_x*v.rrrs_d_c_in_axes3_yz - v.axis_y_rrrs_axes3_x*rrrs_Q_t_2;
+    const real rrrs_Q_t_6 = v.axis_x_rrrs_axes3_y*v.rrrs_d_c_in_axes3_xy +
+        v.axis_z_rrrs_axes3_y*v.rrrs_d_c_in_axes3_yz - v.axis_y_rrrs_axes3_y*rrrs_Q_t_2;
+    const real rrrs_Q_t_7 = v.axis_x_rrrs_axes3_z*v.rrrs_d_c_in_axes3_xy +
+        v.axis_z_rrrs_axes3_z*v.rrrs_d_c_in_axes3_yz - v.axis_y_rrrs_axes3_z*rrrs_Q_t_2;
+    const real rrrs_Q_t_8 = v.axis_z_rrrs_axes3_x*rrrs_Q_t_4 -
+        v.axis_x_rrrs_axes3_x*v.rrrs_d_c_in_axes3_xz;
+    const real rrrs_Q_t_9 = v.axis_z_rrrs_axes3_y*rrrs_Q_t_4 -
+        v.axis_x_rrrs_axes3_y*v.rrrs_d_c_in_axes3_xz;
+    const real rrrs_Q_t_10 = v.axis_z_rrrs_axes3_z*rrrs_Q_t_4 -
+        v.axis_x_rrrs_axes3_z*v.rrrs_d_c_in_axes3_xz;
+    const real rrrs_Q_t_11 = v.axis_y_rrrs_axes3_x*rrrs_Q_t_5 -
+        v.axis_z_rrrs_axes3_x*rrrs_Q_t_8;
+    const real rrrs_Q_xx = -2*rrrs_Q_t_11 - v.rrrs_d_c_in_axes3_xx;
+    const real rrrs_Q_xy = v.axis_z_rrrs_axes3_x*rrrs_Q_t_9 + v.axis_z_rrrs_axes3_y*rrrs_Q_t_8
+        - v.axis_y_rrrs_axes3_x*rrrs_Q_t_6 - v.axis_y_rrrs_axes3_y*rrrs_Q_t_5;
+    const real rrrs_Q_xz = v.axis_z_rrrs_axes3_x*rrrs_Q_t_10 +
+        v.axis_z_rrrs_axes3_z*rrrs_Q_t_8 - v.axis_y_rrrs_axes3_x*rrrs_Q_t_7 -
+        v.axis_y_rrrs_axes3_z*rrrs_Q_t_5;
+    const real rrrs_Q_t_12 = v.axis_y_rrrs_axes3_y*rrrs_Q_t_6 -
+        v.axis_z_rrrs_axes3_y*rrrs_Q_t_9;
+    const real rrrs_Q_yy = -2*rrrs_Q_t_12 - v.rrrs_d_c_in_axes3_xx;
+    const real rrrs_Q_yz = v.axis_z_rrrs_axes3_y*rrrs_Q_t_10 +
+        v.axis_z_rrrs_axes3_z*rrrs_Q_t_9 - v.axis_y_rrrs_axes3_y*rrrs_Q_t_7 -
+        v.axis_y_rrrs_axes3_z*rrrs_Q_t_6;
+    const real rrrs_Q_t_13 = v.axis_y_rrrs_axes3_z*rrrs_Q_t_7 -
+        v.axis_z_rrrs_axes3_z*rrrs_Q_t_10;
+    const real rrrs_Q_zz = -2*rrrs_Q_t_13 - v.rrrs_d_c_in_axes3_xx;
+    /* (rrrs-U) velocity and gravity terms of the leg force */
+    const real rrrs_U_x = -v.axis_x_rrrs_axes3_x*rrrs_c_o_in_axes3_x -
+        v.axis_y_rrrs_axes3_x*rrrs_c_o_in_axes3_y - v.axis_z_rrrs_axes3_x*rrrs_c_o_in_axes3_z;
+    const real rrrs_U_y = -v.axis_x_rrrs_axes3_y*rrrs_c_o_in_axes3_x -
+        v.axis_y_rrrs_axes3_y*rrrs_c_o_in_axes3_y - v.axis_z_rrrs_axes3_y*rrrs_c_o_in_axes3_z;
+    const real rrrs_U_z = -v.axis_x_rrrs_axes3_z*rrrs_c_o_in_axes3_x -
+        v.axis_y_rrrs_axes3_z*rrrs_c_o_in_axes3_y - v.axis_z_rrrs_axes3_z*rrrs_c_o_in_axes3_z;
+    /* (M_ta) */
+    const real rrrs_M_ta_t = rrrs_Q_xy*v.rrrs_q_z;
+    const real rrrs_M_ta_t_2 = rrrs_Q_xz*v.rrrs_q_y;
+    const real rrrs_M_ta_t_3 = rrrs_M_ta_t_2 - rrrs_M_ta_t;
+    const real rrrs_M_ta_t_4 = rrrs_Q_xx*v.rrrs_q_z - rrrs_Q_xz*v.rrrs_q_x;
+    const real rrrs_M_ta_t_5 = rrrs_Q_xy*v.rrrs_q_x - rrrs_Q_xx*v.rrrs_q_y;
+    const real rrrs_M_ta_t_6 = rrrs_Q_yz*v.rrrs_q_y - rrrs_Q_yy*v.rrrs_q_z;
+    const real rrrs_M_ta_t_7 = rrrs_Q_yz*v.rrrs_q_x;
+    const real rrrs_M_ta_t_8 = rrrs_M_ta_t - rrrs_M_ta_t_7;
+    const real rrrs_M_ta_t_9 = rrrs_Q_yy*v.rrrs_q_x - rrrs_Q_xy*v.rrrs_q_y;
+    const real rrrs_M_ta_t_10 = rrrs_Q_zz*v.rrrs_q_y - rrrs_Q_yz*v.rrrs_q_z;
+    const real rrrs_M_ta_t_11 = rrrs_Q_xz*v.rrrs_q_z - rrrs_Q_zz*v.rrrs_q_x;
+    const real rrrs_M_ta_t_12 = rrrs_M_ta_t_7 - rrrs_M_ta_t_2;
+    /* (M_aa) */
+    const real rrrs_M_aa_t = rrrs_M_ta_t_10*v.rrrs_q_y - rrrs_M_ta_t_6*v.rrrs_q_z;
+    const real rrrs_M_aa_t_2 = rrrs_M_ta_t_11*v.rrrs_q_y - rrrs_M_ta_t_8*v.rrrs_q_z;
+    const real rrrs_M_aa_t_3 = rrrs_M_ta_t_12*v.rrrs_q_y - rrrs_M_ta_t_9*v.rrrs_q_z;
+    const real rrrs_M_aa_t_4 = rrrs_M_ta_t_4*v.rrrs_q_z - rrrs_M_ta_t_11*v.rrrs_q_x;
+    const real rrrs_M_aa_t_5 = rrrs_M_ta_t_5*v.rrrs_q_z - rrrs_M_ta_t_12*v.rrrs_q_x;
+    const real rrrs_M_aa_t_6 = rrrs_M_ta_t_9*v.rrrs_q_x - rrrs_M_ta_t_5*v.rrrs_q_y;
+    /* (Z_a) */
+    const real rrrs_Z_a_t = rrrs_U_z*v.rrrs_q_y - rrrs_U_y*v.rrrs_q_z;
+    const real rrrs_Z_a_t_2 = rrrs_U_x*v.rrrs_q_z - rrrs_U_z*v.rrrs_q_x;
+    const real rrrs_Z_a_t_3 = rrrs_U_y*v.rrrs_q_x - rrrs_U_x*v.rrrs_q_y;
+    /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
+    const real rrrs_H_a_2_x = v.rrrs_q_y*v.rrrs_w_2_z - v.rrrs_q_z*v.rrrs_w_2_y;
+    const real rrrs_H_a_2_y = v.rrrs_q_z*v.rrrs_w_2_x - v.rrrs_q_x*v.rrrs_w_2_z;
+    const real rrrs_H_a_2_z = v.rrrs_q_x*v.rrrs_w_2_y - v.rrrs_q_y*v.rrrs_w_2_x;
+    /* (M_tt) */
+    gather(&terms[0*count + k], add, rrrs_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, rrrs_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, rrrs_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, rrrs_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, rrrs_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, rrrs_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) */
+    gather(&terms[6*count + k], add, rrrs_M_ta_t_3);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, rrrs_M_ta_t_4);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, rrrs_M_ta_t_5);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, rrrs_M_ta_t_6);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, rrrs_M_ta_t_8);  /* M_ta_yy */
+    gather(&terms[11*count + k], add, rrrs_M_ta_t_9);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, rrrs_M_ta_t_10);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, rrrs_M_ta_t_11);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, rrrs_M_ta_t_12);  /* M_ta_zz */
+    /* (M_aa) */
+    gather(&terms[15*count + k], add, rrrs_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, rrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[27*count + k], add, rrrs_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[28*count + k], add, rrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, rrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, rrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
+    /* (Z_t) */
+    gather(&terms[21*count + k], add, rrrs_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[22*count + k], add, rrrs_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[23*count + k], add, rrrs_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) */
+    gather(&terms[24*count + k], add, rrrs_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[25*count + k], add, rrrs_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[26*count + k], add, rrrs_Z_a_t_3);  /* Z_a_z_of_legs */
+    /* (rrrs-w_1) reciprocal vector 1 */
+    o[0*count + k] = v.rrrs_w_1_x;
+    o[1*count + k] = v.rrrs_w_1_y;
+    o[2*count + k] = v.rrrs_w_1_z;
+    /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.rrrs_H_a_1_x;
+    o[4*count + k] = v.rrrs_H_a_1_y;
+    o[5*count + k] = v.rrrs_H_a_1_z;
+    /* (rrrs-w_2) reciprocal vector 2 */
+    o[6*count + k] = v.rrrs_w_2_x;
+    o[7*count + k] = v.rrrs_w_2_y;
+    o[8*count + k] = v.rrrs_w_2_z;
+    /* (rrrs-H_a_2) */
+    o[9*count + k] = rrrs_H_a_2_x;
+    o[10*count + k] = rrrs_H_a_2_y;
+    o[11*count + k] = rrrs_H_a_2_z;
+    o[14*count + k] = ((v.rrrs_w_1_x + (v.rrrs_w_1_y + v.rrrs_w_1_z)) + (v.rrrs_H_a_1_x +
+        (v.rrrs_H_a_1_y + v.rrrs_H_a_1_z))) + ((v.rrrs_w_2_x + (v.rrrs_w_2_y + v.rrrs_w_2_z))
+        + (rrrs_H_a_2_x + (rrrs_H_a_2_y + rrrs_H_a_2_z)));
+    o[13*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_rho2_2) >
+        TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) + UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) >
+        TOLERANCE*m->rrrs_size[i]) + UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) >
+        TOLERANCE*m->rrrs_size[i]);
+    o[12*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
 }
 
-INLINE void dynamics_place_rrrs(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *H, verdict *t)
+INLINE void dynamics_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t count, const real
+    *o, real *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[(3 + 2*leg)*w + k] = o[0*count + first + k];
-        H[(NU + 3 + 2*leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + 3 + 2*leg)*w + k] = o[2*count + first + k];
-        H[(3*NU + 3 + 2*leg)*w + k] = o[3*count + first + k];
-        H[(4*NU + 3 + 2*leg)*w + k] = o[4*count + first + k];
-        H[(5*NU + 3 + 2*leg)*w + k] = o[5*count + first + k];
-        H[(4 + 2*leg)*w + k] = o[6*count + first + k];
-        H[(NU + 4 + 2*leg)*w + k] = o[7*count + first + k];
-        H[(2*NU + 4 + 2*leg)*w + k] = o[8*count + first + k];
-        H[(3*NU + 4 + 2*leg)*w + k] = o[9*count + first + k];
-        H[(4*NU + 4 + 2*leg)*w + k] = o[10*count + first + k];
-        H[(5*NU + 4 + 2*leg)*w + k] = o[11*count + first + k];
-        t->unreachable[k] += o[12*count + first + k];
-        t->singular[k] += o[13*count + first + k];
-        t->total[k] += o[14*count + first + k];
-    }
+    H[(3 + 2*i)*w + k] = o[0*count + at];
+    H[(NU + 3 + 2*i)*w + k] = o[1*count + at];
+    H[(2*NU + 3 + 2*i)*w + k] = o[2*count + at];
+    H[(3*NU + 3 + 2*i)*w + k] = o[3*count + at];
+    H[(4*NU + 3 + 2*i)*w + k] = o[4*count + at];
+    H[(5*NU + 3 + 2*i)*w + k] = o[5*count + at];
+    H[(4 + 2*i)*w + k] = o[6*count + at];
+    H[(NU + 4 + 2*i)*w + k] = o[7*count + at];
+    H[(2*NU + 4 + 2*i)*w + k] = o[8*count + at];
+    H[(3*NU + 4 + 2*i)*w + k] = o[9*count + at];
+    H[(4*NU + 4 + 2*i)*w + k] = o[10*count + at];
+    H[(5*NU + 4 + 2*i)*w + k] = o[11*count + at];
+    t->unreachable[k] += o[12*count + at];
+    t->singular[k] += o[13*count + at];
+    t->total[k] += o[14*count + at];
 }
 
-INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const real *sums, real *M,
-    real *Z, verdict *t)
+INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
+    real *M, real *Z, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (M_tt) translational block of M */
-        const real M_tt_xx_of_legs = sums[0*w + k];
-        const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_xx_of_legs + m_star;
-        const real M_tt_yy_of_legs = sums[3*w + k];
-        const real M_tt_yy = M_tt_yy_of_legs + m_star;
-        const real M_tt_zz_of_legs = sums[5*w + k];
-        const real M_tt_zz = M_tt_zz_of_legs + m_star;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[11*w + k];
-        const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
-        const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[10*w + k];
-        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-        const real M_ta_yx_of_legs = sums[9*w + k];
-        const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-        const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[9*w + k];
-        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
-        const real M_ta_zx_of_legs = sums[12*w + k];
-        const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
-        const real M_ta_zy_of_legs = sums[13*w + k];
-        const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-        /* (M_aa) rotational block of M */
-        const real J_star_xx = s[12*w + k];
-        const real M_aa_xx_of_legs = sums[15*w + k];
-        const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[13*w + k];
-        const real M_aa_xy_of_legs = sums[16*w + k];
-        const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[14*w + k];
-        const real M_aa_t = sums[17*w + k];
-        const real M_aa_xz_of_legs = sums[27*w + k];
-        const real M_aa_xz = J_star_xz + M_aa_xz_of_legs - M_aa_t;
-        const real J_star_yy = s[15*w + k];
-        const real M_aa_t_2 = sums[18*w + k];
-        const real M_aa_yy_of_legs = sums[28*w + k];
-        const real M_aa_yy = J_star_yy + M_aa_yy_of_legs - M_aa_t_2;
-        const real J_star_yz = s[16*w + k];
-        const real M_aa_yz_of_legs = sums[19*w + k];
-        const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[17*w + k];
-        const real M_aa_zz_of_legs = sums[20*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-        /* (Z_t) translational part of Z */
-        const real Z_p_x = s[18*w + k];
-        const real Z_t_x_of_legs = sums[21*w + k];
-        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[19*w + k];
-        const real Z_t_y_of_legs = sums[22*w + k];
-        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[20*w + k];
-        const real Z_t_z_of_legs = sums[23*w + k];
-        const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-        /* (Z_a) rotational part of Z */
-        const real Z_a_x_of_legs = sums[24*w + k];
-        const real Z_q_x = s[21*w + k];
-        const real Z_a_x = Z_a_x_of_legs + Z_q_x;
-        const real Z_a_y_of_legs = sums[25*w + k];
-        const real Z_q_y = s[22*w + k];
-        const real Z_a_y = Z_a_y_of_legs + Z_q_y;
-        const real Z_a_z_of_legs = sums[26*w + k];
-        const real Z_q_z = s[23*w + k];
-        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
-        /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        const real M_tt_xy = sums[1*w + k];
-        M[1*w + k] = M_tt_xy;
-        M[NV*w + k] = M_tt_xy;
-        const real M_tt_xz = sums[2*w + k];
-        M[2*w + k] = M_tt_xz;
-        M[2*NV*w + k] = M_tt_xz;
-        M[(NV + 1)*w + k] = M_tt_yy;
-        const real M_tt_yz = sums[4*w + k];
-        M[(NV + 2)*w + k] = M_tt_yz;
-        M[(2*NV + 1)*w + k] = M_tt_yz;
-        M[(2*NV + 2)*w + k] = M_tt_zz;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xx = sums[6*w + k];
-        M[3*w + k] = M_ta_xx;
-        M[3*NV*w + k] = M_ta_xx;
-        M[4*w + k] = M_ta_xy;
-        M[4*NV*w + k] = M_ta_xy;
-        M[5*w + k] = M_ta_xz;
-        M[5*NV*w + k] = M_ta_xz;
-        M[(NV + 3)*w + k] = M_ta_yx;
-        M[(3*NV + 1)*w + k] = M_ta_yx;
-        const real M_ta_yy = sums[10*w + k];
-        M[(NV + 4)*w + k] = M_ta_yy;
-        M[(4*NV + 1)*w + k] = M_ta_yy;
-        M[(NV + 5)*w + k] = M_ta_yz;
-        M[(5*NV + 1)*w + k] = M_ta_yz;
-        M[(2*NV + 3)*w + k] = M_ta_zx;
-        M[(3*NV + 2)*w + k] = M_ta_zx;
-        M[(2*NV + 4)*w + k] = M_ta_zy;
-        M[(4*NV + 2)*w + k] = M_ta_zy;
-        const real M_ta_zz = sums[14*w + k];
-        M[(2*NV + 5)*w + k] = M_ta_zz;
-        M[(5*NV + 2)*w + k] = M_ta_zz;
-        /* (M_aa) rotational block of M */
-        M[(3*NV + 3)*w + k] = M_aa_xx;
-        M[(3*NV + 4)*w + k] = M_aa_xy;
-        M[(4*NV + 3)*w + k] = M_aa_xy;
-        M[(3*NV + 5)*w + k] = M_aa_xz;
-        M[(5*NV + 3)*w + k] = M_aa_xz;
-        M[(4*NV + 4)*w + k] = M_aa_yy;
-        M[(4*NV + 5)*w + k] = M_aa_yz;
-        M[(5*NV + 4)*w + k] = M_aa_yz;
-        M[(5*NV + 5)*w + k] = M_aa_zz;
-        /* (Z_t) translational part of Z */
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-        Z[2*w + k] = Z_t_z;
-        /* (Z_a) rotational part of Z */
-        Z[3*w + k] = Z_a_x;
-        Z[4*w + k] = Z_a_y;
-        Z[5*w + k] = Z_a_z;
-        t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
-            ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
-            (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
-            ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
-    }
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    /* (M_ta) */
+    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real h_star_z = s[11*w + k];
+    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real h_star_y = s[10*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yx_of_legs = sums[9*w + k];
+    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_yz_of_legs = sums[11*w + k];
+    const real h_star_x = s[9*w + k];
+    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_zx_of_legs = sums[12*w + k];
+    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zy_of_legs = sums[13*w + k];
+    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    /* (M_aa) */
+    const real J_star_xx = s[12*w + k];
+    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
+    const real J_star_xy = s[13*w + k];
+    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
+    const real J_star_xz = s[14*w + k];
+    const real M_aa_t = sums[17*w + k];
+    const real M_aa_xz_of_legs = sums[27*w + k];
+    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs - M_aa_t;
+    const real J_star_yy = s[15*w + k];
+    const real M_aa_t_2 = sums[18*w + k];
+    const real M_aa_yy_of_legs = sums[28*w + k];
+    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs - M_aa_t_2;
+    const real J_star_yz = s[16*w + k];
+    const real M_aa_yz_of_legs = sums[19*w + k];
+    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
+    const real J_star_zz = s[17*w + k];
+    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
+    /* (Z_t) */
+    const real Z_p_x = s[18*w + k];
+    const real Z_t_x_of_legs = sums[21*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[19*w + k];
+    const real Z_t_y_of_legs = sums[22*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    const real Z_p_z = s[20*w + k];
+    const real Z_t_z_of_legs = sums[23*w + k];
+    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
+    /* (Z_a) */
+    const real Z_a_x_of_legs = sums[24*w + k];
+    const real Z_q_x = s[21*w + k];
+    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_y_of_legs = sums[25*w + k];
+    const real Z_q_y = s[22*w + k];
+    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_z_of_legs = sums[26*w + k];
+    const real Z_q_z = s[23*w + k];
+    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    const real M_tt_xz = sums[2*w + k];
+    M[2*w + k] = M_tt_xz;
+    M[2*NV*w + k] = M_tt_xz;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_yz = sums[4*w + k];
+    M[(NV + 2)*w + k] = M_tt_yz;
+    M[(2*NV + 1)*w + k] = M_tt_yz;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    /* (M_ta) */
+    const real M_ta_xx = sums[6*w + k];
+    M[3*w + k] = M_ta_xx;
+    M[3*NV*w + k] = M_ta_xx;
+    M[4*w + k] = M_ta_xy;
+    M[4*NV*w + k] = M_ta_xy;
+    M[5*w + k] = M_ta_xz;
+    M[5*NV*w + k] = M_ta_xz;
+    M[(NV + 3)*w + k] = M_ta_yx;
+    M[(3*NV + 1)*w + k] = M_ta_yx;
+    const real M_ta_yy = sums[10*w + k];
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
+    M[(NV + 5)*w + k] = M_ta_yz;
+    M[(5*NV + 1)*w + k] = M_ta_yz;
+    M[(2*NV + 3)*w + k] = M_ta_zx;
+    M[(3*NV + 2)*w + k] = M_ta_zx;
+    M[(2*NV + 4)*w + k] = M_ta_zy;
+    M[(4*NV + 2)*w + k] = M_ta_zy;
+    const real M_ta_zz = sums[14*w + k];
+    M[(2*NV + 5)*w + k] = M_ta_zz;
+    M[(5*NV + 2)*w + k] = M_ta_zz;
+    /* (M_aa) */
+    M[(3*NV + 3)*w + k] = M_aa_xx;
+    M[(3*NV + 4)*w + k] = M_aa_xy;
+    M[(4*NV + 3)*w + k] = M_aa_xy;
+    M[(3*NV + 5)*w + k] = M_aa_xz;
+    M[(5*NV + 3)*w + k] = M_aa_xz;
+    M[(4*NV + 4)*w + k] = M_aa_yy;
+    M[(4*NV + 5)*w + k] = M_aa_yz;
+    M[(5*NV + 4)*w + k] = M_aa_yz;
+    M[(5*NV + 5)*w + k] = M_aa_zz;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    /* (Z_a) */
+    Z[3*w + k] = Z_a_x;
+    Z[4*w + k] = Z_a_y;
+    Z[5*w + k] = Z_a_z;
+    t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
+        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
+        (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
+        ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
 }
 
-INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
+APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, verdict *t)
 {
     real s[24] = {0}, sums[29] = {0};
     real terms_rrrrs[29*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[31*LEGS(LEGS_OF_rrrrs)] = {0};
     real terms_rrrs[29*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[15*LEGS(LEGS_OF_rrrs)] = {0};
     clear(H, NV*NU);
-    dynamics_before(m, 1, X, V, s, t);
-    dynamics_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrrs), 0, X, V, terms_rrrrs, o_rrrrs);
-    dynamics_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), 0, X, V, terms_rrrs, o_rrrs);
-    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
-        dynamics_place_rrrrs(1, LEGS(LEGS_OF_rrrrs), o_rrrrs, leg, M, Z, H, t);
+    dynamics_before(m, 1, 0, X, V, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
+        dynamics_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), 0, s, X, V, terms_rrrrs, o_rrrrs);
+    }
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
+        dynamics_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), 0, s, X, V, terms_rrrs, o_rrrs);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
+        dynamics_place_rrrrs(1, 0, i, LEGS(LEGS_OF_rrrrs), o_rrrrs, M, Z, H, t);
     }
     for (size_t n = 0; n < 29; ++n) {
         sums[n] = total(terms_rrrrs + n*LEGS(LEGS_OF_rrrrs), LEGS_OF_rrrrs);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
-        dynamics_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, leg, H, t);
+    for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        dynamics_place_rrrs(1, i, 0, i, LEGS(LEGS_OF_rrrs), o_rrrs, H, t);
     }
     for (size_t n = 0; n < 29; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
             sums[n] += terms_rrrs[n*LEGS(LEGS_OF_rrrs) + leg];
         }
     }
-    dynamics_after(m, 1, s, sums, M, Z, t);
+    dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
-INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
-    real *H, verdict *t)
+APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
+    real *restrict Z, real *restrict H, verdict *restrict t)
 {
     real s[24*LANES], sums[29*LANES];
     real o_rrrrs[31*LANES];
     real o_rrrs[15*LANES];
     clear(H, NV*NU*LANES);
-    dynamics_before(m, LANES, X, V, s, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        dynamics_before(m, LANES, k, X, V, s, t);
+    }
     clear(sums, 29*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
-        dynamics_legs_rrrrs(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rrrrs);
-        dynamics_place_rrrrs(LANES, LANES, o_rrrrs, 0, M, Z, H, t);
+    for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_legs_rrrrs(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrrrs);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_place_rrrrs(LANES, k, k, LANES, o_rrrrs, M, Z, H, t);
+        }
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
-        dynamics_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rrrs);
-        dynamics_place_rrrs(LANES, LANES, o_rrrs, leg, 0, H, t);
+    for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_legs_rrrs(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrrs);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_place_rrrs(LANES, i, k, k, LANES, o_rrrs, H, t);
+        }
     }
-    dynamics_after(m, LANES, s, sums, M, Z, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        dynamics_after(m, LANES, k, s, sums, M, Z, t);
+    }
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        stage_M_dynamics(m, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = v.h_star_x;
-        s[10*w + k] = v.h_star_y;
-        s[11*w + k] = v.h_star_z;
-        s[12*w + k] = v.J_star_xx;
-        s[13*w + k] = v.J_star_xy;
-        s[14*w + k] = v.J_star_xz;
-        s[15*w + k] = v.J_star_yy;
-        s[16*w + k] = v.J_star_yz;
-        s[17*w + k] = v.J_star_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    stage_M_dynamics(m, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = v.h_star_x;
+    s[10*w + k] = v.h_star_y;
+    s[11*w + k] = v.h_star_z;
+    s[12*w + k] = v.J_star_xx;
+    s[13*w + k] = v.J_star_xy;
+    s[14*w + k] = v.J_star_xz;
+    s[15*w + k] = v.J_star_yy;
+    s[16*w + k] = v.J_star_yz;
+    s[17*w + k] = v.J_star_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void M_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void M_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrrrs v;
-        stage_rrrrs_X(m, w, i, j, s, X, &v);
-        stage_rrrrs_M_dynamics(m, w, i, j, X, &v);
-        /* (rrrrs-dy_2_qdd_3) coefficient of the acceleration in: acceleration of joint 3 */
-        const real rrrrs_dy_2_qdd_3 = v.rrrrs_r_2_in_axes4_y*v.rrrrs_w_3_in_axes4_x;
-        /* (rrrrs-dy_2_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal
-           links' inertia and weight */
-        const real rrrrs_J_4_in_spec4_zz = m->rrrrs_J_4_in_spec4_zz[i];
-        const real rrrrs_w_4_in_axes4_y = m->rrrrs_w_4_in_axes4_y[i];
-        const real rrrrs_dy_2_Gamma_4_t =
-            rrrrs_J_4_in_spec4_zz*rrrrs_w_4_in_axes4_y*(-v.rrrrs_r_2_in_axes4_x -
-            rrrrs_dy_2_qdd_3*v.rrrrs_r_3_in_axes4_x);
-        const real rrrrs_dy_2_Gamma_4 = rrrrs_J_4_in_spec4_zz + rrrrs_dy_2_Gamma_4_t +
-            rrrrs_J_4_in_spec4_zz*rrrrs_dy_2_qdd_3;
-        /* (rrrrs-dy_2_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
-           links' inertia and weight */
-        const real rrrrs_Jc_3_in_axes3_zz = m->rrrrs_Jc_3_in_axes3_zz[i];
-        const real rrrrs_dy_2_Gamma_3 = v.rrrrs_L_c_3_2_in_axes2_z + rrrrs_dy_2_Gamma_4_t +
-            rrrrs_Jc_3_in_axes3_zz*rrrrs_dy_2_qdd_3;
-        /* (rrrrs-dy_2_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
-           links' inertia and weight */
-        const real rrrrs_J_2_in_spec2_zz = m->rrrrs_J_2_in_spec2_zz[i];
-        const real rrrrs_dy_2_Gamma_2 = rrrrs_J_2_in_spec2_zz + v.rrrrs_Jc_2_t_7 +
-            rrrrs_Jc_3_in_axes3_zz + rrrrs_dy_2_Gamma_4_t +
-            v.rrrrs_L_c_3_2_in_axes2_z*rrrrs_dy_2_qdd_3;
-        /* (rrrrs-dy_2_G) coefficient of the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
-        const real rrrrs_dy_2_G_in_axes4_y = rrrrs_dy_2_Gamma_4*rrrrs_w_4_in_axes4_y;
-        /* (rrrrs-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rrrrs_Q_t = v.rrrrs_h_3_t_26*v.rrrrs_s_4_t - v.rrrrs_c_4*v.rrrrs_h_3_t_27;
-        const real rrrrs_Q_t_2 = v.rrrrs_c_4*v.rrrrs_h_3_t_26 + v.rrrrs_h_3_t_27*v.rrrrs_s_4_t;
-        const real rrrrs_Q_t_3 = rrrrs_Q_t*v.rrrrs_h_3_t_6 - rrrrs_Q_t_2*v.rrrrs_h_3_t_7;
-        const real rrrrs_Q_t_4 = rrrrs_Q_t*v.rrrrs_h_3_t_7 + rrrrs_Q_t_2*v.rrrrs_h_3_t_6;
-        const real rrrrs_Q_t_5 = rrrrs_Q_t_4*v.rrrrs_c_1;
-        const real rrrrs_Q_t_6 = rrrrs_Q_t_4*v.rrrrs_s_1;
-        const real rrrrs_base_frame_xx = m->rrrrs_base_frame_xx[i];
-        const real rrrrs_base_frame_xy = m->rrrrs_base_frame_xy[i];
-        const real rrrrs_base_frame_xz = m->rrrrs_base_frame_xz[i];
-        const real axis_y_rrrrs_axes4_x = rrrrs_Q_t_3*rrrrs_base_frame_xx +
-            rrrrs_Q_t_5*rrrrs_base_frame_xy + rrrrs_Q_t_6*rrrrs_base_frame_xz;
-        const real rrrrs_base_frame_yx = m->rrrrs_base_frame_yx[i];
-        const real rrrrs_base_frame_yy = m->rrrrs_base_frame_yy[i];
-        const real rrrrs_base_frame_yz = m->rrrrs_base_frame_yz[i];
-        const real axis_y_rrrrs_axes4_y = rrrrs_Q_t_3*rrrrs_base_frame_yx +
-            rrrrs_Q_t_5*rrrrs_base_frame_yy + rrrrs_Q_t_6*rrrrs_base_frame_yz;
-        const real rrrrs_base_frame_zx = m->rrrrs_base_frame_zx[i];
-        const real rrrrs_base_frame_zy = m->rrrrs_base_frame_zy[i];
-        const real rrrrs_base_frame_zz = m->rrrrs_base_frame_zz[i];
-        const real axis_y_rrrrs_axes4_z = rrrrs_Q_t_3*rrrrs_base_frame_zx +
-            rrrrs_Q_t_5*rrrrs_base_frame_zy + rrrrs_Q_t_6*rrrrs_base_frame_zz;
-        const real axis_x_rrrrs_axes4_x = axis_y_rrrrs_axes4_y*v.axis_z_rrrrs_axes4_z -
-            axis_y_rrrrs_axes4_z*v.axis_z_rrrrs_axes4_y;
-        const real axis_x_rrrrs_axes4_y = axis_y_rrrrs_axes4_z*v.axis_z_rrrrs_axes4_x -
-            axis_y_rrrrs_axes4_x*v.axis_z_rrrrs_axes4_z;
-        const real axis_x_rrrrs_axes4_z = axis_y_rrrrs_axes4_x*v.axis_z_rrrrs_axes4_y -
-            axis_y_rrrrs_axes4_y*v.axis_z_rrrrs_axes4_x;
-        const real rrrrs_d_c_in_axes4_yy = m->rrrrs_d_c_in_axes4_yy[i];
-        const real rrrrs_Q_t_7 = v.rrrrs_d_c_in_axes4_xx - rrrrs_d_c_in_axes4_yy;
-        const real rrrrs_Q_t_8 = R(0.5)*rrrrs_Q_t_7;
-        const real rrrrs_h_4_in_spec4_x = m->rrrrs_h_4_in_spec4_x[i];
-        const real rrrrs_h_4_in_spec4_y = m->rrrrs_h_4_in_spec4_y[i];
-        const real rrrrs_Q_t_9 = v.rrrrs_d_c_in_axes4_xx +
-            v.rrrrs_d_Gamma_1_in_axes4_z*v.rrrrs_w_1_in_axes4_z +
-            v.rrrrs_d_alpha_4_in_axes4_xz*rrrrs_h_4_in_spec4_y -
-            v.rrrrs_d_alpha_4_in_axes4_yz*rrrrs_h_4_in_spec4_x;
-        const real rrrrs_Q_t_10 = R(0.5)*rrrrs_Q_t_9;
-        const real rrrrs_Q_t_11 = axis_x_rrrrs_axes4_x*v.rrrrs_d_c_in_axes4_xy +
-            v.axis_z_rrrrs_axes4_x*v.rrrrs_d_c_in_axes4_yz - axis_y_rrrrs_axes4_x*rrrrs_Q_t_8;
-        const real rrrrs_Q_t_12 = axis_x_rrrrs_axes4_y*v.rrrrs_d_c_in_axes4_xy +
-            v.axis_z_rrrrs_axes4_y*v.rrrrs_d_c_in_axes4_yz - axis_y_rrrrs_axes4_y*rrrrs_Q_t_8;
-        const real rrrrs_Q_t_13 = axis_x_rrrrs_axes4_z*v.rrrrs_d_c_in_axes4_xy +
-            v.axis_z_rrrrs_axes4_z*v.rrrrs_d_c_in_axes4_yz - axis_y_rrrrs_axes4_z*rrrrs_Q_t_8;
-        const real rrrrs_Q_t_14 = v.axis_z_rrrrs_axes4_x*rrrrs_Q_t_10 -
-            axis_x_rrrrs_axes4_x*v.rrrrs_d_c_in_axes4_xz;
-        const real rrrrs_Q_t_15 = v.axis_z_rrrrs_axes4_y*rrrrs_Q_t_10 -
-            axis_x_rrrrs_axes4_y*v.rrrrs_d_c_in_axes4_xz;
-        const real rrrrs_Q_t_16 = v.axis_z_rrrrs_axes4_z*rrrrs_Q_t_10 -
-            axis_x_rrrrs_axes4_z*v.rrrrs_d_c_in_axes4_xz;
-        const real rrrrs_Q_t_17 = axis_y_rrrrs_axes4_x*rrrrs_Q_t_11 -
-            v.axis_z_rrrrs_axes4_x*rrrrs_Q_t_14;
-        const real rrrrs_Q_xx = -2*rrrrs_Q_t_17 - v.rrrrs_d_c_in_axes4_xx;
-        const real rrrrs_Q_xy = v.axis_z_rrrrs_axes4_x*rrrrs_Q_t_15 +
-            v.axis_z_rrrrs_axes4_y*rrrrs_Q_t_14 - axis_y_rrrrs_axes4_x*rrrrs_Q_t_12 -
-            axis_y_rrrrs_axes4_y*rrrrs_Q_t_11;
-        const real rrrrs_Q_xz = v.axis_z_rrrrs_axes4_x*rrrrs_Q_t_16 +
-            v.axis_z_rrrrs_axes4_z*rrrrs_Q_t_14 - axis_y_rrrrs_axes4_x*rrrrs_Q_t_13 -
-            axis_y_rrrrs_axes4_z*rrrrs_Q_t_11;
-        const real rrrrs_Q_t_18 = axis_y_rrrrs_axes4_y*rrrrs_Q_t_12 -
-            v.axis_z_rrrrs_axes4_y*rrrrs_Q_t_15;
-        const real rrrrs_Q_yy = -2*rrrrs_Q_t_18 - v.rrrrs_d_c_in_axes4_xx;
-        const real rrrrs_Q_yz = v.axis_z_rrrrs_axes4_y*rrrrs_Q_t_16 +
-            v.axis_z_rrrrs_axes4_z*rrrrs_Q_t_15 - axis_y_rrrrs_axes4_y*rrrrs_Q_t_13 -
-            axis_y_rrrrs_axes4_z*rrrrs_Q_t_12;
-        const real rrrrs_Q_t_19 = axis_y_rrrrs_axes4_z*rrrrs_Q_t_13 -
-            v.axis_z_rrrrs_axes4_z*rrrrs_Q_t_16;
-        const real rrrrs_Q_zz = -2*rrrrs_Q_t_19 - v.rrrrs_d_c_in_axes4_xx;
-        /* (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra
-           degree of freedom of joint 2 */
-        const real rrrrs_d_P_2_x = axis_x_rrrrs_axes4_x*v.rrrrs_d_P_2_in_axes4_x +
-            axis_y_rrrrs_axes4_x*v.rrrrs_d_P_2_in_axes4_y +
-            v.axis_z_rrrrs_axes4_x*v.rrrrs_d_P_2_in_axes4_z;
-        const real rrrrs_d_P_2_y = axis_x_rrrrs_axes4_y*v.rrrrs_d_P_2_in_axes4_x +
-            axis_y_rrrrs_axes4_y*v.rrrrs_d_P_2_in_axes4_y +
-            v.axis_z_rrrrs_axes4_y*v.rrrrs_d_P_2_in_axes4_z;
-        const real rrrrs_d_P_2_z = axis_x_rrrrs_axes4_z*v.rrrrs_d_P_2_in_axes4_x +
-            axis_y_rrrrs_axes4_z*v.rrrrs_d_P_2_in_axes4_y +
-            v.axis_z_rrrrs_axes4_z*v.rrrrs_d_P_2_in_axes4_z;
-        /* (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the
-           extra degree of freedom of joint 2 */
-        const real rrrrs_dy_2_P_2_t = rrrrs_dy_2_G_in_axes4_y*v.rrrrs_r_2_in_axes4_x +
-            v.rrrrs_r_2_in_axes4_y*v.rrrrs_w_3_in_axes4_x*(rrrrs_dy_2_G_in_axes4_y*v.rrrrs_r_3_in_axes4_x
-            - rrrrs_dy_2_Gamma_3);
-        const real rrrrs_dy_2_P_2 = rrrrs_dy_2_Gamma_2 - rrrrs_dy_2_P_2_t;
-        /* (M_ta) coupling block of M */
-        const real rrrrs_M_ta_t = -rrrrs_Q_xy*v.rrrrs_q_z;
-        const real rrrrs_M_ta_t_2 = rrrrs_Q_xz*v.rrrrs_q_y;
-        const real rrrrs_M_ta_t_3 = rrrrs_M_ta_t + rrrrs_M_ta_t_2;
-        const real rrrrs_M_ta_t_4 = rrrrs_Q_xz*v.rrrrs_q_x - rrrrs_Q_xx*v.rrrrs_q_z;
-        const real rrrrs_M_ta_t_5 = rrrrs_Q_xy*v.rrrrs_q_x - rrrrs_Q_xx*v.rrrrs_q_y;
-        const real rrrrs_M_ta_t_6 = rrrrs_Q_yz*v.rrrrs_q_y - rrrrs_Q_yy*v.rrrrs_q_z;
-        const real rrrrs_M_ta_t_7 = -rrrrs_Q_yz*v.rrrrs_q_x;
-        const real rrrrs_M_ta_t_8 = rrrrs_M_ta_t - rrrrs_M_ta_t_7;
-        const real rrrrs_M_ta_t_9 = rrrrs_Q_yy*v.rrrrs_q_x - rrrrs_Q_xy*v.rrrrs_q_y;
-        const real rrrrs_M_ta_t_10 = rrrrs_Q_zz*v.rrrrs_q_y - rrrrs_Q_yz*v.rrrrs_q_z;
-        const real rrrrs_M_ta_t_11 = rrrrs_Q_xz*v.rrrrs_q_z - rrrrs_Q_zz*v.rrrrs_q_x;
-        const real rrrrs_M_ta_t_12 = rrrrs_M_ta_t_2 + rrrrs_M_ta_t_7;
-        /* (M_aa) rotational block of M */
-        const real rrrrs_M_aa_t = rrrrs_M_ta_t_10*v.rrrrs_q_y - rrrrs_M_ta_t_6*v.rrrrs_q_z;
-        const real rrrrs_M_aa_t_2 = rrrrs_M_ta_t_11*v.rrrrs_q_y + rrrrs_M_ta_t_8*v.rrrrs_q_z;
-        const real rrrrs_M_aa_t_3 = rrrrs_M_ta_t_12*v.rrrrs_q_y + rrrrs_M_ta_t_9*v.rrrrs_q_z;
-        const real rrrrs_M_aa_t_4 = rrrrs_M_ta_t_11*v.rrrrs_q_x + rrrrs_M_ta_t_4*v.rrrrs_q_z;
-        const real rrrrs_M_aa_t_5 = rrrrs_M_ta_t_12*v.rrrrs_q_x + rrrrs_M_ta_t_5*v.rrrrs_q_z;
-        const real rrrrs_M_aa_t_6 = rrrrs_M_ta_t_9*v.rrrrs_q_x - rrrrs_M_ta_t_5*v.rrrrs_q_y;
-        /* (rrrrs-M_ya_2) coupling of extra joint 2 with the rotation of the platform */
-        const real rrrrs_M_ya_2_x = rrrrs_d_P_2_z*v.rrrrs_q_y - rrrrs_d_P_2_y*v.rrrrs_q_z;
-        const real rrrrs_M_ya_2_y = rrrrs_d_P_2_x*v.rrrrs_q_z - rrrrs_d_P_2_z*v.rrrrs_q_x;
-        const real rrrrs_M_ya_2_z = rrrrs_d_P_2_y*v.rrrrs_q_x - rrrrs_d_P_2_x*v.rrrrs_q_y;
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, rrrrs_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, rrrrs_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, rrrrs_Q_xz);  /* M_tt_xz */
-        gather(&terms[3*count + k], add, rrrrs_Q_yy);  /* M_tt_yy_of_legs */
-        gather(&terms[4*count + k], add, rrrrs_Q_yz);  /* M_tt_yz */
-        gather(&terms[5*count + k], add, rrrrs_Q_zz);  /* M_tt_zz_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[6*count + k], add, rrrrs_M_ta_t_3);  /* M_ta_xx */
-        gather(&terms[7*count + k], add, -rrrrs_M_ta_t_4);  /* M_ta_xy_of_legs */
-        gather(&terms[8*count + k], add, rrrrs_M_ta_t_5);  /* M_ta_xz_of_legs */
-        gather(&terms[9*count + k], add, rrrrs_M_ta_t_6);  /* M_ta_yx_of_legs */
-        gather(&terms[10*count + k], add, -rrrrs_M_ta_t_8);  /* M_ta_yy */
-        gather(&terms[11*count + k], add, rrrrs_M_ta_t_9);  /* M_ta_yz_of_legs */
-        gather(&terms[12*count + k], add, rrrrs_M_ta_t_10);  /* M_ta_zx_of_legs */
-        gather(&terms[13*count + k], add, rrrrs_M_ta_t_11);  /* M_ta_zy_of_legs */
-        gather(&terms[14*count + k], add, -rrrrs_M_ta_t_12);  /* M_ta_zz */
-        /* (M_aa) rotational block of M */
-        gather(&terms[15*count + k], add, rrrrs_M_aa_t);  /* M_aa_xx_of_legs */
-        gather(&terms[16*count + k], add, rrrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
-        gather(&terms[17*count + k], add, rrrrs_M_aa_t_3);  /* M_aa_t */
-        gather(&terms[18*count + k], add, rrrrs_M_aa_t_4);  /* M_aa_t_2 */
-        gather(&terms[19*count + k], add, rrrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
-        gather(&terms[20*count + k], add, rrrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
-        /* (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra
-           degree of freedom of joint 2 */
-        o[0*count + k] = rrrrs_d_P_2_x;
-        o[1*count + k] = rrrrs_d_P_2_x;
-        o[2*count + k] = rrrrs_d_P_2_y;
-        o[3*count + k] = rrrrs_d_P_2_y;
-        o[4*count + k] = rrrrs_d_P_2_z;
-        o[5*count + k] = rrrrs_d_P_2_z;
-        /* (rrrrs-M_ya_2) coupling of extra joint 2 with the rotation of the platform */
-        o[6*count + k] = rrrrs_M_ya_2_x;
-        o[7*count + k] = rrrrs_M_ya_2_x;
-        o[8*count + k] = rrrrs_M_ya_2_y;
-        o[9*count + k] = rrrrs_M_ya_2_y;
-        o[10*count + k] = rrrrs_M_ya_2_z;
-        o[11*count + k] = rrrrs_M_ya_2_z;
-        /* (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the
-           extra degree of freedom of joint 2 */
-        o[12*count + k] = rrrrs_dy_2_P_2;
-        o[15*count + k] = (rrrrs_d_P_2_x + (rrrrs_d_P_2_y + rrrrs_d_P_2_z)) + ((rrrrs_M_ya_2_x +
-            rrrrs_M_ya_2_y) + (rrrrs_M_ya_2_z + rrrrs_dy_2_P_2));
-        const real rrrrs_size_t_3 = m->rrrrs_size_t_3[i];
-        const real rrrrs_rho2_3_t = m->rrrrs_rho2_3_t[i];
-        const real rrrrs_size = m->rrrrs_size[i];
-        o[14*count + k] = UNLESS(magnitude(v.rrrrs_h_3_t_11) > TOLERANCE*TOLERANCE*rrrrs_size_t_3)
-            + UNLESS(magnitude(v.rrrrs_h_3_t_23) > TOLERANCE*TOLERANCE*rrrrs_rho2_3_t) +
-            UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) > TOLERANCE*rrrrs_size) +
-            UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) > TOLERANCE*rrrrs_size);
-        o[13*count + k] = UNLESS(v.rrrrs_h_3_t_24 >= 0);
-    }
+    values_rrrrs v;
+    stage_rrrrs_X(m, w, i, j, s, X, &v);
+    stage_rrrrs_M_dynamics(m, w, i, j, X, &v);
+    /* (rrrrs-dy_2_qdd_3) coefficient of the acceleration in: acceleration of joint 3 */
+    const real rrrrs_dy_2_qdd_3 = v.rrrrs_r_2_in_axes4_y*v.rrrrs_w_3_in_axes4_x;
+    /* (rrrrs-dy_2_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal
+       links' inertia and weight */
+    const real rrrrs_dy_2_Gamma_4_t =
+        m->rrrrs_J_4_in_spec4_zz[i]*m->rrrrs_w_4_in_axes4_y[i]*(-v.rrrrs_r_2_in_axes4_x -
+        rrrrs_dy_2_qdd_3*v.rrrrs_r_3_in_axes4_x);
+    const real rrrrs_dy_2_Gamma_4 = m->rrrrs_J_4_in_spec4_zz[i] + rrrrs_dy_2_Gamma_4_t +
+        m->rrrrs_J_4_in_spec4_zz[i]*rrrrs_dy_2_qdd_3;
+    /* (rrrrs-dy_2_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
+       links' inertia and weight */
+    const real rrrrs_dy_2_Gamma_3 = v.rrrrs_L_c_3_2_in_axes2_z + rrrrs_dy_2_Gamma_4_t +
+        m->rrrrs_Jc_3_in_axes3_zz[i]*rrrrs_dy_2_qdd_3;
+    /* (rrrrs-dy_2_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
+       links' inertia and weight */
+    const real rrrrs_dy_2_Gamma_2 = m->rrrrs_J_2_in_spec2_zz[i] + v.rrrrs_Jc_2_t_7 +
+        m->rrrrs_Jc_3_in_axes3_zz[i] + rrrrs_dy_2_Gamma_4_t +
+        v.rrrrs_L_c_3_2_in_axes2_z*rrrrs_dy_2_qdd_3;
+    /* (rrrrs-dy_2_G) coefficient of the acceleration in: force at the connection point that balances
+       the leg's inertia and weight along all degrees of freedom */
+    const real rrrrs_dy_2_G_in_axes4_y = rrrrs_dy_2_Gamma_4*m->rrrrs_w_4_in_axes4_y[i];
+    /* (rrrrs-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rrrrs_Q_t = v.rrrrs_h_3_t_26*v.rrrrs_s_4_t - v.rrrrs_c_4*v.rrrrs_h_3_t_27;
+    const real rrrrs_Q_t_2 = v.rrrrs_c_4*v.rrrrs_h_3_t_26 + v.rrrrs_h_3_t_27*v.rrrrs_s_4_t;
+    const real rrrrs_Q_t_3 = rrrrs_Q_t*v.rrrrs_h_3_t_6 - rrrrs_Q_t_2*v.rrrrs_h_3_t_7;
+    const real rrrrs_Q_t_4 = rrrrs_Q_t*v.rrrrs_h_3_t_7 + rrrrs_Q_t_2*v.rrrrs_h_3_t_6;
+    const real rrrrs_Q_t_5 = rrrrs_Q_t_4*v.rrrrs_c_1;
+    const real rrrrs_Q_t_6 = rrrrs_Q_t_4*v.rrrrs_s_1;
+    const real axis_y_rrrrs_axes4_x = rrrrs_Q_t_3*m->rrrrs_base_frame_xx[i] +
+        rrrrs_Q_t_5*m->rrrrs_base_frame_xy[i] + rrrrs_Q_t_6*m->rrrrs_base_frame_xz[i];
+    const real axis_y_rrrrs_axes4_y = rrrrs_Q_t_3*m->rrrrs_base_frame_yx[i] +
+        rrrrs_Q_t_5*m->rrrrs_base_frame_yy[i] + rrrrs_Q_t_6*m->rrrrs_base_frame_yz[i];
+    const real axis_y_rrrrs_axes4_z = rrrrs_Q_t_3*m->rrrrs_base_frame_zx[i] +
+        rrrrs_Q_t_5*m->rrrrs_base_frame_zy[i] + rrrrs_Q_t_6*m->rrrrs_base_frame_zz[i];
+    const real axis_x_rrrrs_axes4_x = axis_y_rrrrs_axes4_y*v.axis_z_rrrrs_axes4_z -
+        axis_y_rrrrs_axes4_z*v.axis_z_rrrrs_axes4_y;
+    const real axis_x_rrrrs_axes4_y = axis_y_rrrrs_axes4_z*v.axis_z_rrrrs_axes4_x -
+        axis_y_rrrrs_axes4_x*v.axis_z_rrrrs_axes4_z;
+    const real axis_x_rrrrs_axes4_z = axis_y_rrrrs_axes4_x*v.axis_z_rrrrs_axes4_y -
+        axis_y_rrrrs_axes4_y*v.axis_z_rrrrs_axes4_x;
+    const real rrrrs_Q_t_7 = v.rrrrs_d_c_in_axes4_xx - m->rrrrs_d_c_in_axes4_yy[i];
+    const real rrrrs_Q_t_8 = R(0.5)*rrrrs_Q_t_7;
+    const real rrrrs_Q_t_9 = v.rrrrs_d_c_in_axes4_xx +
+        v.rrrrs_d_Gamma_1_in_axes4_z*v.rrrrs_w_1_in_axes4_z +
+        v.rrrrs_d_alpha_4_in_axes4_xz*m->rrrrs_h_4_in_spec4_y[i] -
+        v.rrrrs_d_alpha_4_in_axes4_yz*m->rrrrs_h_4_in_spec4_x[i];
+    const real rrrrs_Q_t_10 = R(0.5)*rrrrs_Q_t_9;
+    const real rrrrs_Q_t_11 = axis_x_rrrrs_axes4_x*v.rrrrs_d_c_in_axes4_xy +
+        v.axis_z_rrrrs_axes4_x*v.rrrrs_d_c_in_axes4_yz - axis_y_rrrrs_axes4_x*rrrrs_Q_t_8;
+    const real rrrrs_Q_t_12 = axis_x_rrrrs_axes4_y*v.rrrrs_d_c_in_axes4_xy +
+        v.axis_z_rrrrs_axes4_y*v.rrrrs_d_c_in_axes4_yz - axis_y_rrrrs_axes4_y*rrrrs_Q_t_8;
+    const real rrrrs_Q_t_13 = axis_x_rrrrs_axes4_z*v.rrrrs_d_c_in_axes4_xy +
+        v.axis_z_rrrrs_axes4_z*v.rrrrs_d_c_in_axes4_yz - axis_y_rrrrs_axes4_z*rrrrs_Q_t_8;
+    const real rrrrs_Q_t_14 = v.axis_z_rrrrs_axes4_x*rrrrs_Q_t_10 -
+        axis_x_rrrrs_axes4_x*v.rrrrs_d_c_in_axes4_xz;
+    const real rrrrs_Q_t_15 = v.axis_z_rrrrs_axes4_y*rrrrs_Q_t_10 -
+        axis_x_rrrrs_axes4_y*v.rrrrs_d_c_in_axes4_xz;
+    const real rrrrs_Q_t_16 = v.axis_z_rrrrs_axes4_z*rrrrs_Q_t_10 -
+        axis_x_rrrrs_axes4_z*v.rrrrs_d_c_in_axes4_xz;
+    const real rrrrs_Q_t_17 = axis_y_rrrrs_axes4_x*rrrrs_Q_t_11 -
+        v.axis_z_rrrrs_axes4_x*rrrrs_Q_t_14;
+    const real rrrrs_Q_xx = -2*rrrrs_Q_t_17 - v.rrrrs_d_c_in_axes4_xx;
+    const real rrrrs_Q_xy = v.axis_z_rrrrs_axes4_x*rrrrs_Q_t_15 +
+        v.axis_z_rrrrs_axes4_y*rrrrs_Q_t_14 - axis_y_rrrrs_axes4_x*rrrrs_Q_t_12 -
+        axis_y_rrrrs_axes4_y*rrrrs_Q_t_11;
+    const real rrrrs_Q_xz = v.axis_z_rrrrs_axes4_x*rrrrs_Q_t_16 +
+        v.axis_z_rrrrs_axes4_z*rrrrs_Q_t_14 - axis_y_rrrrs_axes4_x*rrrrs_Q_t_13 -
+        axis_y_rrrrs_axes4_z*rrrrs_Q_t_11;
+    const real rrrrs_Q_t_18 = axis_y_rrrrs_axes4_y*rrrrs_Q_t_12 -
+        v.axis_z_rrrrs_axes4_y*rrrrs_Q_t_15;
+    const real rrrrs_Q_yy = -2*rrrrs_Q_t_18 - v.rrrrs_d_c_in_axes4_xx;
+    const real rrrrs_Q_yz = v.axis_z_rrrrs_axes4_y*rrrrs_Q_t_16 +
+        v.axis_z_rrrrs_axes4_z*rrrrs_Q_t_15 - axis_y_rrrrs_axes4_y*rrrrs_Q_t_13 -
+        axis_y_rrrrs_axes4_z*rrrrs_Q_t_12;
+    const real rrrrs_Q_t_19 = axis_y_rrrrs_axes4_z*rrrrs_Q_t_13 -
+        v.axis_z_rrrrs_axes4_z*rrrrs_Q_t_16;
+    const real rrrrs_Q_zz = -2*rrrrs_Q_t_19 - v.rrrrs_d_c_in_axes4_xx;
+    /* (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra
+       degree of freedom of joint 2 */
+    const real rrrrs_d_P_2_x = axis_x_rrrrs_axes4_x*v.rrrrs_d_P_2_in_axes4_x +
+        axis_y_rrrrs_axes4_x*v.rrrrs_d_P_2_in_axes4_y +
+        v.axis_z_rrrrs_axes4_x*v.rrrrs_d_P_2_in_axes4_z;
+    const real rrrrs_d_P_2_y = axis_x_rrrrs_axes4_y*v.rrrrs_d_P_2_in_axes4_x +
+        axis_y_rrrrs_axes4_y*v.rrrrs_d_P_2_in_axes4_y +
+        v.axis_z_rrrrs_axes4_y*v.rrrrs_d_P_2_in_axes4_z;
+    const real rrrrs_d_P_2_z = axis_x_rrrrs_axes4_z*v.rrrrs_d_P_2_in_axes4_x +
+        axis_y_rrrrs_axes4_z*v.rrrrs_d_P_2_in_axes4_y +
+        v.axis_z_rrrrs_axes4_z*v.rrrrs_d_P_2_in_axes4_z;
+    /* (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the
+       extra degree of freedom of joint 2 */
+    const real rrrrs_dy_2_P_2_t = rrrrs_dy_2_G_in_axes4_y*v.rrrrs_r_2_in_axes4_x +
+        v.rrrrs_r_2_in_axes4_y*v.rrrrs_w_3_in_axes4_x*(rrrrs_dy_2_G_in_axes4_y*v.rrrrs_r_3_in_axes4_x
+        - rrrrs_dy_2_Gamma_3);
+    const real rrrrs_dy_2_P_2 = rrrrs_dy_2_Gamma_2 - rrrrs_dy_2_P_2_t;
+    /* (M_ta) coupling block of M */
+    const real rrrrs_M_ta_t = -rrrrs_Q_xy*v.rrrrs_q_z;
+    const real rrrrs_M_ta_t_2 = rrrrs_Q_xz*v.rrrrs_q_y;
+    const real rrrrs_M_ta_t_3 = rrrrs_M_ta_t + rrrrs_M_ta_t_2;
+    const real rrrrs_M_ta_t_4 = rrrrs_Q_xz*v.rrrrs_q_x - rrrrs_Q_xx*v.rrrrs_q_z;
+    const real rrrrs_M_ta_t_5 = rrrrs_Q_xy*v.rrrrs_q_x - rrrrs_Q_xx*v.rrrrs_q_y;
+    const real rrrrs_M_ta_t_6 = rrrrs_Q_yz*v.rrrrs_q_y - rrrrs_Q_yy*v.rrrrs_q_z;
+    const real rrrrs_M_ta_t_7 = -rrrrs_Q_yz*v.rrrrs_q_x;
+    const real rrrrs_M_ta_t_8 = rrrrs_M_ta_t - rrrrs_M_ta_t_7;
+    const real rrrrs_M_ta_t_9 = rrrrs_Q_yy*v.rrrrs_q_x - rrrrs_Q_xy*v.rrrrs_q_y;
+    const real rrrrs_M_ta_t_10 = rrrrs_Q_zz*v.rrrrs_q_y - rrrrs_Q_yz*v.rrrrs_q_z;
+    const real rrrrs_M_ta_t_11 = rrrrs_Q_xz*v.rrrrs_q_z - rrrrs_Q_zz*v.rrrrs_q_x;
+    const real rrrrs_M_ta_t_12 = rrrrs_M_ta_t_2 + rrrrs_M_ta_t_7;
+    /* (M_aa) rotational block of M */
+    const real rrrrs_M_aa_t = rrrrs_M_ta_t_10*v.rrrrs_q_y - rrrrs_M_ta_t_6*v.rrrrs_q_z;
+    const real rrrrs_M_aa_t_2 = rrrrs_M_ta_t_11*v.rrrrs_q_y + rrrrs_M_ta_t_8*v.rrrrs_q_z;
+    const real rrrrs_M_aa_t_3 = rrrrs_M_ta_t_12*v.rrrrs_q_y + rrrrs_M_ta_t_9*v.rrrrs_q_z;
+    const real rrrrs_M_aa_t_4 = rrrrs_M_ta_t_11*v.rrrrs_q_x + rrrrs_M_ta_t_4*v.rrrrs_q_z;
+    const real rrrrs_M_aa_t_5 = rrrrs_M_ta_t_12*v.rrrrs_q_x + rrrrs_M_ta_t_5*v.rrrrs_q_z;
+    const real rrrrs_M_aa_t_6 = rrrrs_M_ta_t_9*v.rrrrs_q_x - rrrrs_M_ta_t_5*v.rrrrs_q_y;
+    /* (rrrrs-M_ya_2) coupling of extra joint 2 with the rotation of the platform */
+    const real rrrrs_M_ya_2_x = rrrrs_d_P_2_z*v.rrrrs_q_y - rrrrs_d_P_2_y*v.rrrrs_q_z;
+    const real rrrrs_M_ya_2_y = rrrrs_d_P_2_x*v.rrrrs_q_z - rrrrs_d_P_2_z*v.rrrrs_q_x;
+    const real rrrrs_M_ya_2_z = rrrrs_d_P_2_y*v.rrrrs_q_x - rrrrs_d_P_2_x*v.rrrrs_q_y;
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, rrrrs_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, rrrrs_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, rrrrs_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, rrrrs_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, rrrrs_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, rrrrs_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) */
+    gather(&terms[6*count + k], add, rrrrs_M_ta_t_3);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, -rrrrs_M_ta_t_4);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, rrrrs_M_ta_t_5);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, rrrrs_M_ta_t_6);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, -rrrrs_M_ta_t_8);  /* M_ta_yy */
+    gather(&terms[11*count + k], add, rrrrs_M_ta_t_9);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, rrrrs_M_ta_t_10);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, rrrrs_M_ta_t_11);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, -rrrrs_M_ta_t_12);  /* M_ta_zz */
+    /* (M_aa) */
+    gather(&terms[15*count + k], add, rrrrs_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, rrrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, rrrrs_M_aa_t_3);  /* M_aa_t */
+    gather(&terms[18*count + k], add, rrrrs_M_aa_t_4);  /* M_aa_t_2 */
+    gather(&terms[19*count + k], add, rrrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, rrrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
+    /* (rrrrs-d_P_2) */
+    o[0*count + k] = rrrrs_d_P_2_x;
+    o[1*count + k] = rrrrs_d_P_2_x;
+    o[2*count + k] = rrrrs_d_P_2_y;
+    o[3*count + k] = rrrrs_d_P_2_y;
+    o[4*count + k] = rrrrs_d_P_2_z;
+    o[5*count + k] = rrrrs_d_P_2_z;
+    /* (rrrrs-M_ya_2) */
+    o[6*count + k] = rrrrs_M_ya_2_x;
+    o[7*count + k] = rrrrs_M_ya_2_x;
+    o[8*count + k] = rrrrs_M_ya_2_y;
+    o[9*count + k] = rrrrs_M_ya_2_y;
+    o[10*count + k] = rrrrs_M_ya_2_z;
+    o[11*count + k] = rrrrs_M_ya_2_z;
+    /* (rrrrs-dy_2_P_2) */
+    o[12*count + k] = rrrrs_dy_2_P_2;
+    o[15*count + k] = (rrrrs_d_P_2_x + (rrrrs_d_P_2_y + rrrrs_d_P_2_z)) + ((rrrrs_M_ya_2_x +
+        rrrrs_M_ya_2_y) + (rrrrs_M_ya_2_z + rrrrs_dy_2_P_2));
+    o[14*count + k] = UNLESS(magnitude(v.rrrrs_h_3_t_11) >
+        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_23) >
+        TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]) + UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) >
+        TOLERANCE*m->rrrrs_size[i]) + UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) >
+        TOLERANCE*m->rrrrs_size[i]);
+    o[13*count + k] = UNLESS(v.rrrrs_h_3_t_24 >= 0);
 }
 
-INLINE void M_place_rrrrs(size_t w, size_t count, const real *o, size_t first, real *M, verdict
-    *t)
+INLINE void M_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const real *o, real *M,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        M[6*NV*w + k] = o[0*count + first + k];
-        M[6*w + k] = o[1*count + first + k];
-        M[(6*NV + 1)*w + k] = o[2*count + first + k];
-        M[(NV + 6)*w + k] = o[3*count + first + k];
-        M[(6*NV + 2)*w + k] = o[4*count + first + k];
-        M[(2*NV + 6)*w + k] = o[5*count + first + k];
-        M[(6*NV + 3)*w + k] = o[6*count + first + k];
-        M[(3*NV + 6)*w + k] = o[7*count + first + k];
-        M[(6*NV + 4)*w + k] = o[8*count + first + k];
-        M[(4*NV + 6)*w + k] = o[9*count + first + k];
-        M[(6*NV + 5)*w + k] = o[10*count + first + k];
-        M[(5*NV + 6)*w + k] = o[11*count + first + k];
-        M[(6*NV + 6)*w + k] = o[12*count + first + k];
-        t->unreachable[k] += o[13*count + first + k];
-        t->singular[k] += o[14*count + first + k];
-        t->total[k] += o[15*count + first + k];
-    }
+    M[6*NV*w + k] = o[0*count + at];
+    M[6*w + k] = o[1*count + at];
+    M[(6*NV + 1)*w + k] = o[2*count + at];
+    M[(NV + 6)*w + k] = o[3*count + at];
+    M[(6*NV + 2)*w + k] = o[4*count + at];
+    M[(2*NV + 6)*w + k] = o[5*count + at];
+    M[(6*NV + 3)*w + k] = o[6*count + at];
+    M[(3*NV + 6)*w + k] = o[7*count + at];
+    M[(6*NV + 4)*w + k] = o[8*count + at];
+    M[(4*NV + 6)*w + k] = o[9*count + at];
+    M[(6*NV + 5)*w + k] = o[10*count + at];
+    M[(5*NV + 6)*w + k] = o[11*count + at];
+    M[(6*NV + 6)*w + k] = o[12*count + at];
+    t->unreachable[k] += o[13*count + at];
+    t->singular[k] += o[14*count + at];
+    t->total[k] += o[15*count + at];
 }
 
-INLINE void M_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void M_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrrs v;
-        stage_rrrs_X(m, w, i, j, s, X, &v);
-        stage_rrrs_M_dynamics(m, i, &v);
-        /* (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rrrs_Q_t = v.rrrs_c_1*v.rrrs_e_1_in_axes3_x;
-        const real rrrs_Q_t_2 = v.rrrs_e_1_in_axes3_x*v.rrrs_s_1;
-        const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
-        const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
-        const real rrrs_base_frame_xz = m->rrrs_base_frame_xz[i];
-        const real axis_y_rrrs_axes3_x = rrrs_Q_t*rrrs_base_frame_xy +
-            rrrs_Q_t_2*rrrs_base_frame_xz + rrrs_base_frame_xx*v.rrrs_e_1_in_axes3_y;
-        const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
-        const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
-        const real rrrs_base_frame_yz = m->rrrs_base_frame_yz[i];
-        const real axis_y_rrrs_axes3_y = rrrs_Q_t*rrrs_base_frame_yy +
-            rrrs_Q_t_2*rrrs_base_frame_yz + rrrs_base_frame_yx*v.rrrs_e_1_in_axes3_y;
-        const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
-        const real rrrs_base_frame_zy = m->rrrs_base_frame_zy[i];
-        const real rrrs_base_frame_zz = m->rrrs_base_frame_zz[i];
-        const real axis_y_rrrs_axes3_z = rrrs_Q_t*rrrs_base_frame_zy +
-            rrrs_Q_t_2*rrrs_base_frame_zz + rrrs_base_frame_zx*v.rrrs_e_1_in_axes3_y;
-        const real axis_x_rrrs_axes3_x = axis_y_rrrs_axes3_y*v.axis_z_rrrs_axes3_z -
-            axis_y_rrrs_axes3_z*v.axis_z_rrrs_axes3_y;
-        const real axis_x_rrrs_axes3_y = axis_y_rrrs_axes3_z*v.axis_z_rrrs_axes3_x -
-            axis_y_rrrs_axes3_x*v.axis_z_rrrs_axes3_z;
-        const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_x*v.axis_z_rrrs_axes3_y -
-            axis_y_rrrs_axes3_y*v.axis_z_rrrs_axes3_x;
-        const real rrrs_d_c_in_axes3_yy = m->rrrs_d_c_in_axes3_yy[i];
-        const real rrrs_Q_t_3 = v.rrrs_d_c_in_axes3_xx - rrrs_d_c_in_axes3_yy;
-        const real rrrs_Q_t_4 = R(0.5)*rrrs_Q_t_3;
-        const real rrrs_h_3_in_spec3_x = m->rrrs_h_3_in_spec3_x[i];
-        const real rrrs_h_3_in_spec3_y = m->rrrs_h_3_in_spec3_y[i];
-        const real rrrs_Q_t_5 = v.rrrs_d_c_in_axes3_xx +
-            v.rrrs_d_Gamma_1_in_axes3_z*v.rrrs_w_1_in_axes3_z +
-            v.rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_y -
-            v.rrrs_d_alpha_3_in_axes3_yz*rrrs_h_3_in_spec3_x;
-        const real rrrs_Q_t_6 = R(0.5)*rrrs_Q_t_5;
-        const real rrrs_Q_t_7 = axis_x_rrrs_axes3_x*v.rrrs_d_c_in_axes3_xy +
-            v.axis_z_rrrs_axes3_x*v.rrrs_d_c_in_axes3_yz - axis_y_rrrs_axes3_x*rrrs_Q_t_4;
-        const real rrrs_Q_t_8 = axis_x_rrrs_axes3_y*v.rrrs_d_c_in_axes3_xy +
-            v.axis_z_rrrs_axes3_y*v.rrrs_d_c_in_axes3_yz - axis_y_rrrs_axes3_y*rrrs_Q_t_4;
-        const real rrrs_Q_t_9 = axis_x_rrrs_axes3_z*v.rrrs_d_c_in_axes3_xy +
-            v.axis_z_rrrs_axes3_z*v.rrrs_d_c_in_axes3_yz - axis_y_rrrs_axes3_z*rrrs_Q_t_4;
-        const real rrrs_Q_t_10 = v.axis_z_rrrs_axes3_x*rrrs_Q_t_6 -
-            axis_x_rrrs_axes3_x*v.rrrs_d_c_in_axes3_xz;
-        const real rrrs_Q_t_11 = v.axis_z_rrrs_axes3_y*rrrs_Q_t_6 -
-            axis_x_rrrs_axes3_y*v.rrrs_d_c_in_axes3_xz;
-        const real rrrs_Q_t_12 = v.axis_z_rrrs_axes3_z*rrrs_Q_t_6 -
-            axis_x_rrrs_axes3_z*v.rrrs_d_c_in_axes3_xz;
-        const real rrrs_Q_t_13 = axis_y_rrrs_axes3_x*rrrs_Q_t_7 -
-            v.axis_z_rrrs_axes3_x*rrrs_Q_t_10;
-        const real rrrs_Q_xx = -2*rrrs_Q_t_13 - v.rrrs_d_c_in_axes3_xx;
-        const real rrrs_Q_xy = v.axis_z_rrrs_axes3_x*rrrs_Q_t_11 +
-            v.axis_z_rrrs_axes3_y*rrrs_Q_t_10 - axis_y_rrrs_axes3_x*rrrs_Q_t_8 -
-            axis_y_rrrs_axes3_y*rrrs_Q_t_7;
-        const real rrrs_Q_xz = v.axis_z_rrrs_axes3_x*rrrs_Q_t_12 +
-            v.axis_z_rrrs_axes3_z*rrrs_Q_t_10 - axis_y_rrrs_axes3_x*rrrs_Q_t_9 -
-            axis_y_rrrs_axes3_z*rrrs_Q_t_7;
-        const real rrrs_Q_t_14 = axis_y_rrrs_axes3_y*rrrs_Q_t_8 -
-            v.axis_z_rrrs_axes3_y*rrrs_Q_t_11;
-        const real rrrs_Q_yy = -2*rrrs_Q_t_14 - v.rrrs_d_c_in_axes3_xx;
-        const real rrrs_Q_yz = v.axis_z_rrrs_axes3_y*rrrs_Q_t_12 +
-            v.axis_z_rrrs_axes3_z*rrrs_Q_t_11 - axis_y_rrrs_axes3_y*rrrs_Q_t_9 -
-            axis_y_rrrs_axes3_z*rrrs_Q_t_8;
-        const real rrrs_Q_t_15 = axis_y_rrrs_axes3_z*rrrs_Q_t_9 -
-            v.axis_z_rrrs_axes3_z*rrrs_Q_t_12;
-        const real rrrs_Q_zz = -2*rrrs_Q_t_15 - v.rrrs_d_c_in_axes3_xx;
-        /* (M_ta) coupling block of M */
-        const real rrrs_M_ta_t = rrrs_Q_xy*v.rrrs_q_z;
-        const real rrrs_M_ta_t_2 = rrrs_Q_xz*v.rrrs_q_y;
-        const real rrrs_M_ta_t_3 = rrrs_M_ta_t_2 - rrrs_M_ta_t;
-        const real rrrs_M_ta_t_4 = rrrs_Q_xx*v.rrrs_q_z - rrrs_Q_xz*v.rrrs_q_x;
-        const real rrrs_M_ta_t_5 = rrrs_Q_xy*v.rrrs_q_x - rrrs_Q_xx*v.rrrs_q_y;
-        const real rrrs_M_ta_t_6 = rrrs_Q_yz*v.rrrs_q_y - rrrs_Q_yy*v.rrrs_q_z;
-        const real rrrs_M_ta_t_7 = rrrs_Q_yz*v.rrrs_q_x;
-        const real rrrs_M_ta_t_8 = rrrs_M_ta_t - rrrs_M_ta_t_7;
-        const real rrrs_M_ta_t_9 = rrrs_Q_yy*v.rrrs_q_x - rrrs_Q_xy*v.rrrs_q_y;
-        const real rrrs_M_ta_t_10 = rrrs_Q_zz*v.rrrs_q_y - rrrs_Q_yz*v.rrrs_q_z;
-        const real rrrs_M_ta_t_11 = rrrs_Q_xz*v.rrrs_q_z - rrrs_Q_zz*v.rrrs_q_x;
-        const real rrrs_M_ta_t_12 = rrrs_M_ta_t_7 - rrrs_M_ta_t_2;
-        /* (M_aa) rotational block of M */
-        const real rrrs_M_aa_t = rrrs_M_ta_t_10*v.rrrs_q_y - rrrs_M_ta_t_6*v.rrrs_q_z;
-        const real rrrs_M_aa_t_2 = rrrs_M_ta_t_11*v.rrrs_q_y - rrrs_M_ta_t_8*v.rrrs_q_z;
-        const real rrrs_M_aa_t_3 = rrrs_M_ta_t_12*v.rrrs_q_y - rrrs_M_ta_t_9*v.rrrs_q_z;
-        const real rrrs_M_aa_t_4 = rrrs_M_ta_t_4*v.rrrs_q_z - rrrs_M_ta_t_11*v.rrrs_q_x;
-        const real rrrs_M_aa_t_5 = rrrs_M_ta_t_5*v.rrrs_q_z - rrrs_M_ta_t_12*v.rrrs_q_x;
-        const real rrrs_M_aa_t_6 = rrrs_M_ta_t_9*v.rrrs_q_x - rrrs_M_ta_t_5*v.rrrs_q_y;
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, rrrs_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, rrrs_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, rrrs_Q_xz);  /* M_tt_xz */
-        gather(&terms[3*count + k], add, rrrs_Q_yy);  /* M_tt_yy_of_legs */
-        gather(&terms[4*count + k], add, rrrs_Q_yz);  /* M_tt_yz */
-        gather(&terms[5*count + k], add, rrrs_Q_zz);  /* M_tt_zz_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[6*count + k], add, rrrs_M_ta_t_3);  /* M_ta_xx */
-        gather(&terms[7*count + k], add, rrrs_M_ta_t_4);  /* M_ta_xy_of_legs */
-        gather(&terms[8*count + k], add, rrrs_M_ta_t_5);  /* M_ta_xz_of_legs */
-        gather(&terms[9*count + k], add, rrrs_M_ta_t_6);  /* M_ta_yx_of_legs */
-        gather(&terms[10*count + k], add, rrrs_M_ta_t_8);  /* M_ta_yy */
-        gather(&terms[11*count + k], add, rrrs_M_ta_t_9);  /* M_ta_yz_of_legs */
-        gather(&terms[12*count + k], add, rrrs_M_ta_t_10);  /* M_ta_zx_of_legs */
-        gather(&terms[13*count + k], add, rrrs_M_ta_t_11);  /* M_ta_zy_of_legs */
-        gather(&terms[14*count + k], add, rrrs_M_ta_t_12);  /* M_ta_zz */
-        /* (M_aa) rotational block of M */
-        gather(&terms[15*count + k], add, rrrs_M_aa_t);  /* M_aa_xx_of_legs */
-        gather(&terms[16*count + k], add, rrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
-        gather(&terms[21*count + k], add, rrrs_M_aa_t_3);  /* M_aa_xz_of_legs */
-        gather(&terms[22*count + k], add, rrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
-        gather(&terms[19*count + k], add, rrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
-        gather(&terms[20*count + k], add, rrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
-        const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
-        const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
-        const real rrrs_size = m->rrrs_size[i];
-        o[1*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
-            UNLESS(magnitude(v.rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
-            UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
-            UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
-        o[0*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
-    }
+    values_rrrs v;
+    stage_rrrs_X(m, w, i, j, s, X, &v);
+    stage_rrrs_M_dynamics(m, i, &v);
+    /* (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rrrs_Q_t = v.rrrs_c_1*v.rrrs_e_1_in_axes3_x;
+    const real rrrs_Q_t_2 = v.rrrs_e_1_in_axes3_x*v.rrrs_s_1;
+    const real axis_y_rrrs_axes3_x = rrrs_Q_t*m->rrrs_base_frame_xy[i] +
+        rrrs_Q_t_2*m->rrrs_base_frame_xz[i] + m->rrrs_base_frame_xx[i]*v.rrrs_e_1_in_axes3_y;
+    const real axis_y_rrrs_axes3_y = rrrs_Q_t*m->rrrs_base_frame_yy[i] +
+        rrrs_Q_t_2*m->rrrs_base_frame_yz[i] + m->rrrs_base_frame_yx[i]*v.rrrs_e_1_in_axes3_y;
+    const real axis_y_rrrs_axes3_z = rrrs_Q_t*m->rrrs_base_frame_zy[i] +
+        rrrs_Q_t_2*m->rrrs_base_frame_zz[i] + m->rrrs_base_frame_zx[i]*v.rrrs_e_1_in_axes3_y;
+    const real axis_x_rrrs_axes3_x = axis_y_rrrs_axes3_y*v.axis_z_rrrs_axes3_z -
+        axis_y_rrrs_axes3_z*v.axis_z_rrrs_axes3_y;
+    const real axis_x_rrrs_axes3_y = axis_y_rrrs_axes3_z*v.axis_z_rrrs_axes3_x -
+        axis_y_rrrs_axes3_x*v.axis_z_rrrs_axes3_z;
+    const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_x*v.axis_z_rrrs_axes3_y -
+        axis_y_rrrs_axes3_y*v.axis_z_rrrs_axes3_x;
+    const real rrrs_Q_t_3 = v.rrrs_d_c_in_axes3_xx - m->rrrs_d_c_in_axes3_yy[i];
+    const real rrrs_Q_t_4 = R(0.5)*rrrs_Q_t_3;
+    const real rrrs_Q_t_5 = v.rrrs_d_c_in_axes3_xx +
+        v.rrrs_d_Gamma_1_in_axes3_z*v.rrrs_w_1_in_axes3_z +
+        v.rrrs_d_alpha_3_in_axes3_xz*m->rrrs_h_3_in_spec3_y[i] -
+        v.rrrs_d_alpha_3_in_axes3_yz*m->rrrs_h_3_in_spec3_x[i];
+    const real rrrs_Q_t_6 = R(0.5)*rrrs_Q_t_5;
+    const real rrrs_Q_t_7 = axis_x_rrrs_axes3_x*v.rrrs_d_c_in_axes3_xy +
+        v.axis_z_rrrs_axes3_x*v.rrrs_d_c_in_axes3_yz - axis_y_rrrs_axes3_x*rrrs_Q_t_4;
+    const real rrrs_Q_t_8 = axis_x_rrrs_axes3_y*v.rrrs_d_c_in_axes3_xy +
+        v.axis_z_rrrs_axes3_y*v.rrrs_d_c_in_axes3_yz - axis_y_rrrs_axes3_y*rrrs_Q_t_4;
+    const real rrrs_Q_t_9 = axis_x_rrrs_axes3_z*v.rrrs_d_c_in_axes3_xy +
+        v.axis_z_rrrs_axes3_z*v.rrrs_d_c_in_axes3_yz - axis_y_rrrs_axes3_z*rrrs_Q_t_4;
+    const real rrrs_Q_t_10 = v.axis_z_rrrs_axes3_x*rrrs_Q_t_6 -
+        axis_x_rrrs_axes3_x*v.rrrs_d_c_in_axes3_xz;
+    const real rrrs_Q_t_11 = v.axis_z_rrrs_axes3_y*rrrs_Q_t_6 -
+        axis_x_rrrs_axes3_y*v.rrrs_d_c_in_axes3_xz;
+    const real rrrs_Q_t_12 = v.axis_z_rrrs_axes3_z*rrrs_Q_t_6 -
+        axis_x_rrrs_axes3_z*v.rrrs_d_c_in_axes3_xz;
+    const real rrrs_Q_t_13 = axis_y_rrrs_axes3_x*rrrs_Q_t_7 -
+        v.axis_z_rrrs_axes3_x*rrrs_Q_t_10;
+    const real rrrs_Q_xx = -2*rrrs_Q_t_13 - v.rrrs_d_c_in_axes3_xx;
+    const real rrrs_Q_xy = v.axis_z_rrrs_axes3_x*rrrs_Q_t_11 +
+        v.axis_z_rrrs_axes3_y*rrrs_Q_t_10 - axis_y_rrrs_axes3_x*rrrs_Q_t_8 -
+        axis_y_rrrs_axes3_y*rrrs_Q_t_7;
+    const real rrrs_Q_xz = v.axis_z_rrrs_axes3_x*rrrs_Q_t_12 +
+        v.axis_z_rrrs_axes3_z*rrrs_Q_t_10 - axis_y_rrrs_axes3_x*rrrs_Q_t_9 -
+        axis_y_rrrs_axes3_z*rrrs_Q_t_7;
+    const real rrrs_Q_t_14 = axis_y_rrrs_axes3_y*rrrs_Q_t_8 -
+        v.axis_z_rrrs_axes3_y*rrrs_Q_t_11;
+    const real rrrs_Q_yy = -2*rrrs_Q_t_14 - v.rrrs_d_c_in_axes3_xx;
+    const real rrrs_Q_yz = v.axis_z_rrrs_axes3_y*rrrs_Q_t_12 +
+        v.axis_z_rrrs_axes3_z*rrrs_Q_t_11 - axis_y_rrrs_axes3_y*rrrs_Q_t_9 -
+        axis_y_rrrs_axes3_z*rrrs_Q_t_8;
+    const real rrrs_Q_t_15 = axis_y_rrrs_axes3_z*rrrs_Q_t_9 -
+        v.axis_z_rrrs_axes3_z*rrrs_Q_t_12;
+    const real rrrs_Q_zz = -2*rrrs_Q_t_15 - v.rrrs_d_c_in_axes3_xx;
+    /* (M_ta) */
+    const real rrrs_M_ta_t = rrrs_Q_xy*v.rrrs_q_z;
+    const real rrrs_M_ta_t_2 = rrrs_Q_xz*v.rrrs_q_y;
+    const real rrrs_M_ta_t_3 = rrrs_M_ta_t_2 - rrrs_M_ta_t;
+    const real rrrs_M_ta_t_4 = rrrs_Q_xx*v.rrrs_q_z - rrrs_Q_xz*v.rrrs_q_x;
+    const real rrrs_M_ta_t_5 = rrrs_Q_xy*v.rrrs_q_x - rrrs_Q_xx*v.rrrs_q_y;
+    const real rrrs_M_ta_t_6 = rrrs_Q_yz*v.rrrs_q_y - rrrs_Q_yy*v.rrrs_q_z;
+    const real rrrs_M_ta_t_7 = rrrs_Q_yz*v.rrrs_q_x;
+    const real rrrs_M_ta_t_8 = rrrs_M_ta_t - rrrs_M_ta_t_7;
+    const real rrrs_M_ta_t_9 = rrrs_Q_yy*v.rrrs_q_x - rrrs_Q_xy*v.rrrs_q_y;
+    const real rrrs_M_ta_t_10 = rrrs_Q_zz*v.rrrs_q_y - rrrs_Q_yz*v.rrrs_q_z;
+    const real rrrs_M_ta_t_11 = rrrs_Q_xz*v.rrrs_q_z - rrrs_Q_zz*v.rrrs_q_x;
+    const real rrrs_M_ta_t_12 = rrrs_M_ta_t_7 - rrrs_M_ta_t_2;
+    /* (M_aa) */
+    const real rrrs_M_aa_t = rrrs_M_ta_t_10*v.rrrs_q_y - rrrs_M_ta_t_6*v.rrrs_q_z;
+    const real rrrs_M_aa_t_2 = rrrs_M_ta_t_11*v.rrrs_q_y - rrrs_M_ta_t_8*v.rrrs_q_z;
+    const real rrrs_M_aa_t_3 = rrrs_M_ta_t_12*v.rrrs_q_y - rrrs_M_ta_t_9*v.rrrs_q_z;
+    const real rrrs_M_aa_t_4 = rrrs_M_ta_t_4*v.rrrs_q_z - rrrs_M_ta_t_11*v.rrrs_q_x;
+    const real rrrs_M_aa_t_5 = rrrs_M_ta_t_5*v.rrrs_q_z - rrrs_M_ta_t_12*v.rrrs_q_x;
+    const real rrrs_M_aa_t_6 = rrrs_M_ta_t_9*v.rrrs_q_x - rrrs_M_ta_t_5*v.rrrs_q_y;
+    /* (M_tt) */
+    gather(&terms[0*count + k], add, rrrs_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, rrrs_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, rrrs_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, rrrs_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, rrrs_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, rrrs_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) */
+    gather(&terms[6*count + k], add, rrrs_M_ta_t_3);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, rrrs_M_ta_t_4);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, rrrs_M_ta_t_5);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, rrrs_M_ta_t_6);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, rrrs_M_ta_t_8);  /* M_ta_yy */
+    gather(&terms[11*count + k], add, rrrs_M_ta_t_9);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, rrrs_M_ta_t_10);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, rrrs_M_ta_t_11);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, rrrs_M_ta_t_12);  /* M_ta_zz */
+    /* (M_aa) */
+    gather(&terms[15*count + k], add, rrrs_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, rrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[21*count + k], add, rrrs_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[22*count + k], add, rrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, rrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, rrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
+    o[1*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_rho2_2) >
+        TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) + UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) >
+        TOLERANCE*m->rrrs_size[i]) + UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) >
+        TOLERANCE*m->rrrs_size[i]);
+    o[0*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
 }
 
-INLINE void M_place_rrrs(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void M_place_rrrs(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o[0*count + first + k];
-        t->singular[k] += o[1*count + first + k];
-    }
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
 }
 
-INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums, real *M, verdict
-    *t)
+INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
+    *M, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (M_tt) translational block of M */
-        const real M_tt_xx_of_legs = sums[0*w + k];
-        const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_xx_of_legs + m_star;
-        const real M_tt_yy_of_legs = sums[3*w + k];
-        const real M_tt_yy = M_tt_yy_of_legs + m_star;
-        const real M_tt_zz_of_legs = sums[5*w + k];
-        const real M_tt_zz = M_tt_zz_of_legs + m_star;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[11*w + k];
-        const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
-        const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[10*w + k];
-        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-        const real M_ta_yx_of_legs = sums[9*w + k];
-        const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-        const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[9*w + k];
-        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
-        const real M_ta_zx_of_legs = sums[12*w + k];
-        const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
-        const real M_ta_zy_of_legs = sums[13*w + k];
-        const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-        /* (M_aa) rotational block of M */
-        const real J_star_xx = s[12*w + k];
-        const real M_aa_xx_of_legs = sums[15*w + k];
-        const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[13*w + k];
-        const real M_aa_xy_of_legs = sums[16*w + k];
-        const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[14*w + k];
-        const real M_aa_t = sums[17*w + k];
-        const real M_aa_xz_of_legs = sums[21*w + k];
-        const real M_aa_xz = J_star_xz + M_aa_xz_of_legs - M_aa_t;
-        const real J_star_yy = s[15*w + k];
-        const real M_aa_t_2 = sums[18*w + k];
-        const real M_aa_yy_of_legs = sums[22*w + k];
-        const real M_aa_yy = J_star_yy + M_aa_yy_of_legs - M_aa_t_2;
-        const real J_star_yz = s[16*w + k];
-        const real M_aa_yz_of_legs = sums[19*w + k];
-        const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[17*w + k];
-        const real M_aa_zz_of_legs = sums[20*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-        /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        const real M_tt_xy = sums[1*w + k];
-        M[1*w + k] = M_tt_xy;
-        M[NV*w + k] = M_tt_xy;
-        const real M_tt_xz = sums[2*w + k];
-        M[2*w + k] = M_tt_xz;
-        M[2*NV*w + k] = M_tt_xz;
-        M[(NV + 1)*w + k] = M_tt_yy;
-        const real M_tt_yz = sums[4*w + k];
-        M[(NV + 2)*w + k] = M_tt_yz;
-        M[(2*NV + 1)*w + k] = M_tt_yz;
-        M[(2*NV + 2)*w + k] = M_tt_zz;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xx = sums[6*w + k];
-        M[3*w + k] = M_ta_xx;
-        M[3*NV*w + k] = M_ta_xx;
-        M[4*w + k] = M_ta_xy;
-        M[4*NV*w + k] = M_ta_xy;
-        M[5*w + k] = M_ta_xz;
-        M[5*NV*w + k] = M_ta_xz;
-        M[(NV + 3)*w + k] = M_ta_yx;
-        M[(3*NV + 1)*w + k] = M_ta_yx;
-        const real M_ta_yy = sums[10*w + k];
-        M[(NV + 4)*w + k] = M_ta_yy;
-        M[(4*NV + 1)*w + k] = M_ta_yy;
-        M[(NV + 5)*w + k] = M_ta_yz;
-        M[(5*NV + 1)*w + k] = M_ta_yz;
-        M[(2*NV + 3)*w + k] = M_ta_zx;
-        M[(3*NV + 2)*w + k] = M_ta_zx;
-        M[(2*NV + 4)*w + k] = M_ta_zy;
-        M[(4*NV + 2)*w + k] = M_ta_zy;
-        const real M_ta_zz = sums[14*w + k];
-        M[(2*NV + 5)*w + k] = M_ta_zz;
-        M[(5*NV + 2)*w + k] = M_ta_zz;
-        /* (M_aa) rotational block of M */
-        M[(3*NV + 3)*w + k] = M_aa_xx;
-        M[(3*NV + 4)*w + k] = M_aa_xy;
-        M[(4*NV + 3)*w + k] = M_aa_xy;
-        M[(3*NV + 5)*w + k] = M_aa_xz;
-        M[(5*NV + 3)*w + k] = M_aa_xz;
-        M[(4*NV + 4)*w + k] = M_aa_yy;
-        M[(4*NV + 5)*w + k] = M_aa_yz;
-        M[(5*NV + 4)*w + k] = M_aa_yz;
-        M[(5*NV + 5)*w + k] = M_aa_zz;
-        t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
-            M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
-            (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
-            M_aa_zz))));
-    }
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    /* (M_ta) */
+    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real h_star_z = s[11*w + k];
+    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real h_star_y = s[10*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yx_of_legs = sums[9*w + k];
+    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_yz_of_legs = sums[11*w + k];
+    const real h_star_x = s[9*w + k];
+    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_zx_of_legs = sums[12*w + k];
+    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zy_of_legs = sums[13*w + k];
+    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    /* (M_aa) */
+    const real J_star_xx = s[12*w + k];
+    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
+    const real J_star_xy = s[13*w + k];
+    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
+    const real J_star_xz = s[14*w + k];
+    const real M_aa_t = sums[17*w + k];
+    const real M_aa_xz_of_legs = sums[21*w + k];
+    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs - M_aa_t;
+    const real J_star_yy = s[15*w + k];
+    const real M_aa_t_2 = sums[18*w + k];
+    const real M_aa_yy_of_legs = sums[22*w + k];
+    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs - M_aa_t_2;
+    const real J_star_yz = s[16*w + k];
+    const real M_aa_yz_of_legs = sums[19*w + k];
+    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
+    const real J_star_zz = s[17*w + k];
+    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    const real M_tt_xz = sums[2*w + k];
+    M[2*w + k] = M_tt_xz;
+    M[2*NV*w + k] = M_tt_xz;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_yz = sums[4*w + k];
+    M[(NV + 2)*w + k] = M_tt_yz;
+    M[(2*NV + 1)*w + k] = M_tt_yz;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    /* (M_ta) */
+    const real M_ta_xx = sums[6*w + k];
+    M[3*w + k] = M_ta_xx;
+    M[3*NV*w + k] = M_ta_xx;
+    M[4*w + k] = M_ta_xy;
+    M[4*NV*w + k] = M_ta_xy;
+    M[5*w + k] = M_ta_xz;
+    M[5*NV*w + k] = M_ta_xz;
+    M[(NV + 3)*w + k] = M_ta_yx;
+    M[(3*NV + 1)*w + k] = M_ta_yx;
+    const real M_ta_yy = sums[10*w + k];
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
+    M[(NV + 5)*w + k] = M_ta_yz;
+    M[(5*NV + 1)*w + k] = M_ta_yz;
+    M[(2*NV + 3)*w + k] = M_ta_zx;
+    M[(3*NV + 2)*w + k] = M_ta_zx;
+    M[(2*NV + 4)*w + k] = M_ta_zy;
+    M[(4*NV + 2)*w + k] = M_ta_zy;
+    const real M_ta_zz = sums[14*w + k];
+    M[(2*NV + 5)*w + k] = M_ta_zz;
+    M[(5*NV + 2)*w + k] = M_ta_zz;
+    /* (M_aa) */
+    M[(3*NV + 3)*w + k] = M_aa_xx;
+    M[(3*NV + 4)*w + k] = M_aa_xy;
+    M[(4*NV + 3)*w + k] = M_aa_xy;
+    M[(3*NV + 5)*w + k] = M_aa_xz;
+    M[(5*NV + 3)*w + k] = M_aa_xz;
+    M[(4*NV + 4)*w + k] = M_aa_yy;
+    M[(4*NV + 5)*w + k] = M_aa_yz;
+    M[(5*NV + 4)*w + k] = M_aa_yz;
+    M[(5*NV + 5)*w + k] = M_aa_zz;
+    t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
+        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
+        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+        M_aa_zz))));
 }
 
-INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
+APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
     real s[18] = {0}, sums[23] = {0};
     real terms_rrrrs[23*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[16*LEGS(LEGS_OF_rrrrs)] = {0};
     real terms_rrrs[23*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0};
-    M_before(m, 1, X, s, t);
-    M_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrrs), 0, X, terms_rrrrs, o_rrrrs);
-    M_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), 0, X, terms_rrrs, o_rrrs);
-    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
-        M_place_rrrrs(1, LEGS(LEGS_OF_rrrrs), o_rrrrs, leg, M, t);
+    M_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
+        M_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), 0, s, X, terms_rrrrs, o_rrrrs);
+    }
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
+        M_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), 0, s, X, terms_rrrs, o_rrrs);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
+        M_place_rrrrs(1, 0, i, LEGS(LEGS_OF_rrrrs), o_rrrrs, M, t);
     }
     for (size_t n = 0; n < 23; ++n) {
         sums[n] = total(terms_rrrrs + n*LEGS(LEGS_OF_rrrrs), LEGS_OF_rrrrs);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
-        M_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, t);
+    for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        M_place_rrrs(0, i, LEGS(LEGS_OF_rrrs), o_rrrs, t);
     }
     for (size_t n = 0; n < 23; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
             sums[n] += terms_rrrs[n*LEGS(LEGS_OF_rrrs) + leg];
         }
     }
-    M_after(m, 1, s, sums, M, t);
+    M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
+INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verdict *restrict t)
 {
     real s[18*LANES], sums[23*LANES];
     real o_rrrrs[16*LANES];
     real o_rrrs[2*LANES];
-    M_before(m, LANES, X, s, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        M_before(m, LANES, k, X, s, t);
+    }
     clear(sums, 23*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
-        M_legs_rrrrs(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_rrrrs);
-        M_place_rrrrs(LANES, LANES, o_rrrrs, 0, M, t);
+    for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            M_legs_rrrrs(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rrrrs);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            M_place_rrrrs(LANES, k, k, LANES, o_rrrrs, M, t);
+        }
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
-        M_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_rrrs);
-        M_place_rrrs(LANES, LANES, o_rrrs, 0, t);
+    for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            M_legs_rrrs(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rrrs);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            M_place_rrrs(k, k, LANES, o_rrrs, t);
+        }
     }
-    M_after(m, LANES, s, sums, M, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        M_after(m, LANES, k, s, sums, M, t);
+    }
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s, verdict
-    *t)
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        stage_V_X(w, k, V, &v);
-        stage_Z_dynamics(m, w, k, V, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = v.Z_p_x;
-        s[10*w + k] = v.Z_p_y;
-        s[11*w + k] = v.Z_p_z;
-        s[12*w + k] = v.Z_q_x;
-        s[13*w + k] = v.Z_q_y;
-        s[14*w + k] = v.Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    stage_V_X(w, k, V, &v);
+    stage_Z_dynamics(m, w, k, V, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = v.Z_p_x;
+    s[10*w + k] = v.Z_p_y;
+    s[11*w + k] = v.Z_p_z;
+    s[12*w + k] = v.Z_q_x;
+    s[13*w + k] = v.Z_q_y;
+    s[14*w + k] = v.Z_q_z;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
+INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrrrs v;
-        stage_rrrrs_V(w, j, V, &v);
-        stage_rrrrs_X(m, w, i, j, s, X, &v);
-        stage_rrrrs_V_X(w, j, V, &v);
-        /* (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-        const real rrrrs_base_frame_xx = m->rrrrs_base_frame_xx[i];
-        const real rrrrs_base_frame_xy = m->rrrrs_base_frame_xy[i];
-        const real rrrrs_base_frame_xz = m->rrrrs_base_frame_xz[i];
-        const real axis_y_rrrrs_axes4_x = v.rrrrs_S_dot_rest_t_3*rrrrs_base_frame_xx +
-            v.rrrrs_S_dot_rest_t_5*rrrrs_base_frame_xy +
-            v.rrrrs_S_dot_rest_t_6*rrrrs_base_frame_xz;
-        const real rrrrs_base_frame_yx = m->rrrrs_base_frame_yx[i];
-        const real rrrrs_base_frame_yy = m->rrrrs_base_frame_yy[i];
-        const real rrrrs_base_frame_yz = m->rrrrs_base_frame_yz[i];
-        const real axis_y_rrrrs_axes4_y = v.rrrrs_S_dot_rest_t_3*rrrrs_base_frame_yx +
-            v.rrrrs_S_dot_rest_t_5*rrrrs_base_frame_yy +
-            v.rrrrs_S_dot_rest_t_6*rrrrs_base_frame_yz;
-        const real rrrrs_base_frame_zx = m->rrrrs_base_frame_zx[i];
-        const real rrrrs_base_frame_zy = m->rrrrs_base_frame_zy[i];
-        const real rrrrs_base_frame_zz = m->rrrrs_base_frame_zz[i];
-        const real axis_y_rrrrs_axes4_z = v.rrrrs_S_dot_rest_t_3*rrrrs_base_frame_zx +
-            v.rrrrs_S_dot_rest_t_5*rrrrs_base_frame_zy +
-            v.rrrrs_S_dot_rest_t_6*rrrrs_base_frame_zz;
-        const real axis_x_rrrrs_axes4_x = axis_y_rrrrs_axes4_y*v.axis_z_rrrrs_axes4_z -
-            axis_y_rrrrs_axes4_z*v.axis_z_rrrrs_axes4_y;
-        const real axis_x_rrrrs_axes4_y = axis_y_rrrrs_axes4_z*v.axis_z_rrrrs_axes4_x -
-            axis_y_rrrrs_axes4_x*v.axis_z_rrrrs_axes4_z;
-        const real axis_x_rrrrs_axes4_z = axis_y_rrrrs_axes4_x*v.axis_z_rrrrs_axes4_y -
-            axis_y_rrrrs_axes4_y*v.axis_z_rrrrs_axes4_x;
-        const real rrrrs_yd_2 = V[6*w + j];
-        const real rrrrs_S_dot_rest_x = v.rrrrs_S_dot_x -
-            rrrrs_yd_2*(axis_y_rrrrs_axes4_x*v.rrrrs_r_2_in_axes4_x -
-            axis_x_rrrrs_axes4_x*v.rrrrs_r_2_in_axes4_y);
-        const real rrrrs_S_dot_rest_y = v.rrrrs_S_dot_y -
-            rrrrs_yd_2*(axis_y_rrrrs_axes4_y*v.rrrrs_r_2_in_axes4_x -
-            axis_x_rrrrs_axes4_y*v.rrrrs_r_2_in_axes4_y);
-        const real rrrrs_S_dot_rest_z = v.rrrrs_S_dot_z -
-            rrrrs_yd_2*(axis_y_rrrrs_axes4_z*v.rrrrs_r_2_in_axes4_x -
-            axis_x_rrrrs_axes4_z*v.rrrrs_r_2_in_axes4_y);
-        /* (rrrrs-qd_1) rate of joint 1 */
-        const real rrrrs_qd_1 = v.rrrrs_w_1_in_axes4_z*(v.axis_z_rrrrs_axes4_x*rrrrs_S_dot_rest_x
-            + v.axis_z_rrrrs_axes4_y*rrrrs_S_dot_rest_y +
-            v.axis_z_rrrrs_axes4_z*rrrrs_S_dot_rest_z);
-        /* (rrrrs-qd_3) rate of joint 3 */
-        const real rrrrs_qd_3 = v.rrrrs_w_3_in_axes4_x*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
-            axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_x_rrrrs_axes4_z*rrrrs_S_dot_rest_z);
-        /* (rrrrs-qd_4) rate of joint 4 */
-        const real rrrrs_w_4_in_axes4_y = m->rrrrs_w_4_in_axes4_y[i];
-        const real rrrrs_qd_4 = rrrrs_w_4_in_axes4_y*(axis_y_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
-            axis_y_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_y_rrrrs_axes4_z*rrrrs_S_dot_rest_z -
-            rrrrs_qd_3*v.rrrrs_r_3_in_axes4_x);
-        /* (rrrrs-omega_1) angular velocity of link 1 */
-        const real rrrrs_omega_1_in_axes2_x = v.rrrrs_c_2*rrrrs_qd_1;
-        const real rrrrs_omega_1_in_axes2_y = -rrrrs_qd_1*v.rrrrs_s_2;
-        const real rrrrs_omega_1_t = v.rrrrs_c_3*rrrrs_omega_1_in_axes2_x +
-            rrrrs_omega_1_in_axes2_y*v.rrrrs_s_3;
-        const real rrrrs_omega_1_t_2 = v.rrrrs_c_3*rrrrs_omega_1_in_axes2_y -
-            rrrrs_omega_1_in_axes2_x*v.rrrrs_s_3;
-        const real rrrrs_omega_1_in_axes4_x = v.rrrrs_c_4*rrrrs_omega_1_t -
-            rrrrs_omega_1_t_2*v.rrrrs_s_4_t;
-        const real rrrrs_omega_1_in_axes4_y = v.rrrrs_c_4*rrrrs_omega_1_t_2 +
-            rrrrs_omega_1_t*v.rrrrs_s_4_t;
-        /* (rrrrs-W_1) centripetal tensor of link 1 */
-        const real rrrrs_W_1_t = rrrrs_omega_1_in_axes4_x*rrrrs_omega_1_in_axes4_x;
-        const real rrrrs_W_1_t_2 = rrrrs_omega_1_in_axes4_y*rrrrs_omega_1_in_axes4_y;
-        const real rrrrs_W_1_in_axes4_xy = rrrrs_omega_1_in_axes4_x*rrrrs_omega_1_in_axes4_y;
-        /* (rrrrs-W_2) centripetal tensor of link 2 */
-        const real rrrrs_W_2_in_axes2_yz = rrrrs_omega_1_in_axes2_y*rrrrs_yd_2;
-        const real rrrrs_W_2_in_axes2_xz = rrrrs_omega_1_in_axes2_x*rrrrs_yd_2;
-        const real rrrrs_W_2_in_axes2_xy = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_y;
-        /* (rrrrs-omega_3) angular velocity of link 3 */
-        const real rrrrs_omega_3_in_axes3_z = rrrrs_qd_3 + rrrrs_yd_2;
-        /* (rrrrs-W_3) centripetal tensor of link 3 */
-        const real rrrrs_W_3_in_axes3_xy = rrrrs_omega_1_t*rrrrs_omega_1_t_2;
-        const real rrrrs_W_3_in_axes3_xz = rrrrs_omega_1_t*rrrrs_omega_3_in_axes3_z;
-        const real rrrrs_W_3_in_axes3_yz = rrrrs_omega_1_t_2*rrrrs_omega_3_in_axes3_z;
-        /* (rrrrs-omega_4) angular velocity of link 4 */
-        const real rrrrs_omega_4_in_axes4_z = rrrrs_omega_3_in_axes3_z + rrrrs_qd_4;
-        /* (rrrrs-W_4) centripetal tensor of link 4 */
-        const real rrrrs_W_4_t = rrrrs_omega_4_in_axes4_z*rrrrs_omega_4_in_axes4_z;
-        const real rrrrs_W_4_t_2 = rrrrs_W_1_t_2 + rrrrs_W_4_t;
-        const real rrrrs_W_4_in_axes4_xz = rrrrs_omega_1_in_axes4_x*rrrrs_omega_4_in_axes4_z;
-        const real rrrrs_W_4_in_axes4_yz = rrrrs_omega_1_in_axes4_y*rrrrs_omega_4_in_axes4_z;
-        /* (rrrrs-u_1) centripetal acceleration of the connection point */
-        const real omega_y = V[4*w + j];
-        const real omega_z = V[5*w + j];
-        const real rrrrs_u_1_x = omega_y*v.rrrrs_S_dot_t_3 - omega_z*v.rrrrs_S_dot_t_2;
-        const real omega_x = V[3*w + j];
-        const real rrrrs_u_1_y = omega_z*v.rrrrs_S_dot_t - omega_x*v.rrrrs_S_dot_t_3;
-        const real rrrrs_u_1_z = omega_x*v.rrrrs_S_dot_t_2 - omega_y*v.rrrrs_S_dot_t;
-        const real rrrrs_u_1_in_axes4_x = axis_x_rrrrs_axes4_x*rrrrs_u_1_x +
-            axis_x_rrrrs_axes4_y*rrrrs_u_1_y + axis_x_rrrrs_axes4_z*rrrrs_u_1_z;
-        const real rrrrs_u_1_in_axes4_y = axis_y_rrrrs_axes4_x*rrrrs_u_1_x +
-            axis_y_rrrrs_axes4_y*rrrrs_u_1_y + axis_y_rrrrs_axes4_z*rrrrs_u_1_z;
-        const real rrrrs_u_1_in_axes4_z = v.axis_z_rrrrs_axes4_x*rrrrs_u_1_x +
-            v.axis_z_rrrrs_axes4_y*rrrrs_u_1_y + v.axis_z_rrrrs_axes4_z*rrrrs_u_1_z;
-        /* (rrrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real rrrrs_zeta_3_in_axes3_x = rrrrs_omega_1_t_2*rrrrs_qd_3;
-        const real rrrrs_zeta_3_in_axes3_y = -rrrrs_omega_1_t*rrrrs_qd_3;
-        /* (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real rrrrs_beta_3_in_axes3_x = rrrrs_zeta_3_in_axes3_x +
-            rrrrs_W_2_in_axes2_yz*v.rrrrs_c_3 - rrrrs_W_2_in_axes2_xz*v.rrrrs_s_3;
-        const real rrrrs_beta_3_in_axes3_y = rrrrs_zeta_3_in_axes3_y -
-            rrrrs_W_2_in_axes2_xz*v.rrrrs_c_3 - rrrrs_W_2_in_axes2_yz*v.rrrrs_s_3;
-        const real rrrrs_beta_3_in_axes4_y = rrrrs_beta_3_in_axes3_x*v.rrrrs_s_4_t +
-            rrrrs_beta_3_in_axes3_y*v.rrrrs_c_4;
-        /* (rrrrs-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
-        const real rrrrs_zeta_4_t = rrrrs_omega_1_in_axes4_x*rrrrs_qd_4;
-        /* (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations */
-        const real rrrrs_beta_4_in_axes4_y = rrrrs_beta_3_in_axes4_y - rrrrs_zeta_4_t;
-        /* (rrrrs-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrrrs_bias_t_2 = rrrrs_omega_3_in_axes3_z*rrrrs_omega_3_in_axes3_z;
-        const real rrrrs_platform_joint_offset_x = m->rrrrs_platform_joint_offset_x[i];
-        const real rrrrs_bias_in_axes4_x = rrrrs_W_1_in_axes4_xy*v.rrrrs_d_2_in_axes4_y +
-            rrrrs_W_1_in_axes4_xy*v.rrrrs_d_3_in_axes4_y +
-            rrrrs_W_1_in_axes4_xy*v.rrrrs_d_4_in_axes4_y - rrrrs_W_1_t_2*v.rrrrs_d_2_in_axes4_x -
-            rrrrs_W_4_t_2*rrrrs_platform_joint_offset_x - v.rrrrs_d_3_in_axes4_x*(rrrrs_W_1_t_2 +
-            v.rrrrs_bias_t) - v.rrrrs_d_4_in_axes4_x*(rrrrs_W_1_t_2 + rrrrs_bias_t_2);
-        const real rrrrs_bias_in_axes4_y = rrrrs_W_1_in_axes4_xy*v.rrrrs_d_2_in_axes4_x +
-            rrrrs_W_1_in_axes4_xy*v.rrrrs_d_3_in_axes4_x +
-            rrrrs_W_1_in_axes4_xy*v.rrrrs_d_4_in_axes4_x +
-            rrrrs_W_1_in_axes4_xy*rrrrs_platform_joint_offset_x -
-            rrrrs_W_1_t*v.rrrrs_d_2_in_axes4_y - v.rrrrs_d_3_in_axes4_y*(rrrrs_W_1_t +
-            v.rrrrs_bias_t) - v.rrrrs_d_4_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t_2);
-        const real rrrrs_bias_in_axes4_z =
-            v.rrrrs_d_4_in_axes4_x*(rrrrs_omega_1_in_axes4_x*rrrrs_omega_3_in_axes3_z -
-            rrrrs_beta_3_in_axes4_y) + v.rrrrs_d_4_in_axes4_y*(rrrrs_beta_3_in_axes3_x*v.rrrrs_c_4
-            + rrrrs_omega_1_in_axes4_y*rrrrs_omega_3_in_axes3_z -
-            rrrrs_beta_3_in_axes3_y*v.rrrrs_s_4_t) +
-            rrrrs_platform_joint_offset_x*(rrrrs_W_4_in_axes4_xz - rrrrs_beta_4_in_axes4_y) +
-            2*v.rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
-            2*v.rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2;
-        /* (rrrrs-rel_o) remainder of: acceleration of the connection point left to the joint
-           accelerations */
-        const real rrrrs_rel_o_in_axes4_x = rrrrs_u_1_in_axes4_x - rrrrs_bias_in_axes4_x;
-        const real rrrrs_rel_o_in_axes4_y = rrrrs_u_1_in_axes4_y - rrrrs_bias_in_axes4_y;
-        const real rrrrs_rel_o_in_axes4_z = rrrrs_u_1_in_axes4_z - rrrrs_bias_in_axes4_z;
-        /* (rrrrs-qdd_1_o) remainder of: acceleration of joint 1 */
-        const real rrrrs_qdd_1_o = rrrrs_rel_o_in_axes4_z*v.rrrrs_w_1_in_axes4_z;
-        /* (rrrrs-qdd_3_o) remainder of: acceleration of joint 3 */
-        const real rrrrs_qdd_3_o = rrrrs_rel_o_in_axes4_x*v.rrrrs_w_3_in_axes4_x;
-        /* (rrrrs-alpha_1_o) remainder of: angular acceleration of link 1 */
-        const real rrrrs_alpha_1_o_in_axes2_x = v.rrrrs_c_2*rrrrs_qdd_1_o;
-        const real rrrrs_alpha_1_o_in_axes2_y = -rrrrs_qdd_1_o*v.rrrrs_s_2;
-        /* (rrrrs-alpha_2_o) remainder of: angular acceleration of link 2 */
-        const real rrrrs_alpha_2_o_in_axes2_x = rrrrs_W_2_in_axes2_yz +
-            rrrrs_alpha_1_o_in_axes2_x;
-        const real rrrrs_alpha_2_o_in_axes2_y = rrrrs_alpha_1_o_in_axes2_y -
-            rrrrs_W_2_in_axes2_xz;
-        /* (rrrrs-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real rrrrs_B_2_o_in_axes2_zx = rrrrs_W_2_in_axes2_xz - rrrrs_alpha_2_o_in_axes2_y;
-        const real rrrrs_B_2_o_in_axes2_zy = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_2_o_in_axes2_x;
-        /* (rrrrs-alpha_3_o) remainder of: angular acceleration of link 3 */
-        const real rrrrs_alpha_3_o_in_axes3_x = rrrrs_zeta_3_in_axes3_x +
-            rrrrs_alpha_2_o_in_axes2_x*v.rrrrs_c_3 + rrrrs_alpha_2_o_in_axes2_y*v.rrrrs_s_3;
-        const real rrrrs_alpha_3_o_in_axes3_y = rrrrs_zeta_3_in_axes3_y +
-            rrrrs_alpha_2_o_in_axes2_y*v.rrrrs_c_3 - rrrrs_alpha_2_o_in_axes2_x*v.rrrrs_s_3;
-        /* (rrrrs-B_3_o) remainder of the acceleration tensor of link 3 */
-        const real rrrrs_B_3_o_in_axes3_xy = rrrrs_W_3_in_axes3_xy - rrrrs_qdd_3_o;
-        const real rrrrs_B_3_o_in_axes3_xz = rrrrs_W_3_in_axes3_xz + rrrrs_alpha_3_o_in_axes3_y;
-        const real rrrrs_B_3_o_in_axes3_yx = rrrrs_W_3_in_axes3_xy + rrrrs_qdd_3_o;
-        const real rrrrs_B_3_o_in_axes3_yz = rrrrs_W_3_in_axes3_yz - rrrrs_alpha_3_o_in_axes3_x;
-        const real rrrrs_B_3_o_in_axes3_zx = rrrrs_W_3_in_axes3_xz - rrrrs_alpha_3_o_in_axes3_y;
-        const real rrrrs_B_3_o_in_axes3_zy = rrrrs_W_3_in_axes3_yz + rrrrs_alpha_3_o_in_axes3_x;
-        /* (rrrrs-alpha_4_o) remainder of: angular acceleration of link 4 */
-        const real rrrrs_alpha_4_o_in_axes4_x = rrrrs_alpha_3_o_in_axes3_x*v.rrrrs_c_4 +
-            rrrrs_omega_1_in_axes4_y*rrrrs_qd_4 - rrrrs_alpha_3_o_in_axes3_y*v.rrrrs_s_4_t;
-        const real rrrrs_alpha_4_o_in_axes4_y = rrrrs_alpha_3_o_in_axes3_x*v.rrrrs_s_4_t +
-            rrrrs_alpha_3_o_in_axes3_y*v.rrrrs_c_4 - rrrrs_zeta_4_t;
-        const real rrrrs_alpha_4_o_in_axes4_z = rrrrs_qdd_3_o +
-            rrrrs_w_4_in_axes4_y*(rrrrs_rel_o_in_axes4_y - rrrrs_qdd_3_o*v.rrrrs_r_3_in_axes4_x);
-        /* (rrrrs-B_4_o) remainder of the acceleration tensor of link 4 */
-        const real rrrrs_B_4_o_in_axes4_xy = rrrrs_W_1_in_axes4_xy - rrrrs_alpha_4_o_in_axes4_z;
-        const real rrrrs_B_4_o_in_axes4_xz = rrrrs_W_4_in_axes4_xz + rrrrs_alpha_4_o_in_axes4_y;
-        const real rrrrs_B_4_o_in_axes4_yx = rrrrs_W_1_in_axes4_xy + rrrrs_alpha_4_o_in_axes4_z;
-        const real rrrrs_B_4_o_in_axes4_yz = rrrrs_W_4_in_axes4_yz - rrrrs_alpha_4_o_in_axes4_x;
-        const real rrrrs_B_4_o_in_axes4_zx = rrrrs_W_4_in_axes4_xz - rrrrs_alpha_4_o_in_axes4_y;
-        const real rrrrs_B_4_o_in_axes4_zy = rrrrs_W_4_in_axes4_yz + rrrrs_alpha_4_o_in_axes4_x;
-        /* (rrrrs-a_o_3) acceleration of the origin of joint 3 */
-        const real rrrrs_a_o_3_t = rrrrs_omega_1_in_axes2_y*rrrrs_omega_1_in_axes2_y;
-        const real rrrrs_joint3_offset_x = m->rrrrs_joint3_offset_x[i];
-        const real rrrrs_a_o_3_in_axes2_x = -rrrrs_joint3_offset_x*(rrrrs_a_o_3_t +
-            v.rrrrs_bias_t);
-        /* (rrrrs-a_o_3_o) remainder of: acceleration of the origin of joint 3 */
-        const real rrrrs_a_o_3_o_in_axes2_y = rrrrs_W_2_in_axes2_xy*rrrrs_joint3_offset_x;
-        /* (rrrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-        const real rrrrs_acc_3_o_in_axes3_x = rrrrs_a_o_3_in_axes2_x*v.rrrrs_c_3 +
-            rrrrs_a_o_3_o_in_axes2_y*v.rrrrs_s_3 - v.rrrrs_c_3*v.rrrrs_g_in_axes2_x -
-            v.rrrrs_g_in_axes2_y*v.rrrrs_s_3;
-        const real rrrrs_acc_3_o_in_axes3_y = rrrrs_a_o_3_o_in_axes2_y*v.rrrrs_c_3 +
-            v.rrrrs_g_in_axes2_x*v.rrrrs_s_3 - rrrrs_a_o_3_in_axes2_x*v.rrrrs_s_3 -
-            v.rrrrs_c_3*v.rrrrs_g_in_axes2_y;
-        const real rrrrs_acc_3_o_in_axes3_z = rrrrs_B_2_o_in_axes2_zx*rrrrs_joint3_offset_x -
-            v.rrrrs_g_in_axes1_y;
-        /* (rrrrs-f_3_o) remainder of: inertia force of link 3 less its weight */
-        const real rrrrs_f_3_o_t = rrrrs_omega_1_t*rrrrs_omega_1_t;
-        const real rrrrs_f_3_o_t_2 = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2;
-        const real rrrrs_h_3_in_spec3_x = m->rrrrs_h_3_in_spec3_x[i];
-        const real rrrrs_h_3_in_spec3_y = m->rrrrs_h_3_in_spec3_y[i];
-        const real rrrrs_h_3_in_spec3_z = m->rrrrs_h_3_in_spec3_z[i];
-        const real rrrrs_link3_mass = m->rrrrs_link3_mass[i];
-        const real rrrrs_f_3_o_in_axes3_x = rrrrs_B_3_o_in_axes3_xy*rrrrs_h_3_in_spec3_y +
-            rrrrs_B_3_o_in_axes3_xz*rrrrs_h_3_in_spec3_z +
-            rrrrs_acc_3_o_in_axes3_x*rrrrs_link3_mass - rrrrs_h_3_in_spec3_x*(rrrrs_bias_t_2 +
-            rrrrs_f_3_o_t_2);
-        const real rrrrs_f_3_o_in_axes3_y = rrrrs_B_3_o_in_axes3_yx*rrrrs_h_3_in_spec3_x +
-            rrrrs_B_3_o_in_axes3_yz*rrrrs_h_3_in_spec3_z +
-            rrrrs_acc_3_o_in_axes3_y*rrrrs_link3_mass - rrrrs_h_3_in_spec3_y*(rrrrs_bias_t_2 +
-            rrrrs_f_3_o_t);
-        const real rrrrs_f_3_o_in_axes3_z = rrrrs_B_3_o_in_axes3_zx*rrrrs_h_3_in_spec3_x +
-            rrrrs_B_3_o_in_axes3_zy*rrrrs_h_3_in_spec3_y +
-            rrrrs_acc_3_o_in_axes3_z*rrrrs_link3_mass - rrrrs_h_3_in_spec3_z*(rrrrs_f_3_o_t +
-            rrrrs_f_3_o_t_2);
-        /* (rrrrs-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real rrrrs_acc_4_o_in_axes4_x = rrrrs_u_1_in_axes4_x -
-            axis_x_rrrrs_axes4_x*gravity_x - axis_x_rrrrs_axes4_y*gravity_y -
-            axis_x_rrrrs_axes4_z*gravity_z;
-        const real rrrrs_acc_4_o_in_axes4_y = rrrrs_u_1_in_axes4_y -
-            axis_y_rrrrs_axes4_x*gravity_x - axis_y_rrrrs_axes4_y*gravity_y -
-            axis_y_rrrrs_axes4_z*gravity_z;
-        const real rrrrs_acc_4_o_in_axes4_z = rrrrs_u_1_in_axes4_z -
-            v.axis_z_rrrrs_axes4_x*gravity_x - v.axis_z_rrrrs_axes4_y*gravity_y -
-            v.axis_z_rrrrs_axes4_z*gravity_z;
-        /* (rrrrs-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their
-           reference points */
-        const real rrrrs_J_4_in_spec4_xy = m->rrrrs_J_4_in_spec4_xy[i];
-        const real rrrrs_J_4_in_spec4_xz = m->rrrrs_J_4_in_spec4_xz[i];
-        const real rrrrs_J_4_in_spec4_yz = m->rrrrs_J_4_in_spec4_yz[i];
-        const real rrrrs_Sigma_4_in_axes4_yy = m->rrrrs_Sigma_4_in_axes4_yy[i];
-        const real rrrrs_Sigma_4_in_axes4_zz = m->rrrrs_Sigma_4_in_axes4_zz[i];
-        const real rrrrs_h_4_in_spec4_y = m->rrrrs_h_4_in_spec4_y[i];
-        const real rrrrs_h_4_in_spec4_z = m->rrrrs_h_4_in_spec4_z[i];
-        const real rrrrs_mu_4_o_in_axes4_x = rrrrs_B_4_o_in_axes4_yx*rrrrs_J_4_in_spec4_xz +
-            rrrrs_B_4_o_in_axes4_zy*rrrrs_Sigma_4_in_axes4_yy +
-            rrrrs_J_4_in_spec4_yz*(rrrrs_W_1_t_2 - rrrrs_W_4_t) +
-            rrrrs_acc_4_o_in_axes4_z*rrrrs_h_4_in_spec4_y -
-            rrrrs_B_4_o_in_axes4_yz*rrrrs_Sigma_4_in_axes4_zz -
-            rrrrs_B_4_o_in_axes4_zx*rrrrs_J_4_in_spec4_xy -
-            rrrrs_acc_4_o_in_axes4_y*rrrrs_h_4_in_spec4_z;
-        const real rrrrs_Sigma_4_in_axes4_xx = m->rrrrs_Sigma_4_in_axes4_xx[i];
-        const real rrrrs_h_4_in_spec4_x = m->rrrrs_h_4_in_spec4_x[i];
-        const real rrrrs_mu_4_o_in_axes4_y = rrrrs_B_4_o_in_axes4_xz*rrrrs_Sigma_4_in_axes4_zz +
-            rrrrs_B_4_o_in_axes4_zy*rrrrs_J_4_in_spec4_xy +
-            rrrrs_acc_4_o_in_axes4_x*rrrrs_h_4_in_spec4_z -
-            rrrrs_B_4_o_in_axes4_xy*rrrrs_J_4_in_spec4_yz -
-            rrrrs_B_4_o_in_axes4_zx*rrrrs_Sigma_4_in_axes4_xx - rrrrs_J_4_in_spec4_xz*(rrrrs_W_1_t
-            - rrrrs_W_4_t) - rrrrs_acc_4_o_in_axes4_z*rrrrs_h_4_in_spec4_x;
-        const real rrrrs_mu_4_o_in_axes4_z = rrrrs_B_4_o_in_axes4_xz*rrrrs_J_4_in_spec4_yz +
-            rrrrs_B_4_o_in_axes4_yx*rrrrs_Sigma_4_in_axes4_xx + rrrrs_J_4_in_spec4_xy*(rrrrs_W_1_t
-            - rrrrs_W_1_t_2) + rrrrs_acc_4_o_in_axes4_y*rrrrs_h_4_in_spec4_x -
-            rrrrs_B_4_o_in_axes4_xy*rrrrs_Sigma_4_in_axes4_yy -
-            rrrrs_B_4_o_in_axes4_yz*rrrrs_J_4_in_spec4_xz -
-            rrrrs_acc_4_o_in_axes4_x*rrrrs_h_4_in_spec4_y;
-        /* (rrrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
-           reference points */
-        const real rrrrs_J_3_in_spec3_xy = m->rrrrs_J_3_in_spec3_xy[i];
-        const real rrrrs_J_3_in_spec3_xz = m->rrrrs_J_3_in_spec3_xz[i];
-        const real rrrrs_J_3_in_spec3_yz = m->rrrrs_J_3_in_spec3_yz[i];
-        const real rrrrs_Sigma_3_in_axes3_yy = m->rrrrs_Sigma_3_in_axes3_yy[i];
-        const real rrrrs_Sigma_3_in_axes3_zz = m->rrrrs_Sigma_3_in_axes3_zz[i];
-        const real rrrrs_mu_3_o_in_axes3_x = rrrrs_B_3_o_in_axes3_yx*rrrrs_J_3_in_spec3_xz +
-            rrrrs_B_3_o_in_axes3_zy*rrrrs_Sigma_3_in_axes3_yy +
-            rrrrs_J_3_in_spec3_yz*(rrrrs_f_3_o_t_2 - rrrrs_bias_t_2) +
-            rrrrs_acc_3_o_in_axes3_z*rrrrs_h_3_in_spec3_y -
-            rrrrs_B_3_o_in_axes3_yz*rrrrs_Sigma_3_in_axes3_zz -
-            rrrrs_B_3_o_in_axes3_zx*rrrrs_J_3_in_spec3_xy -
-            rrrrs_acc_3_o_in_axes3_y*rrrrs_h_3_in_spec3_z;
-        const real rrrrs_Sigma_3_in_axes3_xx = m->rrrrs_Sigma_3_in_axes3_xx[i];
-        const real rrrrs_mu_3_o_in_axes3_y = rrrrs_B_3_o_in_axes3_xz*rrrrs_Sigma_3_in_axes3_zz +
-            rrrrs_B_3_o_in_axes3_zy*rrrrs_J_3_in_spec3_xy +
-            rrrrs_acc_3_o_in_axes3_x*rrrrs_h_3_in_spec3_z -
-            rrrrs_B_3_o_in_axes3_xy*rrrrs_J_3_in_spec3_yz -
-            rrrrs_B_3_o_in_axes3_zx*rrrrs_Sigma_3_in_axes3_xx -
-            rrrrs_J_3_in_spec3_xz*(rrrrs_f_3_o_t - rrrrs_bias_t_2) -
-            rrrrs_acc_3_o_in_axes3_z*rrrrs_h_3_in_spec3_x;
-        const real rrrrs_mu_3_o_in_axes3_z = rrrrs_B_3_o_in_axes3_xz*rrrrs_J_3_in_spec3_yz +
-            rrrrs_B_3_o_in_axes3_yx*rrrrs_Sigma_3_in_axes3_xx +
-            rrrrs_J_3_in_spec3_xy*(rrrrs_f_3_o_t - rrrrs_f_3_o_t_2) +
-            rrrrs_acc_3_o_in_axes3_y*rrrrs_h_3_in_spec3_x -
-            rrrrs_B_3_o_in_axes3_xy*rrrrs_Sigma_3_in_axes3_yy -
-            rrrrs_B_3_o_in_axes3_yz*rrrrs_J_3_in_spec3_xz -
-            rrrrs_acc_3_o_in_axes3_x*rrrrs_h_3_in_spec3_y;
-        /* (rrrrs-N_3_o) remainder of: moment about joint 3 of the links from 3 outwards, the force at the
-           connection point left out */
-        const real rrrrs_N_3_o_in_axes3_x = rrrrs_mu_3_o_in_axes3_x +
-            v.rrrrs_c_4*rrrrs_mu_4_o_in_axes4_x + rrrrs_mu_4_o_in_axes4_y*v.rrrrs_s_4_t;
-        const real rrrrs_N_3_o_in_axes3_y = rrrrs_mu_3_o_in_axes3_y +
-            v.rrrrs_c_4*rrrrs_mu_4_o_in_axes4_y - rrrrs_mu_4_o_in_axes4_x*v.rrrrs_s_4_t;
-        const real rrrrs_N_3_o_in_axes3_z = rrrrs_mu_3_o_in_axes3_z + rrrrs_mu_4_o_in_axes4_z;
-        /* (rrrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-           reference points */
-        const real rrrrs_mu_2_o_t = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_x;
-        const real rrrrs_J_2_in_spec2_xy = m->rrrrs_J_2_in_spec2_xy[i];
-        const real rrrrs_J_2_in_spec2_xz = m->rrrrs_J_2_in_spec2_xz[i];
-        const real rrrrs_J_2_in_spec2_yz = m->rrrrs_J_2_in_spec2_yz[i];
-        const real rrrrs_Sigma_2_in_axes2_yy = m->rrrrs_Sigma_2_in_axes2_yy[i];
-        const real rrrrs_Sigma_2_in_axes2_zz = m->rrrrs_Sigma_2_in_axes2_zz[i];
-        const real rrrrs_h_2_in_spec2_y = m->rrrrs_h_2_in_spec2_y[i];
-        const real rrrrs_h_2_in_spec2_z = m->rrrrs_h_2_in_spec2_z[i];
-        const real rrrrs_mu_2_o_in_axes2_x = rrrrs_B_2_o_in_axes2_zy*rrrrs_Sigma_2_in_axes2_yy +
-            rrrrs_J_2_in_spec2_xz*rrrrs_W_2_in_axes2_xy + rrrrs_J_2_in_spec2_yz*(rrrrs_a_o_3_t -
-            v.rrrrs_bias_t) + rrrrs_Sigma_2_in_axes2_zz*rrrrs_alpha_1_o_in_axes2_x +
-            v.rrrrs_g_in_axes2_y*rrrrs_h_2_in_spec2_z -
-            rrrrs_B_2_o_in_axes2_zx*rrrrs_J_2_in_spec2_xy -
-            v.rrrrs_g_in_axes1_y*rrrrs_h_2_in_spec2_y;
-        const real rrrrs_Sigma_2_in_axes2_xx = m->rrrrs_Sigma_2_in_axes2_xx[i];
-        const real rrrrs_h_2_in_spec2_x = m->rrrrs_h_2_in_spec2_x[i];
-        const real rrrrs_mu_2_o_in_axes2_y = rrrrs_B_2_o_in_axes2_zy*rrrrs_J_2_in_spec2_xy +
-            rrrrs_Sigma_2_in_axes2_zz*rrrrs_alpha_1_o_in_axes2_y +
-            v.rrrrs_g_in_axes1_y*rrrrs_h_2_in_spec2_x -
-            rrrrs_B_2_o_in_axes2_zx*rrrrs_Sigma_2_in_axes2_xx -
-            rrrrs_J_2_in_spec2_xz*(rrrrs_mu_2_o_t - v.rrrrs_bias_t) -
-            rrrrs_J_2_in_spec2_yz*rrrrs_W_2_in_axes2_xy -
-            v.rrrrs_g_in_axes2_x*rrrrs_h_2_in_spec2_z;
-        const real rrrrs_mu_2_o_in_axes2_z = rrrrs_J_2_in_spec2_xy*(rrrrs_mu_2_o_t -
-            rrrrs_a_o_3_t) + rrrrs_J_2_in_spec2_xz*rrrrs_alpha_1_o_in_axes2_x +
-            rrrrs_J_2_in_spec2_yz*rrrrs_alpha_1_o_in_axes2_y +
-            rrrrs_Sigma_2_in_axes2_xx*rrrrs_W_2_in_axes2_xy +
-            v.rrrrs_g_in_axes2_x*rrrrs_h_2_in_spec2_y -
-            rrrrs_Sigma_2_in_axes2_yy*rrrrs_W_2_in_axes2_xy -
-            v.rrrrs_g_in_axes2_y*rrrrs_h_2_in_spec2_x;
-        /* (rrrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
-           connection point left out */
-        const real rrrrs_N_2_o_in_axes2_x = rrrrs_mu_2_o_in_axes2_x +
-            rrrrs_N_3_o_in_axes3_x*v.rrrrs_c_3 - rrrrs_N_3_o_in_axes3_y*v.rrrrs_s_3;
-        const real rrrrs_N_2_o_in_axes2_y = rrrrs_mu_2_o_in_axes2_y +
-            rrrrs_N_3_o_in_axes3_x*v.rrrrs_s_3 + rrrrs_N_3_o_in_axes3_y*v.rrrrs_c_3 -
-            rrrrs_f_3_o_in_axes3_z*rrrrs_joint3_offset_x;
-        const real rrrrs_N_2_o_in_axes2_z = rrrrs_N_3_o_in_axes3_z + rrrrs_mu_2_o_in_axes2_z +
-            rrrrs_joint3_offset_x*(v.rrrrs_c_3*rrrrs_f_3_o_in_axes3_y +
-            rrrrs_f_3_o_in_axes3_x*v.rrrrs_s_3);
-        /* (rrrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-           reference points */
-        const real rrrrs_J_1_in_spec1_xx = m->rrrrs_J_1_in_spec1_xx[i];
-        const real rrrrs_h_1_in_spec1_y = m->rrrrs_h_1_in_spec1_y[i];
-        const real rrrrs_h_1_in_spec1_z = m->rrrrs_h_1_in_spec1_z[i];
-        const real rrrrs_mu_1_o_in_axes1_z = rrrrs_J_1_in_spec1_xx*rrrrs_qdd_1_o +
-            v.rrrrs_g_in_axes1_x*rrrrs_h_1_in_spec1_z - v.rrrrs_g_in_axes1_y*rrrrs_h_1_in_spec1_y;
-        /* (rrrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
-           connection point left out */
-        const real rrrrs_N_1_o_in_axes1_z = rrrrs_mu_1_o_in_axes1_z +
-            rrrrs_N_2_o_in_axes2_x*v.rrrrs_c_2 - rrrrs_N_2_o_in_axes2_y*v.rrrrs_s_2;
-        /* (rrrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real rrrrs_G_o_in_axes4_y = rrrrs_mu_4_o_in_axes4_z*rrrrs_w_4_in_axes4_y;
-        const real rrrrs_G_o_in_axes4_x =
-            -v.rrrrs_w_3_in_axes4_x*(rrrrs_G_o_in_axes4_y*v.rrrrs_r_3_in_axes4_x -
-            rrrrs_N_3_o_in_axes3_z);
-        /* (rrrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at
-           the connection point */
-        const real rrrrs_c_o_in_axes4_x = rrrrs_W_4_t_2*rrrrs_h_4_in_spec4_x -
-            rrrrs_G_o_in_axes4_x - rrrrs_B_4_o_in_axes4_xy*rrrrs_h_4_in_spec4_y -
-            rrrrs_B_4_o_in_axes4_xz*rrrrs_h_4_in_spec4_z;
-        const real rrrrs_c_o_in_axes4_y = rrrrs_h_4_in_spec4_y*(rrrrs_W_1_t + rrrrs_W_4_t) -
-            rrrrs_G_o_in_axes4_y - rrrrs_B_4_o_in_axes4_yx*rrrrs_h_4_in_spec4_x -
-            rrrrs_B_4_o_in_axes4_yz*rrrrs_h_4_in_spec4_z;
-        const real rrrrs_c_o_in_axes4_z = rrrrs_h_4_in_spec4_z*(rrrrs_W_1_t + rrrrs_W_1_t_2) -
-            rrrrs_B_4_o_in_axes4_zx*rrrrs_h_4_in_spec4_x -
-            rrrrs_B_4_o_in_axes4_zy*rrrrs_h_4_in_spec4_y -
-            rrrrs_N_1_o_in_axes1_z*v.rrrrs_w_1_in_axes4_z;
-        /* (rrrrs-U) velocity and gravity terms of the leg force */
-        const real rrrrs_U_x = -axis_x_rrrrs_axes4_x*rrrrs_c_o_in_axes4_x -
-            axis_y_rrrrs_axes4_x*rrrrs_c_o_in_axes4_y -
-            v.axis_z_rrrrs_axes4_x*rrrrs_c_o_in_axes4_z;
-        const real rrrrs_U_y = -axis_x_rrrrs_axes4_y*rrrrs_c_o_in_axes4_x -
-            axis_y_rrrrs_axes4_y*rrrrs_c_o_in_axes4_y -
-            v.axis_z_rrrrs_axes4_y*rrrrs_c_o_in_axes4_z;
-        const real rrrrs_U_z = -axis_x_rrrrs_axes4_z*rrrrs_c_o_in_axes4_x -
-            axis_y_rrrrs_axes4_z*rrrrs_c_o_in_axes4_y -
-            v.axis_z_rrrrs_axes4_z*rrrrs_c_o_in_axes4_z;
-        /* (rrrrs-P_2_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
-           joint 2 */
-        const real rrrrs_P_2_o_t = rrrrs_G_o_in_axes4_x*v.rrrrs_r_2_in_axes4_y -
-            rrrrs_G_o_in_axes4_y*v.rrrrs_r_2_in_axes4_x;
-        const real rrrrs_P_2_o = rrrrs_N_2_o_in_axes2_z + rrrrs_P_2_o_t;
-        /* (Z_a) rotational part of Z */
-        const real rrrrs_Z_a_t = rrrrs_U_z*v.rrrrs_q_y - rrrrs_U_y*v.rrrrs_q_z;
-        const real rrrrs_Z_a_t_2 = rrrrs_U_x*v.rrrrs_q_z - rrrrs_U_z*v.rrrrs_q_x;
-        const real rrrrs_Z_a_t_3 = rrrrs_U_y*v.rrrrs_q_x - rrrrs_U_x*v.rrrrs_q_y;
-        /* (Z_t) translational part of Z */
-        gather(&terms[0*count + k], add, rrrrs_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[1*count + k], add, rrrrs_U_y);  /* Z_t_y_of_legs */
-        gather(&terms[2*count + k], add, rrrrs_U_z);  /* Z_t_z_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[3*count + k], add, rrrrs_Z_a_t);  /* Z_a_x_of_legs */
-        gather(&terms[4*count + k], add, rrrrs_Z_a_t_2);  /* Z_a_y_of_legs */
-        gather(&terms[5*count + k], add, rrrrs_Z_a_t_3);  /* Z_a_z_of_legs */
-        /* (rrrrs-P_2_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
-           joint 2 */
-        o[0*count + k] = rrrrs_P_2_o;
-        o[3*count + k] = rrrrs_P_2_o;
-        const real rrrrs_size_t_3 = m->rrrrs_size_t_3[i];
-        const real rrrrs_rho2_3_t = m->rrrrs_rho2_3_t[i];
-        const real rrrrs_size = m->rrrrs_size[i];
-        o[2*count + k] = UNLESS(magnitude(v.rrrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrrs_size_t_3) +
-            UNLESS(magnitude(v.rrrrs_rho2_3) > TOLERANCE*TOLERANCE*rrrrs_rho2_3_t) +
-            UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) > TOLERANCE*rrrrs_size) +
-            UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) > TOLERANCE*rrrrs_size);
-        o[1*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
-    }
+    values_rrrrs v;
+    stage_rrrrs_V(w, j, V, &v);
+    stage_rrrrs_X(m, w, i, j, s, X, &v);
+    stage_rrrrs_V_X(w, j, V, &v);
+    /* (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra */
+    const real axis_y_rrrrs_axes4_x = v.rrrrs_S_dot_rest_t_3*m->rrrrs_base_frame_xx[i] +
+        v.rrrrs_S_dot_rest_t_5*m->rrrrs_base_frame_xy[i] +
+        v.rrrrs_S_dot_rest_t_6*m->rrrrs_base_frame_xz[i];
+    const real axis_y_rrrrs_axes4_y = v.rrrrs_S_dot_rest_t_3*m->rrrrs_base_frame_yx[i] +
+        v.rrrrs_S_dot_rest_t_5*m->rrrrs_base_frame_yy[i] +
+        v.rrrrs_S_dot_rest_t_6*m->rrrrs_base_frame_yz[i];
+    const real axis_y_rrrrs_axes4_z = v.rrrrs_S_dot_rest_t_3*m->rrrrs_base_frame_zx[i] +
+        v.rrrrs_S_dot_rest_t_5*m->rrrrs_base_frame_zy[i] +
+        v.rrrrs_S_dot_rest_t_6*m->rrrrs_base_frame_zz[i];
+    const real axis_x_rrrrs_axes4_x = axis_y_rrrrs_axes4_y*v.axis_z_rrrrs_axes4_z -
+        axis_y_rrrrs_axes4_z*v.axis_z_rrrrs_axes4_y;
+    const real axis_x_rrrrs_axes4_y = axis_y_rrrrs_axes4_z*v.axis_z_rrrrs_axes4_x -
+        axis_y_rrrrs_axes4_x*v.axis_z_rrrrs_axes4_z;
+    const real axis_x_rrrrs_axes4_z = axis_y_rrrrs_axes4_x*v.axis_z_rrrrs_axes4_y -
+        axis_y_rrrrs_axes4_y*v.axis_z_rrrrs_axes4_x;
+    const real rrrrs_yd_2 = V[6*w + j];
+    const real rrrrs_S_dot_rest_x = v.rrrrs_S_dot_x -
+        rrrrs_yd_2*(axis_y_rrrrs_axes4_x*v.rrrrs_r_2_in_axes4_x -
+        axis_x_rrrrs_axes4_x*v.rrrrs_r_2_in_axes4_y);
+    const real rrrrs_S_dot_rest_y = v.rrrrs_S_dot_y -
+        rrrrs_yd_2*(axis_y_rrrrs_axes4_y*v.rrrrs_r_2_in_axes4_x -
+        axis_x_rrrrs_axes4_y*v.rrrrs_r_2_in_axes4_y);
+    const real rrrrs_S_dot_rest_z = v.rrrrs_S_dot_z -
+        rrrrs_yd_2*(axis_y_rrrrs_axes4_z*v.rrrrs_r_2_in_axes4_x -
+        axis_x_rrrrs_axes4_z*v.rrrrs_r_2_in_axes4_y);
+    /* (rrrrs-qd_1) rate of joint 1 */
+    const real rrrrs_qd_1 = v.rrrrs_w_1_in_axes4_z*(v.axis_z_rrrrs_axes4_x*rrrrs_S_dot_rest_x
+        + v.axis_z_rrrrs_axes4_y*rrrrs_S_dot_rest_y +
+        v.axis_z_rrrrs_axes4_z*rrrrs_S_dot_rest_z);
+    /* (rrrrs-qd_3) rate of joint 3 */
+    const real rrrrs_qd_3 = v.rrrrs_w_3_in_axes4_x*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+        axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_x_rrrrs_axes4_z*rrrrs_S_dot_rest_z);
+    /* (rrrrs-qd_4) rate of joint 4 */
+    const real rrrrs_qd_4 =
+        m->rrrrs_w_4_in_axes4_y[i]*(axis_y_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+        axis_y_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_y_rrrrs_axes4_z*rrrrs_S_dot_rest_z -
+        rrrrs_qd_3*v.rrrrs_r_3_in_axes4_x);
+    /* (rrrrs-omega_1) angular velocity of link 1 */
+    const real rrrrs_omega_1_in_axes2_x = v.rrrrs_c_2*rrrrs_qd_1;
+    const real rrrrs_omega_1_in_axes2_y = -rrrrs_qd_1*v.rrrrs_s_2;
+    const real rrrrs_omega_1_t = v.rrrrs_c_3*rrrrs_omega_1_in_axes2_x +
+        rrrrs_omega_1_in_axes2_y*v.rrrrs_s_3;
+    const real rrrrs_omega_1_t_2 = v.rrrrs_c_3*rrrrs_omega_1_in_axes2_y -
+        rrrrs_omega_1_in_axes2_x*v.rrrrs_s_3;
+    const real rrrrs_omega_1_in_axes4_x = v.rrrrs_c_4*rrrrs_omega_1_t -
+        rrrrs_omega_1_t_2*v.rrrrs_s_4_t;
+    const real rrrrs_omega_1_in_axes4_y = v.rrrrs_c_4*rrrrs_omega_1_t_2 +
+        rrrrs_omega_1_t*v.rrrrs_s_4_t;
+    /* (rrrrs-W_1) centripetal tensor of link 1 */
+    const real rrrrs_W_1_t = rrrrs_omega_1_in_axes4_x*rrrrs_omega_1_in_axes4_x;
+    const real rrrrs_W_1_t_2 = rrrrs_omega_1_in_axes4_y*rrrrs_omega_1_in_axes4_y;
+    const real rrrrs_W_1_in_axes4_xy = rrrrs_omega_1_in_axes4_x*rrrrs_omega_1_in_axes4_y;
+    /* (rrrrs-W_2) centripetal tensor of link 2 */
+    const real rrrrs_W_2_in_axes2_yz = rrrrs_omega_1_in_axes2_y*rrrrs_yd_2;
+    const real rrrrs_W_2_in_axes2_xz = rrrrs_omega_1_in_axes2_x*rrrrs_yd_2;
+    const real rrrrs_W_2_in_axes2_xy = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_y;
+    /* (rrrrs-omega_3) angular velocity of link 3 */
+    const real rrrrs_omega_3_in_axes3_z = rrrrs_qd_3 + rrrrs_yd_2;
+    /* (rrrrs-W_3) centripetal tensor of link 3 */
+    const real rrrrs_W_3_in_axes3_xy = rrrrs_omega_1_t*rrrrs_omega_1_t_2;
+    const real rrrrs_W_3_in_axes3_xz = rrrrs_omega_1_t*rrrrs_omega_3_in_axes3_z;
+    const real rrrrs_W_3_in_axes3_yz = rrrrs_omega_1_t_2*rrrrs_omega_3_in_axes3_z;
+    /* (rrrrs-omega_4) angular velocity of link 4 */
+    const real rrrrs_omega_4_in_axes4_z = rrrrs_omega_3_in_axes3_z + rrrrs_qd_4;
+    /* (rrrrs-W_4) centripetal tensor of link 4 */
+    const real rrrrs_W_4_t = rrrrs_omega_4_in_axes4_z*rrrrs_omega_4_in_axes4_z;
+    const real rrrrs_W_4_t_2 = rrrrs_W_1_t_2 + rrrrs_W_4_t;
+    const real rrrrs_W_4_in_axes4_xz = rrrrs_omega_1_in_axes4_x*rrrrs_omega_4_in_axes4_z;
+    const real rrrrs_W_4_in_axes4_yz = rrrrs_omega_1_in_axes4_y*rrrrs_omega_4_in_axes4_z;
+    /* (rrrrs-u_1) centripetal acceleration of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real rrrrs_u_1_x = omega_y*v.rrrrs_S_dot_t_3 - omega_z*v.rrrrs_S_dot_t_2;
+    const real omega_x = V[3*w + j];
+    const real rrrrs_u_1_y = omega_z*v.rrrrs_S_dot_t - omega_x*v.rrrrs_S_dot_t_3;
+    const real rrrrs_u_1_z = omega_x*v.rrrrs_S_dot_t_2 - omega_y*v.rrrrs_S_dot_t;
+    const real rrrrs_u_1_in_axes4_x = axis_x_rrrrs_axes4_x*rrrrs_u_1_x +
+        axis_x_rrrrs_axes4_y*rrrrs_u_1_y + axis_x_rrrrs_axes4_z*rrrrs_u_1_z;
+    const real rrrrs_u_1_in_axes4_y = axis_y_rrrrs_axes4_x*rrrrs_u_1_x +
+        axis_y_rrrrs_axes4_y*rrrrs_u_1_y + axis_y_rrrrs_axes4_z*rrrrs_u_1_z;
+    const real rrrrs_u_1_in_axes4_z = v.axis_z_rrrrs_axes4_x*rrrrs_u_1_x +
+        v.axis_z_rrrrs_axes4_y*rrrrs_u_1_y + v.axis_z_rrrrs_axes4_z*rrrrs_u_1_z;
+    /* (rrrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+    const real rrrrs_zeta_3_in_axes3_x = rrrrs_omega_1_t_2*rrrrs_qd_3;
+    const real rrrrs_zeta_3_in_axes3_y = -rrrrs_omega_1_t*rrrrs_qd_3;
+    /* (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
+    const real rrrrs_beta_3_in_axes3_x = rrrrs_zeta_3_in_axes3_x +
+        rrrrs_W_2_in_axes2_yz*v.rrrrs_c_3 - rrrrs_W_2_in_axes2_xz*v.rrrrs_s_3;
+    const real rrrrs_beta_3_in_axes3_y = rrrrs_zeta_3_in_axes3_y -
+        rrrrs_W_2_in_axes2_xz*v.rrrrs_c_3 - rrrrs_W_2_in_axes2_yz*v.rrrrs_s_3;
+    const real rrrrs_beta_3_in_axes4_y = rrrrs_beta_3_in_axes3_x*v.rrrrs_s_4_t +
+        rrrrs_beta_3_in_axes3_y*v.rrrrs_c_4;
+    /* (rrrrs-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
+    const real rrrrs_zeta_4_t = rrrrs_omega_1_in_axes4_x*rrrrs_qd_4;
+    /* (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations */
+    const real rrrrs_beta_4_in_axes4_y = rrrrs_beta_3_in_axes4_y - rrrrs_zeta_4_t;
+    /* (rrrrs-bias) acceleration of the connection point at zero joint accelerations */
+    const real rrrrs_bias_t_2 = rrrrs_omega_3_in_axes3_z*rrrrs_omega_3_in_axes3_z;
+    const real rrrrs_bias_in_axes4_x = rrrrs_W_1_in_axes4_xy*v.rrrrs_d_2_in_axes4_y +
+        rrrrs_W_1_in_axes4_xy*v.rrrrs_d_3_in_axes4_y +
+        rrrrs_W_1_in_axes4_xy*v.rrrrs_d_4_in_axes4_y - rrrrs_W_1_t_2*v.rrrrs_d_2_in_axes4_x -
+        rrrrs_W_4_t_2*m->rrrrs_platform_joint_offset_x[i] -
+        v.rrrrs_d_3_in_axes4_x*(rrrrs_W_1_t_2 + v.rrrrs_bias_t) -
+        v.rrrrs_d_4_in_axes4_x*(rrrrs_W_1_t_2 + rrrrs_bias_t_2);
+    const real rrrrs_bias_in_axes4_y = rrrrs_W_1_in_axes4_xy*v.rrrrs_d_2_in_axes4_x +
+        rrrrs_W_1_in_axes4_xy*v.rrrrs_d_3_in_axes4_x +
+        rrrrs_W_1_in_axes4_xy*v.rrrrs_d_4_in_axes4_x +
+        rrrrs_W_1_in_axes4_xy*m->rrrrs_platform_joint_offset_x[i] -
+        rrrrs_W_1_t*v.rrrrs_d_2_in_axes4_y - v.rrrrs_d_3_in_axes4_y*(rrrrs_W_1_t +
+        v.rrrrs_bias_t) - v.rrrrs_d_4_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t_2);
+    const real rrrrs_bias_in_axes4_z =
+        v.rrrrs_d_4_in_axes4_x*(rrrrs_omega_1_in_axes4_x*rrrrs_omega_3_in_axes3_z -
+        rrrrs_beta_3_in_axes4_y) + v.rrrrs_d_4_in_axes4_y*(rrrrs_beta_3_in_axes3_x*v.rrrrs_c_4
+        + rrrrs_omega_1_in_axes4_y*rrrrs_omega_3_in_axes3_z -
+        rrrrs_beta_3_in_axes3_y*v.rrrrs_s_4_t) +
+        m->rrrrs_platform_joint_offset_x[i]*(rrrrs_W_4_in_axes4_xz - rrrrs_beta_4_in_axes4_y)
+        + 2*v.rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
+        2*v.rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2;
+    /* (rrrrs-rel_o) remainder of: acceleration of the connection point left to the joint
+       accelerations */
+    const real rrrrs_rel_o_in_axes4_x = rrrrs_u_1_in_axes4_x - rrrrs_bias_in_axes4_x;
+    const real rrrrs_rel_o_in_axes4_y = rrrrs_u_1_in_axes4_y - rrrrs_bias_in_axes4_y;
+    const real rrrrs_rel_o_in_axes4_z = rrrrs_u_1_in_axes4_z - rrrrs_bias_in_axes4_z;
+    /* (rrrrs-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real rrrrs_qdd_1_o = rrrrs_rel_o_in_axes4_z*v.rrrrs_w_1_in_axes4_z;
+    /* (rrrrs-qdd_3_o) remainder of: acceleration of joint 3 */
+    const real rrrrs_qdd_3_o = rrrrs_rel_o_in_axes4_x*v.rrrrs_w_3_in_axes4_x;
+    /* (rrrrs-alpha_1_o) remainder of: angular acceleration of link 1 */
+    const real rrrrs_alpha_1_o_in_axes2_x = v.rrrrs_c_2*rrrrs_qdd_1_o;
+    const real rrrrs_alpha_1_o_in_axes2_y = -rrrrs_qdd_1_o*v.rrrrs_s_2;
+    /* (rrrrs-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real rrrrs_alpha_2_o_in_axes2_x = rrrrs_W_2_in_axes2_yz +
+        rrrrs_alpha_1_o_in_axes2_x;
+    const real rrrrs_alpha_2_o_in_axes2_y = rrrrs_alpha_1_o_in_axes2_y -
+        rrrrs_W_2_in_axes2_xz;
+    /* (rrrrs-B_2_o) remainder of the acceleration tensor of link 2 */
+    const real rrrrs_B_2_o_in_axes2_zx = rrrrs_W_2_in_axes2_xz - rrrrs_alpha_2_o_in_axes2_y;
+    const real rrrrs_B_2_o_in_axes2_zy = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_2_o_in_axes2_x;
+    /* (rrrrs-alpha_3_o) remainder of: angular acceleration of link 3 */
+    const real rrrrs_alpha_3_o_in_axes3_x = rrrrs_zeta_3_in_axes3_x +
+        rrrrs_alpha_2_o_in_axes2_x*v.rrrrs_c_3 + rrrrs_alpha_2_o_in_axes2_y*v.rrrrs_s_3;
+    const real rrrrs_alpha_3_o_in_axes3_y = rrrrs_zeta_3_in_axes3_y +
+        rrrrs_alpha_2_o_in_axes2_y*v.rrrrs_c_3 - rrrrs_alpha_2_o_in_axes2_x*v.rrrrs_s_3;
+    /* (rrrrs-B_3_o) remainder of the acceleration tensor of link 3 */
+    const real rrrrs_B_3_o_in_axes3_xy = rrrrs_W_3_in_axes3_xy - rrrrs_qdd_3_o;
+    const real rrrrs_B_3_o_in_axes3_xz = rrrrs_W_3_in_axes3_xz + rrrrs_alpha_3_o_in_axes3_y;
+    const real rrrrs_B_3_o_in_axes3_yx = rrrrs_W_3_in_axes3_xy + rrrrs_qdd_3_o;
+    const real rrrrs_B_3_o_in_axes3_yz = rrrrs_W_3_in_axes3_yz - rrrrs_alpha_3_o_in_axes3_x;
+    const real rrrrs_B_3_o_in_axes3_zx = rrrrs_W_3_in_axes3_xz - rrrrs_alpha_3_o_in_axes3_y;
+    const real rrrrs_B_3_o_in_axes3_zy = rrrrs_W_3_in_axes3_yz + rrrrs_alpha_3_o_in_axes3_x;
+    /* (rrrrs-alpha_4_o) remainder of: angular acceleration of link 4 */
+    const real rrrrs_alpha_4_o_in_axes4_x = rrrrs_alpha_3_o_in_axes3_x*v.rrrrs_c_4 +
+        rrrrs_omega_1_in_axes4_y*rrrrs_qd_4 - rrrrs_alpha_3_o_in_axes3_y*v.rrrrs_s_4_t;
+    const real rrrrs_alpha_4_o_in_axes4_y = rrrrs_alpha_3_o_in_axes3_x*v.rrrrs_s_4_t +
+        rrrrs_alpha_3_o_in_axes3_y*v.rrrrs_c_4 - rrrrs_zeta_4_t;
+    const real rrrrs_alpha_4_o_in_axes4_z = rrrrs_qdd_3_o +
+        m->rrrrs_w_4_in_axes4_y[i]*(rrrrs_rel_o_in_axes4_y -
+        rrrrs_qdd_3_o*v.rrrrs_r_3_in_axes4_x);
+    /* (rrrrs-B_4_o) remainder of the acceleration tensor of link 4 */
+    const real rrrrs_B_4_o_in_axes4_xy = rrrrs_W_1_in_axes4_xy - rrrrs_alpha_4_o_in_axes4_z;
+    const real rrrrs_B_4_o_in_axes4_xz = rrrrs_W_4_in_axes4_xz + rrrrs_alpha_4_o_in_axes4_y;
+    const real rrrrs_B_4_o_in_axes4_yx = rrrrs_W_1_in_axes4_xy + rrrrs_alpha_4_o_in_axes4_z;
+    const real rrrrs_B_4_o_in_axes4_yz = rrrrs_W_4_in_axes4_yz - rrrrs_alpha_4_o_in_axes4_x;
+    const real rrrrs_B_4_o_in_axes4_zx = rrrrs_W_4_in_axes4_xz - rrrrs_alpha_4_o_in_axes4_y;
+    const real rrrrs_B_4_o_in_axes4_zy = rrrrs_W_4_in_axes4_yz + rrrrs_alpha_4_o_in_axes4_x;
+    /* (rrrrs-a_o_3) acceleration of the origin of joint 3 */
+    const real rrrrs_a_o_3_t = rrrrs_omega_1_in_axes2_y*rrrrs_omega_1_in_axes2_y;
+    const real rrrrs_a_o_3_in_axes2_x = -m->rrrrs_joint3_offset_x[i]*(rrrrs_a_o_3_t +
+        v.rrrrs_bias_t);
+    /* (rrrrs-a_o_3_o) remainder of: acceleration of the origin of joint 3 */
+    const real rrrrs_a_o_3_o_in_axes2_y = rrrrs_W_2_in_axes2_xy*m->rrrrs_joint3_offset_x[i];
+    /* (rrrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
+    const real rrrrs_acc_3_o_in_axes3_x = rrrrs_a_o_3_in_axes2_x*v.rrrrs_c_3 +
+        rrrrs_a_o_3_o_in_axes2_y*v.rrrrs_s_3 - v.rrrrs_c_3*v.rrrrs_g_in_axes2_x -
+        v.rrrrs_g_in_axes2_y*v.rrrrs_s_3;
+    const real rrrrs_acc_3_o_in_axes3_y = rrrrs_a_o_3_o_in_axes2_y*v.rrrrs_c_3 +
+        v.rrrrs_g_in_axes2_x*v.rrrrs_s_3 - rrrrs_a_o_3_in_axes2_x*v.rrrrs_s_3 -
+        v.rrrrs_c_3*v.rrrrs_g_in_axes2_y;
+    const real rrrrs_acc_3_o_in_axes3_z = rrrrs_B_2_o_in_axes2_zx*m->rrrrs_joint3_offset_x[i]
+        - v.rrrrs_g_in_axes1_y;
+    /* (rrrrs-f_3_o) remainder of: inertia force of link 3 less its weight */
+    const real rrrrs_f_3_o_t = rrrrs_omega_1_t*rrrrs_omega_1_t;
+    const real rrrrs_f_3_o_t_2 = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2;
+    const real rrrrs_f_3_o_in_axes3_x = rrrrs_B_3_o_in_axes3_xy*m->rrrrs_h_3_in_spec3_y[i] +
+        rrrrs_B_3_o_in_axes3_xz*m->rrrrs_h_3_in_spec3_z[i] +
+        rrrrs_acc_3_o_in_axes3_x*m->rrrrs_link3_mass[i] -
+        m->rrrrs_h_3_in_spec3_x[i]*(rrrrs_bias_t_2 + rrrrs_f_3_o_t_2);
+    const real rrrrs_f_3_o_in_axes3_y = rrrrs_B_3_o_in_axes3_yx*m->rrrrs_h_3_in_spec3_x[i] +
+        rrrrs_B_3_o_in_axes3_yz*m->rrrrs_h_3_in_spec3_z[i] +
+        rrrrs_acc_3_o_in_axes3_y*m->rrrrs_link3_mass[i] -
+        m->rrrrs_h_3_in_spec3_y[i]*(rrrrs_bias_t_2 + rrrrs_f_3_o_t);
+    const real rrrrs_f_3_o_in_axes3_z = rrrrs_B_3_o_in_axes3_zx*m->rrrrs_h_3_in_spec3_x[i] +
+        rrrrs_B_3_o_in_axes3_zy*m->rrrrs_h_3_in_spec3_y[i] +
+        rrrrs_acc_3_o_in_axes3_z*m->rrrrs_link3_mass[i] -
+        m->rrrrs_h_3_in_spec3_z[i]*(rrrrs_f_3_o_t + rrrrs_f_3_o_t_2);
+    /* (rrrrs-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity */
+    const real rrrrs_acc_4_o_in_axes4_x = rrrrs_u_1_in_axes4_x -
+        axis_x_rrrrs_axes4_x*m->gravity_x - axis_x_rrrrs_axes4_y*m->gravity_y -
+        axis_x_rrrrs_axes4_z*m->gravity_z;
+    const real rrrrs_acc_4_o_in_axes4_y = rrrrs_u_1_in_axes4_y -
+        axis_y_rrrrs_axes4_x*m->gravity_x - axis_y_rrrrs_axes4_y*m->gravity_y -
+        axis_y_rrrrs_axes4_z*m->gravity_z;
+    const real rrrrs_acc_4_o_in_axes4_z = rrrrs_u_1_in_axes4_z -
+        v.axis_z_rrrrs_axes4_x*m->gravity_x - v.axis_z_rrrrs_axes4_y*m->gravity_y -
+        v.axis_z_rrrrs_axes4_z*m->gravity_z;
+    /* (rrrrs-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their
+       reference points */
+    const real rrrrs_mu_4_o_in_axes4_x = rrrrs_B_4_o_in_axes4_yx*m->rrrrs_J_4_in_spec4_xz[i] +
+        rrrrs_B_4_o_in_axes4_zy*m->rrrrs_Sigma_4_in_axes4_yy[i] +
+        m->rrrrs_J_4_in_spec4_yz[i]*(rrrrs_W_1_t_2 - rrrrs_W_4_t) +
+        rrrrs_acc_4_o_in_axes4_z*m->rrrrs_h_4_in_spec4_y[i] -
+        rrrrs_B_4_o_in_axes4_yz*m->rrrrs_Sigma_4_in_axes4_zz[i] -
+        rrrrs_B_4_o_in_axes4_zx*m->rrrrs_J_4_in_spec4_xy[i] -
+        rrrrs_acc_4_o_in_axes4_y*m->rrrrs_h_4_in_spec4_z[i];
+    const real rrrrs_mu_4_o_in_axes4_y =
+        rrrrs_B_4_o_in_axes4_xz*m->rrrrs_Sigma_4_in_axes4_zz[i] +
+        rrrrs_B_4_o_in_axes4_zy*m->rrrrs_J_4_in_spec4_xy[i] +
+        rrrrs_acc_4_o_in_axes4_x*m->rrrrs_h_4_in_spec4_z[i] -
+        rrrrs_B_4_o_in_axes4_xy*m->rrrrs_J_4_in_spec4_yz[i] -
+        rrrrs_B_4_o_in_axes4_zx*m->rrrrs_Sigma_4_in_axes4_xx[i] -
+        m->rrrrs_J_4_in_spec4_xz[i]*(rrrrs_W_1_t - rrrrs_W_4_t) -
+        rrrrs_acc_4_o_in_axes4_z*m->rrrrs_h_4_in_spec4_x[i];
+    const real rrrrs_mu_4_o_in_axes4_z = rrrrs_B_4_o_in_axes4_xz*m->rrrrs_J_4_in_spec4_yz[i] +
+        rrrrs_B_4_o_in_axes4_yx*m->rrrrs_Sigma_4_in_axes4_xx[i] +
+        m->rrrrs_J_4_in_spec4_xy[i]*(rrrrs_W_1_t - rrrrs_W_1_t_2) +
+        rrrrs_acc_4_o_in_axes4_y*m->rrrrs_h_4_in_spec4_x[i] -
+        rrrrs_B_4_o_in_axes4_xy*m->rrrrs_Sigma_4_in_axes4_yy[i] -
+        rrrrs_B_4_o_in_axes4_yz*m->rrrrs_J_4_in_spec4_xz[i] -
+        rrrrs_acc_4_o_in_axes4_x*m->rrrrs_h_4_in_spec4_y[i];
+    /* (rrrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+       reference points */
+    const real rrrrs_mu_3_o_in_axes3_x = rrrrs_B_3_o_in_axes3_yx*m->rrrrs_J_3_in_spec3_xz[i] +
+        rrrrs_B_3_o_in_axes3_zy*m->rrrrs_Sigma_3_in_axes3_yy[i] +
+        m->rrrrs_J_3_in_spec3_yz[i]*(rrrrs_f_3_o_t_2 - rrrrs_bias_t_2) +
+        rrrrs_acc_3_o_in_axes3_z*m->rrrrs_h_3_in_spec3_y[i] -
+        rrrrs_B_3_o_in_axes3_yz*m->rrrrs_Sigma_3_in_axes3_zz[i] -
+        rrrrs_B_3_o_in_axes3_zx*m->rrrrs_J_3_in_spec3_xy[i] -
+        rrrrs_acc_3_o_in_axes3_y*m->rrrrs_h_3_in_spec3_z[i];
+    const real rrrrs_mu_3_o_in_axes3_y =
+        rrrrs_B_3_o_in_axes3_xz*m->rrrrs_Sigma_3_in_axes3_zz[i] +
+        rrrrs_B_3_o_in_axes3_zy*m->rrrrs_J_3_in_spec3_xy[i] +
+        rrrrs_acc_3_o_in_axes3_x*m->rrrrs_h_3_in_spec3_z[i] -
+        rrrrs_B_3_o_in_axes3_xy*m->rrrrs_J_3_in_spec3_yz[i] -
+        rrrrs_B_3_o_in_axes3_zx*m->rrrrs_Sigma_3_in_axes3_xx[i] -
+        m->rrrrs_J_3_in_spec3_xz[i]*(rrrrs_f_3_o_t - rrrrs_bias_t_2) -
+        rrrrs_acc_3_o_in_axes3_z*m->rrrrs_h_3_in_spec3_x[i];
+    const real rrrrs_mu_3_o_in_axes3_z = rrrrs_B_3_o_in_axes3_xz*m->rrrrs_J_3_in_spec3_yz[i] +
+        rrrrs_B_3_o_in_axes3_yx*m->rrrrs_Sigma_3_in_axes3_xx[i] +
+        m->rrrrs_J_3_in_spec3_xy[i]*(rrrrs_f_3_o_t - rrrrs_f_3_o_t_2) +
+        rrrrs_acc_3_o_in_axes3_y*m->rrrrs_h_3_in_spec3_x[i] -
+        rrrrs_B_3_o_in_axes3_xy*m->rrrrs_Sigma_3_in_axes3_yy[i] -
+        rrrrs_B_3_o_in_axes3_yz*m->rrrrs_J_3_in_spec3_xz[i] -
+        rrrrs_acc_3_o_in_axes3_x*m->rrrrs_h_3_in_spec3_y[i];
+    /* (rrrrs-N_3_o) remainder of: moment about joint 3 of the links from 3 outwards, the force at the
+       connection point left out */
+    const real rrrrs_N_3_o_in_axes3_x = rrrrs_mu_3_o_in_axes3_x +
+        v.rrrrs_c_4*rrrrs_mu_4_o_in_axes4_x + rrrrs_mu_4_o_in_axes4_y*v.rrrrs_s_4_t;
+    const real rrrrs_N_3_o_in_axes3_y = rrrrs_mu_3_o_in_axes3_y +
+        v.rrrrs_c_4*rrrrs_mu_4_o_in_axes4_y - rrrrs_mu_4_o_in_axes4_x*v.rrrrs_s_4_t;
+    const real rrrrs_N_3_o_in_axes3_z = rrrrs_mu_3_o_in_axes3_z + rrrrs_mu_4_o_in_axes4_z;
+    /* (rrrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real rrrrs_mu_2_o_t = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_x;
+    const real rrrrs_mu_2_o_in_axes2_x =
+        rrrrs_B_2_o_in_axes2_zy*m->rrrrs_Sigma_2_in_axes2_yy[i] +
+        m->rrrrs_J_2_in_spec2_xz[i]*rrrrs_W_2_in_axes2_xy +
+        m->rrrrs_J_2_in_spec2_yz[i]*(rrrrs_a_o_3_t - v.rrrrs_bias_t) +
+        m->rrrrs_Sigma_2_in_axes2_zz[i]*rrrrs_alpha_1_o_in_axes2_x +
+        v.rrrrs_g_in_axes2_y*m->rrrrs_h_2_in_spec2_z[i] -
+        rrrrs_B_2_o_in_axes2_zx*m->rrrrs_J_2_in_spec2_xy[i] -
+        v.rrrrs_g_in_axes1_y*m->rrrrs_h_2_in_spec2_y[i];
+    const real rrrrs_mu_2_o_in_axes2_y = rrrrs_B_2_o_in_axes2_zy*m->rrrrs_J_2_in_spec2_xy[i] +
+        m->rrrrs_Sigma_2_in_axes2_zz[i]*rrrrs_alpha_1_o_in_axes2_y +
+        v.rrrrs_g_in_axes1_y*m->rrrrs_h_2_in_spec2_x[i] -
+        rrrrs_B_2_o_in_axes2_zx*m->rrrrs_Sigma_2_in_axes2_xx[i] -
+        m->rrrrs_J_2_in_spec2_xz[i]*(rrrrs_mu_2_o_t - v.rrrrs_bias_t) -
+        m->rrrrs_J_2_in_spec2_yz[i]*rrrrs_W_2_in_axes2_xy -
+        v.rrrrs_g_in_axes2_x*m->rrrrs_h_2_in_spec2_z[i];
+    const real rrrrs_mu_2_o_in_axes2_z = m->rrrrs_J_2_in_spec2_xy[i]*(rrrrs_mu_2_o_t -
+        rrrrs_a_o_3_t) + m->rrrrs_J_2_in_spec2_xz[i]*rrrrs_alpha_1_o_in_axes2_x +
+        m->rrrrs_J_2_in_spec2_yz[i]*rrrrs_alpha_1_o_in_axes2_y +
+        m->rrrrs_Sigma_2_in_axes2_xx[i]*rrrrs_W_2_in_axes2_xy +
+        v.rrrrs_g_in_axes2_x*m->rrrrs_h_2_in_spec2_y[i] -
+        m->rrrrs_Sigma_2_in_axes2_yy[i]*rrrrs_W_2_in_axes2_xy -
+        v.rrrrs_g_in_axes2_y*m->rrrrs_h_2_in_spec2_x[i];
+    /* (rrrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+       connection point left out */
+    const real rrrrs_N_2_o_in_axes2_x = rrrrs_mu_2_o_in_axes2_x +
+        rrrrs_N_3_o_in_axes3_x*v.rrrrs_c_3 - rrrrs_N_3_o_in_axes3_y*v.rrrrs_s_3;
+    const real rrrrs_N_2_o_in_axes2_y = rrrrs_mu_2_o_in_axes2_y +
+        rrrrs_N_3_o_in_axes3_x*v.rrrrs_s_3 + rrrrs_N_3_o_in_axes3_y*v.rrrrs_c_3 -
+        rrrrs_f_3_o_in_axes3_z*m->rrrrs_joint3_offset_x[i];
+    const real rrrrs_N_2_o_in_axes2_z = rrrrs_N_3_o_in_axes3_z + rrrrs_mu_2_o_in_axes2_z +
+        m->rrrrs_joint3_offset_x[i]*(v.rrrrs_c_3*rrrrs_f_3_o_in_axes3_y +
+        rrrrs_f_3_o_in_axes3_x*v.rrrrs_s_3);
+    /* (rrrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
+    const real rrrrs_mu_1_o_in_axes1_z = m->rrrrs_J_1_in_spec1_xx[i]*rrrrs_qdd_1_o +
+        v.rrrrs_g_in_axes1_x*m->rrrrs_h_1_in_spec1_z[i] -
+        v.rrrrs_g_in_axes1_y*m->rrrrs_h_1_in_spec1_y[i];
+    /* (rrrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+       connection point left out */
+    const real rrrrs_N_1_o_in_axes1_z = rrrrs_mu_1_o_in_axes1_z +
+        rrrrs_N_2_o_in_axes2_x*v.rrrrs_c_2 - rrrrs_N_2_o_in_axes2_y*v.rrrrs_s_2;
+    /* (rrrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real rrrrs_G_o_in_axes4_y = rrrrs_mu_4_o_in_axes4_z*m->rrrrs_w_4_in_axes4_y[i];
+    const real rrrrs_G_o_in_axes4_x =
+        -v.rrrrs_w_3_in_axes4_x*(rrrrs_G_o_in_axes4_y*v.rrrrs_r_3_in_axes4_x -
+        rrrrs_N_3_o_in_axes3_z);
+    /* (rrrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at
+       the connection point */
+    const real rrrrs_c_o_in_axes4_x = rrrrs_W_4_t_2*m->rrrrs_h_4_in_spec4_x[i] -
+        rrrrs_G_o_in_axes4_x - rrrrs_B_4_o_in_axes4_xy*m->rrrrs_h_4_in_spec4_y[i] -
+        rrrrs_B_4_o_in_axes4_xz*m->rrrrs_h_4_in_spec4_z[i];
+    const real rrrrs_c_o_in_axes4_y = m->rrrrs_h_4_in_spec4_y[i]*(rrrrs_W_1_t + rrrrs_W_4_t) -
+        rrrrs_G_o_in_axes4_y - rrrrs_B_4_o_in_axes4_yx*m->rrrrs_h_4_in_spec4_x[i] -
+        rrrrs_B_4_o_in_axes4_yz*m->rrrrs_h_4_in_spec4_z[i];
+    const real rrrrs_c_o_in_axes4_z = m->rrrrs_h_4_in_spec4_z[i]*(rrrrs_W_1_t + rrrrs_W_1_t_2)
+        - rrrrs_B_4_o_in_axes4_zx*m->rrrrs_h_4_in_spec4_x[i] -
+        rrrrs_B_4_o_in_axes4_zy*m->rrrrs_h_4_in_spec4_y[i] -
+        rrrrs_N_1_o_in_axes1_z*v.rrrrs_w_1_in_axes4_z;
+    /* (rrrrs-U) velocity and gravity terms of the leg force */
+    const real rrrrs_U_x = -axis_x_rrrrs_axes4_x*rrrrs_c_o_in_axes4_x -
+        axis_y_rrrrs_axes4_x*rrrrs_c_o_in_axes4_y -
+        v.axis_z_rrrrs_axes4_x*rrrrs_c_o_in_axes4_z;
+    const real rrrrs_U_y = -axis_x_rrrrs_axes4_y*rrrrs_c_o_in_axes4_x -
+        axis_y_rrrrs_axes4_y*rrrrs_c_o_in_axes4_y -
+        v.axis_z_rrrrs_axes4_y*rrrrs_c_o_in_axes4_z;
+    const real rrrrs_U_z = -axis_x_rrrrs_axes4_z*rrrrs_c_o_in_axes4_x -
+        axis_y_rrrrs_axes4_z*rrrrs_c_o_in_axes4_y -
+        v.axis_z_rrrrs_axes4_z*rrrrs_c_o_in_axes4_z;
+    /* (rrrrs-P_2_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
+       joint 2 */
+    const real rrrrs_P_2_o_t = rrrrs_G_o_in_axes4_x*v.rrrrs_r_2_in_axes4_y -
+        rrrrs_G_o_in_axes4_y*v.rrrrs_r_2_in_axes4_x;
+    const real rrrrs_P_2_o = rrrrs_N_2_o_in_axes2_z + rrrrs_P_2_o_t;
+    /* (Z_a) rotational part of Z */
+    const real rrrrs_Z_a_t = rrrrs_U_z*v.rrrrs_q_y - rrrrs_U_y*v.rrrrs_q_z;
+    const real rrrrs_Z_a_t_2 = rrrrs_U_x*v.rrrrs_q_z - rrrrs_U_z*v.rrrrs_q_x;
+    const real rrrrs_Z_a_t_3 = rrrrs_U_y*v.rrrrs_q_x - rrrrs_U_x*v.rrrrs_q_y;
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, rrrrs_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, rrrrs_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, rrrrs_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) */
+    gather(&terms[3*count + k], add, rrrrs_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[4*count + k], add, rrrrs_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[5*count + k], add, rrrrs_Z_a_t_3);  /* Z_a_z_of_legs */
+    /* (rrrrs-P_2_o) */
+    o[0*count + k] = rrrrs_P_2_o;
+    o[3*count + k] = rrrrs_P_2_o;
+    o[2*count + k] = UNLESS(magnitude(v.rrrrs_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_rho2_3) >
+        TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]) + UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) >
+        TOLERANCE*m->rrrrs_size[i]) + UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) >
+        TOLERANCE*m->rrrrs_size[i]);
+    o[1*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
 }
 
-INLINE void Z_place_rrrrs(size_t w, size_t count, const real *o, size_t first, real *Z, verdict
-    *t)
+INLINE void Z_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const real *o, real *Z,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        Z[6*w + k] = o[0*count + first + k];
-        t->unreachable[k] += o[1*count + first + k];
-        t->singular[k] += o[2*count + first + k];
-        t->total[k] += o[3*count + first + k];
-    }
+    Z[6*w + k] = o[0*count + at];
+    t->unreachable[k] += o[1*count + at];
+    t->singular[k] += o[2*count + at];
+    t->total[k] += o[3*count + at];
 }
 
-INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
+INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrrs v;
-        stage_rrrs_X(m, w, i, j, s, X, &v);
-        stage_rrrs_V_X(m, w, i, j, V, &v);
-        stage_rrrs_Z_dynamics(m, w, j, V, &v);
-        /* (rrrs-qd_2) rate of joint 2 */
-        const real rrrs_qd_2_t = v.rrrs_c_1*v.rrrs_e_1_in_axes3_x;
-        const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
-        const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
-        const real rrrs_base_frame_xz = m->rrrs_base_frame_xz[i];
-        const real axis_y_rrrs_axes3_x = rrrs_base_frame_xx*v.rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_xy*rrrs_qd_2_t + rrrs_base_frame_xz*v.rrrs_qd_2_t_2;
-        const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
-        const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
-        const real rrrs_base_frame_yz = m->rrrs_base_frame_yz[i];
-        const real axis_y_rrrs_axes3_y = rrrs_base_frame_yx*v.rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_yy*rrrs_qd_2_t + rrrs_base_frame_yz*v.rrrs_qd_2_t_2;
-        const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
-        const real rrrs_base_frame_zy = m->rrrs_base_frame_zy[i];
-        const real rrrs_base_frame_zz = m->rrrs_base_frame_zz[i];
-        const real axis_y_rrrs_axes3_z = rrrs_base_frame_zx*v.rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_zy*rrrs_qd_2_t + rrrs_base_frame_zz*v.rrrs_qd_2_t_2;
-        const real axis_x_rrrs_axes3_x = axis_y_rrrs_axes3_y*v.axis_z_rrrs_axes3_z -
-            axis_y_rrrs_axes3_z*v.axis_z_rrrs_axes3_y;
-        const real axis_x_rrrs_axes3_y = axis_y_rrrs_axes3_z*v.axis_z_rrrs_axes3_x -
-            axis_y_rrrs_axes3_x*v.axis_z_rrrs_axes3_z;
-        const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_x*v.axis_z_rrrs_axes3_y -
-            axis_y_rrrs_axes3_y*v.axis_z_rrrs_axes3_x;
-        const real rrrs_qd_2_t_3 = -v.rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*v.rrrs_S_dot_x +
-            axis_x_rrrs_axes3_y*v.rrrs_S_dot_y + axis_x_rrrs_axes3_z*v.rrrs_S_dot_z);
-        /* (rrrs-qd_3) rate of joint 3 */
-        const real rrrs_w_3_in_axes3_y = m->rrrs_w_3_in_axes3_y[i];
-        const real rrrs_qd_3 = rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*v.rrrs_S_dot_x +
-            axis_y_rrrs_axes3_y*v.rrrs_S_dot_y + axis_y_rrrs_axes3_z*v.rrrs_S_dot_z +
-            rrrs_qd_2_t_3*v.rrrs_r_2_in_axes3_x);
-        /* (rrrs-W_2) centripetal tensor of link 2 */
-        const real rrrs_W_2_in_axes2_yz = v.rrrs_omega_1_t*rrrs_qd_2_t_3;
-        /* (rrrs-omega_3) angular velocity of link 3 */
-        const real rrrs_omega_3_in_axes3_z = rrrs_qd_3 - rrrs_qd_2_t_3;
-        /* (rrrs-W_3) centripetal tensor of link 3 */
-        const real rrrs_W_3_in_axes3_xz = v.rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z;
-        const real rrrs_W_3_in_axes3_yz = v.rrrs_omega_1_in_axes3_y*rrrs_omega_3_in_axes3_z;
-        /* (rrrs-u_1) centripetal acceleration of the connection point */
-        const real rrrs_u_1_in_axes3_x = axis_x_rrrs_axes3_x*v.rrrs_u_1_x +
-            axis_x_rrrs_axes3_y*v.rrrs_u_1_y + axis_x_rrrs_axes3_z*v.rrrs_u_1_z;
-        const real rrrs_u_1_in_axes3_y = axis_y_rrrs_axes3_x*v.rrrs_u_1_x +
-            axis_y_rrrs_axes3_y*v.rrrs_u_1_y + axis_y_rrrs_axes3_z*v.rrrs_u_1_z;
-        /* (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real rrrs_zeta_2_in_axes2_y = v.rrrs_omega_1_in_axes2_x*rrrs_qd_2_t_3;
-        const real rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*v.rrrs_s_3_t +
-            v.rrrs_c_3*rrrs_zeta_2_in_axes2_y;
-        /* (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real rrrs_zeta_3_t = v.rrrs_omega_1_in_axes3_x*rrrs_qd_3;
-        /* (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t;
-        /* (rrrs-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrrs_bias_t_4 = v.rrrs_d_3_in_axes3_y*rrrs_qd_2_t_3;
-        const real rrrs_bias_t_5 = v.rrrs_d_3_in_axes3_x*rrrs_qd_2_t_3;
-        const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
-        const real rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x;
-        const real rrrs_bias_in_axes3_x = v.rrrs_bias_t_3*v.rrrs_omega_1_in_axes3_y +
-            v.rrrs_bias_t_6*v.rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_qd_2_t_3 -
-            rrrs_bias_t_7*rrrs_omega_3_in_axes3_z - v.rrrs_bias_t_8*v.rrrs_omega_1_in_axes3_y;
-        const real rrrs_bias_in_axes3_y = v.rrrs_bias_t_8*v.rrrs_omega_1_in_axes3_x -
-            v.rrrs_bias_t_3*v.rrrs_omega_1_in_axes3_x - rrrs_bias_t_4*rrrs_qd_2_t_3 -
-            v.rrrs_bias_t_6*v.rrrs_omega_1_in_axes3_x;
-        const real rrrs_bias_in_axes3_z = rrrs_bias_t_7*v.rrrs_omega_1_in_axes3_x +
-            v.rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*v.rrrs_c_3 -
-            v.rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) -
-            rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*v.rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*v.rrrs_omega_1_in_axes3_x -
-            v.rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y;
-        /* (rrrs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-           */
-        const real rrrs_rel_o_in_axes3_x = rrrs_u_1_in_axes3_x - rrrs_bias_in_axes3_x;
-        const real rrrs_rel_o_in_axes3_y = rrrs_u_1_in_axes3_y - rrrs_bias_in_axes3_y;
-        const real rrrs_rel_o_in_axes3_z = v.rrrs_u_1_in_axes3_z - rrrs_bias_in_axes3_z;
-        /* (rrrs-qdd_1_o) remainder of: acceleration of joint 1 */
-        const real rrrs_qdd_1_o = rrrs_rel_o_in_axes3_z*v.rrrs_w_1_in_axes3_z;
-        /* (rrrs-qdd_2_o) remainder of: acceleration of joint 2 */
-        const real rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*v.rrrs_w_2_in_axes3_x;
-        /* (rrrs-alpha_1_o) remainder of: angular acceleration of link 1 */
-        const real rrrs_alpha_1_o_in_axes2_x = v.rrrs_c_2*rrrs_qdd_1_o;
-        const real rrrs_alpha_1_o_t = rrrs_qdd_1_o*v.rrrs_s_2;
-        /* (rrrs-alpha_2_o) remainder of: angular acceleration of link 2 */
-        const real rrrs_alpha_2_o_in_axes2_x = rrrs_W_2_in_axes2_yz + rrrs_alpha_1_o_in_axes2_x;
-        const real rrrs_alpha_2_o_in_axes2_y = rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_o_t;
-        /* (rrrs-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real rrrs_B_2_o_in_axes2_xy = v.rrrs_W_2_in_axes2_xy - rrrs_qdd_2_o;
-        const real rrrs_B_2_o_in_axes2_yx = v.rrrs_W_2_in_axes2_xy + rrrs_qdd_2_o;
-        const real rrrs_B_2_o_in_axes2_zx = -rrrs_alpha_2_o_in_axes2_y - rrrs_zeta_2_in_axes2_y;
-        const real rrrs_B_2_o_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_o_in_axes2_x;
-        /* (rrrs-alpha_3_o) remainder of: angular acceleration of link 3 */
-        const real rrrs_alpha_3_o_in_axes3_x = rrrs_alpha_2_o_in_axes2_x*v.rrrs_c_3 +
-            v.rrrs_omega_1_in_axes3_y*rrrs_qd_3 - rrrs_alpha_2_o_in_axes2_y*v.rrrs_s_3_t;
-        const real rrrs_alpha_3_o_in_axes3_y = rrrs_alpha_2_o_in_axes2_x*v.rrrs_s_3_t +
-            rrrs_alpha_2_o_in_axes2_y*v.rrrs_c_3 - rrrs_zeta_3_t;
-        const real rrrs_alpha_3_o_in_axes3_z = rrrs_qdd_2_o +
-            rrrs_w_3_in_axes3_y*(rrrs_rel_o_in_axes3_y - rrrs_qdd_2_o*v.rrrs_r_2_in_axes3_x);
-        /* (rrrs-B_3_o) remainder of the acceleration tensor of link 3 */
-        const real rrrs_B_3_o_in_axes3_xy = v.rrrs_W_3_in_axes3_xy - rrrs_alpha_3_o_in_axes3_z;
-        const real rrrs_B_3_o_in_axes3_xz = rrrs_W_3_in_axes3_xz + rrrs_alpha_3_o_in_axes3_y;
-        const real rrrs_B_3_o_in_axes3_yx = v.rrrs_W_3_in_axes3_xy + rrrs_alpha_3_o_in_axes3_z;
-        const real rrrs_B_3_o_in_axes3_yz = rrrs_W_3_in_axes3_yz - rrrs_alpha_3_o_in_axes3_x;
-        const real rrrs_B_3_o_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_o_in_axes3_y;
-        const real rrrs_B_3_o_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_o_in_axes3_x;
-        /* (rrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real rrrs_acc_3_o_in_axes3_x = rrrs_u_1_in_axes3_x - axis_x_rrrs_axes3_x*gravity_x -
-            axis_x_rrrs_axes3_y*gravity_y - axis_x_rrrs_axes3_z*gravity_z;
-        const real rrrs_acc_3_o_in_axes3_y = rrrs_u_1_in_axes3_y - axis_y_rrrs_axes3_x*gravity_x -
-            axis_y_rrrs_axes3_y*gravity_y - axis_y_rrrs_axes3_z*gravity_z;
-        /* (rrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
-           reference points */
-        const real rrrs_mu_3_o_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z;
-        const real rrrs_J_3_in_spec3_xy = m->rrrs_J_3_in_spec3_xy[i];
-        const real rrrs_J_3_in_spec3_xz = m->rrrs_J_3_in_spec3_xz[i];
-        const real rrrs_J_3_in_spec3_yz = m->rrrs_J_3_in_spec3_yz[i];
-        const real rrrs_Sigma_3_in_axes3_yy = m->rrrs_Sigma_3_in_axes3_yy[i];
-        const real rrrs_Sigma_3_in_axes3_zz = m->rrrs_Sigma_3_in_axes3_zz[i];
-        const real rrrs_h_3_in_spec3_y = m->rrrs_h_3_in_spec3_y[i];
-        const real rrrs_h_3_in_spec3_z = m->rrrs_h_3_in_spec3_z[i];
-        const real rrrs_mu_3_o_in_axes3_x = rrrs_B_3_o_in_axes3_yx*rrrs_J_3_in_spec3_xz +
-            rrrs_B_3_o_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy +
-            rrrs_J_3_in_spec3_yz*(v.rrrs_mu_3_o_t_2 - rrrs_mu_3_o_t_3) +
-            v.rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_y -
-            rrrs_B_3_o_in_axes3_yz*rrrs_Sigma_3_in_axes3_zz -
-            rrrs_B_3_o_in_axes3_zx*rrrs_J_3_in_spec3_xy -
-            rrrs_acc_3_o_in_axes3_y*rrrs_h_3_in_spec3_z;
-        const real rrrs_Sigma_3_in_axes3_xx = m->rrrs_Sigma_3_in_axes3_xx[i];
-        const real rrrs_h_3_in_spec3_x = m->rrrs_h_3_in_spec3_x[i];
-        const real rrrs_mu_3_o_in_axes3_y = rrrs_B_3_o_in_axes3_xz*rrrs_Sigma_3_in_axes3_zz +
-            rrrs_B_3_o_in_axes3_zy*rrrs_J_3_in_spec3_xy +
-            rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_z -
-            rrrs_B_3_o_in_axes3_xy*rrrs_J_3_in_spec3_yz -
-            rrrs_B_3_o_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx -
-            rrrs_J_3_in_spec3_xz*(v.rrrs_mu_3_o_t - rrrs_mu_3_o_t_3) -
-            v.rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_x;
-        const real rrrs_mu_3_o_in_axes3_z = rrrs_B_3_o_in_axes3_xz*rrrs_J_3_in_spec3_yz +
-            rrrs_B_3_o_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx +
-            rrrs_J_3_in_spec3_xy*(v.rrrs_mu_3_o_t - v.rrrs_mu_3_o_t_2) +
-            rrrs_acc_3_o_in_axes3_y*rrrs_h_3_in_spec3_x -
-            rrrs_B_3_o_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
-            rrrs_B_3_o_in_axes3_yz*rrrs_J_3_in_spec3_xz -
-            rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_y;
-        /* (rrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-           reference points */
-        const real rrrs_mu_2_o_t_3 = rrrs_qd_2_t_3*rrrs_qd_2_t_3;
-        const real rrrs_J_2_in_spec2_xy = m->rrrs_J_2_in_spec2_xy[i];
-        const real rrrs_J_2_in_spec2_xz = m->rrrs_J_2_in_spec2_xz[i];
-        const real rrrs_J_2_in_spec2_yz = m->rrrs_J_2_in_spec2_yz[i];
-        const real rrrs_Sigma_2_in_axes2_yy = m->rrrs_Sigma_2_in_axes2_yy[i];
-        const real rrrs_Sigma_2_in_axes2_zz = m->rrrs_Sigma_2_in_axes2_zz[i];
-        const real rrrs_h_2_in_spec2_y = m->rrrs_h_2_in_spec2_y[i];
-        const real rrrs_h_2_in_spec2_z = m->rrrs_h_2_in_spec2_z[i];
-        const real rrrs_mu_2_o_in_axes2_x = rrrs_B_2_o_in_axes2_yx*rrrs_J_2_in_spec2_xz +
-            rrrs_B_2_o_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy +
-            rrrs_J_2_in_spec2_yz*(v.rrrs_mu_2_o_t_2 - rrrs_mu_2_o_t_3) +
-            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_in_axes2_x +
-            v.rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z - rrrs_B_2_o_in_axes2_zx*rrrs_J_2_in_spec2_xy
-            - v.rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_y;
-        const real rrrs_Sigma_2_in_axes2_xx = m->rrrs_Sigma_2_in_axes2_xx[i];
-        const real rrrs_h_2_in_spec2_x = m->rrrs_h_2_in_spec2_x[i];
-        const real rrrs_mu_2_o_in_axes2_y = rrrs_B_2_o_in_axes2_zy*rrrs_J_2_in_spec2_xy +
-            v.rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_x - rrrs_B_2_o_in_axes2_xy*rrrs_J_2_in_spec2_yz
-            - rrrs_B_2_o_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx -
-            rrrs_J_2_in_spec2_xz*(v.rrrs_mu_2_o_t - rrrs_mu_2_o_t_3) -
-            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_t - v.rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z;
-        const real rrrs_mu_2_o_in_axes2_z = rrrs_B_2_o_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx +
-            rrrs_J_2_in_spec2_xy*(v.rrrs_mu_2_o_t - v.rrrs_mu_2_o_t_2) +
-            rrrs_J_2_in_spec2_xz*rrrs_alpha_1_o_in_axes2_x +
-            v.rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y -
-            rrrs_B_2_o_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy -
-            rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_t - v.rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x;
-        /* (rrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
-           connection point left out */
-        const real rrrs_N_2_o_in_axes2_x = rrrs_mu_2_o_in_axes2_x +
-            v.rrrs_c_3*rrrs_mu_3_o_in_axes3_x + rrrs_mu_3_o_in_axes3_y*v.rrrs_s_3_t;
-        const real rrrs_N_2_o_in_axes2_y = rrrs_mu_2_o_in_axes2_y +
-            v.rrrs_c_3*rrrs_mu_3_o_in_axes3_y - rrrs_mu_3_o_in_axes3_x*v.rrrs_s_3_t;
-        const real rrrs_N_2_o_in_axes2_z = rrrs_mu_2_o_in_axes2_z + rrrs_mu_3_o_in_axes3_z;
-        /* (rrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-           reference points */
-        const real rrrs_J_1_in_spec1_xx = m->rrrs_J_1_in_spec1_xx[i];
-        const real rrrs_h_1_in_spec1_y = m->rrrs_h_1_in_spec1_y[i];
-        const real rrrs_h_1_in_spec1_z = m->rrrs_h_1_in_spec1_z[i];
-        const real rrrs_mu_1_o_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o +
-            v.rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z - v.rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y;
-        /* (rrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
-           connection point left out */
-        const real rrrs_N_1_o_in_axes1_z = rrrs_mu_1_o_in_axes1_z +
-            rrrs_N_2_o_in_axes2_x*v.rrrs_c_2 - rrrs_N_2_o_in_axes2_y*v.rrrs_s_2;
-        /* (rrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y;
-        /* (rrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at
-           the connection point */
-        const real rrrs_c_o_in_axes3_x = rrrs_h_3_in_spec3_x*(v.rrrs_mu_3_o_t_2 + rrrs_mu_3_o_t_3)
-            + v.rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*v.rrrs_r_2_in_axes3_x -
-            rrrs_N_2_o_in_axes2_z) - rrrs_B_3_o_in_axes3_xy*rrrs_h_3_in_spec3_y -
-            rrrs_B_3_o_in_axes3_xz*rrrs_h_3_in_spec3_z;
-        const real rrrs_c_o_in_axes3_y = rrrs_h_3_in_spec3_y*(v.rrrs_mu_3_o_t + rrrs_mu_3_o_t_3) -
-            rrrs_G_o_in_axes3_y - rrrs_B_3_o_in_axes3_yx*rrrs_h_3_in_spec3_x -
-            rrrs_B_3_o_in_axes3_yz*rrrs_h_3_in_spec3_z;
-        const real rrrs_c_o_in_axes3_z = rrrs_h_3_in_spec3_z*(v.rrrs_mu_3_o_t + v.rrrs_mu_3_o_t_2)
-            - rrrs_B_3_o_in_axes3_zx*rrrs_h_3_in_spec3_x -
-            rrrs_B_3_o_in_axes3_zy*rrrs_h_3_in_spec3_y -
-            rrrs_N_1_o_in_axes1_z*v.rrrs_w_1_in_axes3_z;
-        /* (rrrs-U) velocity and gravity terms of the leg force */
-        const real rrrs_U_x = -axis_x_rrrs_axes3_x*rrrs_c_o_in_axes3_x -
-            axis_y_rrrs_axes3_x*rrrs_c_o_in_axes3_y - v.axis_z_rrrs_axes3_x*rrrs_c_o_in_axes3_z;
-        const real rrrs_U_y = -axis_x_rrrs_axes3_y*rrrs_c_o_in_axes3_x -
-            axis_y_rrrs_axes3_y*rrrs_c_o_in_axes3_y - v.axis_z_rrrs_axes3_y*rrrs_c_o_in_axes3_z;
-        const real rrrs_U_z = -axis_x_rrrs_axes3_z*rrrs_c_o_in_axes3_x -
-            axis_y_rrrs_axes3_z*rrrs_c_o_in_axes3_y - v.axis_z_rrrs_axes3_z*rrrs_c_o_in_axes3_z;
-        /* (Z_a) rotational part of Z */
-        const real rrrs_Z_a_t = rrrs_U_z*v.rrrs_q_y - rrrs_U_y*v.rrrs_q_z;
-        const real rrrs_Z_a_t_2 = rrrs_U_x*v.rrrs_q_z - rrrs_U_z*v.rrrs_q_x;
-        const real rrrs_Z_a_t_3 = rrrs_U_y*v.rrrs_q_x - rrrs_U_x*v.rrrs_q_y;
-        /* (Z_t) translational part of Z */
-        gather(&terms[0*count + k], add, rrrs_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[1*count + k], add, rrrs_U_y);  /* Z_t_y_of_legs */
-        gather(&terms[2*count + k], add, rrrs_U_z);  /* Z_t_z_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[3*count + k], add, rrrs_Z_a_t);  /* Z_a_x_of_legs */
-        gather(&terms[4*count + k], add, rrrs_Z_a_t_2);  /* Z_a_y_of_legs */
-        gather(&terms[5*count + k], add, rrrs_Z_a_t_3);  /* Z_a_z_of_legs */
-        const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
-        const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
-        const real rrrs_size = m->rrrs_size[i];
-        o[1*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
-            UNLESS(magnitude(v.rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
-            UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
-            UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
-        o[0*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
-    }
+    values_rrrs v;
+    stage_rrrs_X(m, w, i, j, s, X, &v);
+    stage_rrrs_V_X(m, w, i, j, V, &v);
+    stage_rrrs_Z_dynamics(m, w, j, V, &v);
+    /* (rrrs-qd_2) rate of joint 2 */
+    const real rrrs_qd_2_t = v.rrrs_c_1*v.rrrs_e_1_in_axes3_x;
+    const real axis_y_rrrs_axes3_x = m->rrrs_base_frame_xx[i]*v.rrrs_e_1_in_axes3_y +
+        m->rrrs_base_frame_xy[i]*rrrs_qd_2_t + m->rrrs_base_frame_xz[i]*v.rrrs_qd_2_t_2;
+    const real axis_y_rrrs_axes3_y = m->rrrs_base_frame_yx[i]*v.rrrs_e_1_in_axes3_y +
+        m->rrrs_base_frame_yy[i]*rrrs_qd_2_t + m->rrrs_base_frame_yz[i]*v.rrrs_qd_2_t_2;
+    const real axis_y_rrrs_axes3_z = m->rrrs_base_frame_zx[i]*v.rrrs_e_1_in_axes3_y +
+        m->rrrs_base_frame_zy[i]*rrrs_qd_2_t + m->rrrs_base_frame_zz[i]*v.rrrs_qd_2_t_2;
+    const real axis_x_rrrs_axes3_x = axis_y_rrrs_axes3_y*v.axis_z_rrrs_axes3_z -
+        axis_y_rrrs_axes3_z*v.axis_z_rrrs_axes3_y;
+    const real axis_x_rrrs_axes3_y = axis_y_rrrs_axes3_z*v.axis_z_rrrs_axes3_x -
+        axis_y_rrrs_axes3_x*v.axis_z_rrrs_axes3_z;
+    const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_x*v.axis_z_rrrs_axes3_y -
+        axis_y_rrrs_axes3_y*v.axis_z_rrrs_axes3_x;
+    const real rrrs_qd_2_t_3 = -v.rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*v.rrrs_S_dot_x +
+        axis_x_rrrs_axes3_y*v.rrrs_S_dot_y + axis_x_rrrs_axes3_z*v.rrrs_S_dot_z);
+    /* (rrrs-qd_3) rate of joint 3 */
+    const real rrrs_qd_3 = m->rrrs_w_3_in_axes3_y[i]*(axis_y_rrrs_axes3_x*v.rrrs_S_dot_x +
+        axis_y_rrrs_axes3_y*v.rrrs_S_dot_y + axis_y_rrrs_axes3_z*v.rrrs_S_dot_z +
+        rrrs_qd_2_t_3*v.rrrs_r_2_in_axes3_x);
+    /* (rrrs-W_2) centripetal tensor of link 2 */
+    const real rrrs_W_2_in_axes2_yz = v.rrrs_omega_1_t*rrrs_qd_2_t_3;
+    /* (rrrs-omega_3) angular velocity of link 3 */
+    const real rrrs_omega_3_in_axes3_z = rrrs_qd_3 - rrrs_qd_2_t_3;
+    /* (rrrs-W_3) centripetal tensor of link 3 */
+    const real rrrs_W_3_in_axes3_xz = v.rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z;
+    const real rrrs_W_3_in_axes3_yz = v.rrrs_omega_1_in_axes3_y*rrrs_omega_3_in_axes3_z;
+    /* (rrrs-u_1) centripetal acceleration of the connection point */
+    const real rrrs_u_1_in_axes3_x = axis_x_rrrs_axes3_x*v.rrrs_u_1_x +
+        axis_x_rrrs_axes3_y*v.rrrs_u_1_y + axis_x_rrrs_axes3_z*v.rrrs_u_1_z;
+    const real rrrs_u_1_in_axes3_y = axis_y_rrrs_axes3_x*v.rrrs_u_1_x +
+        axis_y_rrrs_axes3_y*v.rrrs_u_1_y + axis_y_rrrs_axes3_z*v.rrrs_u_1_z;
+    /* (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+    const real rrrs_zeta_2_in_axes2_y = v.rrrs_omega_1_in_axes2_x*rrrs_qd_2_t_3;
+    const real rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*v.rrrs_s_3_t +
+        v.rrrs_c_3*rrrs_zeta_2_in_axes2_y;
+    /* (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+    const real rrrs_zeta_3_t = v.rrrs_omega_1_in_axes3_x*rrrs_qd_3;
+    /* (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
+    const real rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t;
+    /* (rrrs-bias) acceleration of the connection point at zero joint accelerations */
+    const real rrrs_bias_t_4 = v.rrrs_d_3_in_axes3_y*rrrs_qd_2_t_3;
+    const real rrrs_bias_t_5 = v.rrrs_d_3_in_axes3_x*rrrs_qd_2_t_3;
+    const real rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*m->rrrs_platform_joint_offset_x[i];
+    const real rrrs_bias_in_axes3_x = v.rrrs_bias_t_3*v.rrrs_omega_1_in_axes3_y +
+        v.rrrs_bias_t_6*v.rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_qd_2_t_3 -
+        rrrs_bias_t_7*rrrs_omega_3_in_axes3_z - v.rrrs_bias_t_8*v.rrrs_omega_1_in_axes3_y;
+    const real rrrs_bias_in_axes3_y = v.rrrs_bias_t_8*v.rrrs_omega_1_in_axes3_x -
+        v.rrrs_bias_t_3*v.rrrs_omega_1_in_axes3_x - rrrs_bias_t_4*rrrs_qd_2_t_3 -
+        v.rrrs_bias_t_6*v.rrrs_omega_1_in_axes3_x;
+    const real rrrs_bias_in_axes3_z = rrrs_bias_t_7*v.rrrs_omega_1_in_axes3_x +
+        v.rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*v.rrrs_c_3 -
+        v.rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) -
+        rrrs_beta_3_in_axes3_y*m->rrrs_platform_joint_offset_x[i] -
+        rrrs_bias_t_4*v.rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*v.rrrs_omega_1_in_axes3_x -
+        v.rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y;
+    /* (rrrs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real rrrs_rel_o_in_axes3_x = rrrs_u_1_in_axes3_x - rrrs_bias_in_axes3_x;
+    const real rrrs_rel_o_in_axes3_y = rrrs_u_1_in_axes3_y - rrrs_bias_in_axes3_y;
+    const real rrrs_rel_o_in_axes3_z = v.rrrs_u_1_in_axes3_z - rrrs_bias_in_axes3_z;
+    /* (rrrs-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real rrrs_qdd_1_o = rrrs_rel_o_in_axes3_z*v.rrrs_w_1_in_axes3_z;
+    /* (rrrs-qdd_2_o) remainder of: acceleration of joint 2 */
+    const real rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*v.rrrs_w_2_in_axes3_x;
+    /* (rrrs-alpha_1_o) remainder of: angular acceleration of link 1 */
+    const real rrrs_alpha_1_o_in_axes2_x = v.rrrs_c_2*rrrs_qdd_1_o;
+    const real rrrs_alpha_1_o_t = rrrs_qdd_1_o*v.rrrs_s_2;
+    /* (rrrs-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real rrrs_alpha_2_o_in_axes2_x = rrrs_W_2_in_axes2_yz + rrrs_alpha_1_o_in_axes2_x;
+    const real rrrs_alpha_2_o_in_axes2_y = rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_o_t;
+    /* (rrrs-B_2_o) remainder of the acceleration tensor of link 2 */
+    const real rrrs_B_2_o_in_axes2_xy = v.rrrs_W_2_in_axes2_xy - rrrs_qdd_2_o;
+    const real rrrs_B_2_o_in_axes2_yx = v.rrrs_W_2_in_axes2_xy + rrrs_qdd_2_o;
+    const real rrrs_B_2_o_in_axes2_zx = -rrrs_alpha_2_o_in_axes2_y - rrrs_zeta_2_in_axes2_y;
+    const real rrrs_B_2_o_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_o_in_axes2_x;
+    /* (rrrs-alpha_3_o) remainder of: angular acceleration of link 3 */
+    const real rrrs_alpha_3_o_in_axes3_x = rrrs_alpha_2_o_in_axes2_x*v.rrrs_c_3 +
+        v.rrrs_omega_1_in_axes3_y*rrrs_qd_3 - rrrs_alpha_2_o_in_axes2_y*v.rrrs_s_3_t;
+    const real rrrs_alpha_3_o_in_axes3_y = rrrs_alpha_2_o_in_axes2_x*v.rrrs_s_3_t +
+        rrrs_alpha_2_o_in_axes2_y*v.rrrs_c_3 - rrrs_zeta_3_t;
+    const real rrrs_alpha_3_o_in_axes3_z = rrrs_qdd_2_o +
+        m->rrrs_w_3_in_axes3_y[i]*(rrrs_rel_o_in_axes3_y -
+        rrrs_qdd_2_o*v.rrrs_r_2_in_axes3_x);
+    /* (rrrs-B_3_o) remainder of the acceleration tensor of link 3 */
+    const real rrrs_B_3_o_in_axes3_xy = v.rrrs_W_3_in_axes3_xy - rrrs_alpha_3_o_in_axes3_z;
+    const real rrrs_B_3_o_in_axes3_xz = rrrs_W_3_in_axes3_xz + rrrs_alpha_3_o_in_axes3_y;
+    const real rrrs_B_3_o_in_axes3_yx = v.rrrs_W_3_in_axes3_xy + rrrs_alpha_3_o_in_axes3_z;
+    const real rrrs_B_3_o_in_axes3_yz = rrrs_W_3_in_axes3_yz - rrrs_alpha_3_o_in_axes3_x;
+    const real rrrs_B_3_o_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_o_in_axes3_y;
+    const real rrrs_B_3_o_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_o_in_axes3_x;
+    /* (rrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
+    const real rrrs_acc_3_o_in_axes3_x = rrrs_u_1_in_axes3_x -
+        axis_x_rrrs_axes3_x*m->gravity_x - axis_x_rrrs_axes3_y*m->gravity_y -
+        axis_x_rrrs_axes3_z*m->gravity_z;
+    const real rrrs_acc_3_o_in_axes3_y = rrrs_u_1_in_axes3_y -
+        axis_y_rrrs_axes3_x*m->gravity_x - axis_y_rrrs_axes3_y*m->gravity_y -
+        axis_y_rrrs_axes3_z*m->gravity_z;
+    /* (rrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+       reference points */
+    const real rrrs_mu_3_o_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z;
+    const real rrrs_mu_3_o_in_axes3_x = rrrs_B_3_o_in_axes3_yx*m->rrrs_J_3_in_spec3_xz[i] +
+        rrrs_B_3_o_in_axes3_zy*m->rrrs_Sigma_3_in_axes3_yy[i] +
+        m->rrrs_J_3_in_spec3_yz[i]*(v.rrrs_mu_3_o_t_2 - rrrs_mu_3_o_t_3) +
+        v.rrrs_acc_3_o_in_axes3_z*m->rrrs_h_3_in_spec3_y[i] -
+        rrrs_B_3_o_in_axes3_yz*m->rrrs_Sigma_3_in_axes3_zz[i] -
+        rrrs_B_3_o_in_axes3_zx*m->rrrs_J_3_in_spec3_xy[i] -
+        rrrs_acc_3_o_in_axes3_y*m->rrrs_h_3_in_spec3_z[i];
+    const real rrrs_mu_3_o_in_axes3_y = rrrs_B_3_o_in_axes3_xz*m->rrrs_Sigma_3_in_axes3_zz[i]
+        + rrrs_B_3_o_in_axes3_zy*m->rrrs_J_3_in_spec3_xy[i] +
+        rrrs_acc_3_o_in_axes3_x*m->rrrs_h_3_in_spec3_z[i] -
+        rrrs_B_3_o_in_axes3_xy*m->rrrs_J_3_in_spec3_yz[i] -
+        rrrs_B_3_o_in_axes3_zx*m->rrrs_Sigma_3_in_axes3_xx[i] -
+        m->rrrs_J_3_in_spec3_xz[i]*(v.rrrs_mu_3_o_t - rrrs_mu_3_o_t_3) -
+        v.rrrs_acc_3_o_in_axes3_z*m->rrrs_h_3_in_spec3_x[i];
+    const real rrrs_mu_3_o_in_axes3_z = rrrs_B_3_o_in_axes3_xz*m->rrrs_J_3_in_spec3_yz[i] +
+        rrrs_B_3_o_in_axes3_yx*m->rrrs_Sigma_3_in_axes3_xx[i] +
+        m->rrrs_J_3_in_spec3_xy[i]*(v.rrrs_mu_3_o_t - v.rrrs_mu_3_o_t_2) +
+        rrrs_acc_3_o_in_axes3_y*m->rrrs_h_3_in_spec3_x[i] -
+        rrrs_B_3_o_in_axes3_xy*m->rrrs_Sigma_3_in_axes3_yy[i] -
+        rrrs_B_3_o_in_axes3_yz*m->rrrs_J_3_in_spec3_xz[i] -
+        rrrs_acc_3_o_in_axes3_x*m->rrrs_h_3_in_spec3_y[i];
+    /* (rrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real rrrs_mu_2_o_t_3 = rrrs_qd_2_t_3*rrrs_qd_2_t_3;
+    const real rrrs_mu_2_o_in_axes2_x = rrrs_B_2_o_in_axes2_yx*m->rrrs_J_2_in_spec2_xz[i] +
+        rrrs_B_2_o_in_axes2_zy*m->rrrs_Sigma_2_in_axes2_yy[i] +
+        m->rrrs_J_2_in_spec2_yz[i]*(v.rrrs_mu_2_o_t_2 - rrrs_mu_2_o_t_3) +
+        m->rrrs_Sigma_2_in_axes2_zz[i]*rrrs_alpha_1_o_in_axes2_x +
+        v.rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_z[i] -
+        rrrs_B_2_o_in_axes2_zx*m->rrrs_J_2_in_spec2_xy[i] -
+        v.rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_y[i];
+    const real rrrs_mu_2_o_in_axes2_y = rrrs_B_2_o_in_axes2_zy*m->rrrs_J_2_in_spec2_xy[i] +
+        v.rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_x[i] -
+        rrrs_B_2_o_in_axes2_xy*m->rrrs_J_2_in_spec2_yz[i] -
+        rrrs_B_2_o_in_axes2_zx*m->rrrs_Sigma_2_in_axes2_xx[i] -
+        m->rrrs_J_2_in_spec2_xz[i]*(v.rrrs_mu_2_o_t - rrrs_mu_2_o_t_3) -
+        m->rrrs_Sigma_2_in_axes2_zz[i]*rrrs_alpha_1_o_t -
+        v.rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_z[i];
+    const real rrrs_mu_2_o_in_axes2_z = rrrs_B_2_o_in_axes2_yx*m->rrrs_Sigma_2_in_axes2_xx[i]
+        + m->rrrs_J_2_in_spec2_xy[i]*(v.rrrs_mu_2_o_t - v.rrrs_mu_2_o_t_2) +
+        m->rrrs_J_2_in_spec2_xz[i]*rrrs_alpha_1_o_in_axes2_x +
+        v.rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_y[i] -
+        rrrs_B_2_o_in_axes2_xy*m->rrrs_Sigma_2_in_axes2_yy[i] -
+        m->rrrs_J_2_in_spec2_yz[i]*rrrs_alpha_1_o_t -
+        v.rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_x[i];
+    /* (rrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+       connection point left out */
+    const real rrrs_N_2_o_in_axes2_x = rrrs_mu_2_o_in_axes2_x +
+        v.rrrs_c_3*rrrs_mu_3_o_in_axes3_x + rrrs_mu_3_o_in_axes3_y*v.rrrs_s_3_t;
+    const real rrrs_N_2_o_in_axes2_y = rrrs_mu_2_o_in_axes2_y +
+        v.rrrs_c_3*rrrs_mu_3_o_in_axes3_y - rrrs_mu_3_o_in_axes3_x*v.rrrs_s_3_t;
+    const real rrrs_N_2_o_in_axes2_z = rrrs_mu_2_o_in_axes2_z + rrrs_mu_3_o_in_axes3_z;
+    /* (rrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
+    const real rrrs_mu_1_o_in_axes1_z = m->rrrs_J_1_in_spec1_xx[i]*rrrs_qdd_1_o +
+        v.rrrs_g_in_axes1_x*m->rrrs_h_1_in_spec1_z[i] -
+        v.rrrs_g_in_axes1_y*m->rrrs_h_1_in_spec1_y[i];
+    /* (rrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+       connection point left out */
+    const real rrrs_N_1_o_in_axes1_z = rrrs_mu_1_o_in_axes1_z +
+        rrrs_N_2_o_in_axes2_x*v.rrrs_c_2 - rrrs_N_2_o_in_axes2_y*v.rrrs_s_2;
+    /* (rrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*m->rrrs_w_3_in_axes3_y[i];
+    /* (rrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at
+       the connection point */
+    const real rrrs_c_o_in_axes3_x = m->rrrs_h_3_in_spec3_x[i]*(v.rrrs_mu_3_o_t_2 +
+        rrrs_mu_3_o_t_3) + v.rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*v.rrrs_r_2_in_axes3_x -
+        rrrs_N_2_o_in_axes2_z) - rrrs_B_3_o_in_axes3_xy*m->rrrs_h_3_in_spec3_y[i] -
+        rrrs_B_3_o_in_axes3_xz*m->rrrs_h_3_in_spec3_z[i];
+    const real rrrs_c_o_in_axes3_y = m->rrrs_h_3_in_spec3_y[i]*(v.rrrs_mu_3_o_t +
+        rrrs_mu_3_o_t_3) - rrrs_G_o_in_axes3_y -
+        rrrs_B_3_o_in_axes3_yx*m->rrrs_h_3_in_spec3_x[i] -
+        rrrs_B_3_o_in_axes3_yz*m->rrrs_h_3_in_spec3_z[i];
+    const real rrrs_c_o_in_axes3_z = m->rrrs_h_3_in_spec3_z[i]*(v.rrrs_mu_3_o_t +
+        v.rrrs_mu_3_o_t_2) - rrrs_B_3_o_in_axes3_zx*m->rrrs_h_3_in_spec3_x[i] -
+        rrrs_B_3_o_in_axes3_zy*m->rrrs_h_3_in_spec3_y[i] -
+        rrrs_N_1_o_in_axes1_z*v.rrrs_w_1_in_axes3_z;
+    /* (rrrs-U) velocity and gravity terms of the leg force */
+    const real rrrs_U_x = -axis_x_rrrs_axes3_x*rrrs_c_o_in_axes3_x -
+        axis_y_rrrs_axes3_x*rrrs_c_o_in_axes3_y - v.axis_z_rrrs_axes3_x*rrrs_c_o_in_axes3_z;
+    const real rrrs_U_y = -axis_x_rrrs_axes3_y*rrrs_c_o_in_axes3_x -
+        axis_y_rrrs_axes3_y*rrrs_c_o_in_axes3_y - v.axis_z_rrrs_axes3_y*rrrs_c_o_in_axes3_z;
+    const real rrrs_U_z = -axis_x_rrrs_axes3_z*rrrs_c_o_in_axes3_x -
+        axis_y_rrrs_axes3_z*rrrs_c_o_in_axes3_y - v.axis_z_rrrs_axes3_z*rrrs_c_o_in_axes3_z;
+    /* (Z_a) */
+    const real rrrs_Z_a_t = rrrs_U_z*v.rrrs_q_y - rrrs_U_y*v.rrrs_q_z;
+    const real rrrs_Z_a_t_2 = rrrs_U_x*v.rrrs_q_z - rrrs_U_z*v.rrrs_q_x;
+    const real rrrs_Z_a_t_3 = rrrs_U_y*v.rrrs_q_x - rrrs_U_x*v.rrrs_q_y;
+    /* (Z_t) */
+    gather(&terms[0*count + k], add, rrrs_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, rrrs_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, rrrs_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) */
+    gather(&terms[3*count + k], add, rrrs_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[4*count + k], add, rrrs_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[5*count + k], add, rrrs_Z_a_t_3);  /* Z_a_z_of_legs */
+    o[1*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_rho2_2) >
+        TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) + UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) >
+        TOLERANCE*m->rrrs_size[i]) + UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) >
+        TOLERANCE*m->rrrs_size[i]);
+    o[0*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
 }
 
-INLINE void Z_place_rrrs(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void Z_place_rrrs(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o[0*count + first + k];
-        t->singular[k] += o[1*count + first + k];
-    }
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
 }
 
-INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict *t)
+INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (Z_t) translational part of Z */
-        const real Z_p_x = s[9*w + k];
-        const real Z_t_x_of_legs = sums[0*w + k];
-        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[10*w + k];
-        const real Z_t_y_of_legs = sums[1*w + k];
-        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[11*w + k];
-        const real Z_t_z_of_legs = sums[2*w + k];
-        const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-        /* (Z_a) rotational part of Z */
-        const real Z_a_x_of_legs = sums[3*w + k];
-        const real Z_q_x = s[12*w + k];
-        const real Z_a_x = Z_a_x_of_legs + Z_q_x;
-        const real Z_a_y_of_legs = sums[4*w + k];
-        const real Z_q_y = s[13*w + k];
-        const real Z_a_y = Z_a_y_of_legs + Z_q_y;
-        const real Z_a_z_of_legs = sums[5*w + k];
-        const real Z_q_z = s[14*w + k];
-        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
-        /* (Z_t) translational part of Z */
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-        Z[2*w + k] = Z_t_z;
-        /* (Z_a) rotational part of Z */
-        Z[3*w + k] = Z_a_x;
-        Z[4*w + k] = Z_a_y;
-        Z[5*w + k] = Z_a_z;
-        t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
-    }
+    /* (Z_t) */
+    const real Z_p_x = s[9*w + k];
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[10*w + k];
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    const real Z_p_z = s[11*w + k];
+    const real Z_t_z_of_legs = sums[2*w + k];
+    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
+    /* (Z_a) */
+    const real Z_a_x_of_legs = sums[3*w + k];
+    const real Z_q_x = s[12*w + k];
+    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_y_of_legs = sums[4*w + k];
+    const real Z_q_y = s[13*w + k];
+    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_z_of_legs = sums[5*w + k];
+    const real Z_q_z = s[14*w + k];
+    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    /* (Z_a) */
+    Z[3*w + k] = Z_a_x;
+    Z[4*w + k] = Z_a_y;
+    Z[5*w + k] = Z_a_z;
+    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
@@ -6388,1672 +6047,1549 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     real s[15] = {0}, sums[6] = {0};
     real terms_rrrrs[6*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[4*LEGS(LEGS_OF_rrrrs)] = {0};
     real terms_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0};
-    Z_before(m, 1, X, V, s, t);
-    Z_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrrs), 0, X, V, terms_rrrrs, o_rrrrs);
-    Z_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), 0, X, V, terms_rrrs, o_rrrs);
-    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
-        Z_place_rrrrs(1, LEGS(LEGS_OF_rrrrs), o_rrrrs, leg, Z, t);
+    Z_before(m, 1, 0, X, V, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
+        Z_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), 0, s, X, V, terms_rrrrs, o_rrrrs);
+    }
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
+        Z_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), 0, s, X, V, terms_rrrs, o_rrrs);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
+        Z_place_rrrrs(1, 0, i, LEGS(LEGS_OF_rrrrs), o_rrrrs, Z, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_rrrrs + n*LEGS(LEGS_OF_rrrrs), LEGS_OF_rrrrs);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
-        Z_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, t);
+    for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        Z_place_rrrs(0, i, LEGS(LEGS_OF_rrrs), o_rrrs, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
             sums[n] += terms_rrrs[n*LEGS(LEGS_OF_rrrs) + leg];
         }
     }
-    Z_after(1, s, sums, Z, t);
+    Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z, verdict
+    *restrict t)
 {
     real s[15*LANES], sums[6*LANES];
     real o_rrrrs[4*LANES];
     real o_rrrs[2*LANES];
-    Z_before(m, LANES, X, V, s, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        Z_before(m, LANES, k, X, V, s, t);
+    }
     clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
-        Z_legs_rrrrs(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rrrrs);
-        Z_place_rrrrs(LANES, LANES, o_rrrrs, 0, Z, t);
+    for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_legs_rrrrs(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrrrs);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_place_rrrrs(LANES, k, k, LANES, o_rrrrs, Z, t);
+        }
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
-        Z_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rrrs);
-        Z_place_rrrs(LANES, LANES, o_rrrs, 0, t);
+    for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_legs_rrrs(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrrs);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_place_rrrs(k, k, LANES, o_rrrs, t);
+        }
     }
-    Z_after(LANES, s, sums, Z, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        Z_after(LANES, k, s, sums, Z, t);
+    }
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void H_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, const real *X, real *o)
+INLINE void H_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrrrs v;
-        stage_rrrrs_X(m, w, i, j, s, X, &v);
-        stage_rrrrs_H_condition(m, i, &v);
-        /* (rrrrs-w_1) reciprocal vector 1 */
-        o[0*count + k] = v.rrrrs_w_1_x;
-        o[1*count + k] = v.rrrrs_w_1_y;
-        o[2*count + k] = v.rrrrs_w_1_z;
-        /* (rrrrs-H_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = v.rrrrs_H_a_1_x;
-        o[4*count + k] = v.rrrrs_H_a_1_y;
-        o[5*count + k] = v.rrrrs_H_a_1_z;
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        o[6*count + k] = 1;
-        /* (rrrrs-w_3) reciprocal vector 2 */
-        o[7*count + k] = v.rrrrs_w_3_x;
-        o[8*count + k] = v.rrrrs_w_3_y;
-        o[9*count + k] = v.rrrrs_w_3_z;
-        /* (rrrrs-H_a_3) moment of the column's unit force about the platform origin */
-        o[10*count + k] = v.rrrrs_H_a_3_x;
-        o[11*count + k] = v.rrrrs_H_a_3_y;
-        o[12*count + k] = v.rrrrs_H_a_3_z;
-        /* (rrrrs-w_3) reciprocal vector 2 */
-        o[13*count + k] = v.rrrrs_w_3_t_7;
-        o[16*count + k] = ((v.rrrrs_w_1_x + (v.rrrrs_w_1_y + v.rrrrs_w_1_z)) + (v.rrrrs_H_a_1_x +
-            (v.rrrrs_H_a_1_y + v.rrrrs_H_a_1_z))) + ((v.rrrrs_w_3_x + (v.rrrrs_w_3_y +
-            v.rrrrs_w_3_z)) + ((v.rrrrs_H_a_3_x + v.rrrrs_H_a_3_y) + (v.rrrrs_H_a_3_z +
-            v.rrrrs_w_3_t_7)));
-        const real rrrrs_size_t_3 = m->rrrrs_size_t_3[i];
-        const real rrrrs_rho2_3_t = m->rrrrs_rho2_3_t[i];
-        const real rrrrs_size = m->rrrrs_size[i];
-        o[15*count + k] = UNLESS(magnitude(v.rrrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrrs_size_t_3) +
-            UNLESS(magnitude(v.rrrrs_rho2_3) > TOLERANCE*TOLERANCE*rrrrs_rho2_3_t) +
-            UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) > TOLERANCE*rrrrs_size) +
-            UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) > TOLERANCE*rrrrs_size);
-        o[14*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
-    }
+    values_rrrrs v;
+    stage_rrrrs_X(m, w, i, j, s, X, &v);
+    stage_rrrrs_H_condition(m, i, &v);
+    /* (rrrrs-w_1) reciprocal vector 1 */
+    o[0*count + k] = v.rrrrs_w_1_x;
+    o[1*count + k] = v.rrrrs_w_1_y;
+    o[2*count + k] = v.rrrrs_w_1_z;
+    /* (rrrrs-H_a_1) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.rrrrs_H_a_1_x;
+    o[4*count + k] = v.rrrrs_H_a_1_y;
+    o[5*count + k] = v.rrrrs_H_a_1_z;
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    o[6*count + k] = 1;
+    /* (rrrrs-w_3) reciprocal vector 2 */
+    o[7*count + k] = v.rrrrs_w_3_x;
+    o[8*count + k] = v.rrrrs_w_3_y;
+    o[9*count + k] = v.rrrrs_w_3_z;
+    /* (rrrrs-H_a_3) moment of the column's unit force about the platform origin */
+    o[10*count + k] = v.rrrrs_H_a_3_x;
+    o[11*count + k] = v.rrrrs_H_a_3_y;
+    o[12*count + k] = v.rrrrs_H_a_3_z;
+    /* (rrrrs-w_3) */
+    o[13*count + k] = v.rrrrs_w_3_t_7;
+    o[16*count + k] = ((v.rrrrs_w_1_x + (v.rrrrs_w_1_y + v.rrrrs_w_1_z)) + (v.rrrrs_H_a_1_x +
+        (v.rrrrs_H_a_1_y + v.rrrrs_H_a_1_z))) + ((v.rrrrs_w_3_x + (v.rrrrs_w_3_y +
+        v.rrrrs_w_3_z)) + ((v.rrrrs_H_a_3_x + v.rrrrs_H_a_3_y) + (v.rrrrs_H_a_3_z +
+        v.rrrrs_w_3_t_7)));
+    o[15*count + k] = UNLESS(magnitude(v.rrrrs_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_rho2_3) >
+        TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]) + UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) >
+        TOLERANCE*m->rrrrs_size[i]) + UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) >
+        TOLERANCE*m->rrrrs_size[i]);
+    o[14*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
 }
 
-INLINE void H_place_rrrrs(size_t w, size_t count, const real *o, size_t first, real *H, verdict
-    *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        H[0*w + k] = o[0*count + first + k];
-        H[NU*w + k] = o[1*count + first + k];
-        H[2*NU*w + k] = o[2*count + first + k];
-        H[3*NU*w + k] = o[3*count + first + k];
-        H[4*NU*w + k] = o[4*count + first + k];
-        H[5*NU*w + k] = o[5*count + first + k];
-        H[(6*NU + 1)*w + k] = o[6*count + first + k];
-        H[2*w + k] = o[7*count + first + k];
-        H[(NU + 2)*w + k] = o[8*count + first + k];
-        H[(2*NU + 2)*w + k] = o[9*count + first + k];
-        H[(3*NU + 2)*w + k] = o[10*count + first + k];
-        H[(4*NU + 2)*w + k] = o[11*count + first + k];
-        H[(5*NU + 2)*w + k] = o[12*count + first + k];
-        H[(6*NU + 2)*w + k] = o[13*count + first + k];
-        t->unreachable[k] += o[14*count + first + k];
-        t->singular[k] += o[15*count + first + k];
-        t->total[k] += o[16*count + first + k];
-    }
-}
-
-INLINE void H_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, const real *X, real *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrrs v;
-        stage_rrrs_X(m, w, i, j, s, X, &v);
-        stage_rrrs_H_condition(m, i, &v);
-        /* (rrrs-w_1) reciprocal vector 1 */
-        o[0*count + k] = v.rrrs_w_1_x;
-        o[1*count + k] = v.rrrs_w_1_y;
-        o[2*count + k] = v.rrrs_w_1_z;
-        /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = v.rrrs_H_a_1_x;
-        o[4*count + k] = v.rrrs_H_a_1_y;
-        o[5*count + k] = v.rrrs_H_a_1_z;
-        /* (rrrs-w_2) reciprocal vector 2 */
-        o[6*count + k] = v.rrrs_w_2_x;
-        o[7*count + k] = v.rrrs_w_2_y;
-        o[8*count + k] = v.rrrs_w_2_z;
-        /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
-        o[9*count + k] = v.rrrs_H_a_2_x;
-        o[10*count + k] = v.rrrs_H_a_2_y;
-        o[11*count + k] = v.rrrs_H_a_2_z;
-        o[14*count + k] = ((v.rrrs_w_1_x + (v.rrrs_w_1_y + v.rrrs_w_1_z)) + (v.rrrs_H_a_1_x +
-            (v.rrrs_H_a_1_y + v.rrrs_H_a_1_z))) + ((v.rrrs_w_2_x + (v.rrrs_w_2_y + v.rrrs_w_2_z))
-            + (v.rrrs_H_a_2_x + (v.rrrs_H_a_2_y + v.rrrs_H_a_2_z)));
-        const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
-        const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
-        const real rrrs_size = m->rrrs_size[i];
-        o[13*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
-            UNLESS(magnitude(v.rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
-            UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
-            UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
-        o[12*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
-    }
-}
-
-INLINE void H_place_rrrs(size_t w, size_t count, const real *o, size_t leg, size_t first, real *H,
+INLINE void H_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
     verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[(3 + 2*leg)*w + k] = o[0*count + first + k];
-        H[(NU + 3 + 2*leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + 3 + 2*leg)*w + k] = o[2*count + first + k];
-        H[(3*NU + 3 + 2*leg)*w + k] = o[3*count + first + k];
-        H[(4*NU + 3 + 2*leg)*w + k] = o[4*count + first + k];
-        H[(5*NU + 3 + 2*leg)*w + k] = o[5*count + first + k];
-        H[(4 + 2*leg)*w + k] = o[6*count + first + k];
-        H[(NU + 4 + 2*leg)*w + k] = o[7*count + first + k];
-        H[(2*NU + 4 + 2*leg)*w + k] = o[8*count + first + k];
-        H[(3*NU + 4 + 2*leg)*w + k] = o[9*count + first + k];
-        H[(4*NU + 4 + 2*leg)*w + k] = o[10*count + first + k];
-        H[(5*NU + 4 + 2*leg)*w + k] = o[11*count + first + k];
-        t->unreachable[k] += o[12*count + first + k];
-        t->singular[k] += o[13*count + first + k];
-        t->total[k] += o[14*count + first + k];
-    }
+    H[0*w + k] = o[0*count + at];
+    H[NU*w + k] = o[1*count + at];
+    H[2*NU*w + k] = o[2*count + at];
+    H[3*NU*w + k] = o[3*count + at];
+    H[4*NU*w + k] = o[4*count + at];
+    H[5*NU*w + k] = o[5*count + at];
+    H[(6*NU + 1)*w + k] = o[6*count + at];
+    H[2*w + k] = o[7*count + at];
+    H[(NU + 2)*w + k] = o[8*count + at];
+    H[(2*NU + 2)*w + k] = o[9*count + at];
+    H[(3*NU + 2)*w + k] = o[10*count + at];
+    H[(4*NU + 2)*w + k] = o[11*count + at];
+    H[(5*NU + 2)*w + k] = o[12*count + at];
+    H[(6*NU + 2)*w + k] = o[13*count + at];
+    t->unreachable[k] += o[14*count + at];
+    t->singular[k] += o[15*count + at];
+    t->total[k] += o[16*count + at];
 }
 
-INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
+INLINE void H_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    const real *s, const real *X, real *o)
+{
+    values_rrrs v;
+    stage_rrrs_X(m, w, i, j, s, X, &v);
+    stage_rrrs_H_condition(m, i, &v);
+    /* (rrrs-w_1) reciprocal vector 1 */
+    o[0*count + k] = v.rrrs_w_1_x;
+    o[1*count + k] = v.rrrs_w_1_y;
+    o[2*count + k] = v.rrrs_w_1_z;
+    /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.rrrs_H_a_1_x;
+    o[4*count + k] = v.rrrs_H_a_1_y;
+    o[5*count + k] = v.rrrs_H_a_1_z;
+    /* (rrrs-w_2) reciprocal vector 2 */
+    o[6*count + k] = v.rrrs_w_2_x;
+    o[7*count + k] = v.rrrs_w_2_y;
+    o[8*count + k] = v.rrrs_w_2_z;
+    /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
+    o[9*count + k] = v.rrrs_H_a_2_x;
+    o[10*count + k] = v.rrrs_H_a_2_y;
+    o[11*count + k] = v.rrrs_H_a_2_z;
+    o[14*count + k] = ((v.rrrs_w_1_x + (v.rrrs_w_1_y + v.rrrs_w_1_z)) + (v.rrrs_H_a_1_x +
+        (v.rrrs_H_a_1_y + v.rrrs_H_a_1_z))) + ((v.rrrs_w_2_x + (v.rrrs_w_2_y + v.rrrs_w_2_z))
+        + (v.rrrs_H_a_2_x + (v.rrrs_H_a_2_y + v.rrrs_H_a_2_z)));
+    o[13*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_rho2_2) >
+        TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) + UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) >
+        TOLERANCE*m->rrrs_size[i]) + UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) >
+        TOLERANCE*m->rrrs_size[i]);
+    o[12*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
+}
+
+INLINE void H_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *H, verdict *t)
+{
+    H[(3 + 2*i)*w + k] = o[0*count + at];
+    H[(NU + 3 + 2*i)*w + k] = o[1*count + at];
+    H[(2*NU + 3 + 2*i)*w + k] = o[2*count + at];
+    H[(3*NU + 3 + 2*i)*w + k] = o[3*count + at];
+    H[(4*NU + 3 + 2*i)*w + k] = o[4*count + at];
+    H[(5*NU + 3 + 2*i)*w + k] = o[5*count + at];
+    H[(4 + 2*i)*w + k] = o[6*count + at];
+    H[(NU + 4 + 2*i)*w + k] = o[7*count + at];
+    H[(2*NU + 4 + 2*i)*w + k] = o[8*count + at];
+    H[(3*NU + 4 + 2*i)*w + k] = o[9*count + at];
+    H[(4*NU + 4 + 2*i)*w + k] = o[10*count + at];
+    H[(5*NU + 4 + 2*i)*w + k] = o[11*count + at];
+    t->unreachable[k] += o[12*count + at];
+    t->singular[k] += o[13*count + at];
+    t->total[k] += o[14*count + at];
+}
+
+APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
     real s[9] = {0};
     real o_rrrrs[17*LEGS(LEGS_OF_rrrrs)] = {0};
     real o_rrrs[15*LEGS(LEGS_OF_rrrs)] = {0};
     clear(H, NV*NU);
-    H_before(m, 1, X, s, t);
-    H_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrrs), X, o_rrrrs);
-    H_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), X, o_rrrs);
-    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
-        H_place_rrrrs(1, LEGS(LEGS_OF_rrrrs), o_rrrrs, leg, H, t);
+    H_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
+        H_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), s, X, o_rrrrs);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
-        H_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, leg, H, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
+        H_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), s, X, o_rrrs);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
+        H_place_rrrrs(1, 0, i, LEGS(LEGS_OF_rrrrs), o_rrrrs, H, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        H_place_rrrs(1, i, 0, i, LEGS(LEGS_OF_rrrs), o_rrrs, H, t);
     }
 }
 
-INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
+INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verdict *restrict t)
 {
     real s[9*LANES];
     real o_rrrrs[17*LANES];
     real o_rrrs[15*LANES];
     clear(H, NV*NU*LANES);
-    H_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
-        H_legs_rrrrs(m, LANES, leg, 0, s, 1, LANES, X, o_rrrrs);
-        H_place_rrrrs(LANES, LANES, o_rrrrs, 0, H, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        H_before(m, LANES, k, X, s, t);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
-        H_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, X, o_rrrs);
-        H_place_rrrs(LANES, LANES, o_rrrs, leg, 0, H, t);
+    for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            H_legs_rrrrs(m, LANES, i, k, k, LANES, s, X, o_rrrrs);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            H_place_rrrrs(LANES, k, k, LANES, o_rrrrs, H, t);
+        }
+    }
+    for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            H_legs_rrrs(m, LANES, i, k, k, LANES, s, X, o_rrrs);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            H_place_rrrs(LANES, i, k, k, LANES, o_rrrs, H, t);
+        }
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, real *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        stage_V_X(w, k, V, &v);
-        /* (W_p) centripetal tensor of the platform */
-        const real omega_x = V[3*w + k];
-        const real omega_y = V[4*w + k];
-        const real W_p_xy = omega_x*omega_y;
-        const real omega_z = V[5*w + k];
-        const real W_p_xz = omega_x*omega_z;
-        const real W_p_yz = omega_y*omega_z;
-        /* (a_t) acceleration of the platform origin, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real t_ddot_x = A[0*w + k];
-        const real a_t_x = t_ddot_x - gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real t_ddot_y = A[1*w + k];
-        const real a_t_y = t_ddot_y - gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real t_ddot_z = A[2*w + k];
-        const real a_t_z = t_ddot_z - gravity_z;
-        const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
-        const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
-        const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
-        /* (f_p) inertia force of the platform less its weight */
-        const real f_p_t = omega_x*omega_x;
-        const real f_p_t_2 = omega_y*omega_y;
-        const real f_p_t_3 = omega_z*omega_z;
-        const real alpha_y = A[4*w + k];
-        const real alpha_z = A[5*w + k];
-        const real m_star = m->m_star;
-        const real f_p_x = a_t_x*m_star + v.h_star_y*(W_p_xy - alpha_z) + v.h_star_z*(W_p_xz +
-            alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
-        const real alpha_x = A[3*w + k];
-        const real f_p_y = a_t_y*m_star + v.h_star_x*(W_p_xy + alpha_z) + v.h_star_z*(W_p_yz -
-            alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
-        const real f_p_z = a_t_z*m_star + v.h_star_x*(W_p_xz - alpha_y) + v.h_star_y*(W_p_yz +
-            alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
-        /* (mu_p) inertia moment of the platform less that of its weight */
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real mu_p_t = J_star_in_platform_xx*v.omega_in_platform_x +
-            J_star_in_platform_xy*v.omega_in_platform_y +
-            J_star_in_platform_xz*v.omega_in_platform_z;
-        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real mu_p_t_2 = J_star_in_platform_xy*v.omega_in_platform_x +
-            J_star_in_platform_yy*v.omega_in_platform_y +
-            J_star_in_platform_yz*v.omega_in_platform_z;
-        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real mu_p_t_3 = J_star_in_platform_xz*v.omega_in_platform_x +
-            J_star_in_platform_yz*v.omega_in_platform_y +
-            J_star_in_platform_zz*v.omega_in_platform_z;
-        const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
-        const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
-        const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real mu_p_in_platform_x = J_star_in_platform_xx*alpha_in_platform_x +
-            J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z
-            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
-            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real mu_p_in_platform_y = J_star_in_platform_xy*alpha_in_platform_x +
-            J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z
-            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
-            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
-        const real mu_p_in_platform_z = J_star_in_platform_xz*alpha_in_platform_x +
-            J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z
-            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
-            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
-        const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
-            v.R_xz*mu_p_in_platform_z;
-        const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
-            v.R_yz*mu_p_in_platform_z;
-        const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
-            v.R_zz*mu_p_in_platform_z;
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = f_p_x;
-        s[10*w + k] = f_p_y;
-        s[11*w + k] = f_p_z;
-        s[12*w + k] = mu_p_x;
-        s[13*w + k] = mu_p_y;
-        s[14*w + k] = mu_p_z;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    stage_V_X(w, k, V, &v);
+    /* (W_p) centripetal tensor of the platform */
+    const real omega_x = V[3*w + k];
+    const real omega_y = V[4*w + k];
+    const real W_p_xy = omega_x*omega_y;
+    const real omega_z = V[5*w + k];
+    const real W_p_xz = omega_x*omega_z;
+    const real W_p_yz = omega_y*omega_z;
+    /* (a_t) acceleration of the platform origin, less gravity */
+    const real t_ddot_x = A[0*w + k];
+    const real a_t_x = t_ddot_x - m->gravity_x;
+    const real t_ddot_y = A[1*w + k];
+    const real a_t_y = t_ddot_y - m->gravity_y;
+    const real t_ddot_z = A[2*w + k];
+    const real a_t_z = t_ddot_z - m->gravity_z;
+    const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
+    const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
+    const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
+    /* (f_p) inertia force of the platform less its weight */
+    const real f_p_t = omega_x*omega_x;
+    const real f_p_t_2 = omega_y*omega_y;
+    const real f_p_t_3 = omega_z*omega_z;
+    const real alpha_y = A[4*w + k];
+    const real alpha_z = A[5*w + k];
+    const real f_p_x = a_t_x*m->m_star + v.h_star_y*(W_p_xy - alpha_z) + v.h_star_z*(W_p_xz +
+        alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+    const real alpha_x = A[3*w + k];
+    const real f_p_y = a_t_y*m->m_star + v.h_star_x*(W_p_xy + alpha_z) + v.h_star_z*(W_p_yz -
+        alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
+    const real f_p_z = a_t_z*m->m_star + v.h_star_x*(W_p_xz - alpha_y) + v.h_star_y*(W_p_yz +
+        alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
+    /* (mu_p) inertia moment of the platform less that of its weight */
+    const real mu_p_t = m->J_star_in_platform_xx*v.omega_in_platform_x +
+        m->J_star_in_platform_xy*v.omega_in_platform_y +
+        m->J_star_in_platform_xz*v.omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*v.omega_in_platform_x +
+        m->J_star_in_platform_yy*v.omega_in_platform_y +
+        m->J_star_in_platform_yz*v.omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*v.omega_in_platform_x +
+        m->J_star_in_platform_yz*v.omega_in_platform_y +
+        m->J_star_in_platform_zz*v.omega_in_platform_z;
+    const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
+    const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
+    const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+    const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
+        m->J_star_in_platform_xy*alpha_in_platform_y +
+        m->J_star_in_platform_xz*alpha_in_platform_z +
+        a_t_in_platform_z*m->h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
+        a_t_in_platform_y*m->h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+    const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
+        m->J_star_in_platform_yy*alpha_in_platform_y +
+        m->J_star_in_platform_yz*alpha_in_platform_z +
+        a_t_in_platform_x*m->h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
+        a_t_in_platform_z*m->h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
+    const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
+        m->J_star_in_platform_yz*alpha_in_platform_y +
+        m->J_star_in_platform_zz*alpha_in_platform_z +
+        a_t_in_platform_y*m->h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
+        a_t_in_platform_x*m->h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
+    const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
+        v.R_xz*mu_p_in_platform_z;
+    const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
+        v.R_yz*mu_p_in_platform_z;
+    const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
+        v.R_zz*mu_p_in_platform_z;
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = f_p_x;
+    s[10*w + k] = f_p_y;
+    s[11*w + k] = f_p_z;
+    s[12*w + k] = mu_p_x;
+    s[13*w + k] = mu_p_y;
+    s[14*w + k] = mu_p_z;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void required_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
-    *terms, real *o)
+INLINE void required_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, const real *V, const real *A, real *terms, real
+    *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrrrs v;
-        stage_rrrrs_V(w, j, V, &v);
-        stage_rrrrs_X(m, w, i, j, s, X, &v);
-        stage_rrrrs_A_X(w, j, A, &v);
-        stage_rrrrs_V_X(w, j, V, &v);
-        stage_rrrrs_A_V_X(w, j, V, &v);
-        stage_rrrrs_legs_required(m, w, i, j, V, A, &v);
-        /* (rrrrs-w_3) reciprocal vector 2 */
-        const real rrrrs_w_3_t_7 = v.rrrrs_r_2_in_axes4_y*v.rrrrs_w_3_in_axes4_x;
-        /* (rrrrs-B_2) acceleration tensor of link 2 */
-        const real rrrrs_ydd_2 = A[6*w + j];
-        const real rrrrs_B_2_in_axes2_xy = v.rrrrs_W_2_in_axes2_xy - rrrrs_ydd_2;
-        /* (rrrrs-f_3) inertia force of link 3 less its weight */
-        const real rrrrs_h_3_in_spec3_x = m->rrrrs_h_3_in_spec3_x[i];
-        const real rrrrs_h_3_in_spec3_y = m->rrrrs_h_3_in_spec3_y[i];
-        const real rrrrs_h_3_in_spec3_z = m->rrrrs_h_3_in_spec3_z[i];
-        const real rrrrs_link3_mass = m->rrrrs_link3_mass[i];
-        const real rrrrs_f_3_in_axes3_x = v.rrrrs_B_3_in_axes3_xy*rrrrs_h_3_in_spec3_y +
-            v.rrrrs_B_3_in_axes3_xz*rrrrs_h_3_in_spec3_z +
-            v.rrrrs_acc_3_in_axes3_x*rrrrs_link3_mass - rrrrs_h_3_in_spec3_x*(v.rrrrs_bias_t_2 +
-            v.rrrrs_f_3_t_2);
-        const real rrrrs_f_3_in_axes3_y = v.rrrrs_B_3_in_axes3_yx*rrrrs_h_3_in_spec3_x +
-            v.rrrrs_B_3_in_axes3_yz*rrrrs_h_3_in_spec3_z +
-            v.rrrrs_acc_3_in_axes3_y*rrrrs_link3_mass - rrrrs_h_3_in_spec3_y*(v.rrrrs_bias_t_2 +
-            v.rrrrs_f_3_t);
-        /* (rrrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real rrrrs_mu_2_t = v.rrrrs_omega_1_in_axes2_x*v.rrrrs_omega_1_in_axes2_x;
-        const real rrrrs_J_2_in_spec2_xy = m->rrrrs_J_2_in_spec2_xy[i];
-        const real rrrrs_J_2_in_spec2_xz = m->rrrrs_J_2_in_spec2_xz[i];
-        const real rrrrs_J_2_in_spec2_yz = m->rrrrs_J_2_in_spec2_yz[i];
-        const real rrrrs_Sigma_2_in_axes2_xx = m->rrrrs_Sigma_2_in_axes2_xx[i];
-        const real rrrrs_Sigma_2_in_axes2_zz = m->rrrrs_Sigma_2_in_axes2_zz[i];
-        const real rrrrs_h_2_in_spec2_x = m->rrrrs_h_2_in_spec2_x[i];
-        const real rrrrs_h_2_in_spec2_z = m->rrrrs_h_2_in_spec2_z[i];
-        const real rrrrs_mu_2_in_axes2_y = v.rrrrs_B_2_in_axes2_zy*rrrrs_J_2_in_spec2_xy +
-            rrrrs_Sigma_2_in_axes2_zz*v.rrrrs_alpha_1_in_axes2_y +
-            v.rrrrs_g_in_axes1_y*rrrrs_h_2_in_spec2_x -
-            rrrrs_B_2_in_axes2_xy*rrrrs_J_2_in_spec2_yz -
-            v.rrrrs_B_2_in_axes2_zx*rrrrs_Sigma_2_in_axes2_xx -
-            rrrrs_J_2_in_spec2_xz*(rrrrs_mu_2_t - v.rrrrs_bias_t) -
-            v.rrrrs_g_in_axes2_x*rrrrs_h_2_in_spec2_z;
-        const real rrrrs_Sigma_2_in_axes2_yy = m->rrrrs_Sigma_2_in_axes2_yy[i];
-        const real rrrrs_h_2_in_spec2_y = m->rrrrs_h_2_in_spec2_y[i];
-        const real rrrrs_mu_2_in_axes2_z = v.rrrrs_B_2_in_axes2_yx*rrrrs_Sigma_2_in_axes2_xx +
-            rrrrs_J_2_in_spec2_xy*(rrrrs_mu_2_t - v.rrrrs_a_o_3_t) +
-            rrrrs_J_2_in_spec2_xz*v.rrrrs_alpha_1_in_axes2_x +
-            rrrrs_J_2_in_spec2_yz*v.rrrrs_alpha_1_in_axes2_y +
-            v.rrrrs_g_in_axes2_x*rrrrs_h_2_in_spec2_y -
-            rrrrs_B_2_in_axes2_xy*rrrrs_Sigma_2_in_axes2_yy -
-            v.rrrrs_g_in_axes2_y*rrrrs_h_2_in_spec2_x;
-        /* (rrrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection
-           point left out */
-        const real rrrrs_joint3_offset_x = m->rrrrs_joint3_offset_x[i];
-        const real rrrrs_N_2_in_axes2_y = rrrrs_mu_2_in_axes2_y +
-            v.rrrrs_N_3_in_axes3_x*v.rrrrs_s_3 + v.rrrrs_N_3_in_axes3_y*v.rrrrs_c_3 -
-            v.rrrrs_f_3_in_axes3_z*rrrrs_joint3_offset_x;
-        const real rrrrs_N_2_in_axes2_z = v.rrrrs_N_3_in_axes3_z + rrrrs_mu_2_in_axes2_z +
-            rrrrs_joint3_offset_x*(v.rrrrs_c_3*rrrrs_f_3_in_axes3_y +
-            rrrrs_f_3_in_axes3_x*v.rrrrs_s_3);
-        /* (rrrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection
-           point left out */
-        const real rrrrs_N_1_in_axes1_z = v.rrrrs_mu_1_in_axes1_z +
-            v.rrrrs_N_2_in_axes2_x*v.rrrrs_c_2 - rrrrs_N_2_in_axes2_y*v.rrrrs_s_2;
-        /* (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real rrrrs_G_in_axes4_x =
-            -v.rrrrs_w_3_in_axes4_x*(v.rrrrs_G_in_axes4_y*v.rrrrs_r_3_in_axes4_x -
-            v.rrrrs_N_3_in_axes3_z);
-        /* (rrrrs-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real rrrrs_h_4_in_spec4_x = m->rrrrs_h_4_in_spec4_x[i];
-        const real rrrrs_h_4_in_spec4_y = m->rrrrs_h_4_in_spec4_y[i];
-        const real rrrrs_h_4_in_spec4_z = m->rrrrs_h_4_in_spec4_z[i];
-        const real rrrrs_c_in_axes4_x = v.rrrrs_W_4_t_2*rrrrs_h_4_in_spec4_x - rrrrs_G_in_axes4_x
-            - v.rrrrs_B_4_in_axes4_xy*rrrrs_h_4_in_spec4_y -
-            v.rrrrs_B_4_in_axes4_xz*rrrrs_h_4_in_spec4_z;
-        const real rrrrs_c_in_axes4_z = rrrrs_h_4_in_spec4_z*(v.rrrrs_W_1_t + v.rrrrs_W_1_t_2) -
-            v.rrrrs_B_4_in_axes4_zx*rrrrs_h_4_in_spec4_x -
-            v.rrrrs_B_4_in_axes4_zy*rrrrs_h_4_in_spec4_y -
-            rrrrs_N_1_in_axes1_z*v.rrrrs_w_1_in_axes4_z;
-        const real rrrrs_c_x = v.axis_x_rrrrs_axes4_x*rrrrs_c_in_axes4_x +
-            v.axis_y_rrrrs_axes4_x*v.rrrrs_c_in_axes4_y +
-            v.axis_z_rrrrs_axes4_x*rrrrs_c_in_axes4_z;
-        const real rrrrs_c_y = v.axis_x_rrrrs_axes4_y*rrrrs_c_in_axes4_x +
-            v.axis_y_rrrrs_axes4_y*v.rrrrs_c_in_axes4_y +
-            v.axis_z_rrrrs_axes4_y*rrrrs_c_in_axes4_z;
-        const real rrrrs_c_z = v.axis_x_rrrrs_axes4_z*rrrrs_c_in_axes4_x +
-            v.axis_y_rrrrs_axes4_z*v.rrrrs_c_in_axes4_y +
-            v.axis_z_rrrrs_axes4_z*rrrrs_c_in_axes4_z;
-        /* (rrrrs-P_2) inertia and weight of the leg along the extra degree of freedom of joint 2 */
-        const real rrrrs_P_2_t = rrrrs_G_in_axes4_x*v.rrrrs_r_2_in_axes4_y -
-            v.rrrrs_G_in_axes4_y*v.rrrrs_r_2_in_axes4_x;
-        const real rrrrs_P_2 = rrrrs_N_2_in_axes2_z + rrrrs_P_2_t;
-        /* (R_a) moment that actuators and external wrench must give */
-        const real rrrrs_R_a_t = rrrrs_c_y*v.rrrrs_q_z - rrrrs_c_z*v.rrrrs_q_y;
-        const real rrrrs_R_a_t_2 = rrrrs_c_z*v.rrrrs_q_x - rrrrs_c_x*v.rrrrs_q_z;
-        const real rrrrs_R_a_t_3 = rrrrs_c_x*v.rrrrs_q_y - rrrrs_c_y*v.rrrrs_q_x;
-        /* (rrrrs-H_a_3) moment of the column's unit force about the platform origin */
-        const real rrrrs_H_a_3_x = v.rrrrs_q_y*v.rrrrs_w_3_z - v.rrrrs_q_z*v.rrrrs_w_3_y;
-        const real rrrrs_H_a_3_y = v.rrrrs_q_z*v.rrrrs_w_3_x - v.rrrrs_q_x*v.rrrrs_w_3_z;
-        const real rrrrs_H_a_3_z = v.rrrrs_q_x*v.rrrrs_w_3_y - v.rrrrs_q_y*v.rrrrs_w_3_x;
-        /* (R_t) force that actuators and external wrench must give */
-        gather(&terms[0*count + k], add, rrrrs_c_x);  /* R_t_x_of_legs */
-        gather(&terms[1*count + k], add, rrrrs_c_y);  /* R_t_y_of_legs */
-        gather(&terms[2*count + k], add, rrrrs_c_z);  /* R_t_z_of_legs */
-        /* (R_a) moment that actuators and external wrench must give */
-        gather(&terms[3*count + k], add, rrrrs_R_a_t);  /* R_a_x_of_legs */
-        gather(&terms[4*count + k], add, rrrrs_R_a_t_2);  /* R_a_y_of_legs */
-        gather(&terms[5*count + k], add, rrrrs_R_a_t_3);  /* R_a_z_of_legs */
-        /* (rrrrs-P_2) inertia and weight of the leg along the extra degree of freedom of joint 2 */
-        o[0*count + k] = rrrrs_P_2;
-        /* (rrrrs-w_1) reciprocal vector 1 */
-        o[1*count + k] = v.rrrrs_w_1_x;
-        o[2*count + k] = v.rrrrs_w_1_y;
-        o[3*count + k] = v.rrrrs_w_1_z;
-        /* (rrrrs-H_a_1) moment of the column's unit force about the platform origin */
-        o[4*count + k] = v.rrrrs_H_a_1_x;
-        o[5*count + k] = v.rrrrs_H_a_1_y;
-        o[6*count + k] = v.rrrrs_H_a_1_z;
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        o[7*count + k] = 1;
-        /* (rrrrs-w_3) reciprocal vector 2 */
-        o[8*count + k] = v.rrrrs_w_3_x;
-        o[9*count + k] = v.rrrrs_w_3_y;
-        o[10*count + k] = v.rrrrs_w_3_z;
-        /* (rrrrs-H_a_3) moment of the column's unit force about the platform origin */
-        o[11*count + k] = rrrrs_H_a_3_x;
-        o[12*count + k] = rrrrs_H_a_3_y;
-        o[13*count + k] = rrrrs_H_a_3_z;
-        /* (rrrrs-w_3) reciprocal vector 2 */
-        o[14*count + k] = rrrrs_w_3_t_7;
-        const real rrrrs_size_t_3 = m->rrrrs_size_t_3[i];
-        const real rrrrs_rho2_3_t = m->rrrrs_rho2_3_t[i];
-        const real rrrrs_size = m->rrrrs_size[i];
-        o[16*count + k] = UNLESS(magnitude(v.rrrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrrs_size_t_3) +
-            UNLESS(magnitude(v.rrrrs_rho2_3) > TOLERANCE*TOLERANCE*rrrrs_rho2_3_t) +
-            UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) > TOLERANCE*rrrrs_size) +
-            UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) > TOLERANCE*rrrrs_size);
-        o[15*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
-    }
+    values_rrrrs v;
+    stage_rrrrs_V(w, j, V, &v);
+    stage_rrrrs_X(m, w, i, j, s, X, &v);
+    stage_rrrrs_A_X(w, j, A, &v);
+    stage_rrrrs_V_X(w, j, V, &v);
+    stage_rrrrs_A_V_X(w, j, V, &v);
+    stage_rrrrs_legs_required(m, w, i, j, V, A, &v);
+    /* (rrrrs-w_3) reciprocal vector 2 */
+    const real rrrrs_w_3_t_7 = v.rrrrs_r_2_in_axes4_y*v.rrrrs_w_3_in_axes4_x;
+    /* (rrrrs-B_2) acceleration tensor of link 2 */
+    const real rrrrs_ydd_2 = A[6*w + j];
+    const real rrrrs_B_2_in_axes2_xy = v.rrrrs_W_2_in_axes2_xy - rrrrs_ydd_2;
+    /* (rrrrs-f_3) inertia force of link 3 less its weight */
+    const real rrrrs_f_3_in_axes3_x = v.rrrrs_B_3_in_axes3_xy*m->rrrrs_h_3_in_spec3_y[i] +
+        v.rrrrs_B_3_in_axes3_xz*m->rrrrs_h_3_in_spec3_z[i] +
+        v.rrrrs_acc_3_in_axes3_x*m->rrrrs_link3_mass[i] -
+        m->rrrrs_h_3_in_spec3_x[i]*(v.rrrrs_bias_t_2 + v.rrrrs_f_3_t_2);
+    const real rrrrs_f_3_in_axes3_y = v.rrrrs_B_3_in_axes3_yx*m->rrrrs_h_3_in_spec3_x[i] +
+        v.rrrrs_B_3_in_axes3_yz*m->rrrrs_h_3_in_spec3_z[i] +
+        v.rrrrs_acc_3_in_axes3_y*m->rrrrs_link3_mass[i] -
+        m->rrrrs_h_3_in_spec3_y[i]*(v.rrrrs_bias_t_2 + v.rrrrs_f_3_t);
+    /* (rrrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    const real rrrrs_mu_2_t = v.rrrrs_omega_1_in_axes2_x*v.rrrrs_omega_1_in_axes2_x;
+    const real rrrrs_mu_2_in_axes2_y = v.rrrrs_B_2_in_axes2_zy*m->rrrrs_J_2_in_spec2_xy[i] +
+        m->rrrrs_Sigma_2_in_axes2_zz[i]*v.rrrrs_alpha_1_in_axes2_y +
+        v.rrrrs_g_in_axes1_y*m->rrrrs_h_2_in_spec2_x[i] -
+        rrrrs_B_2_in_axes2_xy*m->rrrrs_J_2_in_spec2_yz[i] -
+        v.rrrrs_B_2_in_axes2_zx*m->rrrrs_Sigma_2_in_axes2_xx[i] -
+        m->rrrrs_J_2_in_spec2_xz[i]*(rrrrs_mu_2_t - v.rrrrs_bias_t) -
+        v.rrrrs_g_in_axes2_x*m->rrrrs_h_2_in_spec2_z[i];
+    const real rrrrs_mu_2_in_axes2_z = v.rrrrs_B_2_in_axes2_yx*m->rrrrs_Sigma_2_in_axes2_xx[i]
+        + m->rrrrs_J_2_in_spec2_xy[i]*(rrrrs_mu_2_t - v.rrrrs_a_o_3_t) +
+        m->rrrrs_J_2_in_spec2_xz[i]*v.rrrrs_alpha_1_in_axes2_x +
+        m->rrrrs_J_2_in_spec2_yz[i]*v.rrrrs_alpha_1_in_axes2_y +
+        v.rrrrs_g_in_axes2_x*m->rrrrs_h_2_in_spec2_y[i] -
+        rrrrs_B_2_in_axes2_xy*m->rrrrs_Sigma_2_in_axes2_yy[i] -
+        v.rrrrs_g_in_axes2_y*m->rrrrs_h_2_in_spec2_x[i];
+    /* (rrrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection
+       point left out */
+    const real rrrrs_N_2_in_axes2_y = rrrrs_mu_2_in_axes2_y +
+        v.rrrrs_N_3_in_axes3_x*v.rrrrs_s_3 + v.rrrrs_N_3_in_axes3_y*v.rrrrs_c_3 -
+        v.rrrrs_f_3_in_axes3_z*m->rrrrs_joint3_offset_x[i];
+    const real rrrrs_N_2_in_axes2_z = v.rrrrs_N_3_in_axes3_z + rrrrs_mu_2_in_axes2_z +
+        m->rrrrs_joint3_offset_x[i]*(v.rrrrs_c_3*rrrrs_f_3_in_axes3_y +
+        rrrrs_f_3_in_axes3_x*v.rrrrs_s_3);
+    /* (rrrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection
+       point left out */
+    const real rrrrs_N_1_in_axes1_z = v.rrrrs_mu_1_in_axes1_z +
+        v.rrrrs_N_2_in_axes2_x*v.rrrrs_c_2 - rrrrs_N_2_in_axes2_y*v.rrrrs_s_2;
+    /* (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real rrrrs_G_in_axes4_x =
+        -v.rrrrs_w_3_in_axes4_x*(v.rrrrs_G_in_axes4_y*v.rrrrs_r_3_in_axes4_x -
+        v.rrrrs_N_3_in_axes3_z);
+    /* (rrrrs-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real rrrrs_c_in_axes4_x = v.rrrrs_W_4_t_2*m->rrrrs_h_4_in_spec4_x[i] -
+        rrrrs_G_in_axes4_x - v.rrrrs_B_4_in_axes4_xy*m->rrrrs_h_4_in_spec4_y[i] -
+        v.rrrrs_B_4_in_axes4_xz*m->rrrrs_h_4_in_spec4_z[i];
+    const real rrrrs_c_in_axes4_z = m->rrrrs_h_4_in_spec4_z[i]*(v.rrrrs_W_1_t +
+        v.rrrrs_W_1_t_2) - v.rrrrs_B_4_in_axes4_zx*m->rrrrs_h_4_in_spec4_x[i] -
+        v.rrrrs_B_4_in_axes4_zy*m->rrrrs_h_4_in_spec4_y[i] -
+        rrrrs_N_1_in_axes1_z*v.rrrrs_w_1_in_axes4_z;
+    const real rrrrs_c_x = v.axis_x_rrrrs_axes4_x*rrrrs_c_in_axes4_x +
+        v.axis_y_rrrrs_axes4_x*v.rrrrs_c_in_axes4_y +
+        v.axis_z_rrrrs_axes4_x*rrrrs_c_in_axes4_z;
+    const real rrrrs_c_y = v.axis_x_rrrrs_axes4_y*rrrrs_c_in_axes4_x +
+        v.axis_y_rrrrs_axes4_y*v.rrrrs_c_in_axes4_y +
+        v.axis_z_rrrrs_axes4_y*rrrrs_c_in_axes4_z;
+    const real rrrrs_c_z = v.axis_x_rrrrs_axes4_z*rrrrs_c_in_axes4_x +
+        v.axis_y_rrrrs_axes4_z*v.rrrrs_c_in_axes4_y +
+        v.axis_z_rrrrs_axes4_z*rrrrs_c_in_axes4_z;
+    /* (rrrrs-P_2) inertia and weight of the leg along the extra degree of freedom of joint 2 */
+    const real rrrrs_P_2_t = rrrrs_G_in_axes4_x*v.rrrrs_r_2_in_axes4_y -
+        v.rrrrs_G_in_axes4_y*v.rrrrs_r_2_in_axes4_x;
+    const real rrrrs_P_2 = rrrrs_N_2_in_axes2_z + rrrrs_P_2_t;
+    /* (R_a) moment that actuators and external wrench must give */
+    const real rrrrs_R_a_t = rrrrs_c_y*v.rrrrs_q_z - rrrrs_c_z*v.rrrrs_q_y;
+    const real rrrrs_R_a_t_2 = rrrrs_c_z*v.rrrrs_q_x - rrrrs_c_x*v.rrrrs_q_z;
+    const real rrrrs_R_a_t_3 = rrrrs_c_x*v.rrrrs_q_y - rrrrs_c_y*v.rrrrs_q_x;
+    /* (rrrrs-H_a_3) moment of the column's unit force about the platform origin */
+    const real rrrrs_H_a_3_x = v.rrrrs_q_y*v.rrrrs_w_3_z - v.rrrrs_q_z*v.rrrrs_w_3_y;
+    const real rrrrs_H_a_3_y = v.rrrrs_q_z*v.rrrrs_w_3_x - v.rrrrs_q_x*v.rrrrs_w_3_z;
+    const real rrrrs_H_a_3_z = v.rrrrs_q_x*v.rrrrs_w_3_y - v.rrrrs_q_y*v.rrrrs_w_3_x;
+    /* (R_t) force that actuators and external wrench must give */
+    gather(&terms[0*count + k], add, rrrrs_c_x);  /* R_t_x_of_legs */
+    gather(&terms[1*count + k], add, rrrrs_c_y);  /* R_t_y_of_legs */
+    gather(&terms[2*count + k], add, rrrrs_c_z);  /* R_t_z_of_legs */
+    /* (R_a) */
+    gather(&terms[3*count + k], add, rrrrs_R_a_t);  /* R_a_x_of_legs */
+    gather(&terms[4*count + k], add, rrrrs_R_a_t_2);  /* R_a_y_of_legs */
+    gather(&terms[5*count + k], add, rrrrs_R_a_t_3);  /* R_a_z_of_legs */
+    /* (rrrrs-P_2) */
+    o[0*count + k] = rrrrs_P_2;
+    /* (rrrrs-w_1) reciprocal vector 1 */
+    o[1*count + k] = v.rrrrs_w_1_x;
+    o[2*count + k] = v.rrrrs_w_1_y;
+    o[3*count + k] = v.rrrrs_w_1_z;
+    /* (rrrrs-H_a_1) moment of the column's unit force about the platform origin */
+    o[4*count + k] = v.rrrrs_H_a_1_x;
+    o[5*count + k] = v.rrrrs_H_a_1_y;
+    o[6*count + k] = v.rrrrs_H_a_1_z;
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    o[7*count + k] = 1;
+    /* (rrrrs-w_3) */
+    o[8*count + k] = v.rrrrs_w_3_x;
+    o[9*count + k] = v.rrrrs_w_3_y;
+    o[10*count + k] = v.rrrrs_w_3_z;
+    /* (rrrrs-H_a_3) */
+    o[11*count + k] = rrrrs_H_a_3_x;
+    o[12*count + k] = rrrrs_H_a_3_y;
+    o[13*count + k] = rrrrs_H_a_3_z;
+    /* (rrrrs-w_3) */
+    o[14*count + k] = rrrrs_w_3_t_7;
+    o[16*count + k] = UNLESS(magnitude(v.rrrrs_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_rho2_3) >
+        TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]) + UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) >
+        TOLERANCE*m->rrrrs_size[i]) + UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) >
+        TOLERANCE*m->rrrrs_size[i]);
+    o[15*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
 }
 
-INLINE void required_place_rrrrs(size_t w, size_t count, const real *o, size_t first, real
+INLINE void required_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const real *o, real
     *required, real *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        required[6*w + k] = o[0*count + first + k];
-        H[0*w + k] = o[1*count + first + k];
-        H[NU*w + k] = o[2*count + first + k];
-        H[2*NU*w + k] = o[3*count + first + k];
-        H[3*NU*w + k] = o[4*count + first + k];
-        H[4*NU*w + k] = o[5*count + first + k];
-        H[5*NU*w + k] = o[6*count + first + k];
-        H[(6*NU + 1)*w + k] = o[7*count + first + k];
-        H[2*w + k] = o[8*count + first + k];
-        H[(NU + 2)*w + k] = o[9*count + first + k];
-        H[(2*NU + 2)*w + k] = o[10*count + first + k];
-        H[(3*NU + 2)*w + k] = o[11*count + first + k];
-        H[(4*NU + 2)*w + k] = o[12*count + first + k];
-        H[(5*NU + 2)*w + k] = o[13*count + first + k];
-        H[(6*NU + 2)*w + k] = o[14*count + first + k];
-        t->unreachable[k] += o[15*count + first + k];
-        t->singular[k] += o[16*count + first + k];
-    }
+    required[6*w + k] = o[0*count + at];
+    H[0*w + k] = o[1*count + at];
+    H[NU*w + k] = o[2*count + at];
+    H[2*NU*w + k] = o[3*count + at];
+    H[3*NU*w + k] = o[4*count + at];
+    H[4*NU*w + k] = o[5*count + at];
+    H[5*NU*w + k] = o[6*count + at];
+    H[(6*NU + 1)*w + k] = o[7*count + at];
+    H[2*w + k] = o[8*count + at];
+    H[(NU + 2)*w + k] = o[9*count + at];
+    H[(2*NU + 2)*w + k] = o[10*count + at];
+    H[(3*NU + 2)*w + k] = o[11*count + at];
+    H[(4*NU + 2)*w + k] = o[12*count + at];
+    H[(5*NU + 2)*w + k] = o[13*count + at];
+    H[(6*NU + 2)*w + k] = o[14*count + at];
+    t->unreachable[k] += o[15*count + at];
+    t->singular[k] += o[16*count + at];
 }
 
-INLINE void required_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
-    *terms, real *o)
+INLINE void required_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, const real *V, const real *A, real *terms, real
+    *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrrs v;
-        stage_rrrs_X(m, w, i, j, s, X, &v);
-        stage_rrrs_A_X(w, j, A, &v);
-        stage_rrrs_V_X(m, w, i, j, V, &v);
-        stage_rrrs_A_V_X(w, j, V, &v);
-        stage_rrrs_legs_required(m, i, &v);
-        /* (rrrs-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real rrrs_c_x = v.axis_x_rrrs_axes3_x*v.rrrs_c_in_axes3_x +
-            v.axis_y_rrrs_axes3_x*v.rrrs_c_in_axes3_y + v.axis_z_rrrs_axes3_x*v.rrrs_c_in_axes3_z;
-        const real rrrs_c_y = v.axis_x_rrrs_axes3_y*v.rrrs_c_in_axes3_x +
-            v.axis_y_rrrs_axes3_y*v.rrrs_c_in_axes3_y + v.axis_z_rrrs_axes3_y*v.rrrs_c_in_axes3_z;
-        const real rrrs_c_z = v.axis_x_rrrs_axes3_z*v.rrrs_c_in_axes3_x +
-            v.axis_y_rrrs_axes3_z*v.rrrs_c_in_axes3_y + v.axis_z_rrrs_axes3_z*v.rrrs_c_in_axes3_z;
-        /* (R_a) moment that actuators and external wrench must give */
-        const real rrrs_R_a_t = rrrs_c_y*v.rrrs_q_z - rrrs_c_z*v.rrrs_q_y;
-        const real rrrs_R_a_t_2 = rrrs_c_z*v.rrrs_q_x - rrrs_c_x*v.rrrs_q_z;
-        const real rrrs_R_a_t_3 = rrrs_c_x*v.rrrs_q_y - rrrs_c_y*v.rrrs_q_x;
-        /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
-        const real rrrs_H_a_2_x = v.rrrs_q_y*v.rrrs_w_2_z - v.rrrs_q_z*v.rrrs_w_2_y;
-        const real rrrs_H_a_2_y = v.rrrs_q_z*v.rrrs_w_2_x - v.rrrs_q_x*v.rrrs_w_2_z;
-        const real rrrs_H_a_2_z = v.rrrs_q_x*v.rrrs_w_2_y - v.rrrs_q_y*v.rrrs_w_2_x;
-        /* (R_t) force that actuators and external wrench must give */
-        gather(&terms[0*count + k], add, rrrs_c_x);  /* R_t_x_of_legs */
-        gather(&terms[1*count + k], add, rrrs_c_y);  /* R_t_y_of_legs */
-        gather(&terms[2*count + k], add, rrrs_c_z);  /* R_t_z_of_legs */
-        /* (R_a) moment that actuators and external wrench must give */
-        gather(&terms[3*count + k], add, rrrs_R_a_t);  /* R_a_x_of_legs */
-        gather(&terms[4*count + k], add, rrrs_R_a_t_2);  /* R_a_y_of_legs */
-        gather(&terms[5*count + k], add, rrrs_R_a_t_3);  /* R_a_z_of_legs */
-        /* (rrrs-w_1) reciprocal vector 1 */
-        o[0*count + k] = v.rrrs_w_1_x;
-        o[1*count + k] = v.rrrs_w_1_y;
-        o[2*count + k] = v.rrrs_w_1_z;
-        /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = v.rrrs_H_a_1_x;
-        o[4*count + k] = v.rrrs_H_a_1_y;
-        o[5*count + k] = v.rrrs_H_a_1_z;
-        /* (rrrs-w_2) reciprocal vector 2 */
-        o[6*count + k] = v.rrrs_w_2_x;
-        o[7*count + k] = v.rrrs_w_2_y;
-        o[8*count + k] = v.rrrs_w_2_z;
-        /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
-        o[9*count + k] = rrrs_H_a_2_x;
-        o[10*count + k] = rrrs_H_a_2_y;
-        o[11*count + k] = rrrs_H_a_2_z;
-        const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
-        const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
-        const real rrrs_size = m->rrrs_size[i];
-        o[13*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
-            UNLESS(magnitude(v.rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
-            UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
-            UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
-        o[12*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
-    }
+    values_rrrs v;
+    stage_rrrs_X(m, w, i, j, s, X, &v);
+    stage_rrrs_A_X(w, j, A, &v);
+    stage_rrrs_V_X(m, w, i, j, V, &v);
+    stage_rrrs_A_V_X(w, j, V, &v);
+    stage_rrrs_legs_required(m, i, &v);
+    /* (rrrs-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real rrrs_c_x = v.axis_x_rrrs_axes3_x*v.rrrs_c_in_axes3_x +
+        v.axis_y_rrrs_axes3_x*v.rrrs_c_in_axes3_y + v.axis_z_rrrs_axes3_x*v.rrrs_c_in_axes3_z;
+    const real rrrs_c_y = v.axis_x_rrrs_axes3_y*v.rrrs_c_in_axes3_x +
+        v.axis_y_rrrs_axes3_y*v.rrrs_c_in_axes3_y + v.axis_z_rrrs_axes3_y*v.rrrs_c_in_axes3_z;
+    const real rrrs_c_z = v.axis_x_rrrs_axes3_z*v.rrrs_c_in_axes3_x +
+        v.axis_y_rrrs_axes3_z*v.rrrs_c_in_axes3_y + v.axis_z_rrrs_axes3_z*v.rrrs_c_in_axes3_z;
+    /* (R_a) */
+    const real rrrs_R_a_t = rrrs_c_y*v.rrrs_q_z - rrrs_c_z*v.rrrs_q_y;
+    const real rrrs_R_a_t_2 = rrrs_c_z*v.rrrs_q_x - rrrs_c_x*v.rrrs_q_z;
+    const real rrrs_R_a_t_3 = rrrs_c_x*v.rrrs_q_y - rrrs_c_y*v.rrrs_q_x;
+    /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
+    const real rrrs_H_a_2_x = v.rrrs_q_y*v.rrrs_w_2_z - v.rrrs_q_z*v.rrrs_w_2_y;
+    const real rrrs_H_a_2_y = v.rrrs_q_z*v.rrrs_w_2_x - v.rrrs_q_x*v.rrrs_w_2_z;
+    const real rrrs_H_a_2_z = v.rrrs_q_x*v.rrrs_w_2_y - v.rrrs_q_y*v.rrrs_w_2_x;
+    /* (R_t) */
+    gather(&terms[0*count + k], add, rrrs_c_x);  /* R_t_x_of_legs */
+    gather(&terms[1*count + k], add, rrrs_c_y);  /* R_t_y_of_legs */
+    gather(&terms[2*count + k], add, rrrs_c_z);  /* R_t_z_of_legs */
+    /* (R_a) */
+    gather(&terms[3*count + k], add, rrrs_R_a_t);  /* R_a_x_of_legs */
+    gather(&terms[4*count + k], add, rrrs_R_a_t_2);  /* R_a_y_of_legs */
+    gather(&terms[5*count + k], add, rrrs_R_a_t_3);  /* R_a_z_of_legs */
+    /* (rrrs-w_1) reciprocal vector 1 */
+    o[0*count + k] = v.rrrs_w_1_x;
+    o[1*count + k] = v.rrrs_w_1_y;
+    o[2*count + k] = v.rrrs_w_1_z;
+    /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.rrrs_H_a_1_x;
+    o[4*count + k] = v.rrrs_H_a_1_y;
+    o[5*count + k] = v.rrrs_H_a_1_z;
+    /* (rrrs-w_2) reciprocal vector 2 */
+    o[6*count + k] = v.rrrs_w_2_x;
+    o[7*count + k] = v.rrrs_w_2_y;
+    o[8*count + k] = v.rrrs_w_2_z;
+    /* (rrrs-H_a_2) */
+    o[9*count + k] = rrrs_H_a_2_x;
+    o[10*count + k] = rrrs_H_a_2_y;
+    o[11*count + k] = rrrs_H_a_2_z;
+    o[13*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_rho2_2) >
+        TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) + UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) >
+        TOLERANCE*m->rrrs_size[i]) + UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) >
+        TOLERANCE*m->rrrs_size[i]);
+    o[12*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
 }
 
-INLINE void required_place_rrrs(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *H, verdict *t)
+INLINE void required_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t count, const real
+    *o, real *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[(3 + 2*leg)*w + k] = o[0*count + first + k];
-        H[(NU + 3 + 2*leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + 3 + 2*leg)*w + k] = o[2*count + first + k];
-        H[(3*NU + 3 + 2*leg)*w + k] = o[3*count + first + k];
-        H[(4*NU + 3 + 2*leg)*w + k] = o[4*count + first + k];
-        H[(5*NU + 3 + 2*leg)*w + k] = o[5*count + first + k];
-        H[(4 + 2*leg)*w + k] = o[6*count + first + k];
-        H[(NU + 4 + 2*leg)*w + k] = o[7*count + first + k];
-        H[(2*NU + 4 + 2*leg)*w + k] = o[8*count + first + k];
-        H[(3*NU + 4 + 2*leg)*w + k] = o[9*count + first + k];
-        H[(4*NU + 4 + 2*leg)*w + k] = o[10*count + first + k];
-        H[(5*NU + 4 + 2*leg)*w + k] = o[11*count + first + k];
-        t->unreachable[k] += o[12*count + first + k];
-        t->singular[k] += o[13*count + first + k];
-    }
+    H[(3 + 2*i)*w + k] = o[0*count + at];
+    H[(NU + 3 + 2*i)*w + k] = o[1*count + at];
+    H[(2*NU + 3 + 2*i)*w + k] = o[2*count + at];
+    H[(3*NU + 3 + 2*i)*w + k] = o[3*count + at];
+    H[(4*NU + 3 + 2*i)*w + k] = o[4*count + at];
+    H[(5*NU + 3 + 2*i)*w + k] = o[5*count + at];
+    H[(4 + 2*i)*w + k] = o[6*count + at];
+    H[(NU + 4 + 2*i)*w + k] = o[7*count + at];
+    H[(2*NU + 4 + 2*i)*w + k] = o[8*count + at];
+    H[(3*NU + 4 + 2*i)*w + k] = o[9*count + at];
+    H[(4*NU + 4 + 2*i)*w + k] = o[10*count + at];
+    H[(5*NU + 4 + 2*i)*w + k] = o[11*count + at];
+    t->unreachable[k] += o[12*count + at];
+    t->singular[k] += o[13*count + at];
 }
 
-INLINE void required_after(size_t w, const real *s, const real *sums, real *required)
+INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (R_t) force that actuators and external wrench must give */
-        const real R_t_x_of_legs = sums[0*w + k];
-        const real f_p_x = s[9*w + k];
-        const real R_t_x = f_p_x - R_t_x_of_legs;
-        const real R_t_y_of_legs = sums[1*w + k];
-        const real f_p_y = s[10*w + k];
-        const real R_t_y = f_p_y - R_t_y_of_legs;
-        const real R_t_z_of_legs = sums[2*w + k];
-        const real f_p_z = s[11*w + k];
-        const real R_t_z = f_p_z - R_t_z_of_legs;
-        /* (R_a) moment that actuators and external wrench must give */
-        const real R_a_x_of_legs = sums[3*w + k];
-        const real mu_p_x = s[12*w + k];
-        const real R_a_x = R_a_x_of_legs + mu_p_x;
-        const real R_a_y_of_legs = sums[4*w + k];
-        const real mu_p_y = s[13*w + k];
-        const real R_a_y = R_a_y_of_legs + mu_p_y;
-        const real R_a_z_of_legs = sums[5*w + k];
-        const real mu_p_z = s[14*w + k];
-        const real R_a_z = R_a_z_of_legs + mu_p_z;
-        /* (R_t) force that actuators and external wrench must give */
-        required[0*w + k] = R_t_x;
-        required[1*w + k] = R_t_y;
-        required[2*w + k] = R_t_z;
-        /* (R_a) moment that actuators and external wrench must give */
-        required[3*w + k] = R_a_x;
-        required[4*w + k] = R_a_y;
-        required[5*w + k] = R_a_z;
-    }
+    /* (R_t) */
+    const real R_t_x_of_legs = sums[0*w + k];
+    const real f_p_x = s[9*w + k];
+    const real R_t_x = f_p_x - R_t_x_of_legs;
+    const real R_t_y_of_legs = sums[1*w + k];
+    const real f_p_y = s[10*w + k];
+    const real R_t_y = f_p_y - R_t_y_of_legs;
+    const real R_t_z_of_legs = sums[2*w + k];
+    const real f_p_z = s[11*w + k];
+    const real R_t_z = f_p_z - R_t_z_of_legs;
+    /* (R_a) */
+    const real R_a_x_of_legs = sums[3*w + k];
+    const real mu_p_x = s[12*w + k];
+    const real R_a_x = R_a_x_of_legs + mu_p_x;
+    const real R_a_y_of_legs = sums[4*w + k];
+    const real mu_p_y = s[13*w + k];
+    const real R_a_y = R_a_y_of_legs + mu_p_y;
+    const real R_a_z_of_legs = sums[5*w + k];
+    const real mu_p_z = s[14*w + k];
+    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    /* (R_t) */
+    required[0*w + k] = R_t_x;
+    required[1*w + k] = R_t_y;
+    required[2*w + k] = R_t_z;
+    /* (R_a) */
+    required[3*w + k] = R_a_x;
+    required[4*w + k] = R_a_y;
+    required[5*w + k] = R_a_z;
 }
 
-INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_rrrrs[6*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[17*LEGS(LEGS_OF_rrrrs)] = {0};
     real terms_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[14*LEGS(LEGS_OF_rrrs)] = {0};
     clear(H, NV*NU);
-    required_before(m, 1, X, V, A, s, t);
-    required_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrrs), 0, X, V, A, terms_rrrrs, o_rrrrs);
-    required_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), 0, X, V, A, terms_rrrs, o_rrrs);
-    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
-        required_place_rrrrs(1, LEGS(LEGS_OF_rrrrs), o_rrrrs, leg, required, H, t);
+    required_before(m, 1, 0, X, V, A, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
+        required_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), 0, s, X, V, A, terms_rrrrs, o_rrrrs);
+    }
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
+        required_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), 0, s, X, V, A, terms_rrrs, o_rrrs);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
+        required_place_rrrrs(1, 0, i, LEGS(LEGS_OF_rrrrs), o_rrrrs, required, H, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_rrrrs + n*LEGS(LEGS_OF_rrrrs), LEGS_OF_rrrrs);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
-        required_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, leg, H, t);
+    for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        required_place_rrrs(1, i, 0, i, LEGS(LEGS_OF_rrrs), o_rrrs, H, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
             sums[n] += terms_rrrs[n*LEGS(LEGS_OF_rrrs) + leg];
         }
     }
-    required_after(1, s, sums, required);
+    required_after(1, 0, s, sums, required);
 }
 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *required, real *H, verdict *t)
+    real *restrict required, real *restrict H, verdict *restrict t)
 {
     real s[15*LANES], sums[6*LANES];
     real o_rrrrs[17*LANES];
     real o_rrrs[14*LANES];
     clear(H, NV*NU*LANES);
-    required_before(m, LANES, X, V, A, s, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        required_before(m, LANES, k, X, V, A, s, t);
+    }
     clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
-        required_legs_rrrrs(m, LANES, leg, 0, s, 1, LANES, 1, X, V, A, sums, o_rrrrs);
-        required_place_rrrrs(LANES, LANES, o_rrrrs, 0, required, H, t);
+    for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            required_legs_rrrrs(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_rrrrs);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            required_place_rrrrs(LANES, k, k, LANES, o_rrrrs, required, H, t);
+        }
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
-        required_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, 1, X, V, A, sums, o_rrrs);
-        required_place_rrrs(LANES, LANES, o_rrrs, leg, 0, H, t);
+    for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            required_legs_rrrs(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_rrrs);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            required_place_rrrs(LANES, i, k, k, LANES, o_rrrs, H, t);
+        }
     }
-    required_after(LANES, s, sums, required);
+    for (size_t k = 0; k < LANES; ++k) {
+        required_after(LANES, k, s, sums, required);
+    }
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, const real *X, real *s, verdict
-    *t)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, real
+    *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void inverse_kinematics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, const real *X, real *o)
+INLINE void inverse_kinematics_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
+    k, size_t count, const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrrrs v;
-        stage_rrrrs_X(m, w, i, j, s, X, &v);
-        /* (rrrrs-S) from the base point to the connection point */
-        const real R_xx = s[0*w + j];
-        const real R_xy = s[1*w + j];
-        const real R_xz = s[2*w + j];
-        const real rrrrs_base_point_x = m->rrrrs_base_point_x[i];
-        const real rrrrs_platform_point_x = m->rrrrs_platform_point_x[i];
-        const real rrrrs_platform_point_y = m->rrrrs_platform_point_y[i];
-        const real rrrrs_platform_point_z = m->rrrrs_platform_point_z[i];
-        const real t_x = X[0*w + j];
-        const real rrrrs_S_x = t_x + R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y +
-            R_xz*rrrrs_platform_point_z - rrrrs_base_point_x;
-        const real R_yx = s[3*w + j];
-        const real R_yy = s[4*w + j];
-        const real R_yz = s[5*w + j];
-        const real rrrrs_base_point_y = m->rrrrs_base_point_y[i];
-        const real t_y = X[1*w + j];
-        const real rrrrs_S_y = t_y + R_yx*rrrrs_platform_point_x + R_yy*rrrrs_platform_point_y +
-            R_yz*rrrrs_platform_point_z - rrrrs_base_point_y;
-        const real R_zx = s[6*w + j];
-        const real R_zy = s[7*w + j];
-        const real R_zz = s[8*w + j];
-        const real rrrrs_base_point_z = m->rrrrs_base_point_z[i];
-        const real t_z = X[2*w + j];
-        const real rrrrs_S_z = t_z + R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y +
-            R_zz*rrrrs_platform_point_z - rrrrs_base_point_z;
-        const real rrrrs_base_frame_xy = m->rrrrs_base_frame_xy[i];
-        const real rrrrs_base_frame_yy = m->rrrrs_base_frame_yy[i];
-        const real rrrrs_base_frame_zy = m->rrrrs_base_frame_zy[i];
-        const real rrrrs_S_in_turn1_x = rrrrs_S_x*rrrrs_base_frame_xy +
-            rrrrs_S_y*rrrrs_base_frame_yy + rrrrs_S_z*rrrrs_base_frame_zy;
-        const real rrrrs_base_frame_xz = m->rrrrs_base_frame_xz[i];
-        const real rrrrs_base_frame_yz = m->rrrrs_base_frame_yz[i];
-        const real rrrrs_base_frame_zz = m->rrrrs_base_frame_zz[i];
-        const real rrrrs_S_in_turn1_y = rrrrs_S_x*rrrrs_base_frame_xz +
-            rrrrs_S_y*rrrrs_base_frame_yz + rrrrs_S_z*rrrrs_base_frame_zz;
-        /* (rrrrs-rho2_1) squared amplitude */
-        const real rrrrs_rho2_1 = rrrrs_S_in_turn1_x*rrrrs_S_in_turn1_x +
-            rrrrs_S_in_turn1_y*rrrrs_S_in_turn1_y;
-        /* (rrrrs-root_1) root, with the sign of the branch */
-        const real rrrrs_branch_1 = m->rrrrs_branch_1[i];
-        const real rrrrs_root_1 = rrrrs_branch_1*root(rrrrs_rho2_1);
-        /* (rrrrs-q_1) displacement of joint 1 */
-        const real inv_rrrrs_rho2_1 = 1/rrrrs_rho2_1;
-        const real rrrrs_q_1 = angle(inv_rrrrs_rho2_1*rrrrs_S_in_turn1_y*rrrrs_root_1,
-            inv_rrrrs_rho2_1*rrrrs_S_in_turn1_x*rrrrs_root_1);
-        /* (rrrrs-x_2) from the origin of joint 2 to the connection point */
-        const real rrrrs_base_frame_xx = m->rrrrs_base_frame_xx[i];
-        const real rrrrs_base_frame_yx = m->rrrrs_base_frame_yx[i];
-        const real rrrrs_base_frame_zx = m->rrrrs_base_frame_zx[i];
-        const real rrrrs_joint2_offset_x = m->rrrrs_joint2_offset_x[i];
-        const real rrrrs_x_2_in_axes1_z = rrrrs_S_x*rrrrs_base_frame_xx +
-            rrrrs_S_y*rrrrs_base_frame_yx + rrrrs_S_z*rrrrs_base_frame_zx - rrrrs_joint2_offset_x;
-        const real rrrrs_x_2_in_axes2_y = v.rrrrs_c_2*rrrrs_root_1 -
-            v.rrrrs_s_2*rrrrs_x_2_in_axes1_z;
-        /* (rrrrs-x_3) from the origin of joint 3 to the connection point */
-        const real rrrrs_joint3_offset_x = m->rrrrs_joint3_offset_x[i];
-        const real rrrrs_x_3_in_axes2_x = v.rrrrs_c_2*rrrrs_x_2_in_axes1_z +
-            rrrrs_root_1*v.rrrrs_s_2 - rrrrs_joint3_offset_x;
-        /* (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 3 */
-        const real rrrrs_Kd_3_t = rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y +
-            rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x;
-        const real rrrrs_h_3_t = m->rrrrs_h_3_t[i];
-        const real rrrrs_h_3_t_2 = m->rrrrs_h_3_t_2[i];
-        const real rrrrs_Kd_3 = R(0.5)*rrrrs_Kd_3_t + rrrrs_h_3_t - rrrrs_h_3_t_2;
-        /* (rrrrs-Kc_3) factor of the cosine in the equation of joint 3 */
-        const real rrrrs_joint4_offset_x = m->rrrrs_joint4_offset_x[i];
-        const real rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_in_axes2_x;
-        /* (rrrrs-Ks_3) factor of the sine in the equation of joint 3 */
-        const real rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_in_axes2_y;
-        /* (rrrrs-rho2_3) squared amplitude */
-        const real rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3;
-        /* (rrrrs-disc_3) discriminant */
-        const real rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3;
-        /* (rrrrs-root_3) root, with the sign of the branch */
-        const real rrrrs_branch_3 = m->rrrrs_branch_3[i];
-        const real rrrrs_root_3 = rrrrs_branch_3*root(rrrrs_disc_3);
-        /* (rrrrs-q_3) displacement of joint 3 */
-        const real inv_rrrrs_rho2_3 = 1/rrrrs_rho2_3;
-        const real rrrrs_q_3 = angle(inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 +
-            rrrrs_Kd_3*rrrrs_Ks_3), inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 -
-            rrrrs_Ks_3*rrrrs_root_3));
-        /* (rrrrs-x_4) from the origin of joint 4 to the connection point */
-        const real inv_rrrrs_size_t = m->inv_rrrrs_size_t[i];
-        const real rrrrs_x_4_in_axes3_x = inv_rrrrs_size_t*rrrrs_Kd_3*rrrrs_joint4_offset_x -
-            rrrrs_joint4_offset_x;
-        /* (rrrrs-q_4) displacement of joint 4 */
-        const real inv_rrrrs_size_t_2 = m->inv_rrrrs_size_t_2[i];
-        const real rrrrs_platform_joint_offset_x = m->rrrrs_platform_joint_offset_x[i];
-        const real rrrrs_q_4 =
-            angle(-inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3,
-            inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x);
-        /* (rrrrs-q_1) displacement of joint 1 */
-        o[0*count + k] = rrrrs_q_1;
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        const real rrrrs_y_2_extra = X[7*w + j];
-        o[1*count + k] = rrrrs_y_2_extra;
-        /* (rrrrs-q_3) displacement of joint 3 */
-        o[2*count + k] = rrrrs_q_3;
-        /* (rrrrs-q_4) displacement of joint 4 */
-        o[3*count + k] = rrrrs_q_4;
-        o[6*count + k] = (rrrrs_q_1 + rrrrs_y_2_extra) + (rrrrs_q_3 + rrrrs_q_4);
-        const real rrrrs_size_t_3 = m->rrrrs_size_t_3[i];
-        const real rrrrs_rho2_3_t = m->rrrrs_rho2_3_t[i];
-        o[5*count + k] = UNLESS(magnitude(rrrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrrs_size_t_3) +
-            UNLESS(magnitude(rrrrs_rho2_3) > TOLERANCE*TOLERANCE*rrrrs_rho2_3_t);
-        o[4*count + k] = UNLESS(rrrrs_disc_3 >= 0);
-    }
+    values_rrrrs v;
+    stage_rrrrs_X(m, w, i, j, s, X, &v);
+    /* (rrrrs-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real t_x = X[0*w + j];
+    const real rrrrs_S_x = t_x + R_xx*m->rrrrs_platform_point_x[i] +
+        R_xy*m->rrrrs_platform_point_y[i] + R_xz*m->rrrrs_platform_point_z[i] -
+        m->rrrrs_base_point_x[i];
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real t_y = X[1*w + j];
+    const real rrrrs_S_y = t_y + R_yx*m->rrrrs_platform_point_x[i] +
+        R_yy*m->rrrrs_platform_point_y[i] + R_yz*m->rrrrs_platform_point_z[i] -
+        m->rrrrs_base_point_y[i];
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real t_z = X[2*w + j];
+    const real rrrrs_S_z = t_z + R_zx*m->rrrrs_platform_point_x[i] +
+        R_zy*m->rrrrs_platform_point_y[i] + R_zz*m->rrrrs_platform_point_z[i] -
+        m->rrrrs_base_point_z[i];
+    const real rrrrs_S_in_turn1_x = rrrrs_S_x*m->rrrrs_base_frame_xy[i] +
+        rrrrs_S_y*m->rrrrs_base_frame_yy[i] + rrrrs_S_z*m->rrrrs_base_frame_zy[i];
+    const real rrrrs_S_in_turn1_y = rrrrs_S_x*m->rrrrs_base_frame_xz[i] +
+        rrrrs_S_y*m->rrrrs_base_frame_yz[i] + rrrrs_S_z*m->rrrrs_base_frame_zz[i];
+    /* (rrrrs-rho2_1) squared amplitude */
+    const real rrrrs_rho2_1 = rrrrs_S_in_turn1_x*rrrrs_S_in_turn1_x +
+        rrrrs_S_in_turn1_y*rrrrs_S_in_turn1_y;
+    /* (rrrrs-root_1) root, with the sign of the branch */
+    const real rrrrs_root_1 = m->rrrrs_branch_1[i]*root(rrrrs_rho2_1);
+    /* (rrrrs-q_1) displacement of joint 1 */
+    const real inv_rrrrs_rho2_1 = 1/rrrrs_rho2_1;
+    const real rrrrs_q_1 = angle(inv_rrrrs_rho2_1*rrrrs_S_in_turn1_y*rrrrs_root_1,
+        inv_rrrrs_rho2_1*rrrrs_S_in_turn1_x*rrrrs_root_1);
+    /* (rrrrs-x_2) from the origin of joint 2 to the connection point */
+    const real rrrrs_x_2_in_axes1_z = rrrrs_S_x*m->rrrrs_base_frame_xx[i] +
+        rrrrs_S_y*m->rrrrs_base_frame_yx[i] + rrrrs_S_z*m->rrrrs_base_frame_zx[i] -
+        m->rrrrs_joint2_offset_x[i];
+    const real rrrrs_x_2_in_axes2_y = v.rrrrs_c_2*rrrrs_root_1 -
+        v.rrrrs_s_2*rrrrs_x_2_in_axes1_z;
+    /* (rrrrs-x_3) from the origin of joint 3 to the connection point */
+    const real rrrrs_x_3_in_axes2_x = v.rrrrs_c_2*rrrrs_x_2_in_axes1_z +
+        rrrrs_root_1*v.rrrrs_s_2 - m->rrrrs_joint3_offset_x[i];
+    /* (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond
+       joint 3 */
+    const real rrrrs_Kd_3_t = rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y +
+        rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x;
+    const real rrrrs_Kd_3 = R(0.5)*rrrrs_Kd_3_t + m->rrrrs_h_3_t[i] - m->rrrrs_h_3_t_2[i];
+    /* (rrrrs-Kc_3) factor of the cosine in the equation of joint 3 */
+    const real rrrrs_Kc_3 = m->rrrrs_joint4_offset_x[i]*rrrrs_x_3_in_axes2_x;
+    /* (rrrrs-Ks_3) factor of the sine in the equation of joint 3 */
+    const real rrrrs_Ks_3 = m->rrrrs_joint4_offset_x[i]*rrrrs_x_2_in_axes2_y;
+    /* (rrrrs-rho2_3) squared amplitude */
+    const real rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3;
+    /* (rrrrs-disc_3) discriminant */
+    const real rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3;
+    /* (rrrrs-root_3) root, with the sign of the branch */
+    const real rrrrs_root_3 = m->rrrrs_branch_3[i]*root(rrrrs_disc_3);
+    /* (rrrrs-q_3) displacement of joint 3 */
+    const real inv_rrrrs_rho2_3 = 1/rrrrs_rho2_3;
+    const real rrrrs_q_3 = angle(inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 +
+        rrrrs_Kd_3*rrrrs_Ks_3), inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 -
+        rrrrs_Ks_3*rrrrs_root_3));
+    /* (rrrrs-x_4) from the origin of joint 4 to the connection point */
+    const real rrrrs_x_4_in_axes3_x =
+        m->inv_rrrrs_size_t[i]*rrrrs_Kd_3*m->rrrrs_joint4_offset_x[i] -
+        m->rrrrs_joint4_offset_x[i];
+    /* (rrrrs-q_4) displacement of joint 4 */
+    const real rrrrs_q_4 =
+        angle(-m->inv_rrrrs_size_t[i]*m->inv_rrrrs_size_t_2[i]*m->rrrrs_joint4_offset_x[i]*m->rrrrs_platform_joint_offset_x[i]*rrrrs_root_3,
+        m->inv_rrrrs_size_t_2[i]*m->rrrrs_platform_joint_offset_x[i]*rrrrs_x_4_in_axes3_x);
+    /* (rrrrs-q_1) */
+    o[0*count + k] = rrrrs_q_1;
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    const real rrrrs_y_2_extra = X[7*w + j];
+    o[1*count + k] = rrrrs_y_2_extra;
+    /* (rrrrs-q_3) */
+    o[2*count + k] = rrrrs_q_3;
+    /* (rrrrs-q_4) */
+    o[3*count + k] = rrrrs_q_4;
+    o[6*count + k] = (rrrrs_q_1 + rrrrs_y_2_extra) + (rrrrs_q_3 + rrrrs_q_4);
+    o[5*count + k] = UNLESS(magnitude(rrrrs_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(rrrrs_rho2_3) >
+        TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]);
+    o[4*count + k] = UNLESS(rrrrs_disc_3 >= 0);
 }
 
-INLINE void inverse_kinematics_place_rrrrs(size_t w, size_t count, const real *o, size_t first,
-    real *q, verdict *t)
+INLINE void inverse_kinematics_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const real
+    *o, real *q, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        q[0*w + k] = o[0*count + first + k];
-        q[1*w + k] = o[1*count + first + k];
-        q[2*w + k] = o[2*count + first + k];
-        q[3*w + k] = o[3*count + first + k];
-        t->unreachable[k] += o[4*count + first + k];
-        t->singular[k] += o[5*count + first + k];
-        t->total[k] += o[6*count + first + k];
-    }
+    q[0*w + k] = o[0*count + at];
+    q[1*w + k] = o[1*count + at];
+    q[2*w + k] = o[2*count + at];
+    q[3*w + k] = o[3*count + at];
+    t->unreachable[k] += o[4*count + at];
+    t->singular[k] += o[5*count + at];
+    t->total[k] += o[6*count + at];
 }
 
-INLINE void inverse_kinematics_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, const real *X, real *o)
+INLINE void inverse_kinematics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
+    k, size_t count, const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrrs v;
-        stage_rrrs_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-        /* (rrrs-q_1) displacement of joint 1 */
-        const real rrrs_q_1 = angle(v.inv_rrrs_rho2_1*v.rrrs_S_in_turn1_y*v.rrrs_root_1,
-            v.inv_rrrs_rho2_1*v.rrrs_S_in_turn1_x*v.rrrs_root_1);
-        /* (rrrs-q_2) displacement of joint 2 */
-        const real rrrs_q_2 = angle(v.inv_rrrs_rho2_2*(v.rrrs_Kc_2*v.rrrs_root_2 +
-            v.rrrs_Kd_2*v.rrrs_Ks_2), v.inv_rrrs_rho2_2*(v.rrrs_Kc_2*v.rrrs_Kd_2 -
-            v.rrrs_Ks_2*v.rrrs_root_2));
-        /* (rrrs-q_3) displacement of joint 3 */
-        const real inv_rrrs_size_t = m->inv_rrrs_size_t[i];
-        const real inv_rrrs_size_t_2 = m->inv_rrrs_size_t_2[i];
-        const real rrrs_joint3_offset_x = m->rrrs_joint3_offset_x[i];
-        const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
-        const real rrrs_q_3 =
-            angle(-inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*v.rrrs_root_2,
-            inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*v.rrrs_x_3_in_axes2_x);
-        /* (rrrs-q_1) displacement of joint 1 */
-        o[0*count + k] = rrrs_q_1;
-        /* (rrrs-q_2) displacement of joint 2 */
-        o[1*count + k] = rrrs_q_2;
-        /* (rrrs-q_3) displacement of joint 3 */
-        o[2*count + k] = rrrs_q_3;
-        o[5*count + k] = rrrs_q_1 + (rrrs_q_2 + rrrs_q_3);
-        const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
-        const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
-        o[4*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
-            UNLESS(magnitude(v.rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t);
-        o[3*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
-    }
+    values_rrrs v;
+    stage_rrrs_inverse_kinematics_potential(m, w, i, j, s, X, &v);
+    /* (rrrs-q_1) displacement of joint 1 */
+    const real rrrs_q_1 = angle(v.inv_rrrs_rho2_1*v.rrrs_S_in_turn1_y*v.rrrs_root_1,
+        v.inv_rrrs_rho2_1*v.rrrs_S_in_turn1_x*v.rrrs_root_1);
+    /* (rrrs-q_2) displacement of joint 2 */
+    const real rrrs_q_2 = angle(v.inv_rrrs_rho2_2*(v.rrrs_Kc_2*v.rrrs_root_2 +
+        v.rrrs_Kd_2*v.rrrs_Ks_2), v.inv_rrrs_rho2_2*(v.rrrs_Kc_2*v.rrrs_Kd_2 -
+        v.rrrs_Ks_2*v.rrrs_root_2));
+    /* (rrrs-q_3) displacement of joint 3 */
+    const real rrrs_q_3 =
+        angle(-m->inv_rrrs_size_t[i]*m->inv_rrrs_size_t_2[i]*m->rrrs_joint3_offset_x[i]*m->rrrs_platform_joint_offset_x[i]*v.rrrs_root_2,
+        m->inv_rrrs_size_t_2[i]*m->rrrs_platform_joint_offset_x[i]*v.rrrs_x_3_in_axes2_x);
+    /* (rrrs-q_1) */
+    o[0*count + k] = rrrs_q_1;
+    /* (rrrs-q_2) */
+    o[1*count + k] = rrrs_q_2;
+    /* (rrrs-q_3) */
+    o[2*count + k] = rrrs_q_3;
+    o[5*count + k] = rrrs_q_1 + (rrrs_q_2 + rrrs_q_3);
+    o[4*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_rho2_2) >
+        TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]);
+    o[3*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
 }
 
-INLINE void inverse_kinematics_place_rrrs(size_t w, size_t count, const real *o, size_t leg,
-    size_t first, real *q, verdict *t)
+INLINE void inverse_kinematics_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t count,
+    const real *o, real *q, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        q[(4 + 3*leg)*w + k] = o[0*count + first + k];
-        q[(5 + 3*leg)*w + k] = o[1*count + first + k];
-        q[(6 + 3*leg)*w + k] = o[2*count + first + k];
-        t->unreachable[k] += o[3*count + first + k];
-        t->singular[k] += o[4*count + first + k];
-        t->total[k] += o[5*count + first + k];
-    }
+    q[(4 + 3*i)*w + k] = o[0*count + at];
+    q[(5 + 3*i)*w + k] = o[1*count + at];
+    q[(6 + 3*i)*w + k] = o[2*count + at];
+    t->unreachable[k] += o[3*count + at];
+    t->singular[k] += o[4*count + at];
+    t->total[k] += o[5*count + at];
 }
 
-INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
+APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
     real s[9] = {0};
     real o_rrrrs[7*LEGS(LEGS_OF_rrrrs)] = {0};
     real o_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0};
-    inverse_kinematics_before(m, 1, X, s, t);
-    inverse_kinematics_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrrs), X, o_rrrrs);
-    inverse_kinematics_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), X, o_rrrs);
-    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
-        inverse_kinematics_place_rrrrs(1, LEGS(LEGS_OF_rrrrs), o_rrrrs, leg, q, t);
+    inverse_kinematics_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
+        inverse_kinematics_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), s, X, o_rrrrs);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
-        inverse_kinematics_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, leg, q, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
+        inverse_kinematics_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), s, X, o_rrrs);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
+        inverse_kinematics_place_rrrrs(1, 0, i, LEGS(LEGS_OF_rrrrs), o_rrrrs, q, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        inverse_kinematics_place_rrrs(1, i, 0, i, LEGS(LEGS_OF_rrrs), o_rrrs, q, t);
     }
 }
 
-INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
+INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
+    verdict *restrict t)
 {
     real s[9*LANES];
     real o_rrrrs[7*LANES];
     real o_rrrs[6*LANES];
-    inverse_kinematics_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
-        inverse_kinematics_legs_rrrrs(m, LANES, leg, 0, s, 1, LANES, X, o_rrrrs);
-        inverse_kinematics_place_rrrrs(LANES, LANES, o_rrrrs, 0, q, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        inverse_kinematics_before(m, LANES, k, X, s, t);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
-        inverse_kinematics_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, X, o_rrrs);
-        inverse_kinematics_place_rrrs(LANES, LANES, o_rrrs, leg, 0, q, t);
+    for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_legs_rrrrs(m, LANES, i, k, k, LANES, s, X, o_rrrrs);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_place_rrrrs(LANES, k, k, LANES, o_rrrrs, q, t);
+        }
+    }
+    for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_legs_rrrs(m, LANES, i, k, k, LANES, s, X, o_rrrs);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_place_rrrs(LANES, i, k, k, LANES, o_rrrs, q, t);
+        }
     }
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
-}
-
-INLINE void joint_rates_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, const
-    real *s, size_t states, size_t count, const real *X, const real *V, real *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrrrs v;
-        stage_rrrrs_X(m, w, i, j, s, X, &v);
-        /* (rrrrs-S_dot) velocity of the connection point */
-        const real omega_y = V[4*w + j];
-        const real omega_z = V[5*w + j];
-        const real t_dot_x = V[0*w + j];
-        const real rrrrs_S_dot_x = t_dot_x + omega_y*v.rrrrs_q_z - omega_z*v.rrrrs_q_y;
-        const real omega_x = V[3*w + j];
-        const real t_dot_y = V[1*w + j];
-        const real rrrrs_S_dot_y = t_dot_y + omega_z*v.rrrrs_q_x - omega_x*v.rrrrs_q_z;
-        const real t_dot_z = V[2*w + j];
-        const real rrrrs_S_dot_z = t_dot_z + omega_x*v.rrrrs_q_y - omega_y*v.rrrrs_q_x;
-        /* (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-        const real rrrrs_base_frame_xx = m->rrrrs_base_frame_xx[i];
-        const real rrrrs_base_frame_xy = m->rrrrs_base_frame_xy[i];
-        const real rrrrs_base_frame_xz = m->rrrrs_base_frame_xz[i];
-        const real axis_y_rrrrs_axes4_x = v.rrrrs_S_dot_rest_t_3*rrrrs_base_frame_xx +
-            v.rrrrs_S_dot_rest_t_5*rrrrs_base_frame_xy +
-            v.rrrrs_S_dot_rest_t_6*rrrrs_base_frame_xz;
-        const real rrrrs_base_frame_yx = m->rrrrs_base_frame_yx[i];
-        const real rrrrs_base_frame_yy = m->rrrrs_base_frame_yy[i];
-        const real rrrrs_base_frame_yz = m->rrrrs_base_frame_yz[i];
-        const real axis_y_rrrrs_axes4_y = v.rrrrs_S_dot_rest_t_3*rrrrs_base_frame_yx +
-            v.rrrrs_S_dot_rest_t_5*rrrrs_base_frame_yy +
-            v.rrrrs_S_dot_rest_t_6*rrrrs_base_frame_yz;
-        const real rrrrs_base_frame_zx = m->rrrrs_base_frame_zx[i];
-        const real rrrrs_base_frame_zy = m->rrrrs_base_frame_zy[i];
-        const real rrrrs_base_frame_zz = m->rrrrs_base_frame_zz[i];
-        const real axis_y_rrrrs_axes4_z = v.rrrrs_S_dot_rest_t_3*rrrrs_base_frame_zx +
-            v.rrrrs_S_dot_rest_t_5*rrrrs_base_frame_zy +
-            v.rrrrs_S_dot_rest_t_6*rrrrs_base_frame_zz;
-        const real axis_x_rrrrs_axes4_x = axis_y_rrrrs_axes4_y*v.axis_z_rrrrs_axes4_z -
-            axis_y_rrrrs_axes4_z*v.axis_z_rrrrs_axes4_y;
-        const real axis_x_rrrrs_axes4_y = axis_y_rrrrs_axes4_z*v.axis_z_rrrrs_axes4_x -
-            axis_y_rrrrs_axes4_x*v.axis_z_rrrrs_axes4_z;
-        const real axis_x_rrrrs_axes4_z = axis_y_rrrrs_axes4_x*v.axis_z_rrrrs_axes4_y -
-            axis_y_rrrrs_axes4_y*v.axis_z_rrrrs_axes4_x;
-        const real rrrrs_yd_2 = V[6*w + j];
-        const real rrrrs_S_dot_rest_x = rrrrs_S_dot_x -
-            rrrrs_yd_2*(axis_y_rrrrs_axes4_x*v.rrrrs_r_2_in_axes4_x -
-            axis_x_rrrrs_axes4_x*v.rrrrs_r_2_in_axes4_y);
-        const real rrrrs_S_dot_rest_y = rrrrs_S_dot_y -
-            rrrrs_yd_2*(axis_y_rrrrs_axes4_y*v.rrrrs_r_2_in_axes4_x -
-            axis_x_rrrrs_axes4_y*v.rrrrs_r_2_in_axes4_y);
-        const real rrrrs_S_dot_rest_z = rrrrs_S_dot_z -
-            rrrrs_yd_2*(axis_y_rrrrs_axes4_z*v.rrrrs_r_2_in_axes4_x -
-            axis_x_rrrrs_axes4_z*v.rrrrs_r_2_in_axes4_y);
-        /* (rrrrs-qd_1) rate of joint 1 */
-        const real rrrrs_qd_1 = (v.axis_z_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
-            v.axis_z_rrrrs_axes4_y*rrrrs_S_dot_rest_y +
-            v.axis_z_rrrrs_axes4_z*rrrrs_S_dot_rest_z)/v.rrrrs_v_1_in_axes4_z;
-        /* (rrrrs-qd_3) rate of joint 3 */
-        const real rrrrs_qd_3 = -(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
-            axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y +
-            axis_x_rrrrs_axes4_z*rrrrs_S_dot_rest_z)/v.rrrrs_r_3_in_axes4_y;
-        /* (rrrrs-qd_4) rate of joint 4 */
-        const real rrrrs_w_4_in_axes4_y = m->rrrrs_w_4_in_axes4_y[i];
-        const real rrrrs_qd_4 = rrrrs_w_4_in_axes4_y*(axis_y_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
-            axis_y_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_y_rrrrs_axes4_z*rrrrs_S_dot_rest_z -
-            rrrrs_qd_3*(v.rrrrs_c_4*v.rrrrs_r_3_in_axes3_x + v.rrrrs_r_3_t*v.rrrrs_s_4_t));
-        /* (rrrrs-qd_1) rate of joint 1 */
-        o[0*count + k] = rrrrs_qd_1;
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        o[1*count + k] = rrrrs_yd_2;
-        /* (rrrrs-qd_3) rate of joint 3 */
-        o[2*count + k] = rrrrs_qd_3;
-        /* (rrrrs-qd_4) rate of joint 4 */
-        o[3*count + k] = rrrrs_qd_4;
-        o[6*count + k] = (rrrrs_qd_1 + rrrrs_yd_2) + (rrrrs_qd_3 + rrrrs_qd_4);
-        const real rrrrs_size_t_3 = m->rrrrs_size_t_3[i];
-        const real rrrrs_rho2_3_t = m->rrrrs_rho2_3_t[i];
-        const real rrrrs_size = m->rrrrs_size[i];
-        o[5*count + k] = UNLESS(magnitude(v.rrrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrrs_size_t_3) +
-            UNLESS(magnitude(v.rrrrs_rho2_3) > TOLERANCE*TOLERANCE*rrrrs_rho2_3_t) +
-            UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) > TOLERANCE*rrrrs_size) +
-            UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) > TOLERANCE*rrrrs_size);
-        o[4*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
-    }
-}
-
-INLINE void joint_rates_place_rrrrs(size_t w, size_t count, const real *o, size_t first, real *qd,
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
     verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        qd[0*w + k] = o[0*count + first + k];
-        qd[1*w + k] = o[1*count + first + k];
-        qd[2*w + k] = o[2*count + first + k];
-        qd[3*w + k] = o[3*count + first + k];
-        t->unreachable[k] += o[4*count + first + k];
-        t->singular[k] += o[5*count + first + k];
-        t->total[k] += o[6*count + first + k];
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void joint_rates_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, const real *X, const real *V, real *o)
+INLINE void joint_rates_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k,
+    size_t count, const real *s, const real *X, const real *V, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrrs v;
-        stage_rrrs_X(m, w, i, j, s, X, &v);
-        /* (rrrs-S_dot) velocity of the connection point */
-        const real omega_y = V[4*w + j];
-        const real omega_z = V[5*w + j];
-        const real t_dot_x = V[0*w + j];
-        const real rrrs_S_dot_x = t_dot_x + omega_y*v.rrrs_q_z - omega_z*v.rrrs_q_y;
-        const real omega_x = V[3*w + j];
-        const real t_dot_y = V[1*w + j];
-        const real rrrs_S_dot_y = t_dot_y + omega_z*v.rrrs_q_x - omega_x*v.rrrs_q_z;
-        const real t_dot_z = V[2*w + j];
-        const real rrrs_S_dot_z = t_dot_z + omega_x*v.rrrs_q_y - omega_y*v.rrrs_q_x;
-        /* (rrrs-qd_1) rate of joint 1 */
-        const real rrrs_qd_1 = (v.axis_z_rrrs_axes3_x*rrrs_S_dot_x +
-            v.axis_z_rrrs_axes3_y*rrrs_S_dot_y +
-            v.axis_z_rrrs_axes3_z*rrrs_S_dot_z)/v.rrrs_v_1_in_axes3_z;
-        /* (rrrs-qd_2) rate of joint 2 */
-        const real rrrs_qd_2_t = v.rrrs_c_1*v.rrrs_e_1_in_axes3_x;
-        const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
-        const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
-        const real rrrs_base_frame_xz = m->rrrs_base_frame_xz[i];
-        const real axis_y_rrrs_axes3_x = rrrs_base_frame_xx*v.rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_xy*rrrs_qd_2_t + rrrs_base_frame_xz*v.rrrs_qd_2_t_2;
-        const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
-        const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
-        const real rrrs_base_frame_yz = m->rrrs_base_frame_yz[i];
-        const real axis_y_rrrs_axes3_y = rrrs_base_frame_yx*v.rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_yy*rrrs_qd_2_t + rrrs_base_frame_yz*v.rrrs_qd_2_t_2;
-        const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
-        const real rrrs_base_frame_zy = m->rrrs_base_frame_zy[i];
-        const real rrrs_base_frame_zz = m->rrrs_base_frame_zz[i];
-        const real axis_y_rrrs_axes3_z = rrrs_base_frame_zx*v.rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_zy*rrrs_qd_2_t + rrrs_base_frame_zz*v.rrrs_qd_2_t_2;
-        const real rrrs_qd_2_t_3 = (rrrs_S_dot_x*(axis_y_rrrs_axes3_y*v.axis_z_rrrs_axes3_z -
-            axis_y_rrrs_axes3_z*v.axis_z_rrrs_axes3_y) +
-            rrrs_S_dot_y*(axis_y_rrrs_axes3_z*v.axis_z_rrrs_axes3_x -
-            axis_y_rrrs_axes3_x*v.axis_z_rrrs_axes3_z) +
-            rrrs_S_dot_z*(axis_y_rrrs_axes3_x*v.axis_z_rrrs_axes3_y -
-            axis_y_rrrs_axes3_y*v.axis_z_rrrs_axes3_x))/v.rrrs_r_2_in_axes3_y;
-        /* (rrrs-qd_3) rate of joint 3 */
-        const real rrrs_w_3_in_axes3_y = m->rrrs_w_3_in_axes3_y[i];
-        const real rrrs_qd_3 = rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x +
-            axis_y_rrrs_axes3_y*rrrs_S_dot_y + axis_y_rrrs_axes3_z*rrrs_S_dot_z +
-            rrrs_qd_2_t_3*(v.rrrs_c_3*v.rrrs_r_2_in_axes2_x + v.rrrs_r_2_t*v.rrrs_s_3_t));
-        /* (rrrs-qd_1) rate of joint 1 */
-        o[0*count + k] = rrrs_qd_1;
-        /* (rrrs-qd_2) rate of joint 2 */
-        o[1*count + k] = -rrrs_qd_2_t_3;
-        /* (rrrs-qd_3) rate of joint 3 */
-        o[2*count + k] = rrrs_qd_3;
-        o[5*count + k] = rrrs_qd_1 + (rrrs_qd_2_t_3 + rrrs_qd_3);
-        const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
-        const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
-        const real rrrs_size = m->rrrs_size[i];
-        o[4*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
-            UNLESS(magnitude(v.rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
-            UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
-            UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
-        o[3*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
-    }
+    values_rrrrs v;
+    stage_rrrrs_X(m, w, i, j, s, X, &v);
+    /* (rrrrs-S_dot) velocity of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real t_dot_x = V[0*w + j];
+    const real rrrrs_S_dot_x = t_dot_x + omega_y*v.rrrrs_q_z - omega_z*v.rrrrs_q_y;
+    const real omega_x = V[3*w + j];
+    const real t_dot_y = V[1*w + j];
+    const real rrrrs_S_dot_y = t_dot_y + omega_z*v.rrrrs_q_x - omega_x*v.rrrrs_q_z;
+    const real t_dot_z = V[2*w + j];
+    const real rrrrs_S_dot_z = t_dot_z + omega_x*v.rrrrs_q_y - omega_y*v.rrrrs_q_x;
+    /* (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra */
+    const real axis_y_rrrrs_axes4_x = v.rrrrs_S_dot_rest_t_3*m->rrrrs_base_frame_xx[i] +
+        v.rrrrs_S_dot_rest_t_5*m->rrrrs_base_frame_xy[i] +
+        v.rrrrs_S_dot_rest_t_6*m->rrrrs_base_frame_xz[i];
+    const real axis_y_rrrrs_axes4_y = v.rrrrs_S_dot_rest_t_3*m->rrrrs_base_frame_yx[i] +
+        v.rrrrs_S_dot_rest_t_5*m->rrrrs_base_frame_yy[i] +
+        v.rrrrs_S_dot_rest_t_6*m->rrrrs_base_frame_yz[i];
+    const real axis_y_rrrrs_axes4_z = v.rrrrs_S_dot_rest_t_3*m->rrrrs_base_frame_zx[i] +
+        v.rrrrs_S_dot_rest_t_5*m->rrrrs_base_frame_zy[i] +
+        v.rrrrs_S_dot_rest_t_6*m->rrrrs_base_frame_zz[i];
+    const real axis_x_rrrrs_axes4_x = axis_y_rrrrs_axes4_y*v.axis_z_rrrrs_axes4_z -
+        axis_y_rrrrs_axes4_z*v.axis_z_rrrrs_axes4_y;
+    const real axis_x_rrrrs_axes4_y = axis_y_rrrrs_axes4_z*v.axis_z_rrrrs_axes4_x -
+        axis_y_rrrrs_axes4_x*v.axis_z_rrrrs_axes4_z;
+    const real axis_x_rrrrs_axes4_z = axis_y_rrrrs_axes4_x*v.axis_z_rrrrs_axes4_y -
+        axis_y_rrrrs_axes4_y*v.axis_z_rrrrs_axes4_x;
+    const real rrrrs_yd_2 = V[6*w + j];
+    const real rrrrs_S_dot_rest_x = rrrrs_S_dot_x -
+        rrrrs_yd_2*(axis_y_rrrrs_axes4_x*v.rrrrs_r_2_in_axes4_x -
+        axis_x_rrrrs_axes4_x*v.rrrrs_r_2_in_axes4_y);
+    const real rrrrs_S_dot_rest_y = rrrrs_S_dot_y -
+        rrrrs_yd_2*(axis_y_rrrrs_axes4_y*v.rrrrs_r_2_in_axes4_x -
+        axis_x_rrrrs_axes4_y*v.rrrrs_r_2_in_axes4_y);
+    const real rrrrs_S_dot_rest_z = rrrrs_S_dot_z -
+        rrrrs_yd_2*(axis_y_rrrrs_axes4_z*v.rrrrs_r_2_in_axes4_x -
+        axis_x_rrrrs_axes4_z*v.rrrrs_r_2_in_axes4_y);
+    /* (rrrrs-qd_1) rate of joint 1 */
+    const real rrrrs_qd_1 = (v.axis_z_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+        v.axis_z_rrrrs_axes4_y*rrrrs_S_dot_rest_y +
+        v.axis_z_rrrrs_axes4_z*rrrrs_S_dot_rest_z)/v.rrrrs_v_1_in_axes4_z;
+    /* (rrrrs-qd_3) rate of joint 3 */
+    const real rrrrs_qd_3 = -(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+        axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y +
+        axis_x_rrrrs_axes4_z*rrrrs_S_dot_rest_z)/v.rrrrs_r_3_in_axes4_y;
+    /* (rrrrs-qd_4) rate of joint 4 */
+    const real rrrrs_qd_4 =
+        m->rrrrs_w_4_in_axes4_y[i]*(axis_y_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+        axis_y_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_y_rrrrs_axes4_z*rrrrs_S_dot_rest_z -
+        rrrrs_qd_3*(v.rrrrs_c_4*v.rrrrs_r_3_in_axes3_x + v.rrrrs_r_3_t*v.rrrrs_s_4_t));
+    /* (rrrrs-qd_1) */
+    o[0*count + k] = rrrrs_qd_1;
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    o[1*count + k] = rrrrs_yd_2;
+    /* (rrrrs-qd_3) */
+    o[2*count + k] = rrrrs_qd_3;
+    /* (rrrrs-qd_4) */
+    o[3*count + k] = rrrrs_qd_4;
+    o[6*count + k] = (rrrrs_qd_1 + rrrrs_yd_2) + (rrrrs_qd_3 + rrrrs_qd_4);
+    o[5*count + k] = UNLESS(magnitude(v.rrrrs_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_rho2_3) >
+        TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]) + UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) >
+        TOLERANCE*m->rrrrs_size[i]) + UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) >
+        TOLERANCE*m->rrrrs_size[i]);
+    o[4*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
 }
 
-INLINE void joint_rates_place_rrrs(size_t w, size_t count, const real *o, size_t leg, size_t
-    first, real *qd, verdict *t)
+INLINE void joint_rates_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const real *o,
+    real *qd, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        qd[(4 + 3*leg)*w + k] = o[0*count + first + k];
-        qd[(5 + 3*leg)*w + k] = o[1*count + first + k];
-        qd[(6 + 3*leg)*w + k] = o[2*count + first + k];
-        t->unreachable[k] += o[3*count + first + k];
-        t->singular[k] += o[4*count + first + k];
-        t->total[k] += o[5*count + first + k];
-    }
+    qd[0*w + k] = o[0*count + at];
+    qd[1*w + k] = o[1*count + at];
+    qd[2*w + k] = o[2*count + at];
+    qd[3*w + k] = o[3*count + at];
+    t->unreachable[k] += o[4*count + at];
+    t->singular[k] += o[5*count + at];
+    t->total[k] += o[6*count + at];
 }
 
-INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+INLINE void joint_rates_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k,
+    size_t count, const real *s, const real *X, const real *V, real *o)
+{
+    values_rrrs v;
+    stage_rrrs_X(m, w, i, j, s, X, &v);
+    /* (rrrs-S_dot) velocity of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real t_dot_x = V[0*w + j];
+    const real rrrs_S_dot_x = t_dot_x + omega_y*v.rrrs_q_z - omega_z*v.rrrs_q_y;
+    const real omega_x = V[3*w + j];
+    const real t_dot_y = V[1*w + j];
+    const real rrrs_S_dot_y = t_dot_y + omega_z*v.rrrs_q_x - omega_x*v.rrrs_q_z;
+    const real t_dot_z = V[2*w + j];
+    const real rrrs_S_dot_z = t_dot_z + omega_x*v.rrrs_q_y - omega_y*v.rrrs_q_x;
+    /* (rrrs-qd_1) rate of joint 1 */
+    const real rrrs_qd_1 = (v.axis_z_rrrs_axes3_x*rrrs_S_dot_x +
+        v.axis_z_rrrs_axes3_y*rrrs_S_dot_y +
+        v.axis_z_rrrs_axes3_z*rrrs_S_dot_z)/v.rrrs_v_1_in_axes3_z;
+    /* (rrrs-qd_2) rate of joint 2 */
+    const real rrrs_qd_2_t = v.rrrs_c_1*v.rrrs_e_1_in_axes3_x;
+    const real axis_y_rrrs_axes3_x = m->rrrs_base_frame_xx[i]*v.rrrs_e_1_in_axes3_y +
+        m->rrrs_base_frame_xy[i]*rrrs_qd_2_t + m->rrrs_base_frame_xz[i]*v.rrrs_qd_2_t_2;
+    const real axis_y_rrrs_axes3_y = m->rrrs_base_frame_yx[i]*v.rrrs_e_1_in_axes3_y +
+        m->rrrs_base_frame_yy[i]*rrrs_qd_2_t + m->rrrs_base_frame_yz[i]*v.rrrs_qd_2_t_2;
+    const real axis_y_rrrs_axes3_z = m->rrrs_base_frame_zx[i]*v.rrrs_e_1_in_axes3_y +
+        m->rrrs_base_frame_zy[i]*rrrs_qd_2_t + m->rrrs_base_frame_zz[i]*v.rrrs_qd_2_t_2;
+    const real rrrs_qd_2_t_3 = (rrrs_S_dot_x*(axis_y_rrrs_axes3_y*v.axis_z_rrrs_axes3_z -
+        axis_y_rrrs_axes3_z*v.axis_z_rrrs_axes3_y) +
+        rrrs_S_dot_y*(axis_y_rrrs_axes3_z*v.axis_z_rrrs_axes3_x -
+        axis_y_rrrs_axes3_x*v.axis_z_rrrs_axes3_z) +
+        rrrs_S_dot_z*(axis_y_rrrs_axes3_x*v.axis_z_rrrs_axes3_y -
+        axis_y_rrrs_axes3_y*v.axis_z_rrrs_axes3_x))/v.rrrs_r_2_in_axes3_y;
+    /* (rrrs-qd_3) rate of joint 3 */
+    const real rrrs_qd_3 = m->rrrs_w_3_in_axes3_y[i]*(axis_y_rrrs_axes3_x*rrrs_S_dot_x +
+        axis_y_rrrs_axes3_y*rrrs_S_dot_y + axis_y_rrrs_axes3_z*rrrs_S_dot_z +
+        rrrs_qd_2_t_3*(v.rrrs_c_3*v.rrrs_r_2_in_axes2_x + v.rrrs_r_2_t*v.rrrs_s_3_t));
+    /* (rrrs-qd_1) */
+    o[0*count + k] = rrrs_qd_1;
+    /* (rrrs-qd_2) */
+    o[1*count + k] = -rrrs_qd_2_t_3;
+    /* (rrrs-qd_3) */
+    o[2*count + k] = rrrs_qd_3;
+    o[5*count + k] = rrrs_qd_1 + (rrrs_qd_2_t_3 + rrrs_qd_3);
+    o[4*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_rho2_2) >
+        TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) + UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) >
+        TOLERANCE*m->rrrs_size[i]) + UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) >
+        TOLERANCE*m->rrrs_size[i]);
+    o[3*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
+}
+
+INLINE void joint_rates_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t count, const
+    real *o, real *qd, verdict *t)
+{
+    qd[(4 + 3*i)*w + k] = o[0*count + at];
+    qd[(5 + 3*i)*w + k] = o[1*count + at];
+    qd[(6 + 3*i)*w + k] = o[2*count + at];
+    t->unreachable[k] += o[3*count + at];
+    t->singular[k] += o[4*count + at];
+    t->total[k] += o[5*count + at];
+}
+
+APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
     real s[9] = {0};
     real o_rrrrs[7*LEGS(LEGS_OF_rrrrs)] = {0};
     real o_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0};
-    joint_rates_before(m, 1, X, s, t);
-    joint_rates_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrrs), X, V, o_rrrrs);
-    joint_rates_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), X, V, o_rrrs);
-    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
-        joint_rates_place_rrrrs(1, LEGS(LEGS_OF_rrrrs), o_rrrrs, leg, qd, t);
+    joint_rates_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
+        joint_rates_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), s, X, V, o_rrrrs);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
-        joint_rates_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, leg, qd, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
+        joint_rates_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), s, X, V, o_rrrs);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
+        joint_rates_place_rrrrs(1, 0, i, LEGS(LEGS_OF_rrrrs), o_rrrrs, qd, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        joint_rates_place_rrrs(1, i, 0, i, LEGS(LEGS_OF_rrrs), o_rrrs, qd, t);
     }
 }
 
-INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
-    verdict *t)
+INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
+    qd, verdict *restrict t)
 {
     real s[9*LANES];
     real o_rrrrs[7*LANES];
     real o_rrrs[6*LANES];
-    joint_rates_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
-        joint_rates_legs_rrrrs(m, LANES, leg, 0, s, 1, LANES, X, V, o_rrrrs);
-        joint_rates_place_rrrrs(LANES, LANES, o_rrrrs, 0, qd, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        joint_rates_before(m, LANES, k, X, s, t);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
-        joint_rates_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, X, V, o_rrrs);
-        joint_rates_place_rrrs(LANES, LANES, o_rrrs, leg, 0, qd, t);
+    for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_legs_rrrrs(m, LANES, i, k, k, LANES, s, X, V, o_rrrrs);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_place_rrrrs(LANES, k, k, LANES, o_rrrrs, qd, t);
+        }
+    }
+    for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_legs_rrrs(m, LANES, i, k, k, LANES, s, X, V, o_rrrs);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_place_rrrs(LANES, i, k, k, LANES, o_rrrs, qd, t);
+        }
     }
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, const real *X, real *s,
-    verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
+    *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void joint_accelerations_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
-    *o)
+INLINE void joint_accelerations_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
+    k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrrrs v;
-        stage_rrrrs_V(w, j, V, &v);
-        stage_rrrrs_X(m, w, i, j, s, X, &v);
-        stage_rrrrs_A_X(w, j, A, &v);
-        stage_rrrrs_V_X(w, j, V, &v);
-        stage_rrrrs_A_V_X(w, j, V, &v);
-        /* (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-        const real rrrrs_base_frame_xx = m->rrrrs_base_frame_xx[i];
-        const real rrrrs_base_frame_xy = m->rrrrs_base_frame_xy[i];
-        const real rrrrs_base_frame_xz = m->rrrrs_base_frame_xz[i];
-        const real axis_y_rrrrs_axes4_x = v.rrrrs_S_dot_rest_t_3*rrrrs_base_frame_xx +
-            v.rrrrs_S_dot_rest_t_5*rrrrs_base_frame_xy +
-            v.rrrrs_S_dot_rest_t_6*rrrrs_base_frame_xz;
-        const real rrrrs_base_frame_yx = m->rrrrs_base_frame_yx[i];
-        const real rrrrs_base_frame_yy = m->rrrrs_base_frame_yy[i];
-        const real rrrrs_base_frame_yz = m->rrrrs_base_frame_yz[i];
-        const real axis_y_rrrrs_axes4_y = v.rrrrs_S_dot_rest_t_3*rrrrs_base_frame_yx +
-            v.rrrrs_S_dot_rest_t_5*rrrrs_base_frame_yy +
-            v.rrrrs_S_dot_rest_t_6*rrrrs_base_frame_yz;
-        const real rrrrs_base_frame_zx = m->rrrrs_base_frame_zx[i];
-        const real rrrrs_base_frame_zy = m->rrrrs_base_frame_zy[i];
-        const real rrrrs_base_frame_zz = m->rrrrs_base_frame_zz[i];
-        const real axis_y_rrrrs_axes4_z = v.rrrrs_S_dot_rest_t_3*rrrrs_base_frame_zx +
-            v.rrrrs_S_dot_rest_t_5*rrrrs_base_frame_zy +
-            v.rrrrs_S_dot_rest_t_6*rrrrs_base_frame_zz;
-        const real axis_x_rrrrs_axes4_x = axis_y_rrrrs_axes4_y*v.axis_z_rrrrs_axes4_z -
-            axis_y_rrrrs_axes4_z*v.axis_z_rrrrs_axes4_y;
-        const real axis_x_rrrrs_axes4_y = axis_y_rrrrs_axes4_z*v.axis_z_rrrrs_axes4_x -
-            axis_y_rrrrs_axes4_x*v.axis_z_rrrrs_axes4_z;
-        const real axis_x_rrrrs_axes4_z = axis_y_rrrrs_axes4_x*v.axis_z_rrrrs_axes4_y -
-            axis_y_rrrrs_axes4_y*v.axis_z_rrrrs_axes4_x;
-        const real rrrrs_yd_2 = V[6*w + j];
-        const real rrrrs_S_dot_rest_x = v.rrrrs_S_dot_x -
-            rrrrs_yd_2*(axis_y_rrrrs_axes4_x*v.rrrrs_r_2_in_axes4_x -
-            axis_x_rrrrs_axes4_x*v.rrrrs_r_2_in_axes4_y);
-        const real rrrrs_S_dot_rest_y = v.rrrrs_S_dot_y -
-            rrrrs_yd_2*(axis_y_rrrrs_axes4_y*v.rrrrs_r_2_in_axes4_x -
-            axis_x_rrrrs_axes4_y*v.rrrrs_r_2_in_axes4_y);
-        const real rrrrs_S_dot_rest_z = v.rrrrs_S_dot_z -
-            rrrrs_yd_2*(axis_y_rrrrs_axes4_z*v.rrrrs_r_2_in_axes4_x -
-            axis_x_rrrrs_axes4_z*v.rrrrs_r_2_in_axes4_y);
-        /* (rrrrs-qd_1) rate of joint 1 */
-        const real rrrrs_qd_1 = v.rrrrs_w_1_in_axes4_z*(v.axis_z_rrrrs_axes4_x*rrrrs_S_dot_rest_x
-            + v.axis_z_rrrrs_axes4_y*rrrrs_S_dot_rest_y +
-            v.axis_z_rrrrs_axes4_z*rrrrs_S_dot_rest_z);
-        /* (rrrrs-qd_3) rate of joint 3 */
-        const real rrrrs_qd_3 = v.rrrrs_w_3_in_axes4_x*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
-            axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_x_rrrrs_axes4_z*rrrrs_S_dot_rest_z);
-        /* (rrrrs-qd_4) rate of joint 4 */
-        const real rrrrs_w_4_in_axes4_y = m->rrrrs_w_4_in_axes4_y[i];
-        const real rrrrs_qd_4 = rrrrs_w_4_in_axes4_y*(axis_y_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
-            axis_y_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_y_rrrrs_axes4_z*rrrrs_S_dot_rest_z -
-            rrrrs_qd_3*v.rrrrs_r_3_in_axes4_x);
-        /* (rrrrs-omega_1) angular velocity of link 1 */
-        const real rrrrs_omega_1_in_axes2_x = v.rrrrs_c_2*rrrrs_qd_1;
-        const real rrrrs_omega_1_in_axes2_y = -rrrrs_qd_1*v.rrrrs_s_2;
-        const real rrrrs_omega_1_t = v.rrrrs_c_3*rrrrs_omega_1_in_axes2_x +
-            rrrrs_omega_1_in_axes2_y*v.rrrrs_s_3;
-        const real rrrrs_omega_1_t_2 = v.rrrrs_c_3*rrrrs_omega_1_in_axes2_y -
-            rrrrs_omega_1_in_axes2_x*v.rrrrs_s_3;
-        const real rrrrs_omega_1_in_axes4_x = v.rrrrs_c_4*rrrrs_omega_1_t -
-            rrrrs_omega_1_t_2*v.rrrrs_s_4_t;
-        const real rrrrs_omega_1_in_axes4_y = v.rrrrs_c_4*rrrrs_omega_1_t_2 +
-            rrrrs_omega_1_t*v.rrrrs_s_4_t;
-        /* (rrrrs-W_1) centripetal tensor of link 1 */
-        const real rrrrs_W_1_t = rrrrs_omega_1_in_axes4_x*rrrrs_omega_1_in_axes4_x;
-        const real rrrrs_W_1_t_2 = rrrrs_omega_1_in_axes4_y*rrrrs_omega_1_in_axes4_y;
-        const real rrrrs_W_1_in_axes4_xy = rrrrs_omega_1_in_axes4_x*rrrrs_omega_1_in_axes4_y;
-        /* (rrrrs-W_2) centripetal tensor of link 2 */
-        const real rrrrs_W_2_in_axes2_yz = rrrrs_omega_1_in_axes2_y*rrrrs_yd_2;
-        const real rrrrs_W_2_in_axes2_xz = rrrrs_omega_1_in_axes2_x*rrrrs_yd_2;
-        /* (rrrrs-omega_3) angular velocity of link 3 */
-        const real rrrrs_omega_3_in_axes3_z = rrrrs_qd_3 + rrrrs_yd_2;
-        /* (rrrrs-omega_4) angular velocity of link 4 */
-        const real rrrrs_omega_4_in_axes4_z = rrrrs_omega_3_in_axes3_z + rrrrs_qd_4;
-        /* (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real rrrrs_beta_3_in_axes3_x = rrrrs_W_2_in_axes2_yz*v.rrrrs_c_3 +
-            rrrrs_omega_1_t_2*rrrrs_qd_3 - rrrrs_W_2_in_axes2_xz*v.rrrrs_s_3;
-        const real rrrrs_beta_3_in_axes3_y = -rrrrs_W_2_in_axes2_xz*v.rrrrs_c_3 -
-            rrrrs_W_2_in_axes2_yz*v.rrrrs_s_3 - rrrrs_omega_1_t*rrrrs_qd_3;
-        const real rrrrs_beta_3_in_axes4_y = rrrrs_beta_3_in_axes3_x*v.rrrrs_s_4_t +
-            rrrrs_beta_3_in_axes3_y*v.rrrrs_c_4;
-        /* (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations */
-        const real rrrrs_beta_4_in_axes4_y = rrrrs_beta_3_in_axes4_y -
-            rrrrs_omega_1_in_axes4_x*rrrrs_qd_4;
-        /* (rrrrs-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrrrs_bias_t_2 = rrrrs_omega_3_in_axes3_z*rrrrs_omega_3_in_axes3_z;
-        const real rrrrs_platform_joint_offset_x = m->rrrrs_platform_joint_offset_x[i];
-        const real rrrrs_bias_in_axes4_x = rrrrs_W_1_in_axes4_xy*v.rrrrs_d_2_in_axes4_y +
-            rrrrs_W_1_in_axes4_xy*v.rrrrs_d_3_in_axes4_y +
-            rrrrs_W_1_in_axes4_xy*v.rrrrs_d_4_in_axes4_y - rrrrs_W_1_t_2*v.rrrrs_d_2_in_axes4_x -
-            v.rrrrs_d_3_in_axes4_x*(rrrrs_W_1_t_2 + v.rrrrs_bias_t) -
-            v.rrrrs_d_4_in_axes4_x*(rrrrs_W_1_t_2 + rrrrs_bias_t_2) -
-            rrrrs_platform_joint_offset_x*(rrrrs_W_1_t_2 +
-            rrrrs_omega_4_in_axes4_z*rrrrs_omega_4_in_axes4_z);
-        const real rrrrs_bias_in_axes4_y = rrrrs_W_1_in_axes4_xy*v.rrrrs_d_2_in_axes4_x +
-            rrrrs_W_1_in_axes4_xy*v.rrrrs_d_3_in_axes4_x +
-            rrrrs_W_1_in_axes4_xy*v.rrrrs_d_4_in_axes4_x +
-            rrrrs_W_1_in_axes4_xy*rrrrs_platform_joint_offset_x -
-            rrrrs_W_1_t*v.rrrrs_d_2_in_axes4_y - v.rrrrs_d_3_in_axes4_y*(rrrrs_W_1_t +
-            v.rrrrs_bias_t) - v.rrrrs_d_4_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t_2);
-        const real rrrrs_bias_in_axes4_z =
-            v.rrrrs_d_4_in_axes4_x*(rrrrs_omega_1_in_axes4_x*rrrrs_omega_3_in_axes3_z -
-            rrrrs_beta_3_in_axes4_y) + v.rrrrs_d_4_in_axes4_y*(rrrrs_beta_3_in_axes3_x*v.rrrrs_c_4
-            + rrrrs_omega_1_in_axes4_y*rrrrs_omega_3_in_axes3_z -
-            rrrrs_beta_3_in_axes3_y*v.rrrrs_s_4_t) +
-            rrrrs_platform_joint_offset_x*(rrrrs_omega_1_in_axes4_x*rrrrs_omega_4_in_axes4_z -
-            rrrrs_beta_4_in_axes4_y) +
-            2*v.rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
-            2*v.rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2;
-        /* (rrrrs-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrrrs_ydd_2 = A[6*w + j];
-        const real rrrrs_rel_in_axes4_x = axis_x_rrrrs_axes4_x*v.rrrrs_S_ddot_x +
-            axis_x_rrrrs_axes4_y*v.rrrrs_S_ddot_y + axis_x_rrrrs_axes4_z*v.rrrrs_S_ddot_z +
-            v.rrrrs_r_2_in_axes4_y*rrrrs_ydd_2 - rrrrs_bias_in_axes4_x;
-        const real rrrrs_rel_in_axes4_y = axis_y_rrrrs_axes4_x*v.rrrrs_S_ddot_x +
-            axis_y_rrrrs_axes4_y*v.rrrrs_S_ddot_y + axis_y_rrrrs_axes4_z*v.rrrrs_S_ddot_z -
-            rrrrs_bias_in_axes4_y - v.rrrrs_r_2_in_axes4_x*rrrrs_ydd_2;
-        const real rrrrs_rel_in_axes4_z = v.axis_z_rrrrs_axes4_x*v.rrrrs_S_ddot_x +
-            v.axis_z_rrrrs_axes4_y*v.rrrrs_S_ddot_y + v.axis_z_rrrrs_axes4_z*v.rrrrs_S_ddot_z -
-            rrrrs_bias_in_axes4_z;
-        /* (rrrrs-qdd_1) acceleration of joint 1 */
-        const real rrrrs_qdd_1 = rrrrs_rel_in_axes4_z*v.rrrrs_w_1_in_axes4_z;
-        /* (rrrrs-qdd_3) acceleration of joint 3 */
-        const real rrrrs_qdd_3 = rrrrs_rel_in_axes4_x*v.rrrrs_w_3_in_axes4_x;
-        /* (rrrrs-qdd_4) acceleration of joint 4 */
-        const real rrrrs_qdd_4 = rrrrs_w_4_in_axes4_y*(rrrrs_rel_in_axes4_y -
-            rrrrs_qdd_3*v.rrrrs_r_3_in_axes4_x);
-        /* (rrrrs-qdd_1) acceleration of joint 1 */
-        o[0*count + k] = rrrrs_qdd_1;
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        o[1*count + k] = rrrrs_ydd_2;
-        /* (rrrrs-qdd_3) acceleration of joint 3 */
-        o[2*count + k] = rrrrs_qdd_3;
-        /* (rrrrs-qdd_4) acceleration of joint 4 */
-        o[3*count + k] = rrrrs_qdd_4;
-        o[6*count + k] = (rrrrs_qdd_1 + rrrrs_ydd_2) + (rrrrs_qdd_3 + rrrrs_qdd_4);
-        const real rrrrs_size_t_3 = m->rrrrs_size_t_3[i];
-        const real rrrrs_rho2_3_t = m->rrrrs_rho2_3_t[i];
-        const real rrrrs_size = m->rrrrs_size[i];
-        o[5*count + k] = UNLESS(magnitude(v.rrrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrrs_size_t_3) +
-            UNLESS(magnitude(v.rrrrs_rho2_3) > TOLERANCE*TOLERANCE*rrrrs_rho2_3_t) +
-            UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) > TOLERANCE*rrrrs_size) +
-            UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) > TOLERANCE*rrrrs_size);
-        o[4*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
-    }
+    values_rrrrs v;
+    stage_rrrrs_V(w, j, V, &v);
+    stage_rrrrs_X(m, w, i, j, s, X, &v);
+    stage_rrrrs_A_X(w, j, A, &v);
+    stage_rrrrs_V_X(w, j, V, &v);
+    stage_rrrrs_A_V_X(w, j, V, &v);
+    /* (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra */
+    const real axis_y_rrrrs_axes4_x = v.rrrrs_S_dot_rest_t_3*m->rrrrs_base_frame_xx[i] +
+        v.rrrrs_S_dot_rest_t_5*m->rrrrs_base_frame_xy[i] +
+        v.rrrrs_S_dot_rest_t_6*m->rrrrs_base_frame_xz[i];
+    const real axis_y_rrrrs_axes4_y = v.rrrrs_S_dot_rest_t_3*m->rrrrs_base_frame_yx[i] +
+        v.rrrrs_S_dot_rest_t_5*m->rrrrs_base_frame_yy[i] +
+        v.rrrrs_S_dot_rest_t_6*m->rrrrs_base_frame_yz[i];
+    const real axis_y_rrrrs_axes4_z = v.rrrrs_S_dot_rest_t_3*m->rrrrs_base_frame_zx[i] +
+        v.rrrrs_S_dot_rest_t_5*m->rrrrs_base_frame_zy[i] +
+        v.rrrrs_S_dot_rest_t_6*m->rrrrs_base_frame_zz[i];
+    const real axis_x_rrrrs_axes4_x = axis_y_rrrrs_axes4_y*v.axis_z_rrrrs_axes4_z -
+        axis_y_rrrrs_axes4_z*v.axis_z_rrrrs_axes4_y;
+    const real axis_x_rrrrs_axes4_y = axis_y_rrrrs_axes4_z*v.axis_z_rrrrs_axes4_x -
+        axis_y_rrrrs_axes4_x*v.axis_z_rrrrs_axes4_z;
+    const real axis_x_rrrrs_axes4_z = axis_y_rrrrs_axes4_x*v.axis_z_rrrrs_axes4_y -
+        axis_y_rrrrs_axes4_y*v.axis_z_rrrrs_axes4_x;
+    const real rrrrs_yd_2 = V[6*w + j];
+    const real rrrrs_S_dot_rest_x = v.rrrrs_S_dot_x -
+        rrrrs_yd_2*(axis_y_rrrrs_axes4_x*v.rrrrs_r_2_in_axes4_x -
+        axis_x_rrrrs_axes4_x*v.rrrrs_r_2_in_axes4_y);
+    const real rrrrs_S_dot_rest_y = v.rrrrs_S_dot_y -
+        rrrrs_yd_2*(axis_y_rrrrs_axes4_y*v.rrrrs_r_2_in_axes4_x -
+        axis_x_rrrrs_axes4_y*v.rrrrs_r_2_in_axes4_y);
+    const real rrrrs_S_dot_rest_z = v.rrrrs_S_dot_z -
+        rrrrs_yd_2*(axis_y_rrrrs_axes4_z*v.rrrrs_r_2_in_axes4_x -
+        axis_x_rrrrs_axes4_z*v.rrrrs_r_2_in_axes4_y);
+    /* (rrrrs-qd_1) rate of joint 1 */
+    const real rrrrs_qd_1 = v.rrrrs_w_1_in_axes4_z*(v.axis_z_rrrrs_axes4_x*rrrrs_S_dot_rest_x
+        + v.axis_z_rrrrs_axes4_y*rrrrs_S_dot_rest_y +
+        v.axis_z_rrrrs_axes4_z*rrrrs_S_dot_rest_z);
+    /* (rrrrs-qd_3) rate of joint 3 */
+    const real rrrrs_qd_3 = v.rrrrs_w_3_in_axes4_x*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+        axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_x_rrrrs_axes4_z*rrrrs_S_dot_rest_z);
+    /* (rrrrs-qd_4) rate of joint 4 */
+    const real rrrrs_qd_4 =
+        m->rrrrs_w_4_in_axes4_y[i]*(axis_y_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+        axis_y_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_y_rrrrs_axes4_z*rrrrs_S_dot_rest_z -
+        rrrrs_qd_3*v.rrrrs_r_3_in_axes4_x);
+    /* (rrrrs-omega_1) angular velocity of link 1 */
+    const real rrrrs_omega_1_in_axes2_x = v.rrrrs_c_2*rrrrs_qd_1;
+    const real rrrrs_omega_1_in_axes2_y = -rrrrs_qd_1*v.rrrrs_s_2;
+    const real rrrrs_omega_1_t = v.rrrrs_c_3*rrrrs_omega_1_in_axes2_x +
+        rrrrs_omega_1_in_axes2_y*v.rrrrs_s_3;
+    const real rrrrs_omega_1_t_2 = v.rrrrs_c_3*rrrrs_omega_1_in_axes2_y -
+        rrrrs_omega_1_in_axes2_x*v.rrrrs_s_3;
+    const real rrrrs_omega_1_in_axes4_x = v.rrrrs_c_4*rrrrs_omega_1_t -
+        rrrrs_omega_1_t_2*v.rrrrs_s_4_t;
+    const real rrrrs_omega_1_in_axes4_y = v.rrrrs_c_4*rrrrs_omega_1_t_2 +
+        rrrrs_omega_1_t*v.rrrrs_s_4_t;
+    /* (rrrrs-W_1) centripetal tensor of link 1 */
+    const real rrrrs_W_1_t = rrrrs_omega_1_in_axes4_x*rrrrs_omega_1_in_axes4_x;
+    const real rrrrs_W_1_t_2 = rrrrs_omega_1_in_axes4_y*rrrrs_omega_1_in_axes4_y;
+    const real rrrrs_W_1_in_axes4_xy = rrrrs_omega_1_in_axes4_x*rrrrs_omega_1_in_axes4_y;
+    /* (rrrrs-W_2) centripetal tensor of link 2 */
+    const real rrrrs_W_2_in_axes2_yz = rrrrs_omega_1_in_axes2_y*rrrrs_yd_2;
+    const real rrrrs_W_2_in_axes2_xz = rrrrs_omega_1_in_axes2_x*rrrrs_yd_2;
+    /* (rrrrs-omega_3) angular velocity of link 3 */
+    const real rrrrs_omega_3_in_axes3_z = rrrrs_qd_3 + rrrrs_yd_2;
+    /* (rrrrs-omega_4) angular velocity of link 4 */
+    const real rrrrs_omega_4_in_axes4_z = rrrrs_omega_3_in_axes3_z + rrrrs_qd_4;
+    /* (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
+    const real rrrrs_beta_3_in_axes3_x = rrrrs_W_2_in_axes2_yz*v.rrrrs_c_3 +
+        rrrrs_omega_1_t_2*rrrrs_qd_3 - rrrrs_W_2_in_axes2_xz*v.rrrrs_s_3;
+    const real rrrrs_beta_3_in_axes3_y = -rrrrs_W_2_in_axes2_xz*v.rrrrs_c_3 -
+        rrrrs_W_2_in_axes2_yz*v.rrrrs_s_3 - rrrrs_omega_1_t*rrrrs_qd_3;
+    const real rrrrs_beta_3_in_axes4_y = rrrrs_beta_3_in_axes3_x*v.rrrrs_s_4_t +
+        rrrrs_beta_3_in_axes3_y*v.rrrrs_c_4;
+    /* (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations */
+    const real rrrrs_beta_4_in_axes4_y = rrrrs_beta_3_in_axes4_y -
+        rrrrs_omega_1_in_axes4_x*rrrrs_qd_4;
+    /* (rrrrs-bias) acceleration of the connection point at zero joint accelerations */
+    const real rrrrs_bias_t_2 = rrrrs_omega_3_in_axes3_z*rrrrs_omega_3_in_axes3_z;
+    const real rrrrs_bias_in_axes4_x = rrrrs_W_1_in_axes4_xy*v.rrrrs_d_2_in_axes4_y +
+        rrrrs_W_1_in_axes4_xy*v.rrrrs_d_3_in_axes4_y +
+        rrrrs_W_1_in_axes4_xy*v.rrrrs_d_4_in_axes4_y - rrrrs_W_1_t_2*v.rrrrs_d_2_in_axes4_x -
+        v.rrrrs_d_3_in_axes4_x*(rrrrs_W_1_t_2 + v.rrrrs_bias_t) -
+        v.rrrrs_d_4_in_axes4_x*(rrrrs_W_1_t_2 + rrrrs_bias_t_2) -
+        m->rrrrs_platform_joint_offset_x[i]*(rrrrs_W_1_t_2 +
+        rrrrs_omega_4_in_axes4_z*rrrrs_omega_4_in_axes4_z);
+    const real rrrrs_bias_in_axes4_y = rrrrs_W_1_in_axes4_xy*v.rrrrs_d_2_in_axes4_x +
+        rrrrs_W_1_in_axes4_xy*v.rrrrs_d_3_in_axes4_x +
+        rrrrs_W_1_in_axes4_xy*v.rrrrs_d_4_in_axes4_x +
+        rrrrs_W_1_in_axes4_xy*m->rrrrs_platform_joint_offset_x[i] -
+        rrrrs_W_1_t*v.rrrrs_d_2_in_axes4_y - v.rrrrs_d_3_in_axes4_y*(rrrrs_W_1_t +
+        v.rrrrs_bias_t) - v.rrrrs_d_4_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t_2);
+    const real rrrrs_bias_in_axes4_z =
+        v.rrrrs_d_4_in_axes4_x*(rrrrs_omega_1_in_axes4_x*rrrrs_omega_3_in_axes3_z -
+        rrrrs_beta_3_in_axes4_y) + v.rrrrs_d_4_in_axes4_y*(rrrrs_beta_3_in_axes3_x*v.rrrrs_c_4
+        + rrrrs_omega_1_in_axes4_y*rrrrs_omega_3_in_axes3_z -
+        rrrrs_beta_3_in_axes3_y*v.rrrrs_s_4_t) +
+        m->rrrrs_platform_joint_offset_x[i]*(rrrrs_omega_1_in_axes4_x*rrrrs_omega_4_in_axes4_z
+        - rrrrs_beta_4_in_axes4_y) +
+        2*v.rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
+        2*v.rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2;
+    /* (rrrrs-rel) acceleration of the connection point left to the joint accelerations */
+    const real rrrrs_ydd_2 = A[6*w + j];
+    const real rrrrs_rel_in_axes4_x = axis_x_rrrrs_axes4_x*v.rrrrs_S_ddot_x +
+        axis_x_rrrrs_axes4_y*v.rrrrs_S_ddot_y + axis_x_rrrrs_axes4_z*v.rrrrs_S_ddot_z +
+        v.rrrrs_r_2_in_axes4_y*rrrrs_ydd_2 - rrrrs_bias_in_axes4_x;
+    const real rrrrs_rel_in_axes4_y = axis_y_rrrrs_axes4_x*v.rrrrs_S_ddot_x +
+        axis_y_rrrrs_axes4_y*v.rrrrs_S_ddot_y + axis_y_rrrrs_axes4_z*v.rrrrs_S_ddot_z -
+        rrrrs_bias_in_axes4_y - v.rrrrs_r_2_in_axes4_x*rrrrs_ydd_2;
+    const real rrrrs_rel_in_axes4_z = v.axis_z_rrrrs_axes4_x*v.rrrrs_S_ddot_x +
+        v.axis_z_rrrrs_axes4_y*v.rrrrs_S_ddot_y + v.axis_z_rrrrs_axes4_z*v.rrrrs_S_ddot_z -
+        rrrrs_bias_in_axes4_z;
+    /* (rrrrs-qdd_1) acceleration of joint 1 */
+    const real rrrrs_qdd_1 = rrrrs_rel_in_axes4_z*v.rrrrs_w_1_in_axes4_z;
+    /* (rrrrs-qdd_3) acceleration of joint 3 */
+    const real rrrrs_qdd_3 = rrrrs_rel_in_axes4_x*v.rrrrs_w_3_in_axes4_x;
+    /* (rrrrs-qdd_4) acceleration of joint 4 */
+    const real rrrrs_qdd_4 = m->rrrrs_w_4_in_axes4_y[i]*(rrrrs_rel_in_axes4_y -
+        rrrrs_qdd_3*v.rrrrs_r_3_in_axes4_x);
+    /* (rrrrs-qdd_1) */
+    o[0*count + k] = rrrrs_qdd_1;
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    o[1*count + k] = rrrrs_ydd_2;
+    /* (rrrrs-qdd_3) */
+    o[2*count + k] = rrrrs_qdd_3;
+    /* (rrrrs-qdd_4) */
+    o[3*count + k] = rrrrs_qdd_4;
+    o[6*count + k] = (rrrrs_qdd_1 + rrrrs_ydd_2) + (rrrrs_qdd_3 + rrrrs_qdd_4);
+    o[5*count + k] = UNLESS(magnitude(v.rrrrs_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_rho2_3) >
+        TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]) + UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) >
+        TOLERANCE*m->rrrrs_size[i]) + UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) >
+        TOLERANCE*m->rrrrs_size[i]);
+    o[4*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
 }
 
-INLINE void joint_accelerations_place_rrrrs(size_t w, size_t count, const real *o, size_t first,
+INLINE void joint_accelerations_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const
+    real *o, real *qdd, verdict *t)
+{
+    qdd[0*w + k] = o[0*count + at];
+    qdd[1*w + k] = o[1*count + at];
+    qdd[2*w + k] = o[2*count + at];
+    qdd[3*w + k] = o[3*count + at];
+    t->unreachable[k] += o[4*count + at];
+    t->singular[k] += o[5*count + at];
+    t->total[k] += o[6*count + at];
+}
+
+INLINE void joint_accelerations_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
+    k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
+{
+    values_rrrs v;
+    stage_rrrs_X(m, w, i, j, s, X, &v);
+    stage_rrrs_A_X(w, j, A, &v);
+    stage_rrrs_V_X(m, w, i, j, V, &v);
+    stage_rrrs_A_V_X(w, j, V, &v);
+    /* (rrrs-qd_2) rate of joint 2 */
+    const real rrrs_qd_2_t = v.rrrs_c_1*v.rrrs_e_1_in_axes3_x;
+    const real axis_y_rrrs_axes3_x = m->rrrs_base_frame_xx[i]*v.rrrs_e_1_in_axes3_y +
+        m->rrrs_base_frame_xy[i]*rrrs_qd_2_t + m->rrrs_base_frame_xz[i]*v.rrrs_qd_2_t_2;
+    const real axis_y_rrrs_axes3_y = m->rrrs_base_frame_yx[i]*v.rrrs_e_1_in_axes3_y +
+        m->rrrs_base_frame_yy[i]*rrrs_qd_2_t + m->rrrs_base_frame_yz[i]*v.rrrs_qd_2_t_2;
+    const real axis_y_rrrs_axes3_z = m->rrrs_base_frame_zx[i]*v.rrrs_e_1_in_axes3_y +
+        m->rrrs_base_frame_zy[i]*rrrs_qd_2_t + m->rrrs_base_frame_zz[i]*v.rrrs_qd_2_t_2;
+    const real axis_x_rrrs_axes3_x = axis_y_rrrs_axes3_y*v.axis_z_rrrs_axes3_z -
+        axis_y_rrrs_axes3_z*v.axis_z_rrrs_axes3_y;
+    const real axis_x_rrrs_axes3_y = axis_y_rrrs_axes3_z*v.axis_z_rrrs_axes3_x -
+        axis_y_rrrs_axes3_x*v.axis_z_rrrs_axes3_z;
+    const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_x*v.axis_z_rrrs_axes3_y -
+        axis_y_rrrs_axes3_y*v.axis_z_rrrs_axes3_x;
+    const real rrrs_qd_2_t_3 = -v.rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*v.rrrs_S_dot_x +
+        axis_x_rrrs_axes3_y*v.rrrs_S_dot_y + axis_x_rrrs_axes3_z*v.rrrs_S_dot_z);
+    /* (rrrs-qd_3) rate of joint 3 */
+    const real rrrs_qd_3 = m->rrrs_w_3_in_axes3_y[i]*(axis_y_rrrs_axes3_x*v.rrrs_S_dot_x +
+        axis_y_rrrs_axes3_y*v.rrrs_S_dot_y + axis_y_rrrs_axes3_z*v.rrrs_S_dot_z +
+        rrrs_qd_2_t_3*v.rrrs_r_2_in_axes3_x);
+    /* (rrrs-W_2) centripetal tensor of link 2 */
+    const real rrrs_W_2_in_axes2_yz = v.rrrs_omega_1_t*rrrs_qd_2_t_3;
+    /* (rrrs-omega_3) angular velocity of link 3 */
+    const real rrrs_omega_3_in_axes3_z = rrrs_qd_3 - rrrs_qd_2_t_3;
+    /* (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+    const real rrrs_zeta_2_in_axes2_y = v.rrrs_omega_1_in_axes2_x*rrrs_qd_2_t_3;
+    const real rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*v.rrrs_s_3_t +
+        v.rrrs_c_3*rrrs_zeta_2_in_axes2_y;
+    /* (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
+    const real rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y -
+        v.rrrs_omega_1_in_axes3_x*rrrs_qd_3;
+    /* (rrrs-bias) acceleration of the connection point at zero joint accelerations */
+    const real rrrs_bias_t_4 = v.rrrs_d_3_in_axes3_y*rrrs_qd_2_t_3;
+    const real rrrs_bias_t_5 = v.rrrs_d_3_in_axes3_x*rrrs_qd_2_t_3;
+    const real rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*m->rrrs_platform_joint_offset_x[i];
+    const real rrrs_bias_in_axes3_x = v.rrrs_bias_t_3*v.rrrs_omega_1_in_axes3_y +
+        v.rrrs_bias_t_6*v.rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_qd_2_t_3 -
+        rrrs_bias_t_7*rrrs_omega_3_in_axes3_z - v.rrrs_bias_t_8*v.rrrs_omega_1_in_axes3_y;
+    const real rrrs_bias_in_axes3_y = v.rrrs_bias_t_8*v.rrrs_omega_1_in_axes3_x -
+        v.rrrs_bias_t_3*v.rrrs_omega_1_in_axes3_x - rrrs_bias_t_4*rrrs_qd_2_t_3 -
+        v.rrrs_bias_t_6*v.rrrs_omega_1_in_axes3_x;
+    const real rrrs_bias_in_axes3_z = rrrs_bias_t_7*v.rrrs_omega_1_in_axes3_x +
+        v.rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*v.rrrs_c_3 -
+        v.rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) -
+        rrrs_beta_3_in_axes3_y*m->rrrs_platform_joint_offset_x[i] -
+        rrrs_bias_t_4*v.rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*v.rrrs_omega_1_in_axes3_x -
+        v.rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y;
+    /* (rrrs-rel) acceleration of the connection point left to the joint accelerations */
+    const real rrrs_rel_in_axes3_x = axis_x_rrrs_axes3_x*v.rrrs_S_ddot_x +
+        axis_x_rrrs_axes3_y*v.rrrs_S_ddot_y + axis_x_rrrs_axes3_z*v.rrrs_S_ddot_z -
+        rrrs_bias_in_axes3_x;
+    const real rrrs_rel_in_axes3_y = axis_y_rrrs_axes3_x*v.rrrs_S_ddot_x +
+        axis_y_rrrs_axes3_y*v.rrrs_S_ddot_y + axis_y_rrrs_axes3_z*v.rrrs_S_ddot_z -
+        rrrs_bias_in_axes3_y;
+    const real rrrs_rel_in_axes3_z = v.axis_z_rrrs_axes3_x*v.rrrs_S_ddot_x +
+        v.axis_z_rrrs_axes3_y*v.rrrs_S_ddot_y + v.axis_z_rrrs_axes3_z*v.rrrs_S_ddot_z -
+        rrrs_bias_in_axes3_z;
+    /* (rrrs-qdd_1) acceleration of joint 1 */
+    const real rrrs_qdd_1 = rrrs_rel_in_axes3_z*v.rrrs_w_1_in_axes3_z;
+    /* (rrrs-qdd_2) acceleration of joint 2 */
+    const real rrrs_qdd_2 = rrrs_rel_in_axes3_x*v.rrrs_w_2_in_axes3_x;
+    /* (rrrs-qdd_3) acceleration of joint 3 */
+    const real rrrs_qdd_3 = m->rrrs_w_3_in_axes3_y[i]*(rrrs_rel_in_axes3_y -
+        rrrs_qdd_2*v.rrrs_r_2_in_axes3_x);
+    /* (rrrs-qdd_1) */
+    o[0*count + k] = rrrs_qdd_1;
+    /* (rrrs-qdd_2) */
+    o[1*count + k] = rrrs_qdd_2;
+    /* (rrrs-qdd_3) */
+    o[2*count + k] = rrrs_qdd_3;
+    o[5*count + k] = rrrs_qdd_1 + (rrrs_qdd_2 + rrrs_qdd_3);
+    o[4*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_rho2_2) >
+        TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) + UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) >
+        TOLERANCE*m->rrrs_size[i]) + UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) >
+        TOLERANCE*m->rrrs_size[i]);
+    o[3*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
+}
+
+INLINE void joint_accelerations_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t count,
+    const real *o, real *qdd, verdict *t)
+{
+    qdd[(4 + 3*i)*w + k] = o[0*count + at];
+    qdd[(5 + 3*i)*w + k] = o[1*count + at];
+    qdd[(6 + 3*i)*w + k] = o[2*count + at];
+    t->unreachable[k] += o[3*count + at];
+    t->singular[k] += o[4*count + at];
+    t->total[k] += o[5*count + at];
+}
+
+APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        qdd[0*w + k] = o[0*count + first + k];
-        qdd[1*w + k] = o[1*count + first + k];
-        qdd[2*w + k] = o[2*count + first + k];
-        qdd[3*w + k] = o[3*count + first + k];
-        t->unreachable[k] += o[4*count + first + k];
-        t->singular[k] += o[5*count + first + k];
-        t->total[k] += o[6*count + first + k];
-    }
-}
-
-INLINE void joint_accelerations_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
-    *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrrs v;
-        stage_rrrs_X(m, w, i, j, s, X, &v);
-        stage_rrrs_A_X(w, j, A, &v);
-        stage_rrrs_V_X(m, w, i, j, V, &v);
-        stage_rrrs_A_V_X(w, j, V, &v);
-        /* (rrrs-qd_2) rate of joint 2 */
-        const real rrrs_qd_2_t = v.rrrs_c_1*v.rrrs_e_1_in_axes3_x;
-        const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
-        const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
-        const real rrrs_base_frame_xz = m->rrrs_base_frame_xz[i];
-        const real axis_y_rrrs_axes3_x = rrrs_base_frame_xx*v.rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_xy*rrrs_qd_2_t + rrrs_base_frame_xz*v.rrrs_qd_2_t_2;
-        const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
-        const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
-        const real rrrs_base_frame_yz = m->rrrs_base_frame_yz[i];
-        const real axis_y_rrrs_axes3_y = rrrs_base_frame_yx*v.rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_yy*rrrs_qd_2_t + rrrs_base_frame_yz*v.rrrs_qd_2_t_2;
-        const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
-        const real rrrs_base_frame_zy = m->rrrs_base_frame_zy[i];
-        const real rrrs_base_frame_zz = m->rrrs_base_frame_zz[i];
-        const real axis_y_rrrs_axes3_z = rrrs_base_frame_zx*v.rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_zy*rrrs_qd_2_t + rrrs_base_frame_zz*v.rrrs_qd_2_t_2;
-        const real axis_x_rrrs_axes3_x = axis_y_rrrs_axes3_y*v.axis_z_rrrs_axes3_z -
-            axis_y_rrrs_axes3_z*v.axis_z_rrrs_axes3_y;
-        const real axis_x_rrrs_axes3_y = axis_y_rrrs_axes3_z*v.axis_z_rrrs_axes3_x -
-            axis_y_rrrs_axes3_x*v.axis_z_rrrs_axes3_z;
-        const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_x*v.axis_z_rrrs_axes3_y -
-            axis_y_rrrs_axes3_y*v.axis_z_rrrs_axes3_x;
-        const real rrrs_qd_2_t_3 = -v.rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*v.rrrs_S_dot_x +
-            axis_x_rrrs_axes3_y*v.rrrs_S_dot_y + axis_x_rrrs_axes3_z*v.rrrs_S_dot_z);
-        /* (rrrs-qd_3) rate of joint 3 */
-        const real rrrs_w_3_in_axes3_y = m->rrrs_w_3_in_axes3_y[i];
-        const real rrrs_qd_3 = rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*v.rrrs_S_dot_x +
-            axis_y_rrrs_axes3_y*v.rrrs_S_dot_y + axis_y_rrrs_axes3_z*v.rrrs_S_dot_z +
-            rrrs_qd_2_t_3*v.rrrs_r_2_in_axes3_x);
-        /* (rrrs-W_2) centripetal tensor of link 2 */
-        const real rrrs_W_2_in_axes2_yz = v.rrrs_omega_1_t*rrrs_qd_2_t_3;
-        /* (rrrs-omega_3) angular velocity of link 3 */
-        const real rrrs_omega_3_in_axes3_z = rrrs_qd_3 - rrrs_qd_2_t_3;
-        /* (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real rrrs_zeta_2_in_axes2_y = v.rrrs_omega_1_in_axes2_x*rrrs_qd_2_t_3;
-        const real rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*v.rrrs_s_3_t +
-            v.rrrs_c_3*rrrs_zeta_2_in_axes2_y;
-        /* (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y -
-            v.rrrs_omega_1_in_axes3_x*rrrs_qd_3;
-        /* (rrrs-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrrs_bias_t_4 = v.rrrs_d_3_in_axes3_y*rrrs_qd_2_t_3;
-        const real rrrs_bias_t_5 = v.rrrs_d_3_in_axes3_x*rrrs_qd_2_t_3;
-        const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
-        const real rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x;
-        const real rrrs_bias_in_axes3_x = v.rrrs_bias_t_3*v.rrrs_omega_1_in_axes3_y +
-            v.rrrs_bias_t_6*v.rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_qd_2_t_3 -
-            rrrs_bias_t_7*rrrs_omega_3_in_axes3_z - v.rrrs_bias_t_8*v.rrrs_omega_1_in_axes3_y;
-        const real rrrs_bias_in_axes3_y = v.rrrs_bias_t_8*v.rrrs_omega_1_in_axes3_x -
-            v.rrrs_bias_t_3*v.rrrs_omega_1_in_axes3_x - rrrs_bias_t_4*rrrs_qd_2_t_3 -
-            v.rrrs_bias_t_6*v.rrrs_omega_1_in_axes3_x;
-        const real rrrs_bias_in_axes3_z = rrrs_bias_t_7*v.rrrs_omega_1_in_axes3_x +
-            v.rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*v.rrrs_c_3 -
-            v.rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) -
-            rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*v.rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*v.rrrs_omega_1_in_axes3_x -
-            v.rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y;
-        /* (rrrs-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrrs_rel_in_axes3_x = axis_x_rrrs_axes3_x*v.rrrs_S_ddot_x +
-            axis_x_rrrs_axes3_y*v.rrrs_S_ddot_y + axis_x_rrrs_axes3_z*v.rrrs_S_ddot_z -
-            rrrs_bias_in_axes3_x;
-        const real rrrs_rel_in_axes3_y = axis_y_rrrs_axes3_x*v.rrrs_S_ddot_x +
-            axis_y_rrrs_axes3_y*v.rrrs_S_ddot_y + axis_y_rrrs_axes3_z*v.rrrs_S_ddot_z -
-            rrrs_bias_in_axes3_y;
-        const real rrrs_rel_in_axes3_z = v.axis_z_rrrs_axes3_x*v.rrrs_S_ddot_x +
-            v.axis_z_rrrs_axes3_y*v.rrrs_S_ddot_y + v.axis_z_rrrs_axes3_z*v.rrrs_S_ddot_z -
-            rrrs_bias_in_axes3_z;
-        /* (rrrs-qdd_1) acceleration of joint 1 */
-        const real rrrs_qdd_1 = rrrs_rel_in_axes3_z*v.rrrs_w_1_in_axes3_z;
-        /* (rrrs-qdd_2) acceleration of joint 2 */
-        const real rrrs_qdd_2 = rrrs_rel_in_axes3_x*v.rrrs_w_2_in_axes3_x;
-        /* (rrrs-qdd_3) acceleration of joint 3 */
-        const real rrrs_qdd_3 = rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y -
-            rrrs_qdd_2*v.rrrs_r_2_in_axes3_x);
-        /* (rrrs-qdd_1) acceleration of joint 1 */
-        o[0*count + k] = rrrs_qdd_1;
-        /* (rrrs-qdd_2) acceleration of joint 2 */
-        o[1*count + k] = rrrs_qdd_2;
-        /* (rrrs-qdd_3) acceleration of joint 3 */
-        o[2*count + k] = rrrs_qdd_3;
-        o[5*count + k] = rrrs_qdd_1 + (rrrs_qdd_2 + rrrs_qdd_3);
-        const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
-        const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
-        const real rrrs_size = m->rrrs_size[i];
-        o[4*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
-            UNLESS(magnitude(v.rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
-            UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
-            UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
-        o[3*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
-    }
-}
-
-INLINE void joint_accelerations_place_rrrs(size_t w, size_t count, const real *o, size_t leg,
-    size_t first, real *qdd, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        qdd[(4 + 3*leg)*w + k] = o[0*count + first + k];
-        qdd[(5 + 3*leg)*w + k] = o[1*count + first + k];
-        qdd[(6 + 3*leg)*w + k] = o[2*count + first + k];
-        t->unreachable[k] += o[3*count + first + k];
-        t->singular[k] += o[4*count + first + k];
-        t->total[k] += o[5*count + first + k];
-    }
-}
-
-INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd, verdict *t)
 {
     real s[9] = {0};
     real o_rrrrs[7*LEGS(LEGS_OF_rrrrs)] = {0};
     real o_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0};
-    joint_accelerations_before(m, 1, X, s, t);
-    joint_accelerations_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrrs), X, V, A, o_rrrrs);
-    joint_accelerations_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), X, V, A, o_rrrs);
-    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
-        joint_accelerations_place_rrrrs(1, LEGS(LEGS_OF_rrrrs), o_rrrrs, leg, qdd, t);
+    joint_accelerations_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
+        joint_accelerations_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), s, X, V, A, o_rrrrs);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
-        joint_accelerations_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, leg, qdd, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
+        joint_accelerations_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), s, X, V, A, o_rrrs);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
+        joint_accelerations_place_rrrrs(1, 0, i, LEGS(LEGS_OF_rrrrs), o_rrrrs, qdd, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        joint_accelerations_place_rrrs(1, i, 0, i, LEGS(LEGS_OF_rrrs), o_rrrs, qdd, t);
     }
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *qdd, verdict *t)
+    real *A, real *restrict qdd, verdict *restrict t)
 {
     real s[9*LANES];
     real o_rrrrs[7*LANES];
     real o_rrrs[6*LANES];
-    joint_accelerations_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
-        joint_accelerations_legs_rrrrs(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_rrrrs);
-        joint_accelerations_place_rrrrs(LANES, LANES, o_rrrrs, 0, qdd, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        joint_accelerations_before(m, LANES, k, X, s, t);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
-        joint_accelerations_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_rrrs);
-        joint_accelerations_place_rrrs(LANES, LANES, o_rrrs, leg, 0, qdd, t);
+    for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_legs_rrrrs(m, LANES, i, k, k, LANES, s, X, V, A, o_rrrrs);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_place_rrrrs(LANES, k, k, LANES, o_rrrrs, qdd, t);
+        }
+    }
+    for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_legs_rrrs(m, LANES, i, k, k, LANES, s, X, V, A, o_rrrs);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_place_rrrs(LANES, i, k, k, LANES, o_rrrs, qdd, t);
+        }
     }
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void legs_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
+INLINE void legs_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrrrs v;
-        stage_rrrrs_V(w, j, V, &v);
-        stage_rrrrs_X(m, w, i, j, s, X, &v);
-        stage_rrrrs_A_X(w, j, A, &v);
-        stage_rrrrs_V_X(w, j, V, &v);
-        stage_rrrrs_A_V_X(w, j, V, &v);
-        stage_rrrrs_legs_required(m, w, i, j, V, A, &v);
-        /* (rrrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real rrrrs_J_2_in_spec2_xy = m->rrrrs_J_2_in_spec2_xy[i];
-        const real rrrrs_J_2_in_spec2_xz = m->rrrrs_J_2_in_spec2_xz[i];
-        const real rrrrs_J_2_in_spec2_yz = m->rrrrs_J_2_in_spec2_yz[i];
-        const real rrrrs_Sigma_2_in_axes2_xx = m->rrrrs_Sigma_2_in_axes2_xx[i];
-        const real rrrrs_Sigma_2_in_axes2_zz = m->rrrrs_Sigma_2_in_axes2_zz[i];
-        const real rrrrs_h_2_in_spec2_x = m->rrrrs_h_2_in_spec2_x[i];
-        const real rrrrs_h_2_in_spec2_z = m->rrrrs_h_2_in_spec2_z[i];
-        const real rrrrs_ydd_2 = A[6*w + j];
-        const real rrrrs_mu_2_in_axes2_y = v.rrrrs_B_2_in_axes2_zy*rrrrs_J_2_in_spec2_xy +
-            rrrrs_Sigma_2_in_axes2_zz*v.rrrrs_alpha_1_in_axes2_y +
-            v.rrrrs_g_in_axes1_y*rrrrs_h_2_in_spec2_x -
-            v.rrrrs_B_2_in_axes2_zx*rrrrs_Sigma_2_in_axes2_xx -
-            rrrrs_J_2_in_spec2_xz*(v.rrrrs_omega_1_in_axes2_x*v.rrrrs_omega_1_in_axes2_x -
-            v.rrrrs_bias_t) - rrrrs_J_2_in_spec2_yz*(v.rrrrs_W_2_in_axes2_xy - rrrrs_ydd_2) -
-            v.rrrrs_g_in_axes2_x*rrrrs_h_2_in_spec2_z;
-        /* (rrrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection
-           point left out */
-        const real rrrrs_joint3_offset_x = m->rrrrs_joint3_offset_x[i];
-        const real rrrrs_N_2_in_axes2_y = rrrrs_mu_2_in_axes2_y +
-            v.rrrrs_N_3_in_axes3_x*v.rrrrs_s_3 + v.rrrrs_N_3_in_axes3_y*v.rrrrs_c_3 -
-            v.rrrrs_f_3_in_axes3_z*rrrrs_joint3_offset_x;
-        /* (rrrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection
-           point left out */
-        const real rrrrs_N_1_in_axes1_z = v.rrrrs_mu_1_in_axes1_z +
-            v.rrrrs_N_2_in_axes2_x*v.rrrrs_c_2 - rrrrs_N_2_in_axes2_y*v.rrrrs_s_2;
-        /* (rrrrs-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real rrrrs_h_4_in_spec4_x = m->rrrrs_h_4_in_spec4_x[i];
-        const real rrrrs_h_4_in_spec4_y = m->rrrrs_h_4_in_spec4_y[i];
-        const real rrrrs_h_4_in_spec4_z = m->rrrrs_h_4_in_spec4_z[i];
-        const real rrrrs_c_in_axes4_x = v.rrrrs_W_4_t_2*rrrrs_h_4_in_spec4_x +
-            v.rrrrs_w_3_in_axes4_x*(v.rrrrs_G_in_axes4_y*v.rrrrs_r_3_in_axes4_x -
-            v.rrrrs_N_3_in_axes3_z) - v.rrrrs_B_4_in_axes4_xy*rrrrs_h_4_in_spec4_y -
-            v.rrrrs_B_4_in_axes4_xz*rrrrs_h_4_in_spec4_z;
-        const real rrrrs_c_in_axes4_z = rrrrs_h_4_in_spec4_z*(v.rrrrs_W_1_t + v.rrrrs_W_1_t_2) -
-            v.rrrrs_B_4_in_axes4_zx*rrrrs_h_4_in_spec4_x -
-            v.rrrrs_B_4_in_axes4_zy*rrrrs_h_4_in_spec4_y -
-            rrrrs_N_1_in_axes1_z*v.rrrrs_w_1_in_axes4_z;
-        /* (rrrrs-c_true) leg force on the platform without actuation, the last link's mass included */
-        const real rrrrs_link4_mass = m->rrrrs_link4_mass[i];
-        const real rrrrs_c_true_in_axes4_x = rrrrs_c_in_axes4_x -
-            v.rrrrs_acc_4_in_axes4_x*rrrrs_link4_mass;
-        const real rrrrs_c_true_in_axes4_y = v.rrrrs_c_in_axes4_y -
-            v.rrrrs_acc_4_in_axes4_y*rrrrs_link4_mass;
-        const real rrrrs_c_true_in_axes4_z = rrrrs_c_in_axes4_z -
-            v.rrrrs_acc_4_in_axes4_z*rrrrs_link4_mass;
-        const real rrrrs_c_true_x = v.axis_x_rrrrs_axes4_x*rrrrs_c_true_in_axes4_x +
-            v.axis_y_rrrrs_axes4_x*rrrrs_c_true_in_axes4_y +
-            v.axis_z_rrrrs_axes4_x*rrrrs_c_true_in_axes4_z;
-        const real rrrrs_c_true_y = v.axis_x_rrrrs_axes4_y*rrrrs_c_true_in_axes4_x +
-            v.axis_y_rrrrs_axes4_y*rrrrs_c_true_in_axes4_y +
-            v.axis_z_rrrrs_axes4_y*rrrrs_c_true_in_axes4_z;
-        const real rrrrs_c_true_z = v.axis_x_rrrrs_axes4_z*rrrrs_c_true_in_axes4_x +
-            v.axis_y_rrrrs_axes4_z*rrrrs_c_true_in_axes4_y +
-            v.axis_z_rrrrs_axes4_z*rrrrs_c_true_in_axes4_z;
-        /* (rrrrs-c_true) leg force on the platform without actuation, the last link's mass included */
-        o[0*count + k] = rrrrs_c_true_x;
-        o[1*count + k] = rrrrs_c_true_y;
-        o[2*count + k] = rrrrs_c_true_z;
-        /* (rrrrs-w_1) reciprocal vector 1 */
-        o[3*count + k] = v.rrrrs_w_1_x;
-        o[4*count + k] = v.rrrrs_w_1_y;
-        o[5*count + k] = v.rrrrs_w_1_z;
-        /* (rrrrs-w_3) reciprocal vector 2 */
-        o[6*count + k] = v.rrrrs_w_3_x;
-        o[7*count + k] = v.rrrrs_w_3_y;
-        o[8*count + k] = v.rrrrs_w_3_z;
-        const real rrrrs_size_t_3 = m->rrrrs_size_t_3[i];
-        const real rrrrs_rho2_3_t = m->rrrrs_rho2_3_t[i];
-        const real rrrrs_size = m->rrrrs_size[i];
-        o[10*count + k] = UNLESS(magnitude(v.rrrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrrs_size_t_3) +
-            UNLESS(magnitude(v.rrrrs_rho2_3) > TOLERANCE*TOLERANCE*rrrrs_rho2_3_t) +
-            UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) > TOLERANCE*rrrrs_size) +
-            UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) > TOLERANCE*rrrrs_size);
-        o[9*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
-    }
+    values_rrrrs v;
+    stage_rrrrs_V(w, j, V, &v);
+    stage_rrrrs_X(m, w, i, j, s, X, &v);
+    stage_rrrrs_A_X(w, j, A, &v);
+    stage_rrrrs_V_X(w, j, V, &v);
+    stage_rrrrs_A_V_X(w, j, V, &v);
+    stage_rrrrs_legs_required(m, w, i, j, V, A, &v);
+    /* (rrrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    const real rrrrs_ydd_2 = A[6*w + j];
+    const real rrrrs_mu_2_in_axes2_y = v.rrrrs_B_2_in_axes2_zy*m->rrrrs_J_2_in_spec2_xy[i] +
+        m->rrrrs_Sigma_2_in_axes2_zz[i]*v.rrrrs_alpha_1_in_axes2_y +
+        v.rrrrs_g_in_axes1_y*m->rrrrs_h_2_in_spec2_x[i] -
+        v.rrrrs_B_2_in_axes2_zx*m->rrrrs_Sigma_2_in_axes2_xx[i] -
+        m->rrrrs_J_2_in_spec2_xz[i]*(v.rrrrs_omega_1_in_axes2_x*v.rrrrs_omega_1_in_axes2_x -
+        v.rrrrs_bias_t) - m->rrrrs_J_2_in_spec2_yz[i]*(v.rrrrs_W_2_in_axes2_xy - rrrrs_ydd_2)
+        - v.rrrrs_g_in_axes2_x*m->rrrrs_h_2_in_spec2_z[i];
+    /* (rrrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection
+       point left out */
+    const real rrrrs_N_2_in_axes2_y = rrrrs_mu_2_in_axes2_y +
+        v.rrrrs_N_3_in_axes3_x*v.rrrrs_s_3 + v.rrrrs_N_3_in_axes3_y*v.rrrrs_c_3 -
+        v.rrrrs_f_3_in_axes3_z*m->rrrrs_joint3_offset_x[i];
+    /* (rrrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection
+       point left out */
+    const real rrrrs_N_1_in_axes1_z = v.rrrrs_mu_1_in_axes1_z +
+        v.rrrrs_N_2_in_axes2_x*v.rrrrs_c_2 - rrrrs_N_2_in_axes2_y*v.rrrrs_s_2;
+    /* (rrrrs-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real rrrrs_c_in_axes4_x = v.rrrrs_W_4_t_2*m->rrrrs_h_4_in_spec4_x[i] +
+        v.rrrrs_w_3_in_axes4_x*(v.rrrrs_G_in_axes4_y*v.rrrrs_r_3_in_axes4_x -
+        v.rrrrs_N_3_in_axes3_z) - v.rrrrs_B_4_in_axes4_xy*m->rrrrs_h_4_in_spec4_y[i] -
+        v.rrrrs_B_4_in_axes4_xz*m->rrrrs_h_4_in_spec4_z[i];
+    const real rrrrs_c_in_axes4_z = m->rrrrs_h_4_in_spec4_z[i]*(v.rrrrs_W_1_t +
+        v.rrrrs_W_1_t_2) - v.rrrrs_B_4_in_axes4_zx*m->rrrrs_h_4_in_spec4_x[i] -
+        v.rrrrs_B_4_in_axes4_zy*m->rrrrs_h_4_in_spec4_y[i] -
+        rrrrs_N_1_in_axes1_z*v.rrrrs_w_1_in_axes4_z;
+    /* (rrrrs-c_true) leg force on the platform without actuation, the last link's mass included */
+    const real rrrrs_c_true_in_axes4_x = rrrrs_c_in_axes4_x -
+        v.rrrrs_acc_4_in_axes4_x*m->rrrrs_link4_mass[i];
+    const real rrrrs_c_true_in_axes4_y = v.rrrrs_c_in_axes4_y -
+        v.rrrrs_acc_4_in_axes4_y*m->rrrrs_link4_mass[i];
+    const real rrrrs_c_true_in_axes4_z = rrrrs_c_in_axes4_z -
+        v.rrrrs_acc_4_in_axes4_z*m->rrrrs_link4_mass[i];
+    const real rrrrs_c_true_x = v.axis_x_rrrrs_axes4_x*rrrrs_c_true_in_axes4_x +
+        v.axis_y_rrrrs_axes4_x*rrrrs_c_true_in_axes4_y +
+        v.axis_z_rrrrs_axes4_x*rrrrs_c_true_in_axes4_z;
+    const real rrrrs_c_true_y = v.axis_x_rrrrs_axes4_y*rrrrs_c_true_in_axes4_x +
+        v.axis_y_rrrrs_axes4_y*rrrrs_c_true_in_axes4_y +
+        v.axis_z_rrrrs_axes4_y*rrrrs_c_true_in_axes4_z;
+    const real rrrrs_c_true_z = v.axis_x_rrrrs_axes4_z*rrrrs_c_true_in_axes4_x +
+        v.axis_y_rrrrs_axes4_z*rrrrs_c_true_in_axes4_y +
+        v.axis_z_rrrrs_axes4_z*rrrrs_c_true_in_axes4_z;
+    /* (rrrrs-c_true) */
+    o[0*count + k] = rrrrs_c_true_x;
+    o[1*count + k] = rrrrs_c_true_y;
+    o[2*count + k] = rrrrs_c_true_z;
+    /* (rrrrs-w_1) reciprocal vector 1 */
+    o[3*count + k] = v.rrrrs_w_1_x;
+    o[4*count + k] = v.rrrrs_w_1_y;
+    o[5*count + k] = v.rrrrs_w_1_z;
+    /* (rrrrs-w_3) reciprocal vector 2 */
+    o[6*count + k] = v.rrrrs_w_3_x;
+    o[7*count + k] = v.rrrrs_w_3_y;
+    o[8*count + k] = v.rrrrs_w_3_z;
+    o[10*count + k] = UNLESS(magnitude(v.rrrrs_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_rho2_3) >
+        TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]) + UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) >
+        TOLERANCE*m->rrrrs_size[i]) + UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) >
+        TOLERANCE*m->rrrrs_size[i]);
+    o[9*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
 }
 
-INLINE void legs_place_rrrrs(size_t w, size_t count, const real *o, size_t first, real *leg_force,
-    real *actuator, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        leg_force[0*w + k] = o[0*count + first + k];
-        leg_force[1*w + k] = o[1*count + first + k];
-        leg_force[2*w + k] = o[2*count + first + k];
-        actuator[0*w + k] = o[3*count + first + k];
-        actuator[1*w + k] = o[4*count + first + k];
-        actuator[2*w + k] = o[5*count + first + k];
-        actuator[6*w + k] = o[6*count + first + k];
-        actuator[(6 + 1)*w + k] = o[7*count + first + k];
-        actuator[(6 + 2)*w + k] = o[8*count + first + k];
-        t->unreachable[k] += o[9*count + first + k];
-        t->singular[k] += o[10*count + first + k];
-    }
-}
-
-INLINE void legs_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrrs v;
-        stage_rrrs_X(m, w, i, j, s, X, &v);
-        stage_rrrs_A_X(w, j, A, &v);
-        stage_rrrs_V_X(m, w, i, j, V, &v);
-        stage_rrrs_A_V_X(w, j, V, &v);
-        stage_rrrs_legs_required(m, i, &v);
-        /* (rrrs-c_true) leg force on the platform without actuation, the last link's mass included */
-        const real rrrs_link3_mass = m->rrrs_link3_mass[i];
-        const real rrrs_c_true_in_axes3_x = v.rrrs_c_in_axes3_x -
-            v.rrrs_acc_3_in_axes3_x*rrrs_link3_mass;
-        const real rrrs_c_true_in_axes3_y = v.rrrs_c_in_axes3_y -
-            v.rrrs_acc_3_in_axes3_y*rrrs_link3_mass;
-        const real rrrs_c_true_in_axes3_z = v.rrrs_c_in_axes3_z -
-            v.rrrs_acc_3_in_axes3_z*rrrs_link3_mass;
-        const real rrrs_c_true_x = v.axis_x_rrrs_axes3_x*rrrs_c_true_in_axes3_x +
-            v.axis_y_rrrs_axes3_x*rrrs_c_true_in_axes3_y +
-            v.axis_z_rrrs_axes3_x*rrrs_c_true_in_axes3_z;
-        const real rrrs_c_true_y = v.axis_x_rrrs_axes3_y*rrrs_c_true_in_axes3_x +
-            v.axis_y_rrrs_axes3_y*rrrs_c_true_in_axes3_y +
-            v.axis_z_rrrs_axes3_y*rrrs_c_true_in_axes3_z;
-        const real rrrs_c_true_z = v.axis_x_rrrs_axes3_z*rrrs_c_true_in_axes3_x +
-            v.axis_y_rrrs_axes3_z*rrrs_c_true_in_axes3_y +
-            v.axis_z_rrrs_axes3_z*rrrs_c_true_in_axes3_z;
-        /* (rrrs-c_true) leg force on the platform without actuation, the last link's mass included */
-        o[0*count + k] = rrrs_c_true_x;
-        o[1*count + k] = rrrs_c_true_y;
-        o[2*count + k] = rrrs_c_true_z;
-        /* (rrrs-w_1) reciprocal vector 1 */
-        o[3*count + k] = v.rrrs_w_1_x;
-        o[4*count + k] = v.rrrs_w_1_y;
-        o[5*count + k] = v.rrrs_w_1_z;
-        /* (rrrs-w_2) reciprocal vector 2 */
-        o[6*count + k] = v.rrrs_w_2_x;
-        o[7*count + k] = v.rrrs_w_2_y;
-        o[8*count + k] = v.rrrs_w_2_z;
-        const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
-        const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
-        const real rrrs_size = m->rrrs_size[i];
-        o[10*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
-            UNLESS(magnitude(v.rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
-            UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
-            UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
-        o[9*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
-    }
-}
-
-INLINE void legs_place_rrrs(size_t w, size_t count, const real *o, size_t leg, size_t first, real
+INLINE void legs_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const real *o, real
     *leg_force, real *actuator, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        leg_force[(3*(1 + leg))*w + k] = o[0*count + first + k];
-        leg_force[(3*(1 + leg) + 1)*w + k] = o[1*count + first + k];
-        leg_force[(3*(1 + leg) + 2)*w + k] = o[2*count + first + k];
-        actuator[(3*(3 + 2*leg))*w + k] = o[3*count + first + k];
-        actuator[(3*(3 + 2*leg) + 1)*w + k] = o[4*count + first + k];
-        actuator[(3*(3 + 2*leg) + 2)*w + k] = o[5*count + first + k];
-        actuator[(3*(4 + 2*leg))*w + k] = o[6*count + first + k];
-        actuator[(3*(4 + 2*leg) + 1)*w + k] = o[7*count + first + k];
-        actuator[(3*(4 + 2*leg) + 2)*w + k] = o[8*count + first + k];
-        t->unreachable[k] += o[9*count + first + k];
-        t->singular[k] += o[10*count + first + k];
-    }
+    leg_force[0*w + k] = o[0*count + at];
+    leg_force[1*w + k] = o[1*count + at];
+    leg_force[2*w + k] = o[2*count + at];
+    actuator[0*w + k] = o[3*count + at];
+    actuator[1*w + k] = o[4*count + at];
+    actuator[2*w + k] = o[5*count + at];
+    actuator[6*w + k] = o[6*count + at];
+    actuator[(6 + 1)*w + k] = o[7*count + at];
+    actuator[(6 + 2)*w + k] = o[8*count + at];
+    t->unreachable[k] += o[9*count + at];
+    t->singular[k] += o[10*count + at];
+}
+
+INLINE void legs_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, const real *s, const real *X, const real *V, const real *A, real *o)
+{
+    values_rrrs v;
+    stage_rrrs_X(m, w, i, j, s, X, &v);
+    stage_rrrs_A_X(w, j, A, &v);
+    stage_rrrs_V_X(m, w, i, j, V, &v);
+    stage_rrrs_A_V_X(w, j, V, &v);
+    stage_rrrs_legs_required(m, i, &v);
+    /* (rrrs-c_true) leg force on the platform without actuation, the last link's mass included */
+    const real rrrs_c_true_in_axes3_x = v.rrrs_c_in_axes3_x -
+        v.rrrs_acc_3_in_axes3_x*m->rrrs_link3_mass[i];
+    const real rrrs_c_true_in_axes3_y = v.rrrs_c_in_axes3_y -
+        v.rrrs_acc_3_in_axes3_y*m->rrrs_link3_mass[i];
+    const real rrrs_c_true_in_axes3_z = v.rrrs_c_in_axes3_z -
+        v.rrrs_acc_3_in_axes3_z*m->rrrs_link3_mass[i];
+    const real rrrs_c_true_x = v.axis_x_rrrs_axes3_x*rrrs_c_true_in_axes3_x +
+        v.axis_y_rrrs_axes3_x*rrrs_c_true_in_axes3_y +
+        v.axis_z_rrrs_axes3_x*rrrs_c_true_in_axes3_z;
+    const real rrrs_c_true_y = v.axis_x_rrrs_axes3_y*rrrs_c_true_in_axes3_x +
+        v.axis_y_rrrs_axes3_y*rrrs_c_true_in_axes3_y +
+        v.axis_z_rrrs_axes3_y*rrrs_c_true_in_axes3_z;
+    const real rrrs_c_true_z = v.axis_x_rrrs_axes3_z*rrrs_c_true_in_axes3_x +
+        v.axis_y_rrrs_axes3_z*rrrs_c_true_in_axes3_y +
+        v.axis_z_rrrs_axes3_z*rrrs_c_true_in_axes3_z;
+    /* (rrrs-c_true) */
+    o[0*count + k] = rrrs_c_true_x;
+    o[1*count + k] = rrrs_c_true_y;
+    o[2*count + k] = rrrs_c_true_z;
+    /* (rrrs-w_1) reciprocal vector 1 */
+    o[3*count + k] = v.rrrs_w_1_x;
+    o[4*count + k] = v.rrrs_w_1_y;
+    o[5*count + k] = v.rrrs_w_1_z;
+    /* (rrrs-w_2) reciprocal vector 2 */
+    o[6*count + k] = v.rrrs_w_2_x;
+    o[7*count + k] = v.rrrs_w_2_y;
+    o[8*count + k] = v.rrrs_w_2_z;
+    o[10*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_rho2_2) >
+        TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) + UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) >
+        TOLERANCE*m->rrrs_size[i]) + UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) >
+        TOLERANCE*m->rrrs_size[i]);
+    o[9*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
+}
+
+INLINE void legs_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *leg_force, real *actuator, verdict *t)
+{
+    leg_force[(3*(1 + i))*w + k] = o[0*count + at];
+    leg_force[(3*(1 + i) + 1)*w + k] = o[1*count + at];
+    leg_force[(3*(1 + i) + 2)*w + k] = o[2*count + at];
+    actuator[(3*(3 + 2*i))*w + k] = o[3*count + at];
+    actuator[(3*(3 + 2*i) + 1)*w + k] = o[4*count + at];
+    actuator[(3*(3 + 2*i) + 2)*w + k] = o[5*count + at];
+    actuator[(3*(4 + 2*i))*w + k] = o[6*count + at];
+    actuator[(3*(4 + 2*i) + 1)*w + k] = o[7*count + at];
+    actuator[(3*(4 + 2*i) + 2)*w + k] = o[8*count + at];
+    t->unreachable[k] += o[9*count + at];
+    t->singular[k] += o[10*count + at];
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
@@ -8063,315 +7599,236 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     real o_rrrrs[11*LEGS(LEGS_OF_rrrrs)] = {0};
     real o_rrrs[11*LEGS(LEGS_OF_rrrs)] = {0};
     clear(actuator, 21);
-    legs_before(m, 1, X, s, t);
-    legs_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrrs), X, V, A, o_rrrrs);
-    legs_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), X, V, A, o_rrrs);
-    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
-        legs_place_rrrrs(1, LEGS(LEGS_OF_rrrrs), o_rrrrs, leg, leg_force, actuator, t);
+    legs_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
+        legs_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), s, X, V, A, o_rrrrs);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
-        legs_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, leg, leg_force, actuator, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
+        legs_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), s, X, V, A, o_rrrs);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
+        legs_place_rrrrs(1, 0, i, LEGS(LEGS_OF_rrrrs), o_rrrrs, leg_force, actuator, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        legs_place_rrrs(1, i, 0, i, LEGS(LEGS_OF_rrrs), o_rrrs, leg_force, actuator, t);
     }
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        /* (potential) potential energy */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real m_star = m->m_star;
-        const real t_x = X[0*w + k];
-        const real t_y = X[1*w + k];
-        const real t_z = X[2*w + k];
-        const real potential_t = gravity_x*(v.R_xx*h_star_in_platform_x +
-            v.R_xy*h_star_in_platform_y + v.R_xz*h_star_in_platform_z + m_star*t_x) +
-            gravity_y*(v.R_yx*h_star_in_platform_x + v.R_yy*h_star_in_platform_y +
-            v.R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(v.R_zx*h_star_in_platform_x +
-            v.R_zy*h_star_in_platform_y + v.R_zz*h_star_in_platform_z + m_star*t_z);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = potential_t;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    /* (potential) potential energy */
+    const real t_x = X[0*w + k];
+    const real t_y = X[1*w + k];
+    const real t_z = X[2*w + k];
+    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x +
+        v.R_xy*m->h_star_in_platform_y + v.R_xz*m->h_star_in_platform_z + m->m_star*t_x) +
+        m->gravity_y*(v.R_yx*m->h_star_in_platform_x + v.R_yy*m->h_star_in_platform_y +
+        v.R_yz*m->h_star_in_platform_z + m->m_star*t_y) +
+        m->gravity_z*(v.R_zx*m->h_star_in_platform_x + v.R_zy*m->h_star_in_platform_y +
+        v.R_zz*m->h_star_in_platform_z + m->m_star*t_z);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = potential_t;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void potential_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void potential_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrrrs v;
-        stage_rrrrs_X(m, w, i, j, s, X, &v);
-        /* (rrrrs-h_3) first moment of link 3 about the origin of link 3 */
-        const real R_xx = s[0*w + j];
-        const real R_xy = s[1*w + j];
-        const real R_xz = s[2*w + j];
-        const real rrrrs_base_point_x = m->rrrrs_base_point_x[i];
-        const real rrrrs_platform_point_x = m->rrrrs_platform_point_x[i];
-        const real rrrrs_platform_point_y = m->rrrrs_platform_point_y[i];
-        const real rrrrs_platform_point_z = m->rrrrs_platform_point_z[i];
-        const real t_x = X[0*w + j];
-        const real rrrrs_h_3_t_3 = t_x + R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y
-            + R_xz*rrrrs_platform_point_z - rrrrs_base_point_x;
-        const real R_yx = s[3*w + j];
-        const real R_yy = s[4*w + j];
-        const real R_yz = s[5*w + j];
-        const real rrrrs_base_point_y = m->rrrrs_base_point_y[i];
-        const real t_y = X[1*w + j];
-        const real rrrrs_h_3_t_4 = t_y + R_yx*rrrrs_platform_point_x + R_yy*rrrrs_platform_point_y
-            + R_yz*rrrrs_platform_point_z - rrrrs_base_point_y;
-        const real R_zx = s[6*w + j];
-        const real R_zy = s[7*w + j];
-        const real R_zz = s[8*w + j];
-        const real rrrrs_base_point_z = m->rrrrs_base_point_z[i];
-        const real t_z = X[2*w + j];
-        const real rrrrs_h_3_t_5 = t_z + R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y
-            + R_zz*rrrrs_platform_point_z - rrrrs_base_point_z;
-        const real rrrrs_base_frame_xy = m->rrrrs_base_frame_xy[i];
-        const real rrrrs_base_frame_yy = m->rrrrs_base_frame_yy[i];
-        const real rrrrs_base_frame_zy = m->rrrrs_base_frame_zy[i];
-        const real rrrrs_h_3_t_8 = rrrrs_base_frame_xy*rrrrs_h_3_t_3 +
-            rrrrs_base_frame_yy*rrrrs_h_3_t_4 + rrrrs_base_frame_zy*rrrrs_h_3_t_5;
-        const real rrrrs_base_frame_xz = m->rrrrs_base_frame_xz[i];
-        const real rrrrs_base_frame_yz = m->rrrrs_base_frame_yz[i];
-        const real rrrrs_base_frame_zz = m->rrrrs_base_frame_zz[i];
-        const real rrrrs_h_3_t_9 = rrrrs_base_frame_xz*rrrrs_h_3_t_3 +
-            rrrrs_base_frame_yz*rrrrs_h_3_t_4 + rrrrs_base_frame_zz*rrrrs_h_3_t_5;
-        const real rrrrs_h_3_t_10 = rrrrs_h_3_t_8*rrrrs_h_3_t_8 + rrrrs_h_3_t_9*rrrrs_h_3_t_9;
-        const real rrrrs_branch_1 = m->rrrrs_branch_1[i];
-        const real rrrrs_h_3_t_11 = rrrrs_branch_1*root(rrrrs_h_3_t_10);
-        const real rrrrs_base_frame_xx = m->rrrrs_base_frame_xx[i];
-        const real rrrrs_base_frame_yx = m->rrrrs_base_frame_yx[i];
-        const real rrrrs_base_frame_zx = m->rrrrs_base_frame_zx[i];
-        const real rrrrs_joint2_offset_x = m->rrrrs_joint2_offset_x[i];
-        const real rrrrs_h_3_t_12 = rrrrs_base_frame_xx*rrrrs_h_3_t_3 +
-            rrrrs_base_frame_yx*rrrrs_h_3_t_4 + rrrrs_base_frame_zx*rrrrs_h_3_t_5 -
-            rrrrs_joint2_offset_x;
-        const real rrrrs_h_3_t_13 = rrrrs_h_3_t_11*v.rrrrs_h_3_t_6 -
-            rrrrs_h_3_t_12*v.rrrrs_h_3_t_7;
-        const real rrrrs_joint3_offset_x = m->rrrrs_joint3_offset_x[i];
-        const real rrrrs_h_3_t_14 = rrrrs_h_3_t_11*v.rrrrs_h_3_t_7 +
-            rrrrs_h_3_t_12*v.rrrrs_h_3_t_6 - rrrrs_joint3_offset_x;
-        const real rrrrs_h_3_t_15 = rrrrs_h_3_t_13*rrrrs_h_3_t_13 + rrrrs_h_3_t_14*rrrrs_h_3_t_14;
-        const real rrrrs_h_3_t = m->rrrrs_h_3_t[i];
-        const real rrrrs_h_3_t_2 = m->rrrrs_h_3_t_2[i];
-        const real rrrrs_h_3_t_16 = rrrrs_h_3_t + R(0.5)*rrrrs_h_3_t_15 - rrrrs_h_3_t_2;
-        const real rrrrs_joint4_offset_x = m->rrrrs_joint4_offset_x[i];
-        const real rrrrs_h_3_t_17 = rrrrs_h_3_t_14*rrrrs_joint4_offset_x;
-        const real rrrrs_h_3_t_18 = rrrrs_h_3_t_13*rrrrs_joint4_offset_x;
-        const real rrrrs_h_3_t_19 = rrrrs_h_3_t_17*rrrrs_h_3_t_17 + rrrrs_h_3_t_18*rrrrs_h_3_t_18;
-        const real rrrrs_h_3_t_20 = rrrrs_h_3_t_19 - rrrrs_h_3_t_16*rrrrs_h_3_t_16;
-        const real rrrrs_branch_3 = m->rrrrs_branch_3[i];
-        const real rrrrs_h_3_t_21 = rrrrs_branch_3*root(rrrrs_h_3_t_20);
-        const real inv_rrrrs_h_3_t_19 = 1/rrrrs_h_3_t_19;
-        const real rrrrs_h_3_t_22 = inv_rrrrs_h_3_t_19*(rrrrs_h_3_t_16*rrrrs_h_3_t_17 -
-            rrrrs_h_3_t_18*rrrrs_h_3_t_21);
-        const real rrrrs_h_3_t_23 = inv_rrrrs_h_3_t_19*(rrrrs_h_3_t_16*rrrrs_h_3_t_18 +
-            rrrrs_h_3_t_17*rrrrs_h_3_t_21);
-        const real rrrrs_h_3_in_spec3_x = m->rrrrs_h_3_in_spec3_x[i];
-        const real rrrrs_h_3_in_spec3_y = m->rrrrs_h_3_in_spec3_y[i];
-        const real rrrrs_h_3_in_axes2_x = rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_22 -
-            rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_23;
-        /* (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrrrs_h_3_t_10 = 1/rrrrs_h_3_t_10;
-        const real rrrrs_c_1 = inv_rrrrs_h_3_t_10*rrrrs_h_3_t_11*rrrrs_h_3_t_8;
-        /* (rrrrs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrrrs_s_1 = inv_rrrrs_h_3_t_10*rrrrs_h_3_t_11*rrrrs_h_3_t_9;
-        /* (rrrrs-x_4) from the origin of joint 4 to the connection point */
-        const real inv_rrrrs_size_t = m->inv_rrrrs_size_t[i];
-        const real rrrrs_x_4_in_axes3_x = inv_rrrrs_size_t*rrrrs_h_3_t_16*rrrrs_joint4_offset_x -
-            rrrrs_joint4_offset_x;
-        /* (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction */
-        const real inv_rrrrs_size_t_2 = m->inv_rrrrs_size_t_2[i];
-        const real rrrrs_platform_joint_offset_x = m->rrrrs_platform_joint_offset_x[i];
-        const real rrrrs_c_4 =
-            inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x;
-        /* (rrrrs-s_4) sine of the angle of joint 4 from its reference direction */
-        const real rrrrs_s_4_t =
-            inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_21*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x;
-        /* (rrrrs-P_c_3) force that accelerates joint 3, per unit */
-        const real rrrrs_P_c_3_in_axes2_x = -rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_23 -
-            rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_22;
-        /* (potential) potential energy */
-        const real rrrrs_potential_t = m->rrrrs_potential_t[i];
-        const real rrrrs_potential_t_2 = m->rrrrs_potential_t_2[i];
-        const real rrrrs_b_in_spec1_y = rrrrs_c_1*rrrrs_potential_t +
-            rrrrs_potential_t_2*rrrrs_s_1;
-        const real rrrrs_b_in_spec1_z = rrrrs_c_1*rrrrs_potential_t_2 -
-            rrrrs_potential_t*rrrrs_s_1;
-        const real rrrrs_h_4_in_spec4_x = m->rrrrs_h_4_in_spec4_x[i];
-        const real rrrrs_h_4_in_spec4_y = m->rrrrs_h_4_in_spec4_y[i];
-        const real rrrrs_potential_t_5 = rrrrs_c_4*rrrrs_h_4_in_spec4_x +
-            rrrrs_h_4_in_spec4_y*rrrrs_s_4_t;
-        const real rrrrs_potential_t_6 = rrrrs_c_4*rrrrs_h_4_in_spec4_y -
-            rrrrs_h_4_in_spec4_x*rrrrs_s_4_t;
-        const real rrrrs_potential_t_7 = rrrrs_h_3_t_22*rrrrs_potential_t_5 -
-            rrrrs_h_3_t_23*rrrrs_potential_t_6;
-        const real rrrrs_potential_t_8 = rrrrs_h_3_t_22*rrrrs_potential_t_6 +
-            rrrrs_h_3_t_23*rrrrs_potential_t_5;
-        const real rrrrs_b_in_spec1_x = m->rrrrs_b_in_spec1_x[i];
-        const real rrrrs_h_1_in_spec1_x = m->rrrrs_h_1_in_spec1_x[i];
-        const real rrrrs_h_2_in_spec2_x = m->rrrrs_h_2_in_spec2_x[i];
-        const real rrrrs_h_2_in_spec2_y = m->rrrrs_h_2_in_spec2_y[i];
-        const real rrrrs_link3_mass = m->rrrrs_link3_mass[i];
-        const real rrrrs_potential_t_3 = m->rrrrs_potential_t_3[i];
-        const real rrrrs_potential_t_4 = m->rrrrs_potential_t_4[i];
-        const real rrrrs_potential_t_9 = rrrrs_h_1_in_spec1_x + rrrrs_potential_t_3 +
-            rrrrs_potential_t_4 + rrrrs_P_c_3_in_axes2_x*v.rrrrs_h_3_t_7 +
-            rrrrs_h_2_in_spec2_x*v.rrrrs_h_3_t_6 + rrrrs_h_3_in_axes2_x*v.rrrrs_h_3_t_6 +
-            v.rrrrs_h_3_t_6*rrrrs_potential_t_7 + rrrrs_link3_mass*(rrrrs_b_in_spec1_x +
-            rrrrs_joint2_offset_x + v.rrrrs_h_3_t_6*rrrrs_joint3_offset_x) -
-            rrrrs_h_2_in_spec2_y*v.rrrrs_h_3_t_7 - v.rrrrs_h_3_t_7*rrrrs_potential_t_8;
-        const real rrrrs_h_1_in_spec1_y = m->rrrrs_h_1_in_spec1_y[i];
-        const real rrrrs_link1_mass = m->rrrrs_link1_mass[i];
-        const real rrrrs_link2_mass = m->rrrrs_link2_mass[i];
-        const real rrrrs_potential_t_10 = rrrrs_h_1_in_spec1_y +
-            rrrrs_b_in_spec1_y*rrrrs_link1_mass + rrrrs_b_in_spec1_y*rrrrs_link2_mass +
-            rrrrs_h_2_in_spec2_x*v.rrrrs_h_3_t_7 + rrrrs_h_2_in_spec2_y*v.rrrrs_h_3_t_6 +
-            rrrrs_h_3_in_axes2_x*v.rrrrs_h_3_t_7 + v.rrrrs_h_3_t_6*rrrrs_potential_t_8 +
-            v.rrrrs_h_3_t_7*rrrrs_potential_t_7 + rrrrs_link3_mass*(rrrrs_b_in_spec1_y +
-            v.rrrrs_h_3_t_7*rrrrs_joint3_offset_x) - rrrrs_P_c_3_in_axes2_x*v.rrrrs_h_3_t_6;
-        const real rrrrs_acc_3_t = m->rrrrs_acc_3_t[i];
-        const real rrrrs_acc_3_t_2 = m->rrrrs_acc_3_t_2[i];
-        const real rrrrs_g_in_axes1_z = m->rrrrs_g_in_axes1_z[i];
-        const real rrrrs_h_1_in_spec1_z = m->rrrrs_h_1_in_spec1_z[i];
-        const real rrrrs_h_2_in_spec2_z = m->rrrrs_h_2_in_spec2_z[i];
-        const real rrrrs_h_3_in_spec3_z = m->rrrrs_h_3_in_spec3_z[i];
-        const real rrrrs_h_4_in_spec4_z = m->rrrrs_h_4_in_spec4_z[i];
-        const real rrrrs_potential_t_11 = rrrrs_g_in_axes1_z*rrrrs_potential_t_9 +
-            rrrrs_potential_t_10*(rrrrs_acc_3_t*rrrrs_c_1 + rrrrs_acc_3_t_2*rrrrs_s_1) +
-            (rrrrs_acc_3_t_2*rrrrs_c_1 - rrrrs_acc_3_t*rrrrs_s_1)*(rrrrs_h_1_in_spec1_z +
-            rrrrs_h_2_in_spec2_z + rrrrs_h_3_in_spec3_z + rrrrs_h_4_in_spec4_z +
-            rrrrs_b_in_spec1_z*rrrrs_link1_mass + rrrrs_b_in_spec1_z*rrrrs_link2_mass +
-            rrrrs_b_in_spec1_z*rrrrs_link3_mass);
-        /* (potential) potential energy */
-        gather(&terms[0*count + k], add, -rrrrs_potential_t_11);  /* potential_of_legs */
-        const real rrrrs_size_t_3 = m->rrrrs_size_t_3[i];
-        const real rrrrs_rho2_3_t = m->rrrrs_rho2_3_t[i];
-        o[1*count + k] = UNLESS(magnitude(rrrrs_h_3_t_10) > TOLERANCE*TOLERANCE*rrrrs_size_t_3) +
-            UNLESS(magnitude(rrrrs_h_3_t_19) > TOLERANCE*TOLERANCE*rrrrs_rho2_3_t);
-        o[0*count + k] = UNLESS(rrrrs_h_3_t_20 >= 0);
-    }
+    values_rrrrs v;
+    stage_rrrrs_X(m, w, i, j, s, X, &v);
+    /* (rrrrs-h_3) first moment of link 3 about the origin of link 3 */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real t_x = X[0*w + j];
+    const real rrrrs_h_3_t_3 = t_x + R_xx*m->rrrrs_platform_point_x[i] +
+        R_xy*m->rrrrs_platform_point_y[i] + R_xz*m->rrrrs_platform_point_z[i] -
+        m->rrrrs_base_point_x[i];
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real t_y = X[1*w + j];
+    const real rrrrs_h_3_t_4 = t_y + R_yx*m->rrrrs_platform_point_x[i] +
+        R_yy*m->rrrrs_platform_point_y[i] + R_yz*m->rrrrs_platform_point_z[i] -
+        m->rrrrs_base_point_y[i];
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real t_z = X[2*w + j];
+    const real rrrrs_h_3_t_5 = t_z + R_zx*m->rrrrs_platform_point_x[i] +
+        R_zy*m->rrrrs_platform_point_y[i] + R_zz*m->rrrrs_platform_point_z[i] -
+        m->rrrrs_base_point_z[i];
+    const real rrrrs_h_3_t_8 = m->rrrrs_base_frame_xy[i]*rrrrs_h_3_t_3 +
+        m->rrrrs_base_frame_yy[i]*rrrrs_h_3_t_4 + m->rrrrs_base_frame_zy[i]*rrrrs_h_3_t_5;
+    const real rrrrs_h_3_t_9 = m->rrrrs_base_frame_xz[i]*rrrrs_h_3_t_3 +
+        m->rrrrs_base_frame_yz[i]*rrrrs_h_3_t_4 + m->rrrrs_base_frame_zz[i]*rrrrs_h_3_t_5;
+    const real rrrrs_h_3_t_10 = rrrrs_h_3_t_8*rrrrs_h_3_t_8 + rrrrs_h_3_t_9*rrrrs_h_3_t_9;
+    const real rrrrs_h_3_t_11 = m->rrrrs_branch_1[i]*root(rrrrs_h_3_t_10);
+    const real rrrrs_h_3_t_12 = m->rrrrs_base_frame_xx[i]*rrrrs_h_3_t_3 +
+        m->rrrrs_base_frame_yx[i]*rrrrs_h_3_t_4 + m->rrrrs_base_frame_zx[i]*rrrrs_h_3_t_5 -
+        m->rrrrs_joint2_offset_x[i];
+    const real rrrrs_h_3_t_13 = rrrrs_h_3_t_11*v.rrrrs_h_3_t_6 -
+        rrrrs_h_3_t_12*v.rrrrs_h_3_t_7;
+    const real rrrrs_h_3_t_14 = rrrrs_h_3_t_11*v.rrrrs_h_3_t_7 +
+        rrrrs_h_3_t_12*v.rrrrs_h_3_t_6 - m->rrrrs_joint3_offset_x[i];
+    const real rrrrs_h_3_t_15 = rrrrs_h_3_t_13*rrrrs_h_3_t_13 + rrrrs_h_3_t_14*rrrrs_h_3_t_14;
+    const real rrrrs_h_3_t_16 = m->rrrrs_h_3_t[i] + R(0.5)*rrrrs_h_3_t_15 -
+        m->rrrrs_h_3_t_2[i];
+    const real rrrrs_h_3_t_17 = rrrrs_h_3_t_14*m->rrrrs_joint4_offset_x[i];
+    const real rrrrs_h_3_t_18 = rrrrs_h_3_t_13*m->rrrrs_joint4_offset_x[i];
+    const real rrrrs_h_3_t_19 = rrrrs_h_3_t_17*rrrrs_h_3_t_17 + rrrrs_h_3_t_18*rrrrs_h_3_t_18;
+    const real rrrrs_h_3_t_20 = rrrrs_h_3_t_19 - rrrrs_h_3_t_16*rrrrs_h_3_t_16;
+    const real rrrrs_h_3_t_21 = m->rrrrs_branch_3[i]*root(rrrrs_h_3_t_20);
+    const real inv_rrrrs_h_3_t_19 = 1/rrrrs_h_3_t_19;
+    const real rrrrs_h_3_t_22 = inv_rrrrs_h_3_t_19*(rrrrs_h_3_t_16*rrrrs_h_3_t_17 -
+        rrrrs_h_3_t_18*rrrrs_h_3_t_21);
+    const real rrrrs_h_3_t_23 = inv_rrrrs_h_3_t_19*(rrrrs_h_3_t_16*rrrrs_h_3_t_18 +
+        rrrrs_h_3_t_17*rrrrs_h_3_t_21);
+    const real rrrrs_h_3_in_axes2_x = m->rrrrs_h_3_in_spec3_x[i]*rrrrs_h_3_t_22 -
+        m->rrrrs_h_3_in_spec3_y[i]*rrrrs_h_3_t_23;
+    /* (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real inv_rrrrs_h_3_t_10 = 1/rrrrs_h_3_t_10;
+    const real rrrrs_c_1 = inv_rrrrs_h_3_t_10*rrrrs_h_3_t_11*rrrrs_h_3_t_8;
+    /* (rrrrs-s_1) sine of the angle of joint 1 from its reference direction */
+    const real rrrrs_s_1 = inv_rrrrs_h_3_t_10*rrrrs_h_3_t_11*rrrrs_h_3_t_9;
+    /* (rrrrs-x_4) from the origin of joint 4 to the connection point */
+    const real rrrrs_x_4_in_axes3_x =
+        m->inv_rrrrs_size_t[i]*rrrrs_h_3_t_16*m->rrrrs_joint4_offset_x[i] -
+        m->rrrrs_joint4_offset_x[i];
+    /* (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction */
+    const real rrrrs_c_4 =
+        m->inv_rrrrs_size_t_2[i]*m->rrrrs_platform_joint_offset_x[i]*rrrrs_x_4_in_axes3_x;
+    /* (rrrrs-s_4) sine of the angle of joint 4 from its reference direction */
+    const real rrrrs_s_4_t =
+        m->inv_rrrrs_size_t[i]*m->inv_rrrrs_size_t_2[i]*rrrrs_h_3_t_21*m->rrrrs_joint4_offset_x[i]*m->rrrrs_platform_joint_offset_x[i];
+    /* (rrrrs-P_c_3) force that accelerates joint 3, per unit */
+    const real rrrrs_P_c_3_in_axes2_x = -m->rrrrs_h_3_in_spec3_x[i]*rrrrs_h_3_t_23 -
+        m->rrrrs_h_3_in_spec3_y[i]*rrrrs_h_3_t_22;
+    /* (potential) */
+    const real rrrrs_b_in_spec1_y = rrrrs_c_1*m->rrrrs_potential_t[i] +
+        m->rrrrs_potential_t_2[i]*rrrrs_s_1;
+    const real rrrrs_b_in_spec1_z = rrrrs_c_1*m->rrrrs_potential_t_2[i] -
+        m->rrrrs_potential_t[i]*rrrrs_s_1;
+    const real rrrrs_potential_t_5 = rrrrs_c_4*m->rrrrs_h_4_in_spec4_x[i] +
+        m->rrrrs_h_4_in_spec4_y[i]*rrrrs_s_4_t;
+    const real rrrrs_potential_t_6 = rrrrs_c_4*m->rrrrs_h_4_in_spec4_y[i] -
+        m->rrrrs_h_4_in_spec4_x[i]*rrrrs_s_4_t;
+    const real rrrrs_potential_t_7 = rrrrs_h_3_t_22*rrrrs_potential_t_5 -
+        rrrrs_h_3_t_23*rrrrs_potential_t_6;
+    const real rrrrs_potential_t_8 = rrrrs_h_3_t_22*rrrrs_potential_t_6 +
+        rrrrs_h_3_t_23*rrrrs_potential_t_5;
+    const real rrrrs_potential_t_9 = m->rrrrs_h_1_in_spec1_x[i] + m->rrrrs_potential_t_3[i] +
+        m->rrrrs_potential_t_4[i] + rrrrs_P_c_3_in_axes2_x*v.rrrrs_h_3_t_7 +
+        m->rrrrs_h_2_in_spec2_x[i]*v.rrrrs_h_3_t_6 + rrrrs_h_3_in_axes2_x*v.rrrrs_h_3_t_6 +
+        v.rrrrs_h_3_t_6*rrrrs_potential_t_7 + m->rrrrs_link3_mass[i]*(m->rrrrs_b_in_spec1_x[i]
+        + m->rrrrs_joint2_offset_x[i] + v.rrrrs_h_3_t_6*m->rrrrs_joint3_offset_x[i]) -
+        m->rrrrs_h_2_in_spec2_y[i]*v.rrrrs_h_3_t_7 - v.rrrrs_h_3_t_7*rrrrs_potential_t_8;
+    const real rrrrs_potential_t_10 = m->rrrrs_h_1_in_spec1_y[i] +
+        rrrrs_b_in_spec1_y*m->rrrrs_link1_mass[i] + rrrrs_b_in_spec1_y*m->rrrrs_link2_mass[i]
+        + m->rrrrs_h_2_in_spec2_x[i]*v.rrrrs_h_3_t_7 +
+        m->rrrrs_h_2_in_spec2_y[i]*v.rrrrs_h_3_t_6 + rrrrs_h_3_in_axes2_x*v.rrrrs_h_3_t_7 +
+        v.rrrrs_h_3_t_6*rrrrs_potential_t_8 + v.rrrrs_h_3_t_7*rrrrs_potential_t_7 +
+        m->rrrrs_link3_mass[i]*(rrrrs_b_in_spec1_y +
+        v.rrrrs_h_3_t_7*m->rrrrs_joint3_offset_x[i]) - rrrrs_P_c_3_in_axes2_x*v.rrrrs_h_3_t_6;
+    const real rrrrs_potential_t_11 = m->rrrrs_g_in_axes1_z[i]*rrrrs_potential_t_9 +
+        rrrrs_potential_t_10*(m->rrrrs_acc_3_t[i]*rrrrs_c_1 + m->rrrrs_acc_3_t_2[i]*rrrrs_s_1)
+        + (m->rrrrs_acc_3_t_2[i]*rrrrs_c_1 -
+        m->rrrrs_acc_3_t[i]*rrrrs_s_1)*(m->rrrrs_h_1_in_spec1_z[i] +
+        m->rrrrs_h_2_in_spec2_z[i] + m->rrrrs_h_3_in_spec3_z[i] + m->rrrrs_h_4_in_spec4_z[i] +
+        rrrrs_b_in_spec1_z*m->rrrrs_link1_mass[i] + rrrrs_b_in_spec1_z*m->rrrrs_link2_mass[i]
+        + rrrrs_b_in_spec1_z*m->rrrrs_link3_mass[i]);
+    /* (potential) */
+    gather(&terms[0*count + k], add, -rrrrs_potential_t_11);  /* potential_of_legs */
+    o[1*count + k] = UNLESS(magnitude(rrrrs_h_3_t_10) >
+        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(rrrrs_h_3_t_19) >
+        TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]);
+    o[0*count + k] = UNLESS(rrrrs_h_3_t_20 >= 0);
 }
 
-INLINE void potential_place_rrrrs(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void potential_place_rrrrs(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o[0*count + first + k];
-        t->singular[k] += o[1*count + first + k];
-    }
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
 }
 
-INLINE void potential_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void potential_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrrs v;
-        stage_rrrs_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-        /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real rrrs_c_1 = v.inv_rrrs_rho2_1*v.rrrs_S_in_turn1_x*v.rrrs_root_1;
-        /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrrs_s_1 = v.inv_rrrs_rho2_1*v.rrrs_S_in_turn1_y*v.rrrs_root_1;
-        /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real rrrs_c_2 = v.inv_rrrs_rho2_2*(v.rrrs_Kc_2*v.rrrs_Kd_2 -
-            v.rrrs_Ks_2*v.rrrs_root_2);
-        /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrrs_s_2 = v.inv_rrrs_rho2_2*(v.rrrs_Kc_2*v.rrrs_root_2 +
-            v.rrrs_Kd_2*v.rrrs_Ks_2);
-        /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rrrs_size_t_2 = m->inv_rrrs_size_t_2[i];
-        const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
-        const real rrrs_c_3 =
-            inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*v.rrrs_x_3_in_axes2_x;
-        /* (rrrs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real inv_rrrs_size_t = m->inv_rrrs_size_t[i];
-        const real rrrs_joint3_offset_x = m->rrrs_joint3_offset_x[i];
-        const real rrrs_s_3_t =
-            inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*v.rrrs_root_2;
-        /* (potential) potential energy */
-        const real rrrs_potential_t = m->rrrs_potential_t[i];
-        const real rrrs_potential_t_2 = m->rrrs_potential_t_2[i];
-        const real rrrs_b_in_spec1_y = rrrs_c_1*rrrs_potential_t + rrrs_potential_t_2*rrrs_s_1;
-        const real rrrs_b_in_spec1_z = rrrs_c_1*rrrs_potential_t_2 - rrrs_potential_t*rrrs_s_1;
-        const real rrrs_h_3_in_spec3_x = m->rrrs_h_3_in_spec3_x[i];
-        const real rrrs_h_3_in_spec3_y = m->rrrs_h_3_in_spec3_y[i];
-        const real rrrs_potential_t_5 = rrrs_c_3*rrrs_h_3_in_spec3_x +
-            rrrs_h_3_in_spec3_y*rrrs_s_3_t;
-        const real rrrs_potential_t_6 = rrrs_c_3*rrrs_h_3_in_spec3_y -
-            rrrs_h_3_in_spec3_x*rrrs_s_3_t;
-        const real rrrs_h_1_in_spec1_y = m->rrrs_h_1_in_spec1_y[i];
-        const real rrrs_h_2_in_spec2_x = m->rrrs_h_2_in_spec2_x[i];
-        const real rrrs_h_2_in_spec2_y = m->rrrs_h_2_in_spec2_y[i];
-        const real rrrs_link1_mass = m->rrrs_link1_mass[i];
-        const real rrrs_link2_mass = m->rrrs_link2_mass[i];
-        const real rrrs_mu_2_t = m->rrrs_mu_2_t[i];
-        const real rrrs_mu_2_t_2 = m->rrrs_mu_2_t_2[i];
-        const real rrrs_potential_t_7 = (rrrs_c_1*rrrs_mu_2_t +
-            rrrs_mu_2_t_2*rrrs_s_1)*(rrrs_h_1_in_spec1_y + rrrs_b_in_spec1_y*rrrs_link1_mass +
-            rrrs_b_in_spec1_y*rrrs_link2_mass + rrrs_c_2*rrrs_h_2_in_spec2_y +
-            rrrs_c_2*rrrs_potential_t_6 + rrrs_h_2_in_spec2_x*rrrs_s_2 +
-            rrrs_potential_t_5*rrrs_s_2);
-        const real rrrs_g_in_axes1_z = m->rrrs_g_in_axes1_z[i];
-        const real rrrs_h_1_in_spec1_x = m->rrrs_h_1_in_spec1_x[i];
-        const real rrrs_h_1_in_spec1_z = m->rrrs_h_1_in_spec1_z[i];
-        const real rrrs_h_2_in_spec2_z = m->rrrs_h_2_in_spec2_z[i];
-        const real rrrs_h_3_in_spec3_z = m->rrrs_h_3_in_spec3_z[i];
-        const real rrrs_potential_t_3 = m->rrrs_potential_t_3[i];
-        const real rrrs_potential_t_4 = m->rrrs_potential_t_4[i];
-        const real rrrs_potential_t_8 = rrrs_potential_t_7 +
-            rrrs_g_in_axes1_z*(rrrs_h_1_in_spec1_x + rrrs_potential_t_3 + rrrs_potential_t_4 +
-            rrrs_c_2*rrrs_h_2_in_spec2_x + rrrs_c_2*rrrs_potential_t_5 -
-            rrrs_h_2_in_spec2_y*rrrs_s_2 - rrrs_potential_t_6*rrrs_s_2) + (rrrs_c_1*rrrs_mu_2_t_2
-            - rrrs_mu_2_t*rrrs_s_1)*(rrrs_h_1_in_spec1_z + rrrs_h_2_in_spec2_z +
-            rrrs_h_3_in_spec3_z + rrrs_b_in_spec1_z*rrrs_link1_mass +
-            rrrs_b_in_spec1_z*rrrs_link2_mass);
-        /* (potential) potential energy */
-        gather(&terms[1*count + k], add, rrrs_potential_t_8);  /* potential_t_2 */
-        const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
-        const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
-        o[1*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
-            UNLESS(magnitude(v.rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t);
-        o[0*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
-    }
+    values_rrrs v;
+    stage_rrrs_inverse_kinematics_potential(m, w, i, j, s, X, &v);
+    /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real rrrs_c_1 = v.inv_rrrs_rho2_1*v.rrrs_S_in_turn1_x*v.rrrs_root_1;
+    /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
+    const real rrrs_s_1 = v.inv_rrrs_rho2_1*v.rrrs_S_in_turn1_y*v.rrrs_root_1;
+    /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real rrrs_c_2 = v.inv_rrrs_rho2_2*(v.rrrs_Kc_2*v.rrrs_Kd_2 -
+        v.rrrs_Ks_2*v.rrrs_root_2);
+    /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
+    const real rrrs_s_2 = v.inv_rrrs_rho2_2*(v.rrrs_Kc_2*v.rrrs_root_2 +
+        v.rrrs_Kd_2*v.rrrs_Ks_2);
+    /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
+    const real rrrs_c_3 =
+        m->inv_rrrs_size_t_2[i]*m->rrrs_platform_joint_offset_x[i]*v.rrrs_x_3_in_axes2_x;
+    /* (rrrs-s_3) sine of the angle of joint 3 from its reference direction */
+    const real rrrs_s_3_t =
+        m->inv_rrrs_size_t[i]*m->inv_rrrs_size_t_2[i]*m->rrrs_joint3_offset_x[i]*m->rrrs_platform_joint_offset_x[i]*v.rrrs_root_2;
+    /* (potential) */
+    const real rrrs_b_in_spec1_y = rrrs_c_1*m->rrrs_potential_t[i] +
+        m->rrrs_potential_t_2[i]*rrrs_s_1;
+    const real rrrs_b_in_spec1_z = rrrs_c_1*m->rrrs_potential_t_2[i] -
+        m->rrrs_potential_t[i]*rrrs_s_1;
+    const real rrrs_potential_t_5 = rrrs_c_3*m->rrrs_h_3_in_spec3_x[i] +
+        m->rrrs_h_3_in_spec3_y[i]*rrrs_s_3_t;
+    const real rrrs_potential_t_6 = rrrs_c_3*m->rrrs_h_3_in_spec3_y[i] -
+        m->rrrs_h_3_in_spec3_x[i]*rrrs_s_3_t;
+    const real rrrs_potential_t_7 = (rrrs_c_1*m->rrrs_mu_2_t[i] +
+        m->rrrs_mu_2_t_2[i]*rrrs_s_1)*(m->rrrs_h_1_in_spec1_y[i] +
+        rrrs_b_in_spec1_y*m->rrrs_link1_mass[i] + rrrs_b_in_spec1_y*m->rrrs_link2_mass[i] +
+        rrrs_c_2*m->rrrs_h_2_in_spec2_y[i] + rrrs_c_2*rrrs_potential_t_6 +
+        m->rrrs_h_2_in_spec2_x[i]*rrrs_s_2 + rrrs_potential_t_5*rrrs_s_2);
+    const real rrrs_potential_t_8 = rrrs_potential_t_7 +
+        m->rrrs_g_in_axes1_z[i]*(m->rrrs_h_1_in_spec1_x[i] + m->rrrs_potential_t_3[i] +
+        m->rrrs_potential_t_4[i] + rrrs_c_2*m->rrrs_h_2_in_spec2_x[i] +
+        rrrs_c_2*rrrs_potential_t_5 - m->rrrs_h_2_in_spec2_y[i]*rrrs_s_2 -
+        rrrs_potential_t_6*rrrs_s_2) + (rrrs_c_1*m->rrrs_mu_2_t_2[i] -
+        m->rrrs_mu_2_t[i]*rrrs_s_1)*(m->rrrs_h_1_in_spec1_z[i] + m->rrrs_h_2_in_spec2_z[i] +
+        m->rrrs_h_3_in_spec3_z[i] + rrrs_b_in_spec1_z*m->rrrs_link1_mass[i] +
+        rrrs_b_in_spec1_z*m->rrrs_link2_mass[i]);
+    /* (potential) */
+    gather(&terms[1*count + k], add, rrrs_potential_t_8);  /* potential_t_2 */
+    o[1*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_rho2_2) >
+        TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]);
+    o[0*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
 }
 
-INLINE void potential_place_rrrs(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void potential_place_rrrs(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o[0*count + first + k];
-        t->singular[k] += o[1*count + first + k];
-    }
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
 }
 
-INLINE void potential_after(size_t w, const real *s, const real *sums, real *potential)
+INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (potential) potential energy */
-        const real potential_of_legs = sums[0*w + k];
-        const real potential_t = s[9*w + k];
-        const real potential_t_2 = sums[1*w + k];
-        const real potential_ = potential_of_legs - potential_t - potential_t_2;
-        /* (potential) potential energy */
-        potential[0*w + k] = potential_;
-    }
+    /* (potential) */
+    const real potential_of_legs = sums[0*w + k];
+    const real potential_t = s[9*w + k];
+    const real potential_t_2 = sums[1*w + k];
+    const real potential_ = potential_of_legs - potential_t - potential_t_2;
+    /* (potential) */
+    potential[0*w + k] = potential_;
 }
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
@@ -8379,290 +7836,257 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
     real s[10] = {0}, sums[2] = {0};
     real terms_rrrrs[2*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[2*LEGS(LEGS_OF_rrrrs)] = {0};
     real terms_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0};
-    potential_before(m, 1, X, s, t);
-    potential_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrrs), 0, X, terms_rrrrs, o_rrrrs);
-    potential_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), 0, X, terms_rrrs, o_rrrs);
-    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
-        potential_place_rrrrs(1, LEGS(LEGS_OF_rrrrs), o_rrrrs, leg, t);
+    potential_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
+        potential_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), 0, s, X, terms_rrrrs, o_rrrrs);
+    }
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
+        potential_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), 0, s, X, terms_rrrs, o_rrrs);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
+        potential_place_rrrrs(0, i, LEGS(LEGS_OF_rrrrs), o_rrrrs, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         sums[n] = total(terms_rrrrs + n*LEGS(LEGS_OF_rrrrs), LEGS_OF_rrrrs);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
-        potential_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, t);
+    for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        potential_place_rrrs(0, i, LEGS(LEGS_OF_rrrs), o_rrrs, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
             sums[n] += terms_rrrs[n*LEGS(LEGS_OF_rrrs) + leg];
         }
     }
-    potential_after(1, s, sums, potential);
+    potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
-    verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
+    *lengths, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        const real legs_size = m->legs_size;
-        lengths[1*w + k] = legs_size;
-        t->total[k] += legs_size;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    lengths[1*w + k] = m->legs_size;
+    t->total[k] += m->legs_size;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void condition_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void condition_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrrrs v;
-        stage_rrrrs_X(m, w, i, j, s, X, &v);
-        stage_rrrrs_H_condition(m, i, &v);
-        /* (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real rrrrs_pivot_size = magnitude(v.rrrrs_rho2_1);
-        const real rrrrs_pivot_size_2 = magnitude(v.rrrrs_rho2_3);
-        const real rrrrs_pivot_size_3 = magnitude(v.rrrrs_v_1_in_axes4_z);
-        const real rrrrs_pivot_size_4 = magnitude(v.rrrrs_r_3_in_axes4_y);
-        const real inv_rrrrs_rho2_3_t = m->inv_rrrrs_rho2_3_t[i];
-        const real inv_rrrrs_size = m->inv_rrrrs_size[i];
-        const real inv_rrrrs_size_t_3 = m->inv_rrrrs_size_t_3[i];
-        const real rrrrs_least_pivots =
-            lesser(lesser(lesser(root(inv_rrrrs_rho2_3_t*rrrrs_pivot_size_2),
-            inv_rrrrs_size*rrrrs_pivot_size_3), inv_rrrrs_size*rrrrs_pivot_size_4),
-            root(inv_rrrrs_size_t_3*rrrrs_pivot_size));
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_in_platform_x = m->b_c_in_platform_x;
-        const real rrrrs_platform_point_x = m->rrrrs_platform_point_x[i];
-        const real rrrrs_spread_t = b_c_in_platform_x - rrrrs_platform_point_x;
-        const real b_c_in_platform_y = m->b_c_in_platform_y;
-        const real rrrrs_platform_point_y = m->rrrrs_platform_point_y[i];
-        const real rrrrs_spread_t_2 = b_c_in_platform_y - rrrrs_platform_point_y;
-        const real b_c_in_platform_z = m->b_c_in_platform_z;
-        const real rrrrs_platform_point_z = m->rrrrs_platform_point_z[i];
-        const real rrrrs_spread_t_3 = b_c_in_platform_z - rrrrs_platform_point_z;
-        const real rrrrs_spread_t_4 = rrrrs_spread_t*rrrrs_spread_t +
-            rrrrs_spread_t_2*rrrrs_spread_t_2 + rrrrs_spread_t_3*rrrrs_spread_t_3;
-        /* (spread) rms distance of the platform points from their centroid */
-        gather(&terms[0*count + k], add, rrrrs_spread_t_4);  /* spread_rrrrs */
-        /* (rrrrs-w_1) reciprocal vector 1 */
-        o[0*count + k] = v.rrrrs_w_1_x;
-        o[1*count + k] = v.rrrrs_w_1_y;
-        o[2*count + k] = v.rrrrs_w_1_z;
-        /* (rrrrs-H_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = v.rrrrs_H_a_1_x;
-        o[4*count + k] = v.rrrrs_H_a_1_y;
-        o[5*count + k] = v.rrrrs_H_a_1_z;
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        o[6*count + k] = 1;
-        /* (rrrrs-w_3) reciprocal vector 2 */
-        o[7*count + k] = v.rrrrs_w_3_x;
-        o[8*count + k] = v.rrrrs_w_3_y;
-        o[9*count + k] = v.rrrrs_w_3_z;
-        /* (rrrrs-H_a_3) moment of the column's unit force about the platform origin */
-        o[10*count + k] = v.rrrrs_H_a_3_x;
-        o[11*count + k] = v.rrrrs_H_a_3_y;
-        o[12*count + k] = v.rrrrs_H_a_3_z;
-        /* (rrrrs-w_3) reciprocal vector 2 */
-        o[13*count + k] = v.rrrrs_w_3_t_7;
-        /* (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        o[14*count + k] = rrrrs_least_pivots;
-        o[15*count + k] = v.rrrrs_disc_3;
-        o[18*count + k] = ((v.rrrrs_w_1_x + (v.rrrrs_w_1_y + v.rrrrs_w_1_z)) + ((v.rrrrs_H_a_1_x +
-            v.rrrrs_H_a_1_y) + (v.rrrrs_H_a_1_z + v.rrrrs_w_3_x))) + (((v.rrrrs_w_3_y +
-            v.rrrrs_w_3_z) + (v.rrrrs_H_a_3_x + v.rrrrs_H_a_3_y)) + ((v.rrrrs_H_a_3_z +
-            v.rrrrs_w_3_t_7) + (rrrrs_least_pivots + v.rrrrs_disc_3)));
-        const real rrrrs_size_t_3 = m->rrrrs_size_t_3[i];
-        const real rrrrs_rho2_3_t = m->rrrrs_rho2_3_t[i];
-        const real rrrrs_size = m->rrrrs_size[i];
-        o[17*count + k] = UNLESS(magnitude(v.rrrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrrs_size_t_3) +
-            UNLESS(magnitude(v.rrrrs_rho2_3) > TOLERANCE*TOLERANCE*rrrrs_rho2_3_t) +
-            UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) > TOLERANCE*rrrrs_size) +
-            UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) > TOLERANCE*rrrrs_size);
-        o[16*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
-    }
+    values_rrrrs v;
+    stage_rrrrs_X(m, w, i, j, s, X, &v);
+    stage_rrrrs_H_condition(m, i, &v);
+    /* (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real rrrrs_pivot_size = magnitude(v.rrrrs_rho2_1);
+    const real rrrrs_pivot_size_2 = magnitude(v.rrrrs_rho2_3);
+    const real rrrrs_pivot_size_3 = magnitude(v.rrrrs_v_1_in_axes4_z);
+    const real rrrrs_pivot_size_4 = magnitude(v.rrrrs_r_3_in_axes4_y);
+    const real rrrrs_least_pivots =
+        lesser(lesser(lesser(root(m->inv_rrrrs_rho2_3_t[i]*rrrrs_pivot_size_2),
+        m->inv_rrrrs_size[i]*rrrrs_pivot_size_3), m->inv_rrrrs_size[i]*rrrrs_pivot_size_4),
+        root(m->inv_rrrrs_size_t_3[i]*rrrrs_pivot_size));
+    /* (spread) rms distance of the platform points from their centroid */
+    const real rrrrs_spread_t = m->b_c_in_platform_x - m->rrrrs_platform_point_x[i];
+    const real rrrrs_spread_t_2 = m->b_c_in_platform_y - m->rrrrs_platform_point_y[i];
+    const real rrrrs_spread_t_3 = m->b_c_in_platform_z - m->rrrrs_platform_point_z[i];
+    const real rrrrs_spread_t_4 = rrrrs_spread_t*rrrrs_spread_t +
+        rrrrs_spread_t_2*rrrrs_spread_t_2 + rrrrs_spread_t_3*rrrrs_spread_t_3;
+    /* (spread) */
+    gather(&terms[0*count + k], add, rrrrs_spread_t_4);  /* spread_rrrrs */
+    /* (rrrrs-w_1) reciprocal vector 1 */
+    o[0*count + k] = v.rrrrs_w_1_x;
+    o[1*count + k] = v.rrrrs_w_1_y;
+    o[2*count + k] = v.rrrrs_w_1_z;
+    /* (rrrrs-H_a_1) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.rrrrs_H_a_1_x;
+    o[4*count + k] = v.rrrrs_H_a_1_y;
+    o[5*count + k] = v.rrrrs_H_a_1_z;
+    /* (legs_size) */
+    o[6*count + k] = 1;
+    /* (rrrrs-w_3) reciprocal vector 2 */
+    o[7*count + k] = v.rrrrs_w_3_x;
+    o[8*count + k] = v.rrrrs_w_3_y;
+    o[9*count + k] = v.rrrrs_w_3_z;
+    /* (rrrrs-H_a_3) moment of the column's unit force about the platform origin */
+    o[10*count + k] = v.rrrrs_H_a_3_x;
+    o[11*count + k] = v.rrrrs_H_a_3_y;
+    o[12*count + k] = v.rrrrs_H_a_3_z;
+    /* (rrrrs-w_3) */
+    o[13*count + k] = v.rrrrs_w_3_t_7;
+    /* (rrrrs-G) */
+    o[14*count + k] = rrrrs_least_pivots;
+    o[15*count + k] = v.rrrrs_disc_3;
+    o[18*count + k] = ((v.rrrrs_w_1_x + (v.rrrrs_w_1_y + v.rrrrs_w_1_z)) + ((v.rrrrs_H_a_1_x +
+        v.rrrrs_H_a_1_y) + (v.rrrrs_H_a_1_z + v.rrrrs_w_3_x))) + (((v.rrrrs_w_3_y +
+        v.rrrrs_w_3_z) + (v.rrrrs_H_a_3_x + v.rrrrs_H_a_3_y)) + ((v.rrrrs_H_a_3_z +
+        v.rrrrs_w_3_t_7) + (rrrrs_least_pivots + v.rrrrs_disc_3)));
+    o[17*count + k] = UNLESS(magnitude(v.rrrrs_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_rho2_3) >
+        TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]) + UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) >
+        TOLERANCE*m->rrrrs_size[i]) + UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) >
+        TOLERANCE*m->rrrrs_size[i]);
+    o[16*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
 }
 
-INLINE void condition_place_rrrrs(size_t w, size_t count, const real *o, size_t first, real *H,
-    real *pivots, real *reach, verdict *t)
+INLINE void condition_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const real *o, real
+    *H, real *pivots, real *reach, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[0*w + k] = o[0*count + first + k];
-        H[NU*w + k] = o[1*count + first + k];
-        H[2*NU*w + k] = o[2*count + first + k];
-        H[3*NU*w + k] = o[3*count + first + k];
-        H[4*NU*w + k] = o[4*count + first + k];
-        H[5*NU*w + k] = o[5*count + first + k];
-        H[(6*NU + 1)*w + k] = o[6*count + first + k];
-        H[2*w + k] = o[7*count + first + k];
-        H[(NU + 2)*w + k] = o[8*count + first + k];
-        H[(2*NU + 2)*w + k] = o[9*count + first + k];
-        H[(3*NU + 2)*w + k] = o[10*count + first + k];
-        H[(4*NU + 2)*w + k] = o[11*count + first + k];
-        H[(5*NU + 2)*w + k] = o[12*count + first + k];
-        H[(6*NU + 2)*w + k] = o[13*count + first + k];
-        pivots[0*w + k] = o[14*count + first + k];
-        reach[0*w + k] = o[15*count + first + k];
-        t->unreachable[k] += o[16*count + first + k];
-        t->singular[k] += o[17*count + first + k];
-        t->total[k] += o[18*count + first + k];
-    }
+    H[0*w + k] = o[0*count + at];
+    H[NU*w + k] = o[1*count + at];
+    H[2*NU*w + k] = o[2*count + at];
+    H[3*NU*w + k] = o[3*count + at];
+    H[4*NU*w + k] = o[4*count + at];
+    H[5*NU*w + k] = o[5*count + at];
+    H[(6*NU + 1)*w + k] = o[6*count + at];
+    H[2*w + k] = o[7*count + at];
+    H[(NU + 2)*w + k] = o[8*count + at];
+    H[(2*NU + 2)*w + k] = o[9*count + at];
+    H[(3*NU + 2)*w + k] = o[10*count + at];
+    H[(4*NU + 2)*w + k] = o[11*count + at];
+    H[(5*NU + 2)*w + k] = o[12*count + at];
+    H[(6*NU + 2)*w + k] = o[13*count + at];
+    pivots[0*w + k] = o[14*count + at];
+    reach[0*w + k] = o[15*count + at];
+    t->unreachable[k] += o[16*count + at];
+    t->singular[k] += o[17*count + at];
+    t->total[k] += o[18*count + at];
 }
 
-INLINE void condition_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void condition_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrrs v;
-        stage_rrrs_X(m, w, i, j, s, X, &v);
-        stage_rrrs_H_condition(m, i, &v);
-        /* (rrrs-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real rrrs_pivot_size = magnitude(v.rrrs_rho2_1);
-        const real rrrs_pivot_size_2 = magnitude(v.rrrs_rho2_2);
-        const real rrrs_pivot_size_3 = magnitude(v.rrrs_v_1_in_axes3_z);
-        const real rrrs_pivot_size_4 = magnitude(v.rrrs_r_2_in_axes3_y);
-        const real inv_rrrs_rho2_2_t = m->inv_rrrs_rho2_2_t[i];
-        const real inv_rrrs_size = m->inv_rrrs_size[i];
-        const real inv_rrrs_size_t_3 = m->inv_rrrs_size_t_3[i];
-        const real rrrs_least_pivots =
-            lesser(lesser(lesser(root(inv_rrrs_rho2_2_t*rrrs_pivot_size_2),
-            inv_rrrs_size*rrrs_pivot_size_3), inv_rrrs_size*rrrs_pivot_size_4),
-            root(inv_rrrs_size_t_3*rrrs_pivot_size));
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_in_platform_x = m->b_c_in_platform_x;
-        const real rrrs_platform_point_x = m->rrrs_platform_point_x[i];
-        const real rrrs_spread_t = b_c_in_platform_x - rrrs_platform_point_x;
-        const real b_c_in_platform_y = m->b_c_in_platform_y;
-        const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
-        const real rrrs_spread_t_2 = b_c_in_platform_y - rrrs_platform_point_y;
-        const real b_c_in_platform_z = m->b_c_in_platform_z;
-        const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
-        const real rrrs_spread_t_3 = b_c_in_platform_z - rrrs_platform_point_z;
-        const real rrrs_spread_t_4 = rrrs_spread_t*rrrs_spread_t + rrrs_spread_t_2*rrrs_spread_t_2
-            + rrrs_spread_t_3*rrrs_spread_t_3;
-        /* (spread) rms distance of the platform points from their centroid */
-        gather(&terms[1*count + k], add, rrrs_spread_t_4);  /* spread_rrrs */
-        /* (rrrs-w_1) reciprocal vector 1 */
-        o[0*count + k] = v.rrrs_w_1_x;
-        o[1*count + k] = v.rrrs_w_1_y;
-        o[2*count + k] = v.rrrs_w_1_z;
-        /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = v.rrrs_H_a_1_x;
-        o[4*count + k] = v.rrrs_H_a_1_y;
-        o[5*count + k] = v.rrrs_H_a_1_z;
-        /* (rrrs-w_2) reciprocal vector 2 */
-        o[6*count + k] = v.rrrs_w_2_x;
-        o[7*count + k] = v.rrrs_w_2_y;
-        o[8*count + k] = v.rrrs_w_2_z;
-        /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
-        o[9*count + k] = v.rrrs_H_a_2_x;
-        o[10*count + k] = v.rrrs_H_a_2_y;
-        o[11*count + k] = v.rrrs_H_a_2_z;
-        /* (rrrs-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        o[12*count + k] = rrrs_least_pivots;
-        o[13*count + k] = v.rrrs_disc_2;
-        o[16*count + k] = ((v.rrrs_w_1_x + (v.rrrs_w_1_y + v.rrrs_w_1_z)) + ((v.rrrs_H_a_1_x +
-            v.rrrs_H_a_1_y) + (v.rrrs_H_a_1_z + v.rrrs_w_2_x))) + ((v.rrrs_w_2_y + (v.rrrs_w_2_z +
-            v.rrrs_H_a_2_x)) + ((v.rrrs_H_a_2_y + v.rrrs_H_a_2_z) + (rrrs_least_pivots +
-            v.rrrs_disc_2)));
-        const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
-        const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
-        const real rrrs_size = m->rrrs_size[i];
-        o[15*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
-            UNLESS(magnitude(v.rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
-            UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
-            UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
-        o[14*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
-    }
+    values_rrrs v;
+    stage_rrrs_X(m, w, i, j, s, X, &v);
+    stage_rrrs_H_condition(m, i, &v);
+    /* (rrrs-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real rrrs_pivot_size = magnitude(v.rrrs_rho2_1);
+    const real rrrs_pivot_size_2 = magnitude(v.rrrs_rho2_2);
+    const real rrrs_pivot_size_3 = magnitude(v.rrrs_v_1_in_axes3_z);
+    const real rrrs_pivot_size_4 = magnitude(v.rrrs_r_2_in_axes3_y);
+    const real rrrs_least_pivots =
+        lesser(lesser(lesser(root(m->inv_rrrs_rho2_2_t[i]*rrrs_pivot_size_2),
+        m->inv_rrrs_size[i]*rrrs_pivot_size_3), m->inv_rrrs_size[i]*rrrs_pivot_size_4),
+        root(m->inv_rrrs_size_t_3[i]*rrrs_pivot_size));
+    /* (spread) */
+    const real rrrs_spread_t = m->b_c_in_platform_x - m->rrrs_platform_point_x[i];
+    const real rrrs_spread_t_2 = m->b_c_in_platform_y - m->rrrs_platform_point_y[i];
+    const real rrrs_spread_t_3 = m->b_c_in_platform_z - m->rrrs_platform_point_z[i];
+    const real rrrs_spread_t_4 = rrrs_spread_t*rrrs_spread_t + rrrs_spread_t_2*rrrs_spread_t_2
+        + rrrs_spread_t_3*rrrs_spread_t_3;
+    /* (spread) */
+    gather(&terms[1*count + k], add, rrrs_spread_t_4);  /* spread_rrrs */
+    /* (rrrs-w_1) reciprocal vector 1 */
+    o[0*count + k] = v.rrrs_w_1_x;
+    o[1*count + k] = v.rrrs_w_1_y;
+    o[2*count + k] = v.rrrs_w_1_z;
+    /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.rrrs_H_a_1_x;
+    o[4*count + k] = v.rrrs_H_a_1_y;
+    o[5*count + k] = v.rrrs_H_a_1_z;
+    /* (rrrs-w_2) reciprocal vector 2 */
+    o[6*count + k] = v.rrrs_w_2_x;
+    o[7*count + k] = v.rrrs_w_2_y;
+    o[8*count + k] = v.rrrs_w_2_z;
+    /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
+    o[9*count + k] = v.rrrs_H_a_2_x;
+    o[10*count + k] = v.rrrs_H_a_2_y;
+    o[11*count + k] = v.rrrs_H_a_2_z;
+    /* (rrrs-G) */
+    o[12*count + k] = rrrs_least_pivots;
+    o[13*count + k] = v.rrrs_disc_2;
+    o[16*count + k] = ((v.rrrs_w_1_x + (v.rrrs_w_1_y + v.rrrs_w_1_z)) + ((v.rrrs_H_a_1_x +
+        v.rrrs_H_a_1_y) + (v.rrrs_H_a_1_z + v.rrrs_w_2_x))) + ((v.rrrs_w_2_y + (v.rrrs_w_2_z +
+        v.rrrs_H_a_2_x)) + ((v.rrrs_H_a_2_y + v.rrrs_H_a_2_z) + (rrrs_least_pivots +
+        v.rrrs_disc_2)));
+    o[15*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_rho2_2) >
+        TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) + UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) >
+        TOLERANCE*m->rrrs_size[i]) + UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) >
+        TOLERANCE*m->rrrs_size[i]);
+    o[14*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
 }
 
-INLINE void condition_place_rrrs(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *H, real *pivots, real *reach, verdict *t)
+INLINE void condition_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t count, const real
+    *o, real *H, real *pivots, real *reach, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[(3 + 2*leg)*w + k] = o[0*count + first + k];
-        H[(NU + 3 + 2*leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + 3 + 2*leg)*w + k] = o[2*count + first + k];
-        H[(3*NU + 3 + 2*leg)*w + k] = o[3*count + first + k];
-        H[(4*NU + 3 + 2*leg)*w + k] = o[4*count + first + k];
-        H[(5*NU + 3 + 2*leg)*w + k] = o[5*count + first + k];
-        H[(4 + 2*leg)*w + k] = o[6*count + first + k];
-        H[(NU + 4 + 2*leg)*w + k] = o[7*count + first + k];
-        H[(2*NU + 4 + 2*leg)*w + k] = o[8*count + first + k];
-        H[(3*NU + 4 + 2*leg)*w + k] = o[9*count + first + k];
-        H[(4*NU + 4 + 2*leg)*w + k] = o[10*count + first + k];
-        H[(5*NU + 4 + 2*leg)*w + k] = o[11*count + first + k];
-        pivots[(1 + leg)*w + k] = o[12*count + first + k];
-        reach[(1 + leg)*w + k] = o[13*count + first + k];
-        t->unreachable[k] += o[14*count + first + k];
-        t->singular[k] += o[15*count + first + k];
-        t->total[k] += o[16*count + first + k];
-    }
+    H[(3 + 2*i)*w + k] = o[0*count + at];
+    H[(NU + 3 + 2*i)*w + k] = o[1*count + at];
+    H[(2*NU + 3 + 2*i)*w + k] = o[2*count + at];
+    H[(3*NU + 3 + 2*i)*w + k] = o[3*count + at];
+    H[(4*NU + 3 + 2*i)*w + k] = o[4*count + at];
+    H[(5*NU + 3 + 2*i)*w + k] = o[5*count + at];
+    H[(4 + 2*i)*w + k] = o[6*count + at];
+    H[(NU + 4 + 2*i)*w + k] = o[7*count + at];
+    H[(2*NU + 4 + 2*i)*w + k] = o[8*count + at];
+    H[(3*NU + 4 + 2*i)*w + k] = o[9*count + at];
+    H[(4*NU + 4 + 2*i)*w + k] = o[10*count + at];
+    H[(5*NU + 4 + 2*i)*w + k] = o[11*count + at];
+    pivots[(1 + i)*w + k] = o[12*count + at];
+    reach[(1 + i)*w + k] = o[13*count + at];
+    t->unreachable[k] += o[14*count + at];
+    t->singular[k] += o[15*count + at];
+    t->total[k] += o[16*count + at];
 }
 
-INLINE void condition_after(size_t w, const real *sums, real *lengths, verdict *t)
+INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (spread) rms distance of the platform points from their centroid */
-        const real spread_rrrrs = sums[0*w + k];
-        const real spread_rrrs = sums[1*w + k];
-        const real spread_ = root(R(0.3333333333333333)*spread_rrrrs +
-            R(0.3333333333333333)*spread_rrrs);
-        /* (spread) rms distance of the platform points from their centroid */
-        lengths[0*w + k] = spread_;
-        t->total[k] += spread_;
-    }
+    /* (spread) */
+    const real spread_rrrrs = sums[0*w + k];
+    const real spread_rrrs = sums[1*w + k];
+    const real spread_ = root(R(0.3333333333333333)*spread_rrrrs +
+        R(0.3333333333333333)*spread_rrrs);
+    /* (spread) */
+    lengths[0*w + k] = spread_;
+    t->total[k] += spread_;
 }
 
-INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
+APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, verdict *t)
 {
     real s[9] = {0}, sums[2] = {0};
     real terms_rrrrs[2*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[19*LEGS(LEGS_OF_rrrrs)] = {0};
     real terms_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[17*LEGS(LEGS_OF_rrrs)] = {0};
     clear(H, NV*NU);
-    condition_before(m, 1, X, s, lengths, t);
-    condition_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrrs), 0, X, terms_rrrrs, o_rrrrs);
-    condition_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), 0, X, terms_rrrs, o_rrrs);
-    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
-        condition_place_rrrrs(1, LEGS(LEGS_OF_rrrrs), o_rrrrs, leg, H, pivots, reach, t);
+    condition_before(m, 1, 0, X, s, lengths, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
+        condition_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), 0, s, X, terms_rrrrs, o_rrrrs);
+    }
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
+        condition_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), 0, s, X, terms_rrrs, o_rrrs);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
+        condition_place_rrrrs(1, 0, i, LEGS(LEGS_OF_rrrrs), o_rrrrs, H, pivots, reach, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         sums[n] = total(terms_rrrrs + n*LEGS(LEGS_OF_rrrrs), LEGS_OF_rrrrs);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
-        condition_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, leg, H, pivots, reach, t);
+    for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        condition_place_rrrs(1, i, 0, i, LEGS(LEGS_OF_rrrs), o_rrrs, H, pivots, reach, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
             sums[n] += terms_rrrs[n*LEGS(LEGS_OF_rrrs) + leg];
         }
     }
-    condition_after(1, sums, lengths, t);
+    condition_after(1, 0, sums, lengths, t);
 }
 
 /* ---- what users call, as steps over these ---- */
 
-INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
+int hybrid_3rrrs_redundant_M(const prepared *m, const real *X, real *M_out)
 {
     real M[NV*NV] = {0};
     verdict why;
@@ -8673,9 +8097,11 @@ INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
         check(NV*NV, 1, M, why.overflow);
     }
     copy(NV*NV, M, M_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NV, M_out);
     }
+    return code;
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -8689,7 +8115,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
     deliver(NV*NV, M, M_out);
 }
 
-INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
+int hybrid_3rrrs_redundant_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     real Z[NV] = {0};
     verdict why;
@@ -8704,9 +8130,11 @@ INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, 
         check(NV, 1, Z, why.overflow);
     }
     copy(NV, Z, Z_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, Z_out);
     }
+    return code;
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -8721,7 +8149,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
     deliver(NV, Z, Z_out);
 }
 
-INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
+int hybrid_3rrrs_redundant_H(const prepared *m, const real *X, real *H_out)
 {
     real H[NV*NU] = {0};
     verdict why;
@@ -8732,9 +8160,11 @@ INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
         check(NV*NU, 1, H, why.overflow);
     }
     copy(NV*NU, H, H_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NU, H_out);
     }
+    return code;
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -8748,7 +8178,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
     deliver(NV*NU, H, H_out);
 }
 
-INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out, int *code)
+int hybrid_3rrrs_redundant_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
     real q[NJ] = {0};
     verdict why;
@@ -8759,9 +8189,11 @@ INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out
         check(NJ, 1, q, why.overflow);
     }
     copy(NJ, q, q_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, q_out);
     }
+    return code;
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -8775,8 +8207,8 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
     deliver(NJ, q, q_out);
 }
 
-INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
-    *code)
+int hybrid_3rrrs_redundant_joint_rates(const prepared *m, const real *X, const real *V, real
+    *qd_out)
 {
     real qd[NJ] = {0};
     verdict why;
@@ -8791,9 +8223,11 @@ INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, rea
         check(NJ, 1, qd, why.overflow);
     }
     copy(NJ, qd, qd_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, qd_out);
     }
+    return code;
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -8809,8 +8243,8 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
     deliver(NJ, qd, qd_out);
 }
 
-INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out, int *code)
+int hybrid_3rrrs_redundant_joint_accelerations(const prepared *m, const real *X, const real *V,
+    const real *A, real *qdd_out)
 {
     real qdd[NJ] = {0};
     verdict why;
@@ -8826,9 +8260,11 @@ INLINE void joint_accelerations_one(const prepared *m, const real *X, const real
         check(NJ, 1, qdd, why.overflow);
     }
     copy(NJ, qdd, qdd_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, qdd_out);
     }
+    return code;
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -8845,8 +8281,8 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
     deliver(NJ, qdd, qdd_out);
 }
 
-INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
-    *Z_out, real *H_out, int *code)
+int hybrid_3rrrs_redundant_dynamics(const prepared *m, const real *X, const real *V, real *M_out,
+    real *Z_out, real *H_out)
 {
     real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0};
     verdict why;
@@ -8865,11 +8301,13 @@ INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *
     copy(NV*NV, M, M_out);
     copy(NV, Z, Z_out);
     copy(NV*NU, H, H_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NV, M_out);
         refuse(NV, Z_out);
         refuse(NV*NU, H_out);
     }
+    return code;
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -8887,8 +8325,8 @@ INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real
     deliver(NV*NU, H, H_out);
 }
 
-INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *tau_out, int *code)
+int hybrid_3rrrs_redundant_inverse_dynamics(const prepared *m, const real *X, const real *V, const
+    real *A, const real *wrench, real *tau_out)
 {
     real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, extend_1[7] = {0}, subtract_1[NV] = {0},
         work[NV*PADDED(NV)];
@@ -8911,9 +8349,11 @@ INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V
     set_matrix(NV, 1, H, work);
     solve_state(NV, subtract_1, work, tau_out, why.singular);
     check(NU, 1, tau_out, why.overflow);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, tau_out);
     }
+    return code;
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -8942,8 +8382,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
     deliver(NU, tau, tau_out);
 }
 
-INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
-    const real *wrench, real *A_out, int *code)
+int hybrid_3rrrs_redundant_forward_dynamics(const prepared *m, const real *X, const real *V, const
+    real *tau, const real *wrench, real *A_out)
 {
     real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, extend_1[7] =
         {0}, add_1[NV] = {0}, subtract_1[NV] = {0}, work[NV*PADDED(NV)];
@@ -8970,9 +8410,11 @@ INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V
     set_matrix(NV, 1, M, work);
     solve_state(NV, subtract_1, work, A_out, why.singular);
     check(NV, 1, A_out, why.overflow);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, A_out);
     }
+    return code;
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -9005,21 +8447,28 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     deliver(NV, A, A_out);
 }
 
-INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
+int hybrid_3rrrs_redundant_complete_acceleration(const prepared *m, const real *X, const real *V,
+    const real *A, const real *wrench, real *completed_out)
 {
+    (void)m;
+    (void)X;
+    (void)V;
+    (void)wrench;
     verdict why;
     start(1, &why);
     check(NV, 1, A, why.invalid);
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, completed_out);
     }
+    return code;
 }
 
-INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces_out, int *code)
+int hybrid_3rrrs_redundant_leg_reactions(const prepared *m, const real *X, const real *V, const
+    real *A, const real *wrench, real *forces_out)
 {
     static const size_t places_forces[] = {0, 0, 0, 1, 1, 2, 2};
     real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, extend_1[7] = {0}, subtract_1[NV] = {0},
@@ -9050,13 +8499,15 @@ INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, c
     add_forces(NV, 3, 1, places_forces, solve_1, actuator, forces);
     check(NL*NL, 1, forces, why.overflow);
     copy(NL*NL, forces, forces_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NL*NL, forces_out);
     }
+    return code;
 }
 
-INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
-    *potential_out, int *code)
+int hybrid_3rrrs_redundant_energy(const prepared *m, const real *X, const real *V, real
+    *kinetic_out, real *potential_out)
 {
     real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
@@ -9074,15 +8525,18 @@ INLINE void energy_one(const prepared *m, const real *X, const real *V, real *ki
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, kinetic_out);
         refuse(1, potential_out);
     }
+    return code;
 }
 
-INLINE void condition_one(const prepared *m, const real *X, const real *length, real *sigma_out,
-    real *legs_out, int *code)
+int hybrid_3rrrs_redundant_condition(const prepared *m, const real *X, real *sigma_out, real
+    *legs_out)
 {
+    const real *length = NULL;
     static const size_t places_divide_rows_1[] = {3, 4, 5, 6};
     real length_in[1], H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
         choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
@@ -9108,14 +8562,16 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, sigma_out);
         refuse(NL, legs_out);
     }
+    return code;
 }
 
-INLINE void manipulability_one(const prepared *m, const real *X, real *measure_out, real
-    *isotropy_out, int *code)
+int hybrid_3rrrs_redundant_manipulability(const prepared *m, const real *X, real *measure_out,
+    real *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5, 6};
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
@@ -9145,14 +8601,16 @@ INLINE void manipulability_one(const prepared *m, const real *X, real *measure_o
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, measure_out);
         refuse(1, isotropy_out);
     }
+    return code;
 }
 
-INLINE void singularity_distance_one(const prepared *m, const real *X, real *actuators_out, real
-    *legs_out, int *code)
+int hybrid_3rrrs_redundant_singularity_distance(const prepared *m, const real *X, real
+    *actuators_out, real *legs_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5, 6};
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
@@ -9182,14 +8640,15 @@ INLINE void singularity_distance_one(const prepared *m, const real *X, real *act
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, actuators_out);
         refuse(1, legs_out);
     }
+    return code;
 }
 
-static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
-    int *code)
+static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
 {
     static const size_t places_gap[] = {0, 1, 2, 3, 4, 5, 6};
     real q[NJ] = {0}, q_of_inverse_kinematics_from_0[7] = {0}, subtract_1[NU] = {0}, gap[NU] = {0};
@@ -9211,12 +8670,14 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
     wrap_turns(NU, 1, places_gap, gap);
     check(NU, 1, gap, why.overflow);
     copy(NU, gap, gap_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, gap_out);
     }
+    return code;
 }
 
-static void slope_one(const prepared *m, const real *X, real *slope_out, int *code)
+static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     real slope[NV*NU] = {0};
     verdict why;
@@ -9227,9 +8688,11 @@ static void slope_one(const prepared *m, const real *X, real *slope_out, int *co
         check(NV*NU, 1, slope, why.overflow);
     }
     copy(NV*NU, slope, slope_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NU, slope_out);
     }
+    return code;
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -9240,12 +8703,12 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    mismatch_one(m, found, q_actuated, gap, &code);
+    code = mismatch_one(m, found, q_actuated, gap);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        slope_one(m, found, slope, &code);
+        code = slope_one(m, found, slope);
         if (code != OK) {
             break;
         }
@@ -9259,7 +8722,7 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            mismatch_one(m, trial, q_actuated, next, &tried);
+            tried = mismatch_one(m, trial, q_actuated, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -9277,8 +8740,8 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 }
 
 
-INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
-    *X_out, int *code)
+int hybrid_3rrrs_redundant_forward_kinematics(const prepared *m, const real *q_actuated, const
+    real *X0, real *X_out)
 {
     real X[NQ] = {0};
     verdict why;
@@ -9291,13 +8754,18 @@ INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, co
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
-INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
+int hybrid_3rrrs_redundant_dissipation(const prepared *m, const real *X, const real *V, real
+    *dissipation_out)
 {
+    (void)m;
+    (void)X;
     real subtract_1[NV] = {0};
     verdict why;
     start(1, &why);
@@ -9308,13 +8776,15 @@ INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, dissipation_out);
     }
+    return code;
 }
 
-INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
-    *code)
+int hybrid_3rrrs_redundant_momentum(const prepared *m, const real *X, const real *V, real
+    *momentum_out)
 {
     real M[NV*NV] = {0}, momentum[NV] = {0};
     verdict why;
@@ -9328,27 +8798,14 @@ INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, momentum_out);
     }
+    return code;
 }
 
-INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
-    int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], momentum[NV*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    M_run_lanes(m, X, M, &why);
-    product(NV, NV, 1, LANES, M, V, momentum);
-    add_up(NV, momentum, why.total);
-    suspect(&why, code);
-    deliver(NV, momentum, momentum_out);
-}
-
-INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
+int hybrid_3rrrs_redundant_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
     real q[NJ] = {0}, margins[NJ] = {0};
@@ -9361,28 +8818,14 @@ INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_ou
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, margins_out);
     }
+    return code;
 }
 
-INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
-{
-    static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
-    real X_in[NQ*LANES], q[NJ*LANES], margins[NJ*LANES];
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < NJ*LANES; ++i) {
-        margins[i] = q[i];
-    }
-    unlimited(NJ, NJ, LANES, places_margins, margins, why.invalid);
-    suspect(&why, code);
-    deliver(NJ, margins, margins_out);
-}
-
-INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
+int hybrid_3rrrs_redundant_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
     verdict why;
@@ -9395,28 +8838,14 @@ INLINE void within_limits_one(const prepared *m, const real *X, real *within_out
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, within_out);
     }
+    return code;
 }
 
-INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
-{
-    real X_in[NQ*LANES], q[NJ*LANES], subtract_1[NJ*LANES], within[LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < NJ*LANES; ++i) {
-        subtract_1[i] = q[i] - q[i];
-    }
-    not_negative(NJ, LANES, subtract_1, within, why.invalid);
-    add_up(1, within, why.total);
-    suspect(&why, code);
-    deliver(1, within, within_out);
-}
-
-INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
+int hybrid_3rrrs_redundant_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
     verdict why;
@@ -9426,26 +8855,15 @@ INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out
     take(NU, 1, hybrid_3rrrs_redundant_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, q_out);
     }
+    return code;
 }
 
-INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
-{
-    real X_in[NQ*LANES], q_of_inverse_kinematics[NJ*LANES], q[NU*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
-    take(NU, LANES, hybrid_3rrrs_redundant_ACTUATED, q_of_inverse_kinematics, q);
-    add_up(NU, q, why.total);
-    suspect(&why, code);
-    deliver(NU, q, q_out);
-}
-
-INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
-    *code)
+int hybrid_3rrrs_redundant_actuator_rates(const prepared *m, const real *X, const real *V, real
+    *qd_out)
 {
     real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
     verdict why;
@@ -9459,28 +8877,15 @@ INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, 
     take(NU, 1, hybrid_3rrrs_redundant_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, qd_out);
     }
+    return code;
 }
 
-INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
-    int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], qd_of_joint_rates[NJ*LANES], qd[NU*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
-    take(NU, LANES, hybrid_3rrrs_redundant_ACTUATED, qd_of_joint_rates, qd);
-    add_up(NU, qd, why.total);
-    suspect(&why, code);
-    deliver(NU, qd, qd_out);
-}
-
-INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out, int *code)
+int hybrid_3rrrs_redundant_actuator_accelerations(const prepared *m, const real *X, const real *V,
+    const real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
     verdict why;
@@ -9495,30 +8900,15 @@ INLINE void actuator_accelerations_one(const prepared *m, const real *X, const r
     take(NU, 1, hybrid_3rrrs_redundant_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, qdd_out);
     }
+    return code;
 }
 
-INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *qdd_out, int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd_of_joint_accelerations[NJ*LANES],
-        qdd[NU*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    A = side_by_side(NV, A, A_in, why.total);
-    joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
-    take(NU, LANES, hybrid_3rrrs_redundant_ACTUATED, qdd_of_joint_accelerations, qdd);
-    add_up(NU, qdd, why.total);
-    suspect(&why, code);
-    deliver(NU, qdd, qdd_out);
-}
-
-INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out, int *code)
+int hybrid_3rrrs_redundant_power(const prepared *m, const real *X, const real *V, const real *tau,
+    real *power_out)
 {
     real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
     verdict why;
@@ -9534,30 +8924,14 @@ INLINE void power_one(const prepared *m, const real *X, const real *V, const rea
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, power_out);
     }
+    return code;
 }
 
-INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out, int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0},
-        power[LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    tau = side_by_side(NU, tau, tau_in, why.total);
-    H_run_lanes(m, X, H, &why);
-    product(NV, NU, 1, LANES, H, tau, times_1);
-    inner(NV, LANES, times_1, V, power);
-    add_up(1, power, why.total);
-    suspect(&why, code);
-    deliver(1, power, power_out);
-}
-
-INLINE void rotation_one(const real *X, real *R_out, int *code)
+int hybrid_3rrrs_redundant_rotation(const real *X, real *R_out)
 {
     real R[9] = {0};
     verdict why;
@@ -9567,12 +8941,14 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     copy(9, R, R_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(9, R_out);
     }
+    return code;
 }
 
-INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
+int hybrid_3rrrs_redundant_pose(const real *t, const real *R, real *X_out)
 {
     real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0}, X[NQ] = {0};
     verdict why;
@@ -9589,12 +8965,14 @@ INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
     }
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
-INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
+int hybrid_3rrrs_redundant_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     real quaternion_rate_1[4] = {0}, join_1[7] = {0}, X_dot[NQ] = {0};
     verdict why;
@@ -9613,12 +8991,14 @@ INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
     beside(1, 7, 1, join_1, V_from_6, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_dot_out);
     }
+    return code;
 }
 
-INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *code)
+int hybrid_3rrrs_redundant_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
     real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0}, X[NQ] = {0};
     verdict why;
@@ -9635,12 +9015,14 @@ INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *
     }
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
-INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
+int hybrid_3rrrs_redundant_retract(const real *X, const real *step, real *X_moved_out)
 {
     real turn_quaternion_1[4] = {0}, add_1[3] = {0}, add_2[1] = {0}, join_1[7] = {0}, X_moved[NQ] =
         {0};
@@ -9668,12 +9050,14 @@ INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int 
     beside(1, 7, 1, join_1, add_2, X_moved);
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_moved_out);
     }
+    return code;
 }
 
-INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
+int hybrid_3rrrs_redundant_difference(const real *X0, const real *X1, real *step_out)
 {
     real turn_between_1[3] = {0}, subtract_1[3] = {0}, subtract_2[1] = {0}, join_1[6] = {0}, step[NV]
         = {0};
@@ -9701,12 +9085,14 @@ INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *
     beside(1, 6, 1, join_1, subtract_2, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, step_out);
     }
+    return code;
 }
 
-INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
+int hybrid_3rrrs_redundant_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     real turn_between_1[3] = {0}, subtract_1[3] = {0}, subtract_2[1] = {0}, join_1[6] = {0}, join_2[7]
         = {0}, scale_1[7] = {0}, turn_quaternion_1[4] = {0}, add_1[3] = {0}, add_2[1] = {0}, join_3[7]
@@ -9754,746 +9140,211 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
     beside(1, 7, 1, join_3, add_2, X);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
 /* ---- one state, and batches ---- */
 
-int hybrid_3rrrs_redundant_M(const prepared *model, const real *X, real *M)
-{
-    int code;
-    M_one(model, X, M, &code);
-    return code;
-}
-
-size_t hybrid_3rrrs_redundant_M_batch(const prepared *model, size_t n, const real *X, real *M, int
+size_t hybrid_3rrrs_redundant_M_batch(const prepared *m, size_t n, const real *X, real *M, int
     *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(M_lanes(m, X + NQ*i, M + NV*NV*i, codes), hybrid_3rrrs_redundant_M(m, X + NQ*j, M +
+        NV*NV*j));
 }
 
-int hybrid_3rrrs_redundant_Z(const prepared *model, const real *X, const real *V, real *Z)
+size_t hybrid_3rrrs_redundant_Z_batch(const prepared *m, size_t n, const real *X, const real *V,
+    real *Z, int *status)
 {
-    int code;
-    Z_one(model, X, V, Z, &code);
-    return code;
+    SIDE_BY_SIDE(Z_lanes(m, X + NQ*i, V + NV*i, Z + NV*i, codes), hybrid_3rrrs_redundant_Z(m, X +
+        NQ*j, V + NV*j, Z + NV*j));
 }
 
-size_t hybrid_3rrrs_redundant_Z_batch(const prepared *model, size_t n, const real *X, const real
-    *V, real *Z, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hybrid_3rrrs_redundant_H(const prepared *model, const real *X, real *H)
-{
-    int code;
-    H_one(model, X, H, &code);
-    return code;
-}
-
-size_t hybrid_3rrrs_redundant_H_batch(const prepared *model, size_t n, const real *X, real *H, int
+size_t hybrid_3rrrs_redundant_H_batch(const prepared *m, size_t n, const real *X, real *H, int
     *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(H_lanes(m, X + NQ*i, H + NV*NU*i, codes), hybrid_3rrrs_redundant_H(m, X + NQ*j, H +
+        NV*NU*j));
 }
 
-int hybrid_3rrrs_redundant_inverse_kinematics(const prepared *model, const real *X, real *q)
+size_t hybrid_3rrrs_redundant_inverse_kinematics_batch(const prepared *m, size_t n, const real *X,
+    real *q, int *status)
 {
-    int code;
-    inverse_kinematics_one(model, X, q, &code);
-    return code;
+    SIDE_BY_SIDE(inverse_kinematics_lanes(m, X + NQ*i, q + NJ*i, codes),
+        hybrid_3rrrs_redundant_inverse_kinematics(m, X + NQ*j, q + NJ*j));
 }
 
-size_t hybrid_3rrrs_redundant_inverse_kinematics_batch(const prepared *model, size_t n, const real
-    *X, real *q, int *status)
+size_t hybrid_3rrrs_redundant_joint_rates_batch(const prepared *m, size_t n, const real *X, const
+    real *V, real *rates, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(joint_rates_lanes(m, X + NQ*i, V + NV*i, rates + NJ*i, codes),
+        hybrid_3rrrs_redundant_joint_rates(m, X + NQ*j, V + NV*j, rates + NJ*j));
 }
 
-int hybrid_3rrrs_redundant_joint_rates(const prepared *model, const real *X, const real *V, real
-    *rates)
+size_t hybrid_3rrrs_redundant_joint_accelerations_batch(const prepared *m, size_t n, const real
+    *X, const real *V, const real *A, real *accelerations, int *status)
 {
-    int code;
-    joint_rates_one(model, X, V, rates, &code);
-    return code;
+    SIDE_BY_SIDE(joint_accelerations_lanes(m, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i,
+        codes), hybrid_3rrrs_redundant_joint_accelerations(m, X + NQ*j, V + NV*j, A + NV*j,
+        accelerations + NJ*j));
 }
 
-size_t hybrid_3rrrs_redundant_joint_rates_batch(const prepared *model, size_t n, const real *X,
-    const real *V, real *rates, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i
-                    + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hybrid_3rrrs_redundant_joint_accelerations(const prepared *model, const real *X, const real
-    *V, const real *A, real *accelerations)
-{
-    int code;
-    joint_accelerations_one(model, X, V, A, accelerations, &code);
-    return code;
-}
-
-size_t hybrid_3rrrs_redundant_joint_accelerations_batch(const prepared *model, size_t n, const
-    real *X, const real *V, const real *A, real *accelerations, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A +
-                    NV*(i + k), accelerations + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hybrid_3rrrs_redundant_dynamics(const prepared *model, const real *X, const real *V, real *M,
-    real *Z, real *H)
-{
-    int code;
-    dynamics_one(model, X, V, M, Z, H, &code);
-    return code;
-}
-
-size_t hybrid_3rrrs_redundant_dynamics_batch(const prepared *model, size_t n, const real *X, const
+size_t hybrid_3rrrs_redundant_dynamics_batch(const prepared *m, size_t n, const real *X, const
     real *V, real *M, real *Z, real *H, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i +
-                    k), Z + NV*(i + k), H + NV*NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(dynamics_lanes(m, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes),
+        hybrid_3rrrs_redundant_dynamics(m, X + NQ*j, V + NV*j, M + NV*NV*j, Z + NV*j, H + NV*NU*j));
 }
 
-int hybrid_3rrrs_redundant_inverse_dynamics(const prepared *model, const real *X, const real *V,
-    const real *A, const real *wrench, real *tau)
+size_t hybrid_3rrrs_redundant_inverse_dynamics_batch(const prepared *m, size_t n, const real *X,
+    const real *V, const real *A, const real *wrench, real *tau, int *status)
 {
-    int code;
-    inverse_dynamics_one(model, X, V, A, wrench, tau, &code);
-    return code;
+    SIDE_BY_SIDE(inverse_dynamics_lanes(m, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i :
+        NULL, tau + NU*i, codes), hybrid_3rrrs_redundant_inverse_dynamics(m, X + NQ*j, V + NV*j, A +
+        NV*j, wrench ? wrench + NW*j : NULL, tau + NU*j));
 }
 
-size_t hybrid_3rrrs_redundant_inverse_dynamics_batch(const prepared *model, size_t n, const real
-    *X, const real *V, const real *A, const real *wrench, real *tau, int *status)
+size_t hybrid_3rrrs_redundant_forward_dynamics_batch(const prepared *m, size_t n, const real *X,
+    const real *V, const real *tau, const real *wrench, real *A, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
-                NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A +
-                    NV*(i + k), wrench ? wrench + NW*(i + k) : NULL, tau + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(forward_dynamics_lanes(m, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i :
+        NULL, A + NV*i, codes), hybrid_3rrrs_redundant_forward_dynamics(m, X + NQ*j, V + NV*j, tau +
+        NU*j, wrench ? wrench + NW*j : NULL, A + NV*j));
 }
 
-int hybrid_3rrrs_redundant_forward_dynamics(const prepared *model, const real *X, const real *V,
-    const real *tau, const real *wrench, real *A)
+size_t hybrid_3rrrs_redundant_complete_acceleration_batch(const prepared *m, size_t n, const real
+    *X, const real *V, const real *A, const real *wrench, real *completed, int *status)
 {
-    int code;
-    forward_dynamics_one(model, X, V, tau, wrench, A, &code);
-    return code;
+    ONE_BY_ONE(hybrid_3rrrs_redundant_complete_acceleration(m, X + NQ*j, V + NV*j, A + NV*j, wrench ?
+        wrench + NW*j : NULL, completed + NV*j));
 }
 
-size_t hybrid_3rrrs_redundant_forward_dynamics_batch(const prepared *model, size_t n, const real
-    *X, const real *V, const real *tau, const real *wrench, real *A, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
-                NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau +
-                    NU*(i + k), wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hybrid_3rrrs_redundant_complete_acceleration(const prepared *model, const real *X, const real
-    *V, const real *A, const real *wrench, real *completed)
-{
-    int code;
-    (void)model, (void)X, (void)V, (void)wrench;
-    complete_acceleration_one(A, completed, &code);
-    return code;
-}
-
-size_t hybrid_3rrrs_redundant_complete_acceleration_batch(const prepared *model, size_t n, const
-    real *X, const real *V, const real *A, const real *wrench, real *completed, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i,
-            wrench ? wrench + NW*i : NULL, completed + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hybrid_3rrrs_redundant_leg_reactions(const prepared *model, const real *X, const real *V,
-    const real *A, const real *wrench, real *forces)
-{
-    int code;
-    leg_reactions_one(model, X, V, A, wrench, forces, &code);
-    return code;
-}
-
-size_t hybrid_3rrrs_redundant_leg_reactions_batch(const prepared *model, size_t n, const real *X,
+size_t hybrid_3rrrs_redundant_leg_reactions_batch(const prepared *m, size_t n, const real *X,
     const real *V, const real *A, const real *wrench, real *forces, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench
-            ? wrench + NW*i : NULL, forces + 9*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(hybrid_3rrrs_redundant_leg_reactions(m, X + NQ*j, V + NV*j, A + NV*j, wrench ? wrench +
+        NW*j : NULL, forces + 9*j));
 }
 
-int hybrid_3rrrs_redundant_energy(const prepared *model, const real *X, const real *V, real
-    *kinetic, real *potential)
+size_t hybrid_3rrrs_redundant_energy_batch(const prepared *m, size_t n, const real *X, const real
+    *V, real *kinetic, real *potential, int *status)
 {
-    int code;
-    energy_one(model, X, V, kinetic, potential, &code);
-    return code;
+    ONE_BY_ONE(hybrid_3rrrs_redundant_energy(m, X + NQ*j, V + NV*j, kinetic + j, potential + j));
 }
 
-size_t hybrid_3rrrs_redundant_energy_batch(const prepared *model, size_t n, const real *X, const
-    real *V, real *kinetic, real *potential, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential +
-            i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hybrid_3rrrs_redundant_condition(const prepared *model, const real *X, real *sigma, real
-    *legs)
-{
-    int code;
-    condition_one(model, X, NULL, sigma, legs, &code);
-    return code;
-}
-
-size_t hybrid_3rrrs_redundant_condition_batch(const prepared *model, size_t n, const real *X, real
+size_t hybrid_3rrrs_redundant_condition_batch(const prepared *m, size_t n, const real *X, real
     *sigma, real *legs, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_condition(model, X + NQ*i, sigma + 7*i, legs + 3*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(hybrid_3rrrs_redundant_condition(m, X + NQ*j, sigma + 7*j, legs + 3*j));
 }
 
-int hybrid_3rrrs_redundant_manipulability(const prepared *model, const real *X, real *measure,
-    real *isotropy)
-{
-    int code;
-    manipulability_one(model, X, measure, isotropy, &code);
-    return code;
-}
-
-size_t hybrid_3rrrs_redundant_manipulability_batch(const prepared *model, size_t n, const real *X,
+size_t hybrid_3rrrs_redundant_manipulability_batch(const prepared *m, size_t n, const real *X,
     real *measure, real *isotropy, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_manipulability(model, X + NQ*i, measure + i, isotropy +
-            i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(hybrid_3rrrs_redundant_manipulability(m, X + NQ*j, measure + j, isotropy + j));
 }
 
-int hybrid_3rrrs_redundant_singularity_distance(const prepared *model, const real *X, real
-    *actuators, real *legs)
+size_t hybrid_3rrrs_redundant_singularity_distance_batch(const prepared *m, size_t n, const real
+    *X, real *actuators, real *legs, int *status)
 {
-    int code;
-    singularity_distance_one(model, X, actuators, legs, &code);
-    return code;
+    ONE_BY_ONE(hybrid_3rrrs_redundant_singularity_distance(m, X + NQ*j, actuators + j, legs + j));
 }
 
-size_t hybrid_3rrrs_redundant_singularity_distance_batch(const prepared *model, size_t n, const
-    real *X, real *actuators, real *legs, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_singularity_distance(model, X + NQ*i, actuators + i, legs
-            + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hybrid_3rrrs_redundant_forward_kinematics(const prepared *model, const real *q_actuated, const
-    real *X0, real *X)
-{
-    int code;
-    forward_kinematics_one(model, q_actuated, X0, X, &code);
-    return code;
-}
-
-size_t hybrid_3rrrs_redundant_forward_kinematics_batch(const prepared *model, size_t n, const real
+size_t hybrid_3rrrs_redundant_forward_kinematics_batch(const prepared *m, size_t n, const real
     *q_actuated, const real *X0, real *X, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X
-            + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(hybrid_3rrrs_redundant_forward_kinematics(m, q_actuated + NU*j, X0 + NQ*j, X + NQ*j));
 }
 
-int hybrid_3rrrs_redundant_dissipation(const prepared *model, const real *X, const real *V, real
-    *dissipation)
+size_t hybrid_3rrrs_redundant_dissipation_batch(const prepared *m, size_t n, const real *X, const
+    real *V, real *dissipation, int *status)
 {
-    int code;
-    (void)model, (void)X;
-    dissipation_one(V, dissipation, &code);
-    return code;
+    ONE_BY_ONE(hybrid_3rrrs_redundant_dissipation(m, X + NQ*j, V + NV*j, dissipation + j));
 }
 
-size_t hybrid_3rrrs_redundant_dissipation_batch(const prepared *model, size_t n, const real *X,
-    const real *V, real *dissipation, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hybrid_3rrrs_redundant_momentum(const prepared *model, const real *X, const real *V, real
-    *momentum)
-{
-    int code;
-    momentum_one(model, X, V, momentum, &code);
-    return code;
-}
-
-size_t hybrid_3rrrs_redundant_momentum_batch(const prepared *model, size_t n, const real *X, const
+size_t hybrid_3rrrs_redundant_momentum_batch(const prepared *m, size_t n, const real *X, const
     real *V, real *momentum, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i
-                    + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(hybrid_3rrrs_redundant_momentum(m, X + NQ*j, V + NV*j, momentum + NV*j));
 }
 
-int hybrid_3rrrs_redundant_joint_margins(const prepared *model, const real *X, real *margins)
+size_t hybrid_3rrrs_redundant_joint_margins_batch(const prepared *m, size_t n, const real *X, real
+    *margins, int *status)
 {
-    int code;
-    joint_margins_one(model, X, margins, &code);
-    return code;
+    ONE_BY_ONE(hybrid_3rrrs_redundant_joint_margins(m, X + NQ*j, margins + NJ*j));
 }
 
-size_t hybrid_3rrrs_redundant_joint_margins_batch(const prepared *model, size_t n, const real *X,
-    real *margins, int *status)
+size_t hybrid_3rrrs_redundant_within_limits_batch(const prepared *m, size_t n, const real *X, real
+    *within, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(hybrid_3rrrs_redundant_within_limits(m, X + NQ*j, within + j));
 }
 
-int hybrid_3rrrs_redundant_within_limits(const prepared *model, const real *X, real *within)
+size_t hybrid_3rrrs_redundant_actuator_positions_batch(const prepared *m, size_t n, const real *X,
+    real *q, int *status)
 {
-    int code;
-    within_limits_one(model, X, within, &code);
-    return code;
+    ONE_BY_ONE(hybrid_3rrrs_redundant_actuator_positions(m, X + NQ*j, q + NU*j));
 }
 
-size_t hybrid_3rrrs_redundant_within_limits_batch(const prepared *model, size_t n, const real *X,
-    real *within, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            within_limits_lanes(model, X + NQ*i, within + i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_within_limits(model, X + NQ*(i + k), within + (i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hybrid_3rrrs_redundant_actuator_positions(const prepared *model, const real *X, real *q)
-{
-    int code;
-    actuator_positions_one(model, X, q, &code);
-    return code;
-}
-
-size_t hybrid_3rrrs_redundant_actuator_positions_batch(const prepared *model, size_t n, const real
-    *X, real *q, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hybrid_3rrrs_redundant_actuator_rates(const prepared *model, const real *X, const real *V,
-    real *rates)
-{
-    int code;
-    actuator_rates_one(model, X, V, rates, &code);
-    return code;
-}
-
-size_t hybrid_3rrrs_redundant_actuator_rates_batch(const prepared *model, size_t n, const real *X,
+size_t hybrid_3rrrs_redundant_actuator_rates_batch(const prepared *m, size_t n, const real *X,
     const real *V, real *rates, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates +
-                    NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(hybrid_3rrrs_redundant_actuator_rates(m, X + NQ*j, V + NV*j, rates + NU*j));
 }
 
-int hybrid_3rrrs_redundant_actuator_accelerations(const prepared *model, const real *X, const real
-    *V, const real *A, real *accelerations)
+size_t hybrid_3rrrs_redundant_actuator_accelerations_batch(const prepared *m, size_t n, const real
+    *X, const real *V, const real *A, real *accelerations, int *status)
 {
-    int code;
-    actuator_accelerations_one(model, X, V, A, accelerations, &code);
-    return code;
+    ONE_BY_ONE(hybrid_3rrrs_redundant_actuator_accelerations(m, X + NQ*j, V + NV*j, A + NV*j,
+        accelerations + NU*j));
 }
 
-size_t hybrid_3rrrs_redundant_actuator_accelerations_batch(const prepared *model, size_t n, const
-    real *X, const real *V, const real *A, real *accelerations, int *status)
+size_t hybrid_3rrrs_redundant_power_batch(const prepared *m, size_t n, const real *X, const real
+    *V, const real *tau, real *power, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A
-                    + NV*(i + k), accelerations + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hybrid_3rrrs_redundant_power(const prepared *model, const real *X, const real *V, const real
-    *tau, real *power)
-{
-    int code;
-    power_one(model, X, V, tau, power, &code);
-    return code;
-}
-
-size_t hybrid_3rrrs_redundant_power_batch(const prepared *model, size_t n, const real *X, const
-    real *V, const real *tau, real *power, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k),
-                    power + (i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hybrid_3rrrs_redundant_rotation(const real *X, real *R)
-{
-    int code;
-    rotation_one(X, R, &code);
-    return code;
+    ONE_BY_ONE(hybrid_3rrrs_redundant_power(m, X + NQ*j, V + NV*j, tau + NU*j, power + j));
 }
 
 size_t hybrid_3rrrs_redundant_rotation_batch(size_t n, const real *X, real *R, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_rotation(X + NQ*i, R + 9*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hybrid_3rrrs_redundant_pose(const real *t, const real *R, real *X)
-{
-    int code;
-    pose_one(t, R, X, &code);
-    return code;
+    ONE_BY_ONE(hybrid_3rrrs_redundant_rotation(X + NQ*j, R + 9*j));
 }
 
 size_t hybrid_3rrrs_redundant_pose_batch(size_t n, const real *t, const real *R, real *X, int
     *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_pose(t + 3*i, R + 9*i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hybrid_3rrrs_redundant_X_dot(const real *X, const real *V, real *X_dot)
-{
-    int code;
-    X_dot_one(X, V, X_dot, &code);
-    return code;
+    ONE_BY_ONE(hybrid_3rrrs_redundant_pose(t + 3*j, R + 9*j, X + NQ*j));
 }
 
 size_t hybrid_3rrrs_redundant_X_dot_batch(size_t n, const real *X, const real *V, real *X_dot, int
     *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hybrid_3rrrs_redundant_pose_from_rpy(const real *t, const real *rpy, real *X)
-{
-    int code;
-    pose_from_rpy_one(t, rpy, X, &code);
-    return code;
+    ONE_BY_ONE(hybrid_3rrrs_redundant_X_dot(X + NQ*j, V + NV*j, X_dot + NQ*j));
 }
 
 size_t hybrid_3rrrs_redundant_pose_from_rpy_batch(size_t n, const real *t, const real *rpy, real
     *X, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_pose_from_rpy(t + 3*i, rpy + 3*i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hybrid_3rrrs_redundant_retract(const real *X, const real *step, real *X_moved)
-{
-    int code;
-    retract_one(X, step, X_moved, &code);
-    return code;
+    ONE_BY_ONE(hybrid_3rrrs_redundant_pose_from_rpy(t + 3*j, rpy + 3*j, X + NQ*j));
 }
 
 size_t hybrid_3rrrs_redundant_retract_batch(size_t n, const real *X, const real *step, real
     *X_moved, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hybrid_3rrrs_redundant_difference(const real *X0, const real *X1, real *step)
-{
-    int code;
-    difference_one(X0, X1, step, &code);
-    return code;
+    ONE_BY_ONE(hybrid_3rrrs_redundant_retract(X + NQ*j, step + NV*j, X_moved + NQ*j));
 }
 
 size_t hybrid_3rrrs_redundant_difference_batch(size_t n, const real *X0, const real *X1, real
     *step, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int hybrid_3rrrs_redundant_interpolate(const real *X0, const real *X1, const real *s, real *X)
-{
-    int code;
-    interpolate_one(X0, X1, s, X, &code);
-    return code;
+    ONE_BY_ONE(hybrid_3rrrs_redundant_difference(X0 + NQ*j, X1 + NQ*j, step + NV*j));
 }
 
 size_t hybrid_3rrrs_redundant_interpolate_batch(size_t n, const real *X0, const real *X1, const
     real *s, real *X, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(hybrid_3rrrs_redundant_interpolate(X0 + NQ*j, X1 + NQ*j, s + j, X + NQ*j));
 }

@@ -187,13 +187,27 @@ INLINE int sum_is_finite(const real *x, size_t n)
     return is_finite(total(sum, LANES));
 }
 
+/* How many of some numbers are not finite. */
+APART real not_finite(size_t n, const real *x)
+{
+    real count = 0;
+    if (!sum_is_finite(x, n)) {
+        for (size_t i = 0; i < n; ++i) {
+            count += UNLESS(is_finite(x[i]));
+        }
+    }
+    return count;
+}
+
 /* Flag the states with entries that are not finite; the states stand side by side. */
 INLINE void check(size_t size, size_t w, const real *x, real *flags)
 {
-    if (!sum_is_finite(x, size*w)) {
-        for (size_t i = 0; i < size*w; ++i) {
-            flags[i%w] += UNLESS(is_finite(x[i]));
-        }
+    if (w == 1) {
+        flags[0] += not_finite(size, x);
+        return;
+    }
+    for (size_t i = 0; i < size*w; ++i) {
+        flags[i%w] += UNLESS(is_finite(x[i]));
     }
 }
 
@@ -248,18 +262,17 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE int judge(const verdict *t, int *code)
+INLINE int judge(const verdict *t)
 {
-    *code = t->invalid[0] > 0 ? INVALID
+    return t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
         : t->unreachable[0] > 0 ? UNREACHABLE
         : t->singular[0] > 0 ? SINGULAR
         : t->overflow[0] > 0 ? INVALID : OK;
-    return *code;
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
-INLINE void suspect(const verdict *t, int *code)
+APART void suspect(const verdict *t, int *code)
 {
     real flags[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -281,7 +294,7 @@ INLINE void blame(int code, verdict *t)
 }
 
 /* Outputs of an impossible state. */
-INLINE void refuse(size_t size, real *out)
+APART void refuse(size_t size, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
@@ -317,6 +330,32 @@ INLINE size_t record(const int *code, size_t w, int *status)
     }
     return failed;
 }
+
+/* Bodies of batches.  lanes: settles the states from number i on, side by side, in codes; one: settles
+   state j, what fails and what is left too. */
+#define SIDE_BY_SIDE(lanes, one) \
+    size_t failed = 0, w; \
+    for (size_t i = 0; i < n; i += w) { \
+        int codes[LANES] = {INVALID}; \
+        w = LANES > 1 && i + LANES <= n ? LANES : 1; \
+        if (w > 1) { \
+            lanes; \
+        } \
+        for (size_t j = i; j < i + w; ++j) { \
+            if (codes[j - i] != OK) { \
+                codes[j - i] = one; \
+            } \
+        } \
+        failed += record(codes, w, status ? status + i : NULL); \
+    } \
+    return failed
+#define ONE_BY_ONE(one) \
+    size_t failed = 0; \
+    for (size_t j = 0; j < n; ++j) { \
+        const int code = one; \
+        failed += record(&code, 1, status ? status + j : NULL); \
+    } \
+    return failed
 
 /* What the reader of specifications allows; floats have less to offer. */
 #define ROUNDED BY_TYPE(1e-5, 1e-06, 1e-06)  /* lengths and products of unit vectors */
@@ -555,10 +594,10 @@ int planar_4rpr_prepare(const planar_4rpr_params *params, planar_4rpr_model *mod
             rpr_link2_centre_of_mass_y*rpr_link2_centre_of_mass_y;
         const real rpr_J_group_1_in_axes1_zz = rpr_link1_inertia_zz + rpr_link2_inertia_zz +
             rpr_J_group_1_t*rpr_link1_mass + rpr_J_group_1_t_2*rpr_link2_mass;
-        /* (h_star) first moment about the platform origin */
+        /* (h_star) */
         const real rpr_h_star_t = rpr_link2_mass*rpr_platform_point_x;
         const real rpr_h_star_t_2 = rpr_link2_mass*rpr_platform_point_y;
-        /* (J_star) inertia tensor about the platform origin */
+        /* (J_star) */
         const real rpr_J_star_t = rpr_platform_point_y*rpr_platform_point_y;
         const real rpr_J_star_t_2 = rpr_J_star_t + rpr_platform_point_x*rpr_platform_point_x;
         const real rpr_J_star_t_3 = rpr_J_star_t*rpr_link2_mass;
@@ -598,10 +637,10 @@ int planar_4rpr_prepare(const planar_4rpr_params *params, planar_4rpr_model *mod
     }
     /* (m_star) mass of the platform with the gathered masses */
     const real m_star = m_star_of_legs + platform_mass;
-    /* (h_star) first moment about the platform origin */
+    /* (h_star) */
     const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
     const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
-    /* (J_star) inertia tensor about the platform origin */
+    /* (J_star) */
     const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + J_star_t_3;
     const real J_star_t_5 = J_star_in_platform_xx - J_star_t_4 - J_star_t_5_of_legs -
         platform_inertia_zz;
@@ -1313,10 +1352,8 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real R_xx = cosine(X_2);
     const real R_yx = sine(X_2);
     /* (h_star) first moment about the platform origin */
-    const real h_star_in_platform_x = m->h_star_in_platform_x;
-    const real h_star_in_platform_y = m->h_star_in_platform_y;
-    const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
-    const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
+    const real h_star_x = R_xx*m->h_star_in_platform_x - R_yx*m->h_star_in_platform_y;
+    const real h_star_y = R_xx*m->h_star_in_platform_y + R_yx*m->h_star_in_platform_x;
     v->R_xx = R_xx;
     v->R_yx = R_yx;
     v->h_star_x = h_star_x;
@@ -1337,27 +1374,20 @@ INLINE void stage_rpr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (rpr-S) from the base point to the connection point */
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
-    const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-    const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-    const real rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-    const real rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
-    const real rpr_base_point_x = m->rpr_base_point_x[i];
+    const real rpr_q_x = R_xx*m->rpr_platform_point_x[i] - R_yx*m->rpr_platform_point_y[i];
+    const real rpr_q_y = R_xx*m->rpr_platform_point_y[i] + R_yx*m->rpr_platform_point_x[i];
     const real t_x = X[0*w + j];
-    const real rpr_S_x = rpr_q_x + t_x - rpr_base_point_x;
-    const real rpr_base_point_y = m->rpr_base_point_y[i];
+    const real rpr_S_x = rpr_q_x + t_x - m->rpr_base_point_x[i];
     const real t_y = X[1*w + j];
-    const real rpr_S_y = rpr_q_y + t_y - rpr_base_point_y;
-    const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-    const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-    const real rpr_S_in_turn1_x = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
-    const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-    const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-    const real rpr_S_in_turn1_y = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+    const real rpr_S_y = rpr_q_y + t_y - m->rpr_base_point_y[i];
+    const real rpr_S_in_turn1_x = rpr_S_x*m->rpr_base_frame_xx[i] +
+        rpr_S_y*m->rpr_base_frame_yx[i];
+    const real rpr_S_in_turn1_y = rpr_S_x*m->rpr_base_frame_xy[i] +
+        rpr_S_y*m->rpr_base_frame_yy[i];
     /* (rpr-q_2) displacement of joint 2 */
     const real rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x +
         rpr_S_in_turn1_y*rpr_S_in_turn1_y;
-    const real rpr_branch_1 = m->rpr_branch_1[i];
-    const real rpr_q_2 = rpr_branch_1*root(rpr_q_2_t);
+    const real rpr_q_2 = m->rpr_branch_1[i]*root(rpr_q_2_t);
     /* (rpr-S_dot) velocity of the connection point */
     const real inv_rpr_q_2 = 1/rpr_q_2;
     const real axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x;
@@ -1443,33 +1473,29 @@ INLINE void stage_rpr_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     /* (rpr-qdd_1_o) remainder of: acceleration of joint 1 */
     const real rpr_qdd_1_o = v->inv_rpr_q_2*rpr_rel_o_in_axes1_y;
     /* (rpr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real gravity_x = m->gravity_x;
-    const real gravity_y = m->gravity_y;
-    const real rpr_g_in_axes1_x = v->axis_x_rpr_axes1_x*gravity_x +
-        v->axis_x_rpr_axes1_y*gravity_y;
-    const real rpr_g_in_axes1_y = v->axis_x_rpr_axes1_x*gravity_y -
-        v->axis_x_rpr_axes1_y*gravity_x;
+    const real rpr_g_in_axes1_x = v->axis_x_rpr_axes1_x*m->gravity_x +
+        v->axis_x_rpr_axes1_y*m->gravity_y;
+    const real rpr_g_in_axes1_y = v->axis_x_rpr_axes1_x*m->gravity_y -
+        v->axis_x_rpr_axes1_y*m->gravity_x;
     const real rpr_acc_2_o_in_axes1_x = v->axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x -
         v->axis_x_rpr_axes1_x*rpr_u_1_t;
     const real rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y;
     /* (rpr-phi_2_o) remainder of: inertia force of link 2 from its turning about its reference point
        */
-    const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
-    const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
-    const real rpr_phi_2_o_in_axes1_x = v->rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x -
-        rpr_h_2_in_spec1_y*rpr_qdd_1_o;
+    const real rpr_phi_2_o_in_axes1_x = v->rpr_W_1_in_axes1_xx*m->rpr_h_2_in_spec1_x[i] -
+        m->rpr_h_2_in_spec1_y[i]*rpr_qdd_1_o;
     /* (rpr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
-    const real rpr_J_group_1_in_axes1_zz = m->rpr_J_group_1_in_axes1_zz[i];
-    const real rpr_h_1_in_spec1_x = m->rpr_h_1_in_spec1_x[i];
-    const real rpr_h_1_in_spec1_y = m->rpr_h_1_in_spec1_y[i];
-    const real rpr_mu_1_o_in_axes1_z = rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o +
-        rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x + rpr_g_in_axes1_x*rpr_h_1_in_spec1_y -
-        rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y - rpr_g_in_axes1_y*rpr_h_1_in_spec1_x;
+    const real rpr_mu_1_o_in_axes1_z = m->rpr_J_group_1_in_axes1_zz[i]*rpr_qdd_1_o +
+        rpr_acc_2_o_in_axes1_y*m->rpr_h_2_in_spec1_x[i] +
+        rpr_g_in_axes1_x*m->rpr_h_1_in_spec1_y[i] -
+        rpr_acc_2_o_in_axes1_x*m->rpr_h_2_in_spec1_y[i] -
+        rpr_g_in_axes1_y*m->rpr_h_1_in_spec1_x[i];
     /* (rpr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
     const real rpr_c_o_in_axes1_y = -v->inv_rpr_q_2*rpr_mu_1_o_in_axes1_z -
-        v->rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y - rpr_h_2_in_spec1_x*rpr_qdd_1_o;
+        v->rpr_W_1_in_axes1_xx*m->rpr_h_2_in_spec1_y[i] -
+        m->rpr_h_2_in_spec1_x[i]*rpr_qdd_1_o;
     /* (rpr-U) velocity and gravity terms of the leg force */
     const real rpr_U_x = v->axis_x_rpr_axes1_x*rpr_phi_2_o_in_axes1_x +
         v->axis_x_rpr_axes1_y*rpr_c_o_in_axes1_y;
@@ -1488,27 +1514,20 @@ INLINE void stage_rpr_inverse_kinematics_potential(const prepared *m, size_t w, 
     /* (rpr-S) from the base point to the connection point */
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
-    const real rpr_base_point_x = m->rpr_base_point_x[i];
-    const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-    const real rpr_platform_point_y = m->rpr_platform_point_y[i];
     const real t_x = X[0*w + j];
-    const real rpr_S_x = t_x + R_xx*rpr_platform_point_x - rpr_base_point_x -
-        R_yx*rpr_platform_point_y;
-    const real rpr_base_point_y = m->rpr_base_point_y[i];
+    const real rpr_S_x = t_x + R_xx*m->rpr_platform_point_x[i] - m->rpr_base_point_x[i] -
+        R_yx*m->rpr_platform_point_y[i];
     const real t_y = X[1*w + j];
-    const real rpr_S_y = t_y + R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x -
-        rpr_base_point_y;
-    const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-    const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-    const real rpr_S_in_turn1_x = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
-    const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-    const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-    const real rpr_S_in_turn1_y = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+    const real rpr_S_y = t_y + R_xx*m->rpr_platform_point_y[i] +
+        R_yx*m->rpr_platform_point_x[i] - m->rpr_base_point_y[i];
+    const real rpr_S_in_turn1_x = rpr_S_x*m->rpr_base_frame_xx[i] +
+        rpr_S_y*m->rpr_base_frame_yx[i];
+    const real rpr_S_in_turn1_y = rpr_S_x*m->rpr_base_frame_xy[i] +
+        rpr_S_y*m->rpr_base_frame_yy[i];
     /* (rpr-q_2) displacement of joint 2 */
     const real rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x +
         rpr_S_in_turn1_y*rpr_S_in_turn1_y;
-    const real rpr_branch_1 = m->rpr_branch_1[i];
-    const real rpr_q_2 = rpr_branch_1*root(rpr_q_2_t);
+    const real rpr_q_2 = m->rpr_branch_1[i]*root(rpr_q_2_t);
     /* (rpr-q_1) displacement of joint 1 */
     const real inv_rpr_q_2 = 1/rpr_q_2;
     v->rpr_S_in_turn1_x = rpr_S_in_turn1_x;
@@ -1533,26 +1552,21 @@ INLINE void stage_rpr_legs_required(const prepared *m, size_t i, values_rpr *v)
     /* (rpr-qdd_1) acceleration of joint 1 */
     const real rpr_qdd_1 = v->inv_rpr_q_2*rpr_rel_in_axes1_y;
     /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
-    const real rpr_acc_2_t = m->rpr_acc_2_t[i];
-    const real rpr_acc_2_t_2 = m->rpr_acc_2_t_2[i];
-    const real rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1;
-    const real rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1;
+    const real rpr_g_in_axes1_x = m->rpr_acc_2_t[i]*rpr_c_1 + m->rpr_acc_2_t_2[i]*rpr_s_1;
+    const real rpr_g_in_axes1_y = m->rpr_acc_2_t_2[i]*rpr_c_1 - m->rpr_acc_2_t[i]*rpr_s_1;
     const real rpr_acc_2_in_axes1_x = v->axis_x_rpr_axes1_x*v->rpr_S_ddot_x +
         v->axis_x_rpr_axes1_y*v->rpr_S_ddot_y - rpr_g_in_axes1_x;
     const real rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y;
     /* (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-    const real rpr_J_group_1_in_axes1_zz = m->rpr_J_group_1_in_axes1_zz[i];
-    const real rpr_h_1_in_spec1_x = m->rpr_h_1_in_spec1_x[i];
-    const real rpr_h_1_in_spec1_y = m->rpr_h_1_in_spec1_y[i];
-    const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
-    const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
-    const real rpr_mu_1_in_axes1_z = rpr_J_group_1_in_axes1_zz*rpr_qdd_1 +
-        rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x + rpr_g_in_axes1_x*rpr_h_1_in_spec1_y -
-        rpr_acc_2_in_axes1_x*rpr_h_2_in_spec1_y - rpr_g_in_axes1_y*rpr_h_1_in_spec1_x;
+    const real rpr_mu_1_in_axes1_z = m->rpr_J_group_1_in_axes1_zz[i]*rpr_qdd_1 +
+        rpr_acc_2_in_axes1_y*m->rpr_h_2_in_spec1_x[i] +
+        rpr_g_in_axes1_x*m->rpr_h_1_in_spec1_y[i] -
+        rpr_acc_2_in_axes1_x*m->rpr_h_2_in_spec1_y[i] -
+        rpr_g_in_axes1_y*m->rpr_h_1_in_spec1_x[i];
     /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real rpr_c_in_axes1_y = -v->inv_rpr_q_2*rpr_mu_1_in_axes1_z -
-        v->rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y - rpr_h_2_in_spec1_x*rpr_qdd_1;
+        v->rpr_W_1_in_axes1_xx*m->rpr_h_2_in_spec1_y[i] - m->rpr_h_2_in_spec1_x[i]*rpr_qdd_1;
     v->rpr_qdd_1 = rpr_qdd_1;
     v->rpr_acc_2_in_axes1_x = rpr_acc_2_in_axes1_x;
     v->rpr_acc_2_in_axes1_y = rpr_acc_2_in_axes1_y;
@@ -1562,877 +1576,840 @@ INLINE void stage_rpr_legs_required(const prepared *m, size_t i, values_rpr *v)
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_V(w, k, V, &v);
-        stage_X(m, w, k, X, &v);
-        /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = v.W_p_xx*v.h_star_x - Z_p_t;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = v.W_p_xx*v.h_star_y - Z_p_t_2;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real Z_q_z = gravity_x*v.h_star_y - gravity_y*v.h_star_x;
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-        s[2*w + k] = v.h_star_x;
-        s[3*w + k] = v.h_star_y;
-        s[4*w + k] = Z_p_x;
-        s[5*w + k] = Z_p_y;
-        s[6*w + k] = Z_q_z;
-    }
+    values v;
+    stage_V(w, k, V, &v);
+    stage_X(m, w, k, X, &v);
+    /* (Z_p) centripetal force and weight of the platform */
+    const real Z_p_x = v.W_p_xx*v.h_star_x - m->Z_p_t;
+    const real Z_p_y = v.W_p_xx*v.h_star_y - m->Z_p_t_2;
+    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    const real Z_q_z = m->gravity_x*v.h_star_y - m->gravity_y*v.h_star_x;
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
+    s[2*w + k] = v.h_star_x;
+    s[3*w + k] = v.h_star_y;
+    s[4*w + k] = Z_p_x;
+    s[5*w + k] = Z_p_y;
+    s[6*w + k] = Z_q_z;
 }
 
-INLINE void dynamics_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
+INLINE void dynamics_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rpr v;
-        stage_rpr_X(m, w, i, j, s, X, &v);
-        stage_rpr_V_X(w, j, V, &v);
-        stage_rpr_Z_dynamics(m, w, i, j, V, &v);
-        /* (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
-        const real rpr_d_c_in_axes1_xy = v.inv_rpr_q_2*rpr_h_2_in_spec1_y;
-        const real rpr_J_group_1_in_axes1_zz = m->rpr_J_group_1_in_axes1_zz[i];
-        const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
-        const real rpr_d_c_in_axes1_yy = -v.inv_rpr_q_2*rpr_h_2_in_spec1_x -
-            v.inv_rpr_q_2*(rpr_h_2_in_spec1_x + v.inv_rpr_q_2*rpr_J_group_1_in_axes1_zz);
-        /* (rpr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rpr_Q_t = R(0.5)*rpr_d_c_in_axes1_yy;
-        const real rpr_Q_t_2 = v.axis_x_rpr_axes1_y*rpr_Q_t -
-            v.axis_x_rpr_axes1_x*rpr_d_c_in_axes1_xy;
-        const real rpr_Q_t_3 = v.axis_x_rpr_axes1_x*rpr_Q_t +
-            v.axis_x_rpr_axes1_y*rpr_d_c_in_axes1_xy;
-        const real rpr_Q_xx = -2*v.axis_x_rpr_axes1_y*rpr_Q_t_2;
-        const real rpr_Q_xy = v.axis_x_rpr_axes1_x*rpr_Q_t_2 + v.axis_x_rpr_axes1_y*rpr_Q_t_3;
-        const real rpr_Q_yy = -2*v.axis_x_rpr_axes1_x*rpr_Q_t_3;
-        /* (M_ta) coupling block of M */
-        const real rpr_M_ta_t = rpr_Q_xy*v.rpr_q_x - rpr_Q_xx*v.rpr_q_y;
-        const real rpr_M_ta_t_2 = rpr_Q_yy*v.rpr_q_x - rpr_Q_xy*v.rpr_q_y;
-        /* (M_aa) rotational block of M */
-        const real rpr_M_aa_t = rpr_M_ta_t_2*v.rpr_q_x - rpr_M_ta_t*v.rpr_q_y;
-        /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-        const real rpr_H_a_2_z = v.axis_x_rpr_axes1_y*v.rpr_q_x - v.axis_x_rpr_axes1_x*v.rpr_q_y;
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, rpr_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, rpr_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, rpr_Q_yy);  /* M_tt_yy_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[3*count + k], add, rpr_M_ta_t);  /* M_ta_xz_of_legs */
-        gather(&terms[4*count + k], add, rpr_M_ta_t_2);  /* M_ta_yz_of_legs */
-        /* (M_aa) rotational block of M */
-        gather(&terms[5*count + k], add, rpr_M_aa_t);  /* M_aa_zz_of_legs */
-        /* (Z_t) translational part of Z */
-        gather(&terms[6*count + k], add, v.rpr_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[7*count + k], add, v.rpr_U_y);  /* Z_t_y_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[8*count + k], add, v.rpr_Z_a_t);  /* Z_a_z_of_legs */
-        /* (rpr-w_2) reciprocal vector 2 */
-        o[0*count + k] = v.axis_x_rpr_axes1_x;
-        o[1*count + k] = v.axis_x_rpr_axes1_y;
-        /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-        o[2*count + k] = rpr_H_a_2_z;
-        o[4*count + k] = v.axis_x_rpr_axes1_x + (v.axis_x_rpr_axes1_y + rpr_H_a_2_z);
-        o[3*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
-            LEAST_2);
-    }
+    values_rpr v;
+    stage_rpr_X(m, w, i, j, s, X, &v);
+    stage_rpr_V_X(w, j, V, &v);
+    stage_rpr_Z_dynamics(m, w, i, j, V, &v);
+    /* (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real rpr_d_c_in_axes1_xy = v.inv_rpr_q_2*m->rpr_h_2_in_spec1_y[i];
+    const real rpr_d_c_in_axes1_yy = -v.inv_rpr_q_2*m->rpr_h_2_in_spec1_x[i] -
+        v.inv_rpr_q_2*(m->rpr_h_2_in_spec1_x[i] +
+        v.inv_rpr_q_2*m->rpr_J_group_1_in_axes1_zz[i]);
+    /* (rpr-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rpr_Q_t = R(0.5)*rpr_d_c_in_axes1_yy;
+    const real rpr_Q_t_2 = v.axis_x_rpr_axes1_y*rpr_Q_t -
+        v.axis_x_rpr_axes1_x*rpr_d_c_in_axes1_xy;
+    const real rpr_Q_t_3 = v.axis_x_rpr_axes1_x*rpr_Q_t +
+        v.axis_x_rpr_axes1_y*rpr_d_c_in_axes1_xy;
+    const real rpr_Q_xx = -2*v.axis_x_rpr_axes1_y*rpr_Q_t_2;
+    const real rpr_Q_xy = v.axis_x_rpr_axes1_x*rpr_Q_t_2 + v.axis_x_rpr_axes1_y*rpr_Q_t_3;
+    const real rpr_Q_yy = -2*v.axis_x_rpr_axes1_x*rpr_Q_t_3;
+    /* (M_ta) coupling block of M */
+    const real rpr_M_ta_t = rpr_Q_xy*v.rpr_q_x - rpr_Q_xx*v.rpr_q_y;
+    const real rpr_M_ta_t_2 = rpr_Q_yy*v.rpr_q_x - rpr_Q_xy*v.rpr_q_y;
+    /* (M_aa) rotational block of M */
+    const real rpr_M_aa_t = rpr_M_ta_t_2*v.rpr_q_x - rpr_M_ta_t*v.rpr_q_y;
+    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
+    const real rpr_H_a_2_z = v.axis_x_rpr_axes1_y*v.rpr_q_x - v.axis_x_rpr_axes1_x*v.rpr_q_y;
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, rpr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, rpr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, rpr_Q_yy);  /* M_tt_yy_of_legs */
+    /* (M_ta) */
+    gather(&terms[3*count + k], add, rpr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, rpr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    /* (M_aa) */
+    gather(&terms[5*count + k], add, rpr_M_aa_t);  /* M_aa_zz_of_legs */
+    /* (Z_t) translational part of Z */
+    gather(&terms[6*count + k], add, v.rpr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[7*count + k], add, v.rpr_U_y);  /* Z_t_y_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[8*count + k], add, v.rpr_Z_a_t);  /* Z_a_z_of_legs */
+    /* (rpr-w_2) reciprocal vector 2 */
+    o[0*count + k] = v.axis_x_rpr_axes1_x;
+    o[1*count + k] = v.axis_x_rpr_axes1_y;
+    /* (rpr-H_a_2) */
+    o[2*count + k] = rpr_H_a_2_z;
+    o[4*count + k] = v.axis_x_rpr_axes1_x + (v.axis_x_rpr_axes1_y + rpr_H_a_2_z);
+    o[3*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
+        LEAST_2);
 }
 
-INLINE void dynamics_place_rpr(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *H, verdict *t)
+INLINE void dynamics_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count, const real
+    *o, real *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
 }
 
-INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const real *sums, real *M,
-    real *Z, verdict *t)
+INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
+    real *M, real *Z, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (M_tt) translational block of M */
-        const real M_tt_xx_of_legs = sums[0*w + k];
-        const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_xx_of_legs + m_star;
-        const real M_tt_yy_of_legs = sums[2*w + k];
-        const real M_tt_yy = M_tt_yy_of_legs + m_star;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xz_of_legs = sums[3*w + k];
-        const real h_star_y = s[3*w + k];
-        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-        const real M_ta_yz_of_legs = sums[4*w + k];
-        const real h_star_x = s[2*w + k];
-        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
-        /* (M_aa) rotational block of M */
-        const real J_star_zz = m->J_star_zz;
-        const real M_aa_zz_of_legs = sums[5*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-        /* (Z_t) translational part of Z */
-        const real Z_p_x = s[4*w + k];
-        const real Z_t_x_of_legs = sums[6*w + k];
-        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[5*w + k];
-        const real Z_t_y_of_legs = sums[7*w + k];
-        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        /* (Z_a) rotational part of Z */
-        const real Z_a_z_of_legs = sums[8*w + k];
-        const real Z_q_z = s[6*w + k];
-        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
-        /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        const real M_tt_xy = sums[1*w + k];
-        M[1*w + k] = M_tt_xy;
-        M[NV*w + k] = M_tt_xy;
-        M[(NV + 1)*w + k] = M_tt_yy;
-        /* (M_ta) coupling block of M */
-        M[2*w + k] = M_ta_xz;
-        M[2*NV*w + k] = M_ta_xz;
-        M[(NV + 2)*w + k] = M_ta_yz;
-        M[(2*NV + 1)*w + k] = M_ta_yz;
-        /* (M_aa) rotational block of M */
-        M[(2*NV + 2)*w + k] = M_aa_zz;
-        /* (Z_t) translational part of Z */
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-        /* (Z_a) rotational part of Z */
-        Z[2*w + k] = Z_a_z;
-        t->total[k] += ((M_tt_xx + M_tt_xy) + (M_tt_yy + M_ta_xz)) + ((M_ta_yz + M_aa_zz) + (Z_t_x
-            + (Z_t_y + Z_a_z)));
-    }
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_yy_of_legs = sums[2*w + k];
+    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    /* (M_ta) */
+    const real M_ta_xz_of_legs = sums[3*w + k];
+    const real h_star_y = s[3*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yz_of_legs = sums[4*w + k];
+    const real h_star_x = s[2*w + k];
+    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    /* (M_aa) */
+    const real M_aa_zz_of_legs = sums[5*w + k];
+    const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
+    /* (Z_t) */
+    const real Z_p_x = s[4*w + k];
+    const real Z_t_x_of_legs = sums[6*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[5*w + k];
+    const real Z_t_y_of_legs = sums[7*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    /* (Z_a) */
+    const real Z_a_z_of_legs = sums[8*w + k];
+    const real Z_q_z = s[6*w + k];
+    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    /* (M_ta) */
+    M[2*w + k] = M_ta_xz;
+    M[2*NV*w + k] = M_ta_xz;
+    M[(NV + 2)*w + k] = M_ta_yz;
+    M[(2*NV + 1)*w + k] = M_ta_yz;
+    /* (M_aa) */
+    M[(2*NV + 2)*w + k] = M_aa_zz;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    /* (Z_a) */
+    Z[2*w + k] = Z_a_z;
+    t->total[k] += ((M_tt_xx + M_tt_xy) + (M_tt_yy + M_ta_xz)) + ((M_ta_yz + M_aa_zz) + (Z_t_x
+        + (Z_t_y + Z_a_z)));
 }
 
-INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
+APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, verdict *t)
 {
     real s[7] = {0}, sums[9] = {0};
     real terms_rpr[9*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
-    dynamics_before(m, 1, X, V, s);
-    dynamics_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), 0, X, V, terms_rpr, o_rpr);
-    for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        dynamics_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, leg, H, t);
+    dynamics_before(m, 1, 0, X, V, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
+        dynamics_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, V, terms_rpr, o_rpr);
+    }
+    for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        dynamics_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
-    dynamics_after(m, 1, s, sums, M, Z, t);
+    dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
-INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
-    real *H, verdict *t)
+APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
+    real *restrict Z, real *restrict H, verdict *restrict t)
 {
     real s[7*LANES], sums[9*LANES];
     real o_rpr[5*LANES];
-    dynamics_before(m, LANES, X, V, s);
-    clear(sums, 9*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        dynamics_legs_rpr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rpr);
-        dynamics_place_rpr(LANES, LANES, o_rpr, leg, 0, H, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        dynamics_before(m, LANES, k, X, V, s);
     }
-    dynamics_after(m, LANES, s, sums, M, Z, t);
+    clear(sums, 9*LANES);
+    for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_legs_rpr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rpr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_place_rpr(LANES, i, k, k, LANES, o_rpr, H, t);
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        dynamics_after(m, LANES, k, s, sums, M, Z, t);
+    }
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-        s[2*w + k] = v.h_star_x;
-        s[3*w + k] = v.h_star_y;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
+    s[2*w + k] = v.h_star_x;
+    s[3*w + k] = v.h_star_y;
 }
 
-INLINE void M_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void M_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rpr v;
-        stage_rpr_X(m, w, i, j, s, X, &v);
-        /* (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
-        const real rpr_d_c_in_axes1_xy = rpr_h_2_in_spec1_y*v.rpr_w_1_in_axes1_y;
-        const real rpr_J_group_1_in_axes1_zz = m->rpr_J_group_1_in_axes1_zz[i];
-        const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
-        const real rpr_d_c_in_axes1_yy = -rpr_h_2_in_spec1_x*v.rpr_w_1_in_axes1_y -
-            v.rpr_w_1_in_axes1_y*(rpr_h_2_in_spec1_x +
-            rpr_J_group_1_in_axes1_zz*v.rpr_w_1_in_axes1_y);
-        /* (rpr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rpr_Q_t = R(0.5)*rpr_d_c_in_axes1_yy;
-        const real rpr_Q_t_2 = rpr_Q_t*v.rpr_w_2_y - rpr_d_c_in_axes1_xy*v.rpr_w_2_x;
-        const real rpr_Q_t_3 = rpr_Q_t*v.rpr_w_2_x + rpr_d_c_in_axes1_xy*v.rpr_w_2_y;
-        const real rpr_Q_xx = -2*rpr_Q_t_2*v.rpr_w_2_y;
-        const real rpr_Q_xy = rpr_Q_t_2*v.rpr_w_2_x + rpr_Q_t_3*v.rpr_w_2_y;
-        const real rpr_Q_yy = -2*rpr_Q_t_3*v.rpr_w_2_x;
-        /* (M_ta) coupling block of M */
-        const real rpr_M_ta_t = rpr_Q_xy*v.rpr_q_x - rpr_Q_xx*v.rpr_q_y;
-        const real rpr_M_ta_t_2 = rpr_Q_yy*v.rpr_q_x - rpr_Q_xy*v.rpr_q_y;
-        /* (M_aa) rotational block of M */
-        const real rpr_M_aa_t = rpr_M_ta_t_2*v.rpr_q_x - rpr_M_ta_t*v.rpr_q_y;
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, rpr_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, rpr_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, rpr_Q_yy);  /* M_tt_yy_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[3*count + k], add, rpr_M_ta_t);  /* M_ta_xz_of_legs */
-        gather(&terms[4*count + k], add, rpr_M_ta_t_2);  /* M_ta_yz_of_legs */
-        /* (M_aa) rotational block of M */
-        gather(&terms[5*count + k], add, rpr_M_aa_t);  /* M_aa_zz_of_legs */
-        o[0*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
-            LEAST_2);
-    }
+    values_rpr v;
+    stage_rpr_X(m, w, i, j, s, X, &v);
+    /* (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real rpr_d_c_in_axes1_xy = m->rpr_h_2_in_spec1_y[i]*v.rpr_w_1_in_axes1_y;
+    const real rpr_d_c_in_axes1_yy = -m->rpr_h_2_in_spec1_x[i]*v.rpr_w_1_in_axes1_y -
+        v.rpr_w_1_in_axes1_y*(m->rpr_h_2_in_spec1_x[i] +
+        m->rpr_J_group_1_in_axes1_zz[i]*v.rpr_w_1_in_axes1_y);
+    /* (rpr-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rpr_Q_t = R(0.5)*rpr_d_c_in_axes1_yy;
+    const real rpr_Q_t_2 = rpr_Q_t*v.rpr_w_2_y - rpr_d_c_in_axes1_xy*v.rpr_w_2_x;
+    const real rpr_Q_t_3 = rpr_Q_t*v.rpr_w_2_x + rpr_d_c_in_axes1_xy*v.rpr_w_2_y;
+    const real rpr_Q_xx = -2*rpr_Q_t_2*v.rpr_w_2_y;
+    const real rpr_Q_xy = rpr_Q_t_2*v.rpr_w_2_x + rpr_Q_t_3*v.rpr_w_2_y;
+    const real rpr_Q_yy = -2*rpr_Q_t_3*v.rpr_w_2_x;
+    /* (M_ta) coupling block of M */
+    const real rpr_M_ta_t = rpr_Q_xy*v.rpr_q_x - rpr_Q_xx*v.rpr_q_y;
+    const real rpr_M_ta_t_2 = rpr_Q_yy*v.rpr_q_x - rpr_Q_xy*v.rpr_q_y;
+    /* (M_aa) rotational block of M */
+    const real rpr_M_aa_t = rpr_M_ta_t_2*v.rpr_q_x - rpr_M_ta_t*v.rpr_q_y;
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, rpr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, rpr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, rpr_Q_yy);  /* M_tt_yy_of_legs */
+    /* (M_ta) */
+    gather(&terms[3*count + k], add, rpr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, rpr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    /* (M_aa) */
+    gather(&terms[5*count + k], add, rpr_M_aa_t);  /* M_aa_zz_of_legs */
+    o[0*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
+        LEAST_2);
 }
 
-INLINE void M_place_rpr(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void M_place_rpr(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o[0*count + first + k];
-    }
+    t->singular[k] += o[0*count + at];
 }
 
-INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums, real *M, verdict
-    *t)
+INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
+    *M, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (M_tt) translational block of M */
-        const real M_tt_xx_of_legs = sums[0*w + k];
-        const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_xx_of_legs + m_star;
-        const real M_tt_yy_of_legs = sums[2*w + k];
-        const real M_tt_yy = M_tt_yy_of_legs + m_star;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xz_of_legs = sums[3*w + k];
-        const real h_star_y = s[3*w + k];
-        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-        const real M_ta_yz_of_legs = sums[4*w + k];
-        const real h_star_x = s[2*w + k];
-        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
-        /* (M_aa) rotational block of M */
-        const real J_star_zz = m->J_star_zz;
-        const real M_aa_zz_of_legs = sums[5*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-        /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        const real M_tt_xy = sums[1*w + k];
-        M[1*w + k] = M_tt_xy;
-        M[NV*w + k] = M_tt_xy;
-        M[(NV + 1)*w + k] = M_tt_yy;
-        /* (M_ta) coupling block of M */
-        M[2*w + k] = M_ta_xz;
-        M[2*NV*w + k] = M_ta_xz;
-        M[(NV + 2)*w + k] = M_ta_yz;
-        M[(2*NV + 1)*w + k] = M_ta_yz;
-        /* (M_aa) rotational block of M */
-        M[(2*NV + 2)*w + k] = M_aa_zz;
-        t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
-    }
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_yy_of_legs = sums[2*w + k];
+    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    /* (M_ta) */
+    const real M_ta_xz_of_legs = sums[3*w + k];
+    const real h_star_y = s[3*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yz_of_legs = sums[4*w + k];
+    const real h_star_x = s[2*w + k];
+    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    /* (M_aa) */
+    const real M_aa_zz_of_legs = sums[5*w + k];
+    const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    /* (M_ta) */
+    M[2*w + k] = M_ta_xz;
+    M[2*NV*w + k] = M_ta_xz;
+    M[(NV + 2)*w + k] = M_ta_yz;
+    M[(2*NV + 1)*w + k] = M_ta_yz;
+    /* (M_aa) */
+    M[(2*NV + 2)*w + k] = M_aa_zz;
+    t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
 }
 
-INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
+APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
     real s[4] = {0}, sums[6] = {0};
     real terms_rpr[6*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
-    M_before(m, 1, X, s);
-    M_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), 0, X, terms_rpr, o_rpr);
-    for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        M_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, t);
+    M_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
+        M_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, terms_rpr, o_rpr);
+    }
+    for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        M_place_rpr(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
-    M_after(m, 1, s, sums, M, t);
+    M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
+INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verdict *restrict t)
 {
     real s[4*LANES], sums[6*LANES];
     real o_rpr[LANES];
-    M_before(m, LANES, X, s);
-    clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        M_legs_rpr(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_rpr);
-        M_place_rpr(LANES, LANES, o_rpr, 0, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        M_before(m, LANES, k, X, s);
     }
-    M_after(m, LANES, s, sums, M, t);
+    clear(sums, 6*LANES);
+    for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            M_legs_rpr(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rpr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            M_place_rpr(k, k, LANES, o_rpr, t);
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        M_after(m, LANES, k, s, sums, M, t);
+    }
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s)
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_V(w, k, V, &v);
-        stage_X(m, w, k, X, &v);
-        /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = v.W_p_xx*v.h_star_x - Z_p_t;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = v.W_p_xx*v.h_star_y - Z_p_t_2;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real Z_q_z = gravity_x*v.h_star_y - gravity_y*v.h_star_x;
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-        s[2*w + k] = Z_p_x;
-        s[3*w + k] = Z_p_y;
-        s[4*w + k] = Z_q_z;
-    }
+    values v;
+    stage_V(w, k, V, &v);
+    stage_X(m, w, k, X, &v);
+    /* (Z_p) centripetal force and weight of the platform */
+    const real Z_p_x = v.W_p_xx*v.h_star_x - m->Z_p_t;
+    const real Z_p_y = v.W_p_xx*v.h_star_y - m->Z_p_t_2;
+    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    const real Z_q_z = m->gravity_x*v.h_star_y - m->gravity_y*v.h_star_x;
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
+    s[2*w + k] = Z_p_x;
+    s[3*w + k] = Z_p_y;
+    s[4*w + k] = Z_q_z;
 }
 
-INLINE void Z_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
+INLINE void Z_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rpr v;
-        stage_rpr_X(m, w, i, j, s, X, &v);
-        stage_rpr_V_X(w, j, V, &v);
-        stage_rpr_Z_dynamics(m, w, i, j, V, &v);
-        /* (Z_t) translational part of Z */
-        gather(&terms[0*count + k], add, v.rpr_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[1*count + k], add, v.rpr_U_y);  /* Z_t_y_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[2*count + k], add, v.rpr_Z_a_t);  /* Z_a_z_of_legs */
-        o[0*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
-            LEAST_2);
-    }
+    values_rpr v;
+    stage_rpr_X(m, w, i, j, s, X, &v);
+    stage_rpr_V_X(w, j, V, &v);
+    stage_rpr_Z_dynamics(m, w, i, j, V, &v);
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v.rpr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v.rpr_U_y);  /* Z_t_y_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[2*count + k], add, v.rpr_Z_a_t);  /* Z_a_z_of_legs */
+    o[0*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
+        LEAST_2);
 }
 
-INLINE void Z_place_rpr(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void Z_place_rpr(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o[0*count + first + k];
-    }
+    t->singular[k] += o[0*count + at];
 }
 
-INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict *t)
+INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (Z_t) translational part of Z */
-        const real Z_p_x = s[2*w + k];
-        const real Z_t_x_of_legs = sums[0*w + k];
-        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[3*w + k];
-        const real Z_t_y_of_legs = sums[1*w + k];
-        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        /* (Z_a) rotational part of Z */
-        const real Z_a_z_of_legs = sums[2*w + k];
-        const real Z_q_z = s[4*w + k];
-        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
-        /* (Z_t) translational part of Z */
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-        /* (Z_a) rotational part of Z */
-        Z[2*w + k] = Z_a_z;
-        t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
-    }
+    /* (Z_t) */
+    const real Z_p_x = s[2*w + k];
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[3*w + k];
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    /* (Z_a) */
+    const real Z_a_z_of_legs = sums[2*w + k];
+    const real Z_q_z = s[4*w + k];
+    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    /* (Z_a) */
+    Z[2*w + k] = Z_a_z;
+    t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
 }
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
     real s[5] = {0}, sums[3] = {0};
     real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
-    Z_before(m, 1, X, V, s);
-    Z_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), 0, X, V, terms_rpr, o_rpr);
-    for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        Z_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, t);
+    Z_before(m, 1, 0, X, V, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
+        Z_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, V, terms_rpr, o_rpr);
+    }
+    for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        Z_place_rpr(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
-    Z_after(1, s, sums, Z, t);
+    Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z, verdict
+    *restrict t)
 {
     real s[5*LANES], sums[3*LANES];
     real o_rpr[LANES];
-    Z_before(m, LANES, X, V, s);
-    clear(sums, 3*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        Z_legs_rpr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rpr);
-        Z_place_rpr(LANES, LANES, o_rpr, 0, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        Z_before(m, LANES, k, X, V, s);
     }
-    Z_after(LANES, s, sums, Z, t);
+    clear(sums, 3*LANES);
+    for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_legs_rpr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rpr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_place_rpr(k, k, LANES, o_rpr, t);
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        Z_after(LANES, k, s, sums, Z, t);
+    }
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
 }
 
-INLINE void H_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, const real *X, real *o)
+INLINE void H_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rpr v;
-        stage_rpr_X(m, w, i, j, s, X, &v);
-        /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-        const real rpr_H_a_2_z = v.rpr_q_x*v.rpr_w_2_y - v.rpr_q_y*v.rpr_w_2_x;
-        /* (rpr-w_2) reciprocal vector 2 */
-        o[0*count + k] = v.rpr_w_2_x;
-        o[1*count + k] = v.rpr_w_2_y;
-        /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-        o[2*count + k] = rpr_H_a_2_z;
-        o[4*count + k] = v.rpr_w_2_x + (v.rpr_w_2_y + rpr_H_a_2_z);
-        o[3*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
-            LEAST_2);
-    }
+    values_rpr v;
+    stage_rpr_X(m, w, i, j, s, X, &v);
+    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
+    const real rpr_H_a_2_z = v.rpr_q_x*v.rpr_w_2_y - v.rpr_q_y*v.rpr_w_2_x;
+    /* (rpr-w_2) reciprocal vector 2 */
+    o[0*count + k] = v.rpr_w_2_x;
+    o[1*count + k] = v.rpr_w_2_y;
+    /* (rpr-H_a_2) */
+    o[2*count + k] = rpr_H_a_2_z;
+    o[4*count + k] = v.rpr_w_2_x + (v.rpr_w_2_y + rpr_H_a_2_z);
+    o[3*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
+        LEAST_2);
 }
 
-INLINE void H_place_rpr(size_t w, size_t count, const real *o, size_t leg, size_t first, real *H,
-    verdict *t)
+INLINE void H_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
+    *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
 }
 
-INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
+APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
     real s[2] = {0};
     real o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
-    H_before(m, 1, X, s);
-    H_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), X, o_rpr);
-    for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        H_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, leg, H, t);
+    H_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
+        H_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, o_rpr);
+    }
+    for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        H_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, H, t);
     }
 }
 
-INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
+INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verdict *restrict t)
 {
     real s[2*LANES];
     real o_rpr[5*LANES];
-    H_before(m, LANES, X, s);
-    for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        H_legs_rpr(m, LANES, leg, 0, s, 1, LANES, X, o_rpr);
-        H_place_rpr(LANES, LANES, o_rpr, leg, 0, H, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        H_before(m, LANES, k, X, s);
+    }
+    for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            H_legs_rpr(m, LANES, i, k, k, LANES, s, X, o_rpr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            H_place_rpr(LANES, i, k, k, LANES, o_rpr, H, t);
+        }
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, real *s)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_V(w, k, V, &v);
-        stage_X(m, w, k, X, &v);
-        /* (a_t) acceleration of the platform origin, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real t_ddot_x = A[0*w + k];
-        const real a_t_x = t_ddot_x - gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real t_ddot_y = A[1*w + k];
-        const real a_t_y = t_ddot_y - gravity_y;
-        /* (f_p) inertia force of the platform less its weight */
-        const real alpha_z = A[2*w + k];
-        const real m_star = m->m_star;
-        const real f_p_x = v.W_p_xx*v.h_star_x + a_t_x*m_star - alpha_z*v.h_star_y;
-        const real f_p_y = v.W_p_xx*v.h_star_y + a_t_y*m_star + alpha_z*v.h_star_x;
-        /* (mu_p) inertia moment of the platform less that of its weight */
-        const real J_star_zz = m->J_star_zz;
-        const real mu_p_z = J_star_zz*alpha_z + a_t_y*v.h_star_x - a_t_x*v.h_star_y;
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-        s[2*w + k] = f_p_x;
-        s[3*w + k] = f_p_y;
-        s[4*w + k] = mu_p_z;
-    }
+    values v;
+    stage_V(w, k, V, &v);
+    stage_X(m, w, k, X, &v);
+    /* (a_t) acceleration of the platform origin, less gravity */
+    const real t_ddot_x = A[0*w + k];
+    const real a_t_x = t_ddot_x - m->gravity_x;
+    const real t_ddot_y = A[1*w + k];
+    const real a_t_y = t_ddot_y - m->gravity_y;
+    /* (f_p) inertia force of the platform less its weight */
+    const real alpha_z = A[2*w + k];
+    const real f_p_x = v.W_p_xx*v.h_star_x + a_t_x*m->m_star - alpha_z*v.h_star_y;
+    const real f_p_y = v.W_p_xx*v.h_star_y + a_t_y*m->m_star + alpha_z*v.h_star_x;
+    /* (mu_p) inertia moment of the platform less that of its weight */
+    const real mu_p_z = m->J_star_zz*alpha_z + a_t_y*v.h_star_x - a_t_x*v.h_star_y;
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
+    s[2*w + k] = f_p_x;
+    s[3*w + k] = f_p_y;
+    s[4*w + k] = mu_p_z;
 }
 
-INLINE void required_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
-    *terms, real *o)
+INLINE void required_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, const real *V, const real *A, real *terms, real
+    *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rpr v;
-        stage_rpr_X(m, w, i, j, s, X, &v);
-        stage_rpr_A_X(w, j, A, &v);
-        stage_rpr_V_X(w, j, V, &v);
-        stage_rpr_A_V_X(w, j, V, &v);
-        stage_rpr_legs_required(m, i, &v);
-        /* (rpr-phi_2) inertia force of link 2 from its turning about its reference point */
-        const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
-        const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
-        const real rpr_phi_2_in_axes1_x = v.rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x -
-            rpr_h_2_in_spec1_y*v.rpr_qdd_1;
-        /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real rpr_c_x = -v.axis_x_rpr_axes1_x*rpr_phi_2_in_axes1_x -
-            v.axis_x_rpr_axes1_y*v.rpr_c_in_axes1_y;
-        const real rpr_c_y = v.axis_x_rpr_axes1_x*v.rpr_c_in_axes1_y -
-            v.axis_x_rpr_axes1_y*rpr_phi_2_in_axes1_x;
-        /* (R_a) moment that actuators and external wrench must give */
-        const real rpr_R_a_t = rpr_c_x*v.rpr_q_y - rpr_c_y*v.rpr_q_x;
-        /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-        const real rpr_H_a_2_z = v.axis_x_rpr_axes1_y*v.rpr_q_x - v.axis_x_rpr_axes1_x*v.rpr_q_y;
-        /* (R_t) force that actuators and external wrench must give */
-        gather(&terms[0*count + k], add, rpr_c_x);  /* R_t_x_of_legs */
-        gather(&terms[1*count + k], add, rpr_c_y);  /* R_t_y_of_legs */
-        /* (R_a) moment that actuators and external wrench must give */
-        gather(&terms[2*count + k], add, rpr_R_a_t);  /* R_a_z_of_legs */
-        /* (rpr-w_2) reciprocal vector 2 */
-        o[0*count + k] = v.axis_x_rpr_axes1_x;
-        o[1*count + k] = v.axis_x_rpr_axes1_y;
-        /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-        o[2*count + k] = rpr_H_a_2_z;
-        o[3*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
-            LEAST_2);
-    }
+    values_rpr v;
+    stage_rpr_X(m, w, i, j, s, X, &v);
+    stage_rpr_A_X(w, j, A, &v);
+    stage_rpr_V_X(w, j, V, &v);
+    stage_rpr_A_V_X(w, j, V, &v);
+    stage_rpr_legs_required(m, i, &v);
+    /* (rpr-phi_2) inertia force of link 2 from its turning about its reference point */
+    const real rpr_phi_2_in_axes1_x = v.rpr_W_1_in_axes1_xx*m->rpr_h_2_in_spec1_x[i] -
+        m->rpr_h_2_in_spec1_y[i]*v.rpr_qdd_1;
+    /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real rpr_c_x = -v.axis_x_rpr_axes1_x*rpr_phi_2_in_axes1_x -
+        v.axis_x_rpr_axes1_y*v.rpr_c_in_axes1_y;
+    const real rpr_c_y = v.axis_x_rpr_axes1_x*v.rpr_c_in_axes1_y -
+        v.axis_x_rpr_axes1_y*rpr_phi_2_in_axes1_x;
+    /* (R_a) moment that actuators and external wrench must give */
+    const real rpr_R_a_t = rpr_c_x*v.rpr_q_y - rpr_c_y*v.rpr_q_x;
+    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
+    const real rpr_H_a_2_z = v.axis_x_rpr_axes1_y*v.rpr_q_x - v.axis_x_rpr_axes1_x*v.rpr_q_y;
+    /* (R_t) force that actuators and external wrench must give */
+    gather(&terms[0*count + k], add, rpr_c_x);  /* R_t_x_of_legs */
+    gather(&terms[1*count + k], add, rpr_c_y);  /* R_t_y_of_legs */
+    /* (R_a) */
+    gather(&terms[2*count + k], add, rpr_R_a_t);  /* R_a_z_of_legs */
+    /* (rpr-w_2) reciprocal vector 2 */
+    o[0*count + k] = v.axis_x_rpr_axes1_x;
+    o[1*count + k] = v.axis_x_rpr_axes1_y;
+    /* (rpr-H_a_2) */
+    o[2*count + k] = rpr_H_a_2_z;
+    o[3*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
+        LEAST_2);
 }
 
-INLINE void required_place_rpr(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *H, verdict *t)
+INLINE void required_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count, const real
+    *o, real *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    t->singular[k] += o[3*count + at];
 }
 
-INLINE void required_after(size_t w, const real *s, const real *sums, real *required)
+INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (R_t) force that actuators and external wrench must give */
-        const real R_t_x_of_legs = sums[0*w + k];
-        const real f_p_x = s[2*w + k];
-        const real R_t_x = f_p_x - R_t_x_of_legs;
-        const real R_t_y_of_legs = sums[1*w + k];
-        const real f_p_y = s[3*w + k];
-        const real R_t_y = f_p_y - R_t_y_of_legs;
-        /* (R_a) moment that actuators and external wrench must give */
-        const real R_a_z_of_legs = sums[2*w + k];
-        const real mu_p_z = s[4*w + k];
-        const real R_a_z = R_a_z_of_legs + mu_p_z;
-        /* (R_t) force that actuators and external wrench must give */
-        required[0*w + k] = R_t_x;
-        required[1*w + k] = R_t_y;
-        /* (R_a) moment that actuators and external wrench must give */
-        required[2*w + k] = R_a_z;
-    }
+    /* (R_t) */
+    const real R_t_x_of_legs = sums[0*w + k];
+    const real f_p_x = s[2*w + k];
+    const real R_t_x = f_p_x - R_t_x_of_legs;
+    const real R_t_y_of_legs = sums[1*w + k];
+    const real f_p_y = s[3*w + k];
+    const real R_t_y = f_p_y - R_t_y_of_legs;
+    /* (R_a) */
+    const real R_a_z_of_legs = sums[2*w + k];
+    const real mu_p_z = s[4*w + k];
+    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    /* (R_t) */
+    required[0*w + k] = R_t_x;
+    required[1*w + k] = R_t_y;
+    /* (R_a) */
+    required[2*w + k] = R_a_z;
 }
 
-INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
     real s[5] = {0}, sums[3] = {0};
     real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
-    required_before(m, 1, X, V, A, s);
-    required_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), 0, X, V, A, terms_rpr, o_rpr);
-    for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        required_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, leg, H, t);
+    required_before(m, 1, 0, X, V, A, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
+        required_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, V, A, terms_rpr, o_rpr);
+    }
+    for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        required_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, H, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
-    required_after(1, s, sums, required);
+    required_after(1, 0, s, sums, required);
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, real
+    *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
 }
 
-INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, const real *X, real *o)
+INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k,
+    size_t count, const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rpr v;
-        stage_rpr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-        /* (rpr-q_1) displacement of joint 1 */
-        const real rpr_q_1 = angle(v.inv_rpr_q_2*v.rpr_S_in_turn1_y,
-            v.inv_rpr_q_2*v.rpr_S_in_turn1_x);
-        /* (rpr-q_1) displacement of joint 1 */
-        o[0*count + k] = rpr_q_1;
-        /* (rpr-q_2) displacement of joint 2 */
-        o[1*count + k] = v.rpr_q_2;
-        o[3*count + k] = rpr_q_1 + v.rpr_q_2;
-        o[2*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
-            LEAST_2);
-    }
+    values_rpr v;
+    stage_rpr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
+    /* (rpr-q_1) displacement of joint 1 */
+    const real rpr_q_1 = angle(v.inv_rpr_q_2*v.rpr_S_in_turn1_y,
+        v.inv_rpr_q_2*v.rpr_S_in_turn1_x);
+    /* (rpr-q_1) */
+    o[0*count + k] = rpr_q_1;
+    /* (rpr-q_2) displacement of joint 2 */
+    o[1*count + k] = v.rpr_q_2;
+    o[3*count + k] = rpr_q_1 + v.rpr_q_2;
+    o[2*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
+        LEAST_2);
 }
 
-INLINE void inverse_kinematics_place_rpr(size_t w, size_t count, const real *o, size_t leg, size_t
-    first, real *q, verdict *t)
+INLINE void inverse_kinematics_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count,
+    const real *o, real *q, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        q[2*leg*w + k] = o[0*count + first + k];
-        q[(1 + 2*leg)*w + k] = o[1*count + first + k];
-        t->singular[k] += o[2*count + first + k];
-        t->total[k] += o[3*count + first + k];
-    }
+    q[2*i*w + k] = o[0*count + at];
+    q[(1 + 2*i)*w + k] = o[1*count + at];
+    t->singular[k] += o[2*count + at];
+    t->total[k] += o[3*count + at];
 }
 
-INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
+APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
     real s[2] = {0};
     real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
-    inverse_kinematics_before(m, 1, X, s);
-    inverse_kinematics_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), X, o_rpr);
-    for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        inverse_kinematics_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, leg, q, t);
+    inverse_kinematics_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
+        inverse_kinematics_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, o_rpr);
+    }
+    for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        inverse_kinematics_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, q, t);
     }
 }
 
-INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
+INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
+    verdict *restrict t)
 {
     real s[2*LANES];
     real o_rpr[4*LANES];
-    inverse_kinematics_before(m, LANES, X, s);
-    for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        inverse_kinematics_legs_rpr(m, LANES, leg, 0, s, 1, LANES, X, o_rpr);
-        inverse_kinematics_place_rpr(LANES, LANES, o_rpr, leg, 0, q, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        inverse_kinematics_before(m, LANES, k, X, s);
+    }
+    for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_legs_rpr(m, LANES, i, k, k, LANES, s, X, o_rpr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_place_rpr(LANES, i, k, k, LANES, o_rpr, q, t);
+        }
     }
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
 }
 
-INLINE void joint_rates_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, const real *X, const real *V, real *o)
+INLINE void joint_rates_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, const real *s, const real *X, const real *V, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rpr v;
-        stage_rpr_X(m, w, i, j, s, X, &v);
-        /* (rpr-S_dot) velocity of the connection point */
-        const real omega_z = V[2*w + j];
-        const real t_dot_x = V[0*w + j];
-        const real rpr_S_dot_x = t_dot_x - omega_z*v.rpr_q_y;
-        const real t_dot_y = V[1*w + j];
-        const real rpr_S_dot_y = t_dot_y + omega_z*v.rpr_q_x;
-        const real rpr_S_dot_in_axes1_x = v.axis_x_rpr_axes1_x*rpr_S_dot_x +
-            v.axis_x_rpr_axes1_y*rpr_S_dot_y;
-        /* (rpr-qd_1) rate of joint 1 */
-        const real rpr_qd_1 = v.inv_rpr_q_2*(v.axis_x_rpr_axes1_x*rpr_S_dot_y -
-            v.axis_x_rpr_axes1_y*rpr_S_dot_x);
-        /* (rpr-qd_1) rate of joint 1 */
-        o[0*count + k] = rpr_qd_1;
-        /* (rpr-qd_2) rate of joint 2 */
-        o[1*count + k] = rpr_S_dot_in_axes1_x;
-        o[3*count + k] = rpr_qd_1 + rpr_S_dot_in_axes1_x;
-        o[2*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
-            LEAST_2);
-    }
+    values_rpr v;
+    stage_rpr_X(m, w, i, j, s, X, &v);
+    /* (rpr-S_dot) velocity of the connection point */
+    const real omega_z = V[2*w + j];
+    const real t_dot_x = V[0*w + j];
+    const real rpr_S_dot_x = t_dot_x - omega_z*v.rpr_q_y;
+    const real t_dot_y = V[1*w + j];
+    const real rpr_S_dot_y = t_dot_y + omega_z*v.rpr_q_x;
+    const real rpr_S_dot_in_axes1_x = v.axis_x_rpr_axes1_x*rpr_S_dot_x +
+        v.axis_x_rpr_axes1_y*rpr_S_dot_y;
+    /* (rpr-qd_1) rate of joint 1 */
+    const real rpr_qd_1 = v.inv_rpr_q_2*(v.axis_x_rpr_axes1_x*rpr_S_dot_y -
+        v.axis_x_rpr_axes1_y*rpr_S_dot_x);
+    /* (rpr-qd_1) */
+    o[0*count + k] = rpr_qd_1;
+    /* (rpr-qd_2) rate of joint 2 */
+    o[1*count + k] = rpr_S_dot_in_axes1_x;
+    o[3*count + k] = rpr_qd_1 + rpr_S_dot_in_axes1_x;
+    o[2*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
+        LEAST_2);
 }
 
-INLINE void joint_rates_place_rpr(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *qd, verdict *t)
+INLINE void joint_rates_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count, const
+    real *o, real *qd, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        qd[2*leg*w + k] = o[0*count + first + k];
-        qd[(1 + 2*leg)*w + k] = o[1*count + first + k];
-        t->singular[k] += o[2*count + first + k];
-        t->total[k] += o[3*count + first + k];
-    }
+    qd[2*i*w + k] = o[0*count + at];
+    qd[(1 + 2*i)*w + k] = o[1*count + at];
+    t->singular[k] += o[2*count + at];
+    t->total[k] += o[3*count + at];
 }
 
-INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
     real s[2] = {0};
     real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
-    joint_rates_before(m, 1, X, s);
-    joint_rates_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), X, V, o_rpr);
-    for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        joint_rates_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, leg, qd, t);
+    joint_rates_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
+        joint_rates_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, V, o_rpr);
+    }
+    for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        joint_rates_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, qd, t);
     }
 }
 
-INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
-    verdict *t)
+INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
+    qd, verdict *restrict t)
 {
     real s[2*LANES];
     real o_rpr[4*LANES];
-    joint_rates_before(m, LANES, X, s);
-    for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        joint_rates_legs_rpr(m, LANES, leg, 0, s, 1, LANES, X, V, o_rpr);
-        joint_rates_place_rpr(LANES, LANES, o_rpr, leg, 0, qd, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        joint_rates_before(m, LANES, k, X, s);
+    }
+    for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_legs_rpr(m, LANES, i, k, k, LANES, s, X, V, o_rpr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_place_rpr(LANES, i, k, k, LANES, o_rpr, qd, t);
+        }
     }
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
+    *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
 }
 
-INLINE void joint_accelerations_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
-    *o)
+INLINE void joint_accelerations_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t
+    k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rpr v;
-        stage_rpr_X(m, w, i, j, s, X, &v);
-        stage_rpr_A_X(w, j, A, &v);
-        stage_rpr_V_X(w, j, V, &v);
-        stage_rpr_A_V_X(w, j, V, &v);
-        /* (rpr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rpr_rel_in_axes1_x = v.axis_x_rpr_axes1_x*v.rpr_S_ddot_x +
-            v.axis_x_rpr_axes1_y*v.rpr_S_ddot_y + v.rpr_q_2*v.rpr_qd_1*v.rpr_qd_1;
-        const real rpr_rel_in_axes1_y = v.axis_x_rpr_axes1_x*v.rpr_S_ddot_y -
-            v.axis_x_rpr_axes1_y*v.rpr_S_ddot_x - 2*v.rpr_S_dot_in_axes1_x*v.rpr_qd_1;
-        /* (rpr-qdd_1) acceleration of joint 1 */
-        const real rpr_qdd_1 = v.inv_rpr_q_2*rpr_rel_in_axes1_y;
-        /* (rpr-qdd_1) acceleration of joint 1 */
-        o[0*count + k] = rpr_qdd_1;
-        /* (rpr-qdd_2) acceleration of joint 2 */
-        o[1*count + k] = rpr_rel_in_axes1_x;
-        o[3*count + k] = rpr_qdd_1 + rpr_rel_in_axes1_x;
-        o[2*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
-            LEAST_2);
-    }
+    values_rpr v;
+    stage_rpr_X(m, w, i, j, s, X, &v);
+    stage_rpr_A_X(w, j, A, &v);
+    stage_rpr_V_X(w, j, V, &v);
+    stage_rpr_A_V_X(w, j, V, &v);
+    /* (rpr-rel) acceleration of the connection point left to the joint accelerations */
+    const real rpr_rel_in_axes1_x = v.axis_x_rpr_axes1_x*v.rpr_S_ddot_x +
+        v.axis_x_rpr_axes1_y*v.rpr_S_ddot_y + v.rpr_q_2*v.rpr_qd_1*v.rpr_qd_1;
+    const real rpr_rel_in_axes1_y = v.axis_x_rpr_axes1_x*v.rpr_S_ddot_y -
+        v.axis_x_rpr_axes1_y*v.rpr_S_ddot_x - 2*v.rpr_S_dot_in_axes1_x*v.rpr_qd_1;
+    /* (rpr-qdd_1) acceleration of joint 1 */
+    const real rpr_qdd_1 = v.inv_rpr_q_2*rpr_rel_in_axes1_y;
+    /* (rpr-qdd_1) */
+    o[0*count + k] = rpr_qdd_1;
+    /* (rpr-qdd_2) acceleration of joint 2 */
+    o[1*count + k] = rpr_rel_in_axes1_x;
+    o[3*count + k] = rpr_qdd_1 + rpr_rel_in_axes1_x;
+    o[2*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
+        LEAST_2);
 }
 
-INLINE void joint_accelerations_place_rpr(size_t w, size_t count, const real *o, size_t leg,
-    size_t first, real *qdd, verdict *t)
+INLINE void joint_accelerations_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count,
+    const real *o, real *qdd, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        qdd[2*leg*w + k] = o[0*count + first + k];
-        qdd[(1 + 2*leg)*w + k] = o[1*count + first + k];
-        t->singular[k] += o[2*count + first + k];
-        t->total[k] += o[3*count + first + k];
-    }
+    qdd[2*i*w + k] = o[0*count + at];
+    qdd[(1 + 2*i)*w + k] = o[1*count + at];
+    t->singular[k] += o[2*count + at];
+    t->total[k] += o[3*count + at];
 }
 
-INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd, verdict *t)
+APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
+    real *qdd, verdict *t)
 {
     real s[2] = {0};
     real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
-    joint_accelerations_before(m, 1, X, s);
-    joint_accelerations_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), X, V, A, o_rpr);
-    for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        joint_accelerations_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, leg, qdd, t);
+    joint_accelerations_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
+        joint_accelerations_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, V, A, o_rpr);
+    }
+    for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        joint_accelerations_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, qdd, t);
     }
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *qdd, verdict *t)
+    real *A, real *restrict qdd, verdict *restrict t)
 {
     real s[2*LANES];
     real o_rpr[4*LANES];
-    joint_accelerations_before(m, LANES, X, s);
-    for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        joint_accelerations_legs_rpr(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_rpr);
-        joint_accelerations_place_rpr(LANES, LANES, o_rpr, leg, 0, qdd, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        joint_accelerations_before(m, LANES, k, X, s);
+    }
+    for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_legs_rpr(m, LANES, i, k, k, LANES, s, X, V, A, o_rpr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_place_rpr(LANES, i, k, k, LANES, o_rpr, qdd, t);
+        }
     }
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
 }
 
-INLINE void legs_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
+INLINE void legs_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    const real *s, const real *X, const real *V, const real *A, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rpr v;
-        stage_rpr_X(m, w, i, j, s, X, &v);
-        stage_rpr_A_X(w, j, A, &v);
-        stage_rpr_V_X(w, j, V, &v);
-        stage_rpr_A_V_X(w, j, V, &v);
-        stage_rpr_legs_required(m, i, &v);
-        /* (rpr-c_true) leg force on the platform without actuation, the last link's mass included */
-        const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
-        const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
-        const real rpr_link2_mass = m->rpr_link2_mass[i];
-        const real rpr_c_true_in_axes1_x = rpr_h_2_in_spec1_y*v.rpr_qdd_1 -
-            v.rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x - v.rpr_acc_2_in_axes1_x*rpr_link2_mass;
-        const real rpr_c_true_in_axes1_y = v.rpr_c_in_axes1_y -
-            v.rpr_acc_2_in_axes1_y*rpr_link2_mass;
-        const real rpr_c_true_x = v.axis_x_rpr_axes1_x*rpr_c_true_in_axes1_x -
-            v.axis_x_rpr_axes1_y*rpr_c_true_in_axes1_y;
-        const real rpr_c_true_y = v.axis_x_rpr_axes1_x*rpr_c_true_in_axes1_y +
-            v.axis_x_rpr_axes1_y*rpr_c_true_in_axes1_x;
-        /* (rpr-c_true) leg force on the platform without actuation, the last link's mass included */
-        o[0*count + k] = rpr_c_true_x;
-        o[1*count + k] = rpr_c_true_y;
-        /* (rpr-w_2) reciprocal vector 2 */
-        o[2*count + k] = v.axis_x_rpr_axes1_x;
-        o[3*count + k] = v.axis_x_rpr_axes1_y;
-        o[4*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
-            LEAST_2);
-    }
+    values_rpr v;
+    stage_rpr_X(m, w, i, j, s, X, &v);
+    stage_rpr_A_X(w, j, A, &v);
+    stage_rpr_V_X(w, j, V, &v);
+    stage_rpr_A_V_X(w, j, V, &v);
+    stage_rpr_legs_required(m, i, &v);
+    /* (rpr-c_true) leg force on the platform without actuation, the last link's mass included */
+    const real rpr_c_true_in_axes1_x = m->rpr_h_2_in_spec1_y[i]*v.rpr_qdd_1 -
+        v.rpr_W_1_in_axes1_xx*m->rpr_h_2_in_spec1_x[i] -
+        v.rpr_acc_2_in_axes1_x*m->rpr_link2_mass[i];
+    const real rpr_c_true_in_axes1_y = v.rpr_c_in_axes1_y -
+        v.rpr_acc_2_in_axes1_y*m->rpr_link2_mass[i];
+    const real rpr_c_true_x = v.axis_x_rpr_axes1_x*rpr_c_true_in_axes1_x -
+        v.axis_x_rpr_axes1_y*rpr_c_true_in_axes1_y;
+    const real rpr_c_true_y = v.axis_x_rpr_axes1_x*rpr_c_true_in_axes1_y +
+        v.axis_x_rpr_axes1_y*rpr_c_true_in_axes1_x;
+    /* (rpr-c_true) */
+    o[0*count + k] = rpr_c_true_x;
+    o[1*count + k] = rpr_c_true_y;
+    /* (rpr-w_2) reciprocal vector 2 */
+    o[2*count + k] = v.axis_x_rpr_axes1_x;
+    o[3*count + k] = v.axis_x_rpr_axes1_y;
+    o[4*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
+        LEAST_2);
 }
 
-INLINE void legs_place_rpr(size_t w, size_t count, const real *o, size_t leg, size_t first, real
-    *leg_force, real *actuator, verdict *t)
+INLINE void legs_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *leg_force, real *actuator, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        leg_force[3*leg*w + k] = o[0*count + first + k];
-        leg_force[(3*leg + 1)*w + k] = o[1*count + first + k];
-        actuator[3*leg*w + k] = o[2*count + first + k];
-        actuator[(3*leg + 1)*w + k] = o[3*count + first + k];
-        t->singular[k] += o[4*count + first + k];
-    }
+    leg_force[3*i*w + k] = o[0*count + at];
+    leg_force[(3*i + 1)*w + k] = o[1*count + at];
+    actuator[3*i*w + k] = o[2*count + at];
+    actuator[(3*i + 1)*w + k] = o[3*count + at];
+    t->singular[k] += o[4*count + at];
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
@@ -2442,204 +2419,173 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     real o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
     clear(leg_force, 3*NL);
     clear(actuator, 12);
-    legs_before(m, 1, X, s);
-    legs_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), X, V, A, o_rpr);
-    for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        legs_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, leg, leg_force, actuator, t);
+    legs_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
+        legs_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, V, A, o_rpr);
+    }
+    for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        legs_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, leg_force, actuator, t);
     }
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        /* (potential) potential energy */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real m_star = m->m_star;
-        const real t_x = X[0*w + k];
-        const real t_y = X[1*w + k];
-        const real potential_t = gravity_x*(v.R_xx*h_star_in_platform_x + m_star*t_x -
-            v.R_yx*h_star_in_platform_y) + gravity_y*(v.R_xx*h_star_in_platform_y +
-            v.R_yx*h_star_in_platform_x + m_star*t_y);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-        s[2*w + k] = potential_t;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    /* (potential) potential energy */
+    const real t_x = X[0*w + k];
+    const real t_y = X[1*w + k];
+    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x + m->m_star*t_x -
+        v.R_yx*m->h_star_in_platform_y) + m->gravity_y*(v.R_xx*m->h_star_in_platform_y +
+        v.R_yx*m->h_star_in_platform_x + m->m_star*t_y);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
+    s[2*w + k] = potential_t;
 }
 
-INLINE void potential_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void potential_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rpr v;
-        stage_rpr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-        /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real rpr_c_1 = v.inv_rpr_q_2*v.rpr_S_in_turn1_x;
-        /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rpr_s_1 = v.inv_rpr_q_2*v.rpr_S_in_turn1_y;
-        /* (potential) potential energy */
-        const real rpr_acc_2_t = m->rpr_acc_2_t[i];
-        const real rpr_acc_2_t_2 = m->rpr_acc_2_t_2[i];
-        const real rpr_h_1_in_spec1_x = m->rpr_h_1_in_spec1_x[i];
-        const real rpr_h_1_in_spec1_y = m->rpr_h_1_in_spec1_y[i];
-        const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
-        const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
-        const real rpr_link1_mass = m->rpr_link1_mass[i];
-        const real rpr_potential_t = m->rpr_potential_t[i];
-        const real rpr_potential_t_2 = m->rpr_potential_t_2[i];
-        const real rpr_potential_t_3 = (rpr_acc_2_t*rpr_c_1 +
-            rpr_acc_2_t_2*rpr_s_1)*(rpr_h_1_in_spec1_x + rpr_h_2_in_spec1_x +
-            rpr_link1_mass*(rpr_c_1*rpr_potential_t + rpr_potential_t_2*rpr_s_1)) +
-            (rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1)*(rpr_h_1_in_spec1_y + rpr_h_2_in_spec1_y
-            + rpr_link1_mass*(rpr_c_1*rpr_potential_t_2 - rpr_potential_t*rpr_s_1));
-        /* (potential) potential energy */
-        gather(&terms[0*count + k], add, rpr_potential_t_3);  /* potential_of_legs */
-        o[0*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
-            LEAST_2);
-    }
+    values_rpr v;
+    stage_rpr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
+    /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real rpr_c_1 = v.inv_rpr_q_2*v.rpr_S_in_turn1_x;
+    /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
+    const real rpr_s_1 = v.inv_rpr_q_2*v.rpr_S_in_turn1_y;
+    /* (potential) */
+    const real rpr_potential_t_3 = (m->rpr_acc_2_t[i]*rpr_c_1 +
+        m->rpr_acc_2_t_2[i]*rpr_s_1)*(m->rpr_h_1_in_spec1_x[i] + m->rpr_h_2_in_spec1_x[i] +
+        m->rpr_link1_mass[i]*(rpr_c_1*m->rpr_potential_t[i] +
+        m->rpr_potential_t_2[i]*rpr_s_1)) + (m->rpr_acc_2_t_2[i]*rpr_c_1 -
+        m->rpr_acc_2_t[i]*rpr_s_1)*(m->rpr_h_1_in_spec1_y[i] + m->rpr_h_2_in_spec1_y[i] +
+        m->rpr_link1_mass[i]*(rpr_c_1*m->rpr_potential_t_2[i] -
+        m->rpr_potential_t[i]*rpr_s_1));
+    /* (potential) */
+    gather(&terms[0*count + k], add, rpr_potential_t_3);  /* potential_of_legs */
+    o[0*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
+        LEAST_2);
 }
 
-INLINE void potential_place_rpr(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void potential_place_rpr(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o[0*count + first + k];
-    }
+    t->singular[k] += o[0*count + at];
 }
 
-INLINE void potential_after(size_t w, const real *s, const real *sums, real *potential)
+INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (potential) potential energy */
-        const real potential_of_legs = sums[0*w + k];
-        const real potential_t = s[2*w + k];
-        const real potential_ = -potential_of_legs - potential_t;
-        /* (potential) potential energy */
-        potential[0*w + k] = potential_;
-    }
+    /* (potential) */
+    const real potential_of_legs = sums[0*w + k];
+    const real potential_t = s[2*w + k];
+    const real potential_ = -potential_of_legs - potential_t;
+    /* (potential) */
+    potential[0*w + k] = potential_;
 }
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
     real s[3] = {0}, sums[1] = {0};
     real terms_rpr[LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
-    potential_before(m, 1, X, s);
-    potential_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), 0, X, terms_rpr, o_rpr);
-    for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        potential_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, t);
+    potential_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
+        potential_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, terms_rpr, o_rpr);
+    }
+    for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        potential_place_rpr(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
-    potential_after(1, s, sums, potential);
+    potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
-    verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
+    *lengths, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        lengths[1*w + k] = R(0.62);
-        t->total[k] += 0;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    lengths[1*w + k] = R(0.62);
+    t->total[k] += 0;
 }
 
-INLINE void condition_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void condition_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rpr v;
-        stage_rpr_X(m, w, i, j, s, X, &v);
-        /* (rpr-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real rpr_pivot_size = magnitude(v.rpr_q_2_t);
-        const real rpr_pivot_size_2 = magnitude(v.rpr_q_2);
-        const real rpr_least_pivots = lesser(R(1.6129032258064515)*root(rpr_pivot_size),
-            R(1.6129032258064517)*rpr_pivot_size_2);
-        /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-        const real rpr_H_a_2_z = v.rpr_q_x*v.rpr_w_2_y - v.rpr_q_y*v.rpr_w_2_x;
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_in_platform_x = m->b_c_in_platform_x;
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_spread_t = b_c_in_platform_x - rpr_platform_point_x;
-        const real b_c_in_platform_y = m->b_c_in_platform_y;
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real rpr_spread_t_2 = b_c_in_platform_y - rpr_platform_point_y;
-        const real rpr_spread_t_3 = rpr_spread_t*rpr_spread_t + rpr_spread_t_2*rpr_spread_t_2;
-        /* (spread) rms distance of the platform points from their centroid */
-        gather(&terms[0*count + k], add, rpr_spread_t_3);  /* spread_rpr */
-        /* (rpr-w_2) reciprocal vector 2 */
-        o[0*count + k] = v.rpr_w_2_x;
-        o[1*count + k] = v.rpr_w_2_y;
-        /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-        o[2*count + k] = rpr_H_a_2_z;
-        /* (rpr-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        o[3*count + k] = rpr_least_pivots;
-        o[5*count + k] = (v.rpr_w_2_x + v.rpr_w_2_y) + (rpr_H_a_2_z + rpr_least_pivots);
-        o[4*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
-            LEAST_2);
-    }
+    values_rpr v;
+    stage_rpr_X(m, w, i, j, s, X, &v);
+    /* (rpr-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real rpr_pivot_size = magnitude(v.rpr_q_2_t);
+    const real rpr_pivot_size_2 = magnitude(v.rpr_q_2);
+    const real rpr_least_pivots = lesser(R(1.6129032258064515)*root(rpr_pivot_size),
+        R(1.6129032258064517)*rpr_pivot_size_2);
+    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
+    const real rpr_H_a_2_z = v.rpr_q_x*v.rpr_w_2_y - v.rpr_q_y*v.rpr_w_2_x;
+    /* (spread) rms distance of the platform points from their centroid */
+    const real rpr_spread_t = m->b_c_in_platform_x - m->rpr_platform_point_x[i];
+    const real rpr_spread_t_2 = m->b_c_in_platform_y - m->rpr_platform_point_y[i];
+    const real rpr_spread_t_3 = rpr_spread_t*rpr_spread_t + rpr_spread_t_2*rpr_spread_t_2;
+    /* (spread) */
+    gather(&terms[0*count + k], add, rpr_spread_t_3);  /* spread_rpr */
+    /* (rpr-w_2) reciprocal vector 2 */
+    o[0*count + k] = v.rpr_w_2_x;
+    o[1*count + k] = v.rpr_w_2_y;
+    /* (rpr-H_a_2) */
+    o[2*count + k] = rpr_H_a_2_z;
+    /* (rpr-G) */
+    o[3*count + k] = rpr_least_pivots;
+    o[5*count + k] = (v.rpr_w_2_x + v.rpr_w_2_y) + (rpr_H_a_2_z + rpr_least_pivots);
+    o[4*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
+        LEAST_2);
 }
 
-INLINE void condition_place_rpr(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *H, real *pivots, verdict *t)
+INLINE void condition_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count, const real
+    *o, real *H, real *pivots, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        pivots[leg*w + k] = o[3*count + first + k];
-        t->singular[k] += o[4*count + first + k];
-        t->total[k] += o[5*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    pivots[i*w + k] = o[3*count + at];
+    t->singular[k] += o[4*count + at];
+    t->total[k] += o[5*count + at];
 }
 
-INLINE void condition_after(size_t w, const real *sums, real *lengths, verdict *t)
+INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (spread) rms distance of the platform points from their centroid */
-        const real spread_rpr = sums[0*w + k];
-        const real spread_ = R(0.5)*root(spread_rpr);
-        /* (spread) rms distance of the platform points from their centroid */
-        lengths[0*w + k] = spread_;
-        t->total[k] += spread_;
-    }
+    /* (spread) */
+    const real spread_rpr = sums[0*w + k];
+    const real spread_ = R(0.5)*root(spread_rpr);
+    /* (spread) */
+    lengths[0*w + k] = spread_;
+    t->total[k] += spread_;
 }
 
-INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
+APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, verdict *t)
 {
     real s[2] = {0}, sums[1] = {0};
     real terms_rpr[LEGS(LEGS_OF_rpr)] = {0}, o_rpr[6*LEGS(LEGS_OF_rpr)] = {0};
     clear(reach, NL);
-    condition_before(m, 1, X, s, lengths, t);
-    condition_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), 0, X, terms_rpr, o_rpr);
-    for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        condition_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, leg, H, pivots, t);
+    condition_before(m, 1, 0, X, s, lengths, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
+        condition_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, terms_rpr, o_rpr);
+    }
+    for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        condition_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, H, pivots, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
-    condition_after(1, sums, lengths, t);
+    condition_after(1, 0, sums, lengths, t);
 }
 
 /* ---- what users call, as steps over these ---- */
 
-INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
+int planar_4rpr_M(const prepared *m, const real *X, real *M_out)
 {
     verdict why;
     start(1, &why);
@@ -2648,9 +2594,11 @@ INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NV, M_out);
     }
+    return code;
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -2664,7 +2612,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
     deliver(NV*NV, M, M_out);
 }
 
-INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
+int planar_4rpr_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     verdict why;
     start(1, &why);
@@ -2677,9 +2625,11 @@ INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, 
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, Z_out);
     }
+    return code;
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -2694,7 +2644,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
     deliver(NV, Z, Z_out);
 }
 
-INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
+int planar_4rpr_H(const prepared *m, const real *X, real *H_out)
 {
     verdict why;
     start(1, &why);
@@ -2703,9 +2653,11 @@ INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NU, H_out);
     }
+    return code;
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -2719,7 +2671,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
     deliver(NV*NU, H, H_out);
 }
 
-INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out, int *code)
+int planar_4rpr_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
     verdict why;
     start(1, &why);
@@ -2728,9 +2680,11 @@ INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, q_out);
     }
+    return code;
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -2744,8 +2698,7 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
     deliver(NJ, q, q_out);
 }
 
-INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
-    *code)
+int planar_4rpr_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     verdict why;
     start(1, &why);
@@ -2758,9 +2711,11 @@ INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, rea
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, qd_out);
     }
+    return code;
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -2776,8 +2731,8 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
     deliver(NJ, qd, qd_out);
 }
 
-INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out, int *code)
+int planar_4rpr_joint_accelerations(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out)
 {
     verdict why;
     start(1, &why);
@@ -2791,9 +2746,11 @@ INLINE void joint_accelerations_one(const prepared *m, const real *X, const real
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, qdd_out);
     }
+    return code;
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -2810,8 +2767,8 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
     deliver(NJ, qdd, qdd_out);
 }
 
-INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
-    *Z_out, real *H_out, int *code)
+int planar_4rpr_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out)
 {
     verdict why;
     start(1, &why);
@@ -2826,11 +2783,13 @@ INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NV, M_out);
         refuse(NV, Z_out);
         refuse(NV*NU, H_out);
     }
+    return code;
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -2848,8 +2807,8 @@ INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real
     deliver(NV*NU, H, H_out);
 }
 
-static void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, const real *weights, real *tau_out, int *code)
+static int inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, const real *weights, real *tau_out)
 {
     real wrench_in[NW], weights_in[NU], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0},
         inverse_root_1[NU] = {0}, scale_columns_1[NV*NU] = {0}, least_norm_1[NU] = {0}, tau[NU] = {0};
@@ -2880,9 +2839,11 @@ static void inverse_dynamics_one(const prepared *m, const real *X, const real *V
     }
     check(NU, 1, tau, why.overflow);
     copy(NU, tau, tau_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, tau_out);
     }
+    return code;
 }
 
 INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real *sizes, const
@@ -2935,8 +2896,8 @@ INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real
 static const size_t order_A[] = {0, 1, 2};
 static const real sizes_A[] = {16.0, 16.0, 0.25};
 
-INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
-    const real *wrench, real *A_out, int *code)
+int planar_4rpr_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau,
+    const real *wrench, real *A_out)
 {
     real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] =
         {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
@@ -2966,9 +2927,11 @@ INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, A_out);
     }
+    return code;
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -2996,21 +2959,28 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     deliver(NV, A, A_out);
 }
 
-INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
+int planar_4rpr_complete_acceleration(const prepared *m, const real *X, const real *V, const real
+    *A, const real *wrench, real *completed_out)
 {
+    (void)m;
+    (void)X;
+    (void)V;
+    (void)wrench;
     verdict why;
     start(1, &why);
     check(NV, 1, A, why.invalid);
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, completed_out);
     }
+    return code;
 }
 
-INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces_out, int *code)
+int planar_4rpr_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *forces_out)
 {
     static const size_t places_forces[] = {0, 1, 2, 3};
     real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, least_norm_1[NU] =
@@ -3036,13 +3006,15 @@ INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, c
     add_forces(NL, 3, 1, places_forces, least_norm_1, actuator, forces);
     check(3*NL, 1, forces, why.overflow);
     copy(3*NL, forces, forces_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(3*NL, forces_out);
     }
+    return code;
 }
 
-INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
-    *potential_out, int *code)
+int planar_4rpr_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
+    *potential_out)
 {
     real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
@@ -3060,13 +3032,15 @@ INLINE void energy_one(const prepared *m, const real *X, const real *V, real *ki
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, kinetic_out);
         refuse(1, potential_out);
     }
+    return code;
 }
 
-INLINE void null_space_one(const prepared *m, const real *X, real *basis_out, int *code)
+int planar_4rpr_null_space(const prepared *m, const real *X, real *basis_out)
 {
     real H[NV*NU] = {0}, basis[NU] = {0};
     verdict why;
@@ -3076,14 +3050,16 @@ INLINE void null_space_one(const prepared *m, const real *X, real *basis_out, in
     null_basis(NV, NU, NV, H, basis);
     check(NU, 1, basis, why.overflow);
     copy(NU, basis, basis_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, basis_out);
     }
+    return code;
 }
 
-INLINE void condition_one(const prepared *m, const real *X, const real *length, real *sigma_out,
-    real *legs_out, int *code)
+int planar_4rpr_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
+    const real *length = NULL;
     static const size_t places_divide_rows_1[] = {2};
     real length_in[1], H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
         choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
@@ -3109,14 +3085,16 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, sigma_out);
         refuse(NL, legs_out);
     }
+    return code;
 }
 
-INLINE void manipulability_one(const prepared *m, const real *X, real *measure_out, real
-    *isotropy_out, int *code)
+int planar_4rpr_manipulability(const prepared *m, const real *X, real *measure_out, real
+    *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {2};
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
@@ -3146,14 +3124,16 @@ INLINE void manipulability_one(const prepared *m, const real *X, real *measure_o
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, measure_out);
         refuse(1, isotropy_out);
     }
+    return code;
 }
 
-INLINE void singularity_distance_one(const prepared *m, const real *X, real *actuators_out, real
-    *legs_out, int *code)
+int planar_4rpr_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
+    *legs_out)
 {
     static const size_t places_divide_rows_1[] = {2};
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
@@ -3183,15 +3163,17 @@ INLINE void singularity_distance_one(const prepared *m, const real *X, real *act
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, actuators_out);
         refuse(1, legs_out);
     }
+    return code;
 }
 
-INLINE void force_distribution_one(const prepared *m, const real *X, const real *V, const real *A,
+int planar_4rpr_force_distribution(const prepared *m, const real *X, const real *V, const real *A,
     const real *tau_min, const real *tau_max, const real *wrench, const real *reference, real
-    *tau_out, int *code)
+    *tau_out)
 {
     real wrench_in[NW], reference_in[NU], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0},
         least_norm_1[NU] = {0}, null_basis_1[NU] = {0}, transposed_1[NU] = {0}, product_1[NU*NU] =
@@ -3224,13 +3206,14 @@ INLINE void force_distribution_one(const prepared *m, const real *X, const real 
     nearest_within(NU, add_1, product_1, tau_min, tau_max, tau, why.unreachable, why.overflow);
     check(NU, 1, tau, why.overflow);
     copy(NU, tau, tau_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, tau_out);
     }
+    return code;
 }
 
-static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
-    int *code)
+static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
 {
     real q[NJ] = {0}, q_of_inverse_kinematics_from_1[4] = {0}, gap[NU] = {0};
     verdict why;
@@ -3247,12 +3230,14 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
     }
     check(NU, 1, gap, why.overflow);
     copy(NU, gap, gap_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, gap_out);
     }
+    return code;
 }
 
-static void slope_one(const prepared *m, const real *X, real *slope_out, int *code)
+static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     verdict why;
     start(1, &why);
@@ -3261,9 +3246,11 @@ static void slope_one(const prepared *m, const real *X, real *slope_out, int *co
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NU, slope_out);
     }
+    return code;
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -3274,12 +3261,12 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    mismatch_one(m, found, q_actuated, gap, &code);
+    code = mismatch_one(m, found, q_actuated, gap);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        slope_one(m, found, slope, &code);
+        code = slope_one(m, found, slope);
         if (code != OK) {
             break;
         }
@@ -3293,7 +3280,7 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            mismatch_one(m, trial, q_actuated, next, &tried);
+            tried = mismatch_one(m, trial, q_actuated, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -3311,8 +3298,8 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 }
 
 
-INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
-    *X_out, int *code)
+int planar_4rpr_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real
+    *X_out)
 {
     real X[NQ] = {0};
     verdict why;
@@ -3325,13 +3312,18 @@ INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, co
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
-INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
+int planar_4rpr_dissipation(const prepared *m, const real *X, const real *V, real
+    *dissipation_out)
 {
+    (void)m;
+    (void)X;
     real subtract_1[NV] = {0};
     verdict why;
     start(1, &why);
@@ -3342,13 +3334,14 @@ INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, dissipation_out);
     }
+    return code;
 }
 
-INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
-    *code)
+int planar_4rpr_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
     real M[NV*NV] = {0}, momentum[NV] = {0};
     verdict why;
@@ -3362,27 +3355,14 @@ INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, momentum_out);
     }
+    return code;
 }
 
-INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
-    int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], momentum[NV*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    M_run_lanes(m, X, M, &why);
-    product(NV, NV, 1, LANES, M, V, momentum);
-    add_up(NV, momentum, why.total);
-    suspect(&why, code);
-    deliver(NV, momentum, momentum_out);
-}
-
-INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
+int planar_4rpr_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7};
     real q[NJ] = {0}, margins[NJ] = {0};
@@ -3395,28 +3375,14 @@ INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_ou
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, margins_out);
     }
+    return code;
 }
 
-INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
-{
-    static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7};
-    real X_in[NQ*LANES], q[NJ*LANES], margins[NJ*LANES];
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < NJ*LANES; ++i) {
-        margins[i] = q[i];
-    }
-    unlimited(NJ, NJ, LANES, places_margins, margins, why.invalid);
-    suspect(&why, code);
-    deliver(NJ, margins, margins_out);
-}
-
-INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
+int planar_4rpr_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
     verdict why;
@@ -3429,28 +3395,14 @@ INLINE void within_limits_one(const prepared *m, const real *X, real *within_out
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, within_out);
     }
+    return code;
 }
 
-INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
-{
-    real X_in[NQ*LANES], q[NJ*LANES], subtract_1[NJ*LANES], within[LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < NJ*LANES; ++i) {
-        subtract_1[i] = q[i] - q[i];
-    }
-    not_negative(NJ, LANES, subtract_1, within, why.invalid);
-    add_up(1, within, why.total);
-    suspect(&why, code);
-    deliver(1, within, within_out);
-}
-
-INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
+int planar_4rpr_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
     verdict why;
@@ -3460,26 +3412,14 @@ INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out
     take(NU, 1, planar_4rpr_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, q_out);
     }
+    return code;
 }
 
-INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
-{
-    real X_in[NQ*LANES], q_of_inverse_kinematics[NJ*LANES], q[NU*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
-    take(NU, LANES, planar_4rpr_ACTUATED, q_of_inverse_kinematics, q);
-    add_up(NU, q, why.total);
-    suspect(&why, code);
-    deliver(NU, q, q_out);
-}
-
-INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
-    *code)
+int planar_4rpr_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
     verdict why;
@@ -3493,28 +3433,15 @@ INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, 
     take(NU, 1, planar_4rpr_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, qd_out);
     }
+    return code;
 }
 
-INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
-    int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], qd_of_joint_rates[NJ*LANES], qd[NU*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
-    take(NU, LANES, planar_4rpr_ACTUATED, qd_of_joint_rates, qd);
-    add_up(NU, qd, why.total);
-    suspect(&why, code);
-    deliver(NU, qd, qd_out);
-}
-
-INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out, int *code)
+int planar_4rpr_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
     verdict why;
@@ -3529,30 +3456,15 @@ INLINE void actuator_accelerations_one(const prepared *m, const real *X, const r
     take(NU, 1, planar_4rpr_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, qdd_out);
     }
+    return code;
 }
 
-INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *qdd_out, int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd_of_joint_accelerations[NJ*LANES],
-        qdd[NU*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    A = side_by_side(NV, A, A_in, why.total);
-    joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
-    take(NU, LANES, planar_4rpr_ACTUATED, qdd_of_joint_accelerations, qdd);
-    add_up(NU, qdd, why.total);
-    suspect(&why, code);
-    deliver(NU, qdd, qdd_out);
-}
-
-INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out, int *code)
+int planar_4rpr_power(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out)
 {
     real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
     verdict why;
@@ -3568,30 +3480,14 @@ INLINE void power_one(const prepared *m, const real *X, const real *V, const rea
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, power_out);
     }
+    return code;
 }
 
-INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out, int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0},
-        power[LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    tau = side_by_side(NU, tau, tau_in, why.total);
-    H_run_lanes(m, X, H, &why);
-    product(NV, NU, 1, LANES, H, tau, times_1);
-    inner(NV, LANES, times_1, V, power);
-    add_up(1, power, why.total);
-    suspect(&why, code);
-    deliver(1, power, power_out);
-}
-
-INLINE void rotation_one(const real *X, real *R_out, int *code)
+int planar_4rpr_rotation(const real *X, real *R_out)
 {
     real R[4] = {0};
     verdict why;
@@ -3601,12 +3497,14 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     rotation_of_angle(X_from_2, R);
     check(4, 1, R, why.overflow);
     copy(4, R, R_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(4, R_out);
     }
+    return code;
 }
 
-INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
+int planar_4rpr_pose(const real *t, const real *R, real *X_out)
 {
     real angle_of_rotation_1[1] = {0}, join_1[3] = {0};
     verdict why;
@@ -3621,12 +3519,14 @@ INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
-INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
+int planar_4rpr_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     verdict why;
     start(1, &why);
@@ -3638,12 +3538,14 @@ INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
     const real *const X_dot = V;
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_dot_out);
     }
+    return code;
 }
 
-INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
+int planar_4rpr_retract(const real *X, const real *step, real *X_moved_out)
 {
     real X_moved[NQ] = {0};
     verdict why;
@@ -3658,12 +3560,14 @@ INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int 
     }
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_moved_out);
     }
+    return code;
 }
 
-INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
+int planar_4rpr_difference(const real *X0, const real *X1, real *step_out)
 {
     static const size_t places_step[] = {2};
     real subtract_1[NQ] = {0}, step[NV] = {0};
@@ -3683,12 +3587,14 @@ INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *
     wrap_turns(1, 1, places_step, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, step_out);
     }
+    return code;
 }
 
-INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
+int planar_4rpr_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     static const size_t places_wrap_turns_1[] = {2};
     real subtract_1[NQ] = {0}, wrap_turns_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
@@ -3715,764 +3621,231 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
     }
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
 /* ---- one state, and batches ---- */
 
-int planar_4rpr_M(const prepared *model, const real *X, real *M)
+size_t planar_4rpr_M_batch(const prepared *m, size_t n, const real *X, real *M, int *status)
 {
-    int code;
-    M_one(model, X, M, &code);
-    return code;
+    SIDE_BY_SIDE(M_lanes(m, X + NQ*i, M + NV*NV*i, codes), planar_4rpr_M(m, X + NQ*j, M + NV*NV*j));
 }
 
-size_t planar_4rpr_M_batch(const prepared *model, size_t n, const real *X, real *M, int *status)
+size_t planar_4rpr_Z_batch(const prepared *m, size_t n, const real *X, const real *V, real *Z, int
+    *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = planar_4rpr_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(Z_lanes(m, X + NQ*i, V + NV*i, Z + NV*i, codes), planar_4rpr_Z(m, X + NQ*j, V + NV*j,
+        Z + NV*j));
 }
 
-int planar_4rpr_Z(const prepared *model, const real *X, const real *V, real *Z)
+size_t planar_4rpr_H_batch(const prepared *m, size_t n, const real *X, real *H, int *status)
 {
-    int code;
-    Z_one(model, X, V, Z, &code);
-    return code;
+    SIDE_BY_SIDE(H_lanes(m, X + NQ*i, H + NV*NU*i, codes), planar_4rpr_H(m, X + NQ*j, H + NV*NU*j));
 }
 
-size_t planar_4rpr_Z_batch(const prepared *model, size_t n, const real *X, const real *V, real *Z,
+size_t planar_4rpr_inverse_kinematics_batch(const prepared *m, size_t n, const real *X, real *q,
     int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = planar_4rpr_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(inverse_kinematics_lanes(m, X + NQ*i, q + NJ*i, codes),
+        planar_4rpr_inverse_kinematics(m, X + NQ*j, q + NJ*j));
 }
 
-int planar_4rpr_H(const prepared *model, const real *X, real *H)
+size_t planar_4rpr_joint_rates_batch(const prepared *m, size_t n, const real *X, const real *V,
+    real *rates, int *status)
 {
-    int code;
-    H_one(model, X, H, &code);
-    return code;
+    SIDE_BY_SIDE(joint_rates_lanes(m, X + NQ*i, V + NV*i, rates + NJ*i, codes),
+        planar_4rpr_joint_rates(m, X + NQ*j, V + NV*j, rates + NJ*j));
 }
 
-size_t planar_4rpr_H_batch(const prepared *model, size_t n, const real *X, real *H, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = planar_4rpr_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_4rpr_inverse_kinematics(const prepared *model, const real *X, real *q)
-{
-    int code;
-    inverse_kinematics_one(model, X, q, &code);
-    return code;
-}
-
-size_t planar_4rpr_inverse_kinematics_batch(const prepared *model, size_t n, const real *X, real
-    *q, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = planar_4rpr_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_4rpr_joint_rates(const prepared *model, const real *X, const real *V, real *rates)
-{
-    int code;
-    joint_rates_one(model, X, V, rates, &code);
-    return code;
-}
-
-size_t planar_4rpr_joint_rates_batch(const prepared *model, size_t n, const real *X, const real
-    *V, real *rates, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = planar_4rpr_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_4rpr_joint_accelerations(const prepared *model, const real *X, const real *V, const
-    real *A, real *accelerations)
-{
-    int code;
-    joint_accelerations_one(model, X, V, A, accelerations, &code);
-    return code;
-}
-
-size_t planar_4rpr_joint_accelerations_batch(const prepared *model, size_t n, const real *X, const
+size_t planar_4rpr_joint_accelerations_batch(const prepared *m, size_t n, const real *X, const
     real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = planar_4rpr_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
-                    accelerations + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(joint_accelerations_lanes(m, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i,
+        codes), planar_4rpr_joint_accelerations(m, X + NQ*j, V + NV*j, A + NV*j, accelerations +
+        NJ*j));
 }
 
-int planar_4rpr_dynamics(const prepared *model, const real *X, const real *V, real *M, real *Z,
-    real *H)
+size_t planar_4rpr_dynamics_batch(const prepared *m, size_t n, const real *X, const real *V, real
+    *M, real *Z, real *H, int *status)
 {
-    int code;
-    dynamics_one(model, X, V, M, Z, H, &code);
-    return code;
+    SIDE_BY_SIDE(dynamics_lanes(m, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes),
+        planar_4rpr_dynamics(m, X + NQ*j, V + NV*j, M + NV*NV*j, Z + NV*j, H + NV*NU*j));
 }
 
-size_t planar_4rpr_dynamics_batch(const prepared *model, size_t n, const real *X, const real *V,
-    real *M, real *Z, real *H, int *status)
+int planar_4rpr_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = planar_4rpr_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z +
-                    NV*(i + k), H + NV*NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    return inverse_dynamics_one(m, X, V, A, wrench, NULL, tau);
 }
 
-int planar_4rpr_inverse_dynamics(const prepared *model, const real *X, const real *V, const real
-    *A, const real *wrench, real *tau)
+size_t planar_4rpr_inverse_dynamics_batch(const prepared *m, size_t n, const real *X, const real
+    *V, const real *A, const real *wrench, real *tau, int *status)
 {
-    int code;
-    inverse_dynamics_one(model, X, V, A, wrench, NULL, tau, &code);
-    return code;
+    ONE_BY_ONE(planar_4rpr_inverse_dynamics(m, X + NQ*j, V + NV*j, A + NV*j, wrench ? wrench + NW*j :
+        NULL, tau + NU*j));
 }
 
-size_t planar_4rpr_inverse_dynamics_batch(const prepared *model, size_t n, const real *X, const
-    real *V, const real *A, const real *wrench, real *tau, int *status)
+int planar_4rpr_inverse_dynamics_weighted(const prepared *m, const real *X, const real *V, const
+    real *A, const real *wrench, const real *weights, real *tau)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_4rpr_inverse_dynamics(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench
-            + NW*i : NULL, tau + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    return inverse_dynamics_one(m, X, V, A, wrench, weights, tau);
 }
 
-int planar_4rpr_inverse_dynamics_weighted(const prepared *model, const real *X, const real *V,
-    const real *A, const real *wrench, const real *weights, real *tau)
-{
-    int code;
-    inverse_dynamics_one(model, X, V, A, wrench, weights, tau, &code);
-    return code;
-}
-
-size_t planar_4rpr_inverse_dynamics_weighted_batch(const prepared *model, size_t n, const real *X,
+size_t planar_4rpr_inverse_dynamics_weighted_batch(const prepared *m, size_t n, const real *X,
     const real *V, const real *A, const real *wrench, const real *weights, real *tau, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_4rpr_inverse_dynamics_weighted(model, X + NQ*i, V + NV*i, A + NV*i, wrench
-            ? wrench + NW*i : NULL, weights + NU*i, tau + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(planar_4rpr_inverse_dynamics_weighted(m, X + NQ*j, V + NV*j, A + NV*j, wrench ? wrench
+        + NW*j : NULL, weights + NU*j, tau + NU*j));
 }
 
-int planar_4rpr_forward_dynamics(const prepared *model, const real *X, const real *V, const real
-    *tau, const real *wrench, real *A)
+size_t planar_4rpr_forward_dynamics_batch(const prepared *m, size_t n, const real *X, const real
+    *V, const real *tau, const real *wrench, real *A, int *status)
 {
-    int code;
-    forward_dynamics_one(model, X, V, tau, wrench, A, &code);
-    return code;
+    SIDE_BY_SIDE(forward_dynamics_lanes(m, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i :
+        NULL, A + NV*i, codes), planar_4rpr_forward_dynamics(m, X + NQ*j, V + NV*j, tau + NU*j, wrench
+        ? wrench + NW*j : NULL, A + NV*j));
 }
 
-size_t planar_4rpr_forward_dynamics_batch(const prepared *model, size_t n, const real *X, const
-    real *V, const real *tau, const real *wrench, real *A, int *status)
+size_t planar_4rpr_complete_acceleration_batch(const prepared *m, size_t n, const real *X, const
+    real *V, const real *A, const real *wrench, real *completed, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
-                NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = planar_4rpr_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k),
-                    wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(planar_4rpr_complete_acceleration(m, X + NQ*j, V + NV*j, A + NV*j, wrench ? wrench +
+        NW*j : NULL, completed + NV*j));
 }
 
-int planar_4rpr_complete_acceleration(const prepared *model, const real *X, const real *V, const
-    real *A, const real *wrench, real *completed)
+size_t planar_4rpr_leg_reactions_batch(const prepared *m, size_t n, const real *X, const real *V,
+    const real *A, const real *wrench, real *forces, int *status)
 {
-    int code;
-    (void)model, (void)X, (void)V, (void)wrench;
-    complete_acceleration_one(A, completed, &code);
-    return code;
+    ONE_BY_ONE(planar_4rpr_leg_reactions(m, X + NQ*j, V + NV*j, A + NV*j, wrench ? wrench + NW*j :
+        NULL, forces + 12*j));
 }
 
-size_t planar_4rpr_complete_acceleration_batch(const prepared *model, size_t n, const real *X,
-    const real *V, const real *A, const real *wrench, real *completed, int *status)
+size_t planar_4rpr_energy_batch(const prepared *m, size_t n, const real *X, const real *V, real
+    *kinetic, real *potential, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_4rpr_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
-            wrench + NW*i : NULL, completed + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(planar_4rpr_energy(m, X + NQ*j, V + NV*j, kinetic + j, potential + j));
 }
 
-int planar_4rpr_leg_reactions(const prepared *model, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces)
+size_t planar_4rpr_null_space_batch(const prepared *m, size_t n, const real *X, real *basis, int
+    *status)
 {
-    int code;
-    leg_reactions_one(model, X, V, A, wrench, forces, &code);
-    return code;
+    ONE_BY_ONE(planar_4rpr_null_space(m, X + NQ*j, basis + NU*j));
 }
 
-size_t planar_4rpr_leg_reactions_batch(const prepared *model, size_t n, const real *X, const real
-    *V, const real *A, const real *wrench, real *forces, int *status)
+size_t planar_4rpr_condition_batch(const prepared *m, size_t n, const real *X, real *sigma, real
+    *legs, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_4rpr_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench +
-            NW*i : NULL, forces + 12*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(planar_4rpr_condition(m, X + NQ*j, sigma + 3*j, legs + 4*j));
 }
 
-int planar_4rpr_energy(const prepared *model, const real *X, const real *V, real *kinetic, real
-    *potential)
+size_t planar_4rpr_manipulability_batch(const prepared *m, size_t n, const real *X, real *measure,
+    real *isotropy, int *status)
 {
-    int code;
-    energy_one(model, X, V, kinetic, potential, &code);
-    return code;
+    ONE_BY_ONE(planar_4rpr_manipulability(m, X + NQ*j, measure + j, isotropy + j));
 }
 
-size_t planar_4rpr_energy_batch(const prepared *model, size_t n, const real *X, const real *V,
-    real *kinetic, real *potential, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_4rpr_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_4rpr_null_space(const prepared *model, const real *X, real *basis)
-{
-    int code;
-    null_space_one(model, X, basis, &code);
-    return code;
-}
-
-size_t planar_4rpr_null_space_batch(const prepared *model, size_t n, const real *X, real *basis,
-    int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_4rpr_null_space(model, X + NQ*i, basis + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_4rpr_condition(const prepared *model, const real *X, real *sigma, real *legs)
-{
-    int code;
-    condition_one(model, X, NULL, sigma, legs, &code);
-    return code;
-}
-
-size_t planar_4rpr_condition_batch(const prepared *model, size_t n, const real *X, real *sigma,
-    real *legs, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_4rpr_condition(model, X + NQ*i, sigma + 3*i, legs + 4*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_4rpr_manipulability(const prepared *model, const real *X, real *measure, real
-    *isotropy)
-{
-    int code;
-    manipulability_one(model, X, measure, isotropy, &code);
-    return code;
-}
-
-size_t planar_4rpr_manipulability_batch(const prepared *model, size_t n, const real *X, real
-    *measure, real *isotropy, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_4rpr_manipulability(model, X + NQ*i, measure + i, isotropy + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_4rpr_singularity_distance(const prepared *model, const real *X, real *actuators, real
-    *legs)
-{
-    int code;
-    singularity_distance_one(model, X, actuators, legs, &code);
-    return code;
-}
-
-size_t planar_4rpr_singularity_distance_batch(const prepared *model, size_t n, const real *X, real
+size_t planar_4rpr_singularity_distance_batch(const prepared *m, size_t n, const real *X, real
     *actuators, real *legs, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_4rpr_singularity_distance(model, X + NQ*i, actuators + i, legs + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(planar_4rpr_singularity_distance(m, X + NQ*j, actuators + j, legs + j));
 }
 
-int planar_4rpr_force_distribution(const prepared *model, const real *X, const real *V, const real
-    *A, const real *tau_min, const real *tau_max, const real *wrench, const real *reference, real
-    *tau)
+size_t planar_4rpr_force_distribution_batch(const prepared *m, size_t n, const real *X, const real
+    *V, const real *A, const real *tau_min, const real *tau_max, const real *wrench, const real
+    *reference, real *tau, int *status)
 {
-    int code;
-    force_distribution_one(model, X, V, A, tau_min, tau_max, wrench, reference, tau, &code);
-    return code;
+    ONE_BY_ONE(planar_4rpr_force_distribution(m, X + NQ*j, V + NV*j, A + NV*j, tau_min + NU*j, tau_max
+        + NU*j, wrench ? wrench + NW*j : NULL, reference ? reference + NU*j : NULL, tau + NU*j));
 }
 
-size_t planar_4rpr_force_distribution_batch(const prepared *model, size_t n, const real *X, const
-    real *V, const real *A, const real *tau_min, const real *tau_max, const real *wrench, const
-    real *reference, real *tau, int *status)
+size_t planar_4rpr_forward_kinematics_batch(const prepared *m, size_t n, const real *q_actuated,
+    const real *X0, real *X, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_4rpr_force_distribution(model, X + NQ*i, V + NV*i, A + NV*i, tau_min +
-            NU*i, tau_max + NU*i, wrench ? wrench + NW*i : NULL, reference ? reference + NU*i : NULL, tau
-            + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(planar_4rpr_forward_kinematics(m, q_actuated + NU*j, X0 + NQ*j, X + NQ*j));
 }
 
-int planar_4rpr_forward_kinematics(const prepared *model, const real *q_actuated, const real *X0,
-    real *X)
+size_t planar_4rpr_dissipation_batch(const prepared *m, size_t n, const real *X, const real *V,
+    real *dissipation, int *status)
 {
-    int code;
-    forward_kinematics_one(model, q_actuated, X0, X, &code);
-    return code;
+    ONE_BY_ONE(planar_4rpr_dissipation(m, X + NQ*j, V + NV*j, dissipation + j));
 }
 
-size_t planar_4rpr_forward_kinematics_batch(const prepared *model, size_t n, const real
-    *q_actuated, const real *X0, real *X, int *status)
+size_t planar_4rpr_momentum_batch(const prepared *m, size_t n, const real *X, const real *V, real
+    *momentum, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_4rpr_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(planar_4rpr_momentum(m, X + NQ*j, V + NV*j, momentum + NV*j));
 }
 
-int planar_4rpr_dissipation(const prepared *model, const real *X, const real *V, real
-    *dissipation)
+size_t planar_4rpr_joint_margins_batch(const prepared *m, size_t n, const real *X, real *margins,
+    int *status)
 {
-    int code;
-    (void)model, (void)X;
-    dissipation_one(V, dissipation, &code);
-    return code;
+    ONE_BY_ONE(planar_4rpr_joint_margins(m, X + NQ*j, margins + NJ*j));
 }
 
-size_t planar_4rpr_dissipation_batch(const prepared *model, size_t n, const real *X, const real
-    *V, real *dissipation, int *status)
+size_t planar_4rpr_within_limits_batch(const prepared *m, size_t n, const real *X, real *within,
+    int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_4rpr_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(planar_4rpr_within_limits(m, X + NQ*j, within + j));
 }
 
-int planar_4rpr_momentum(const prepared *model, const real *X, const real *V, real *momentum)
+size_t planar_4rpr_actuator_positions_batch(const prepared *m, size_t n, const real *X, real *q,
+    int *status)
 {
-    int code;
-    momentum_one(model, X, V, momentum, &code);
-    return code;
+    ONE_BY_ONE(planar_4rpr_actuator_positions(m, X + NQ*j, q + NU*j));
 }
 
-size_t planar_4rpr_momentum_batch(const prepared *model, size_t n, const real *X, const real *V,
-    real *momentum, int *status)
+size_t planar_4rpr_actuator_rates_batch(const prepared *m, size_t n, const real *X, const real *V,
+    real *rates, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = planar_4rpr_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(planar_4rpr_actuator_rates(m, X + NQ*j, V + NV*j, rates + NU*j));
 }
 
-int planar_4rpr_joint_margins(const prepared *model, const real *X, real *margins)
+size_t planar_4rpr_actuator_accelerations_batch(const prepared *m, size_t n, const real *X, const
+    real *V, const real *A, real *accelerations, int *status)
 {
-    int code;
-    joint_margins_one(model, X, margins, &code);
-    return code;
+    ONE_BY_ONE(planar_4rpr_actuator_accelerations(m, X + NQ*j, V + NV*j, A + NV*j, accelerations +
+        NU*j));
 }
 
-size_t planar_4rpr_joint_margins_batch(const prepared *model, size_t n, const real *X, real
-    *margins, int *status)
+size_t planar_4rpr_power_batch(const prepared *m, size_t n, const real *X, const real *V, const
+    real *tau, real *power, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = planar_4rpr_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_4rpr_within_limits(const prepared *model, const real *X, real *within)
-{
-    int code;
-    within_limits_one(model, X, within, &code);
-    return code;
-}
-
-size_t planar_4rpr_within_limits_batch(const prepared *model, size_t n, const real *X, real
-    *within, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            within_limits_lanes(model, X + NQ*i, within + i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = planar_4rpr_within_limits(model, X + NQ*(i + k), within + (i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_4rpr_actuator_positions(const prepared *model, const real *X, real *q)
-{
-    int code;
-    actuator_positions_one(model, X, q, &code);
-    return code;
-}
-
-size_t planar_4rpr_actuator_positions_batch(const prepared *model, size_t n, const real *X, real
-    *q, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = planar_4rpr_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_4rpr_actuator_rates(const prepared *model, const real *X, const real *V, real *rates)
-{
-    int code;
-    actuator_rates_one(model, X, V, rates, &code);
-    return code;
-}
-
-size_t planar_4rpr_actuator_rates_batch(const prepared *model, size_t n, const real *X, const real
-    *V, real *rates, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = planar_4rpr_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_4rpr_actuator_accelerations(const prepared *model, const real *X, const real *V, const
-    real *A, real *accelerations)
-{
-    int code;
-    actuator_accelerations_one(model, X, V, A, accelerations, &code);
-    return code;
-}
-
-size_t planar_4rpr_actuator_accelerations_batch(const prepared *model, size_t n, const real *X,
-    const real *V, const real *A, real *accelerations, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = planar_4rpr_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
-                    k), accelerations + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_4rpr_power(const prepared *model, const real *X, const real *V, const real *tau, real
-    *power)
-{
-    int code;
-    power_one(model, X, V, tau, power, &code);
-    return code;
-}
-
-size_t planar_4rpr_power_batch(const prepared *model, size_t n, const real *X, const real *V,
-    const real *tau, real *power, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = planar_4rpr_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power + (i +
-                    k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_4rpr_rotation(const real *X, real *R)
-{
-    int code;
-    rotation_one(X, R, &code);
-    return code;
+    ONE_BY_ONE(planar_4rpr_power(m, X + NQ*j, V + NV*j, tau + NU*j, power + j));
 }
 
 size_t planar_4rpr_rotation_batch(size_t n, const real *X, real *R, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_4rpr_rotation(X + NQ*i, R + 4*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_4rpr_pose(const real *t, const real *R, real *X)
-{
-    int code;
-    pose_one(t, R, X, &code);
-    return code;
+    ONE_BY_ONE(planar_4rpr_rotation(X + NQ*j, R + 4*j));
 }
 
 size_t planar_4rpr_pose_batch(size_t n, const real *t, const real *R, real *X, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_4rpr_pose(t + 2*i, R + 4*i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_4rpr_X_dot(const real *X, const real *V, real *X_dot)
-{
-    int code;
-    X_dot_one(X, V, X_dot, &code);
-    return code;
+    ONE_BY_ONE(planar_4rpr_pose(t + 2*j, R + 4*j, X + NQ*j));
 }
 
 size_t planar_4rpr_X_dot_batch(size_t n, const real *X, const real *V, real *X_dot, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_4rpr_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_4rpr_retract(const real *X, const real *step, real *X_moved)
-{
-    int code;
-    retract_one(X, step, X_moved, &code);
-    return code;
+    ONE_BY_ONE(planar_4rpr_X_dot(X + NQ*j, V + NV*j, X_dot + NQ*j));
 }
 
 size_t planar_4rpr_retract_batch(size_t n, const real *X, const real *step, real *X_moved, int
     *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_4rpr_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_4rpr_difference(const real *X0, const real *X1, real *step)
-{
-    int code;
-    difference_one(X0, X1, step, &code);
-    return code;
+    ONE_BY_ONE(planar_4rpr_retract(X + NQ*j, step + NV*j, X_moved + NQ*j));
 }
 
 size_t planar_4rpr_difference_batch(size_t n, const real *X0, const real *X1, real *step, int
     *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_4rpr_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_4rpr_interpolate(const real *X0, const real *X1, const real *s, real *X)
-{
-    int code;
-    interpolate_one(X0, X1, s, X, &code);
-    return code;
+    ONE_BY_ONE(planar_4rpr_difference(X0 + NQ*j, X1 + NQ*j, step + NV*j));
 }
 
 size_t planar_4rpr_interpolate_batch(size_t n, const real *X0, const real *X1, const real *s, real
     *X, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_4rpr_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(planar_4rpr_interpolate(X0 + NQ*j, X1 + NQ*j, s + j, X + NQ*j));
 }

@@ -185,13 +185,27 @@ INLINE int sum_is_finite(const real *x, size_t n)
     return is_finite(total(sum, LANES));
 }
 
+/* How many of some numbers are not finite. */
+APART real not_finite(size_t n, const real *x)
+{
+    real count = 0;
+    if (!sum_is_finite(x, n)) {
+        for (size_t i = 0; i < n; ++i) {
+            count += UNLESS(is_finite(x[i]));
+        }
+    }
+    return count;
+}
+
 /* Flag the states with entries that are not finite; the states stand side by side. */
 INLINE void check(size_t size, size_t w, const real *x, real *flags)
 {
-    if (!sum_is_finite(x, size*w)) {
-        for (size_t i = 0; i < size*w; ++i) {
-            flags[i%w] += UNLESS(is_finite(x[i]));
-        }
+    if (w == 1) {
+        flags[0] += not_finite(size, x);
+        return;
+    }
+    for (size_t i = 0; i < size*w; ++i) {
+        flags[i%w] += UNLESS(is_finite(x[i]));
     }
 }
 
@@ -246,18 +260,17 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE int judge(const verdict *t, int *code)
+INLINE int judge(const verdict *t)
 {
-    *code = t->invalid[0] > 0 ? INVALID
+    return t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
         : t->unreachable[0] > 0 ? UNREACHABLE
         : t->singular[0] > 0 ? SINGULAR
         : t->overflow[0] > 0 ? INVALID : OK;
-    return *code;
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
-INLINE void suspect(const verdict *t, int *code)
+APART void suspect(const verdict *t, int *code)
 {
     real flags[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -279,7 +292,7 @@ INLINE void blame(int code, verdict *t)
 }
 
 /* Outputs of an impossible state. */
-INLINE void refuse(size_t size, real *out)
+APART void refuse(size_t size, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
@@ -315,6 +328,32 @@ INLINE size_t record(const int *code, size_t w, int *status)
     }
     return failed;
 }
+
+/* Bodies of batches.  lanes: settles the states from number i on, side by side, in codes; one: settles
+   state j, what fails and what is left too. */
+#define SIDE_BY_SIDE(lanes, one) \
+    size_t failed = 0, w; \
+    for (size_t i = 0; i < n; i += w) { \
+        int codes[LANES] = {INVALID}; \
+        w = LANES > 1 && i + LANES <= n ? LANES : 1; \
+        if (w > 1) { \
+            lanes; \
+        } \
+        for (size_t j = i; j < i + w; ++j) { \
+            if (codes[j - i] != OK) { \
+                codes[j - i] = one; \
+            } \
+        } \
+        failed += record(codes, w, status ? status + i : NULL); \
+    } \
+    return failed
+#define ONE_BY_ONE(one) \
+    size_t failed = 0; \
+    for (size_t j = 0; j < n; ++j) { \
+        const int code = one; \
+        failed += record(&code, 1, status ? status + j : NULL); \
+    } \
+    return failed
 
 /* What the reader of specifications allows; floats have less to offer. */
 #define ROUNDED BY_TYPE(1e-5, 1e-06, 1e-06)  /* lengths and products of unit vectors */
@@ -682,10 +721,10 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
            without the mass at the connection point */
         const real prrr_d_c_in_axes3_yy = -prrr_d_G_in_axes3_yy -
             prrr_h_3_in_spec3_x*prrr_w_3_in_axes3_y;
-        /* (h_star) first moment about the platform origin */
+        /* (h_star) */
         const real prrr_h_star_t = prrr_link3_mass*prrr_platform_point_x;
         const real prrr_h_star_t_2 = prrr_link3_mass*prrr_platform_point_y;
-        /* (J_star) inertia tensor about the platform origin */
+        /* (J_star) */
         const real prrr_J_star_t = prrr_platform_point_y*prrr_platform_point_y;
         const real prrr_J_star_t_2 = prrr_J_star_t + prrr_platform_point_x*prrr_platform_point_x;
         const real prrr_J_star_t_3 = prrr_J_star_t*prrr_link3_mass;
@@ -827,15 +866,15 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
            without the mass at the connection point */
         const real rrr_d_c_in_axes2_yy = -rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_y -
             rrr_h_2_in_spec2_x*rrr_w_2_in_axes2_y;
-        /* (h_star) first moment about the platform origin */
+        /* (h_star) */
         const real rrr_h_star_t = rrr_link2_mass*rrr_platform_point_x;
         const real rrr_h_star_t_2 = rrr_link2_mass*rrr_platform_point_y;
-        /* (J_star) inertia tensor about the platform origin */
+        /* (J_star) */
         const real rrr_J_star_t = rrr_platform_point_y*rrr_platform_point_y;
         const real rrr_J_star_t_2 = rrr_J_star_t + rrr_platform_point_x*rrr_platform_point_x;
         const real rrr_J_star_t_3 = rrr_J_star_t*rrr_link2_mass;
         const real rrr_J_star_t_4 = rrr_J_star_t_2*rrr_link2_mass;
-        /* (potential) potential energy */
+        /* (potential) */
         const real rrr_potential_t = rrr_base_frame_xx*rrr_base_point_x +
             rrr_base_frame_yx*rrr_base_point_y;
         const real rrr_potential_t_2 = rrr_base_frame_xy*rrr_base_point_x +
@@ -888,10 +927,10 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
     }
     /* (m_star) mass of the platform with the gathered masses */
     const real m_star = m_star_of_legs + platform_mass;
-    /* (h_star) first moment about the platform origin */
+    /* (h_star) */
     const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
     const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
-    /* (J_star) inertia tensor about the platform origin */
+    /* (J_star) */
     const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + J_star_t_3;
     const real J_star_t_5 = J_star_in_platform_xx - J_star_t_4 - J_star_t_5_of_legs -
         platform_inertia_zz;
@@ -1385,10 +1424,8 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real R_xx = cosine(X_2);
     const real R_yx = sine(X_2);
     /* (h_star) first moment about the platform origin */
-    const real h_star_in_platform_x = m->h_star_in_platform_x;
-    const real h_star_in_platform_y = m->h_star_in_platform_y;
-    const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
-    const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
+    const real h_star_x = R_xx*m->h_star_in_platform_x - R_yx*m->h_star_in_platform_y;
+    const real h_star_y = R_xx*m->h_star_in_platform_y + R_yx*m->h_star_in_platform_x;
     v->R_xx = R_xx;
     v->R_yx = R_yx;
     v->h_star_x = h_star_x;
@@ -1415,73 +1452,61 @@ INLINE void stage_prrr_X(const prepared *m, size_t w, size_t i, size_t j, const 
     /* (prrr-S) from the base point to the connection point */
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
-    const real prrr_platform_point_x = m->prrr_platform_point_x[i];
-    const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-    const real prrr_q_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
-    const real prrr_q_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
-    const real prrr_base_point_x = m->prrr_base_point_x[i];
+    const real prrr_q_x = R_xx*m->prrr_platform_point_x[i] - R_yx*m->prrr_platform_point_y[i];
+    const real prrr_q_y = R_xx*m->prrr_platform_point_y[i] + R_yx*m->prrr_platform_point_x[i];
     const real t_x = X[0*w + j];
-    const real prrr_S_x = prrr_q_x + t_x - prrr_base_point_x;
-    const real prrr_base_point_y = m->prrr_base_point_y[i];
+    const real prrr_S_x = prrr_q_x + t_x - m->prrr_base_point_x[i];
     const real t_y = X[1*w + j];
-    const real prrr_S_y = prrr_q_y + t_y - prrr_base_point_y;
-    const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
-    const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-    const real prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
+    const real prrr_S_y = prrr_q_y + t_y - m->prrr_base_point_y[i];
+    const real prrr_S_in_axes0_y = -prrr_S_x*m->prrr_base_frame_xx[i] -
+        prrr_S_y*m->prrr_base_frame_yx[i];
     /* (prrr-x_2) from the origin of joint 2 to the connection point */
-    const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
-    const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
     const real prrr_y_1_extra = X[3*w + j];
-    const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
-        - prrr_y_1_extra;
+    const real prrr_x_2_in_axes0_x = prrr_S_x*m->prrr_base_frame_xy[i] +
+        prrr_S_y*m->prrr_base_frame_yy[i] - prrr_y_1_extra;
     /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 2 */
     const real prrr_Kd_2_t_3 = prrr_S_in_axes0_y*prrr_S_in_axes0_y +
         prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x;
-    const real prrr_Kd_2_t = m->prrr_Kd_2_t[i];
-    const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
-    const real prrr_Kd_2 = prrr_Kd_2_t + R(0.5)*prrr_Kd_2_t_3 - prrr_Kd_2_t_2;
+    const real prrr_Kd_2 = m->prrr_Kd_2_t[i] + R(0.5)*prrr_Kd_2_t_3 - m->prrr_Kd_2_t_2[i];
     /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
-    const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-    const real prrr_Kc_2 = -prrr_S_in_axes0_y*prrr_joint3_offset_x;
+    const real prrr_Kc_2 = -prrr_S_in_axes0_y*m->prrr_joint3_offset_x[i];
     /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
-    const real prrr_Ks_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x;
+    const real prrr_Ks_2 = m->prrr_joint3_offset_x[i]*prrr_x_2_in_axes0_x;
     /* (prrr-rho2_2) squared amplitude */
     const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
     /* (prrr-disc_2) discriminant */
     const real prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2;
     /* (prrr-root_2) root, with the sign of the branch */
-    const real prrr_branch_2 = m->prrr_branch_2[i];
-    const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
+    const real prrr_root_2 = m->prrr_branch_2[i]*root(prrr_disc_2);
     /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
     const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
     const real prrr_c_2 = -inv_prrr_rho2_2*(prrr_Ks_2*prrr_root_2 - prrr_Kc_2*prrr_Kd_2);
     /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
     const real prrr_s_2 = -inv_prrr_rho2_2*(-prrr_Kc_2*prrr_root_2 - prrr_Kd_2*prrr_Ks_2);
     /* (prrr-x_3) from the origin of joint 3 to the connection point */
-    const real inv_prrr_size_t = m->inv_prrr_size_t[i];
-    const real prrr_x_3_in_axes2_x = inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x -
-        prrr_joint3_offset_x;
+    const real prrr_x_3_in_axes2_x =
+        m->inv_prrr_size_t[i]*prrr_Kd_2*m->prrr_joint3_offset_x[i] -
+        m->prrr_joint3_offset_x[i];
     /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
-    const real inv_prrr_size_t_2 = m->inv_prrr_size_t_2[i];
-    const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
-    const real prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x;
+    const real prrr_c_3 =
+        m->inv_prrr_size_t_2[i]*m->prrr_platform_joint_offset_x[i]*prrr_x_3_in_axes2_x;
     /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
     const real prrr_s_3_t =
-        inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
+        m->inv_prrr_size_t[i]*m->inv_prrr_size_t_2[i]*m->prrr_joint3_offset_x[i]*m->prrr_platform_joint_offset_x[i]*prrr_root_2;
     /* (prrr-r_2) from joint 2 to the connection point, along the links */
-    const real prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t;
-    const real prrr_r_2_in_axes2_x = prrr_joint3_offset_x +
-        prrr_c_3*prrr_platform_joint_offset_x;
+    const real prrr_r_2_t = m->prrr_platform_joint_offset_x[i]*prrr_s_3_t;
+    const real prrr_r_2_in_axes2_x = m->prrr_joint3_offset_x[i] +
+        prrr_c_3*m->prrr_platform_joint_offset_x[i];
     const real prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t;
     const real prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t;
     /* (prrr-w_2) reciprocal vector 1 */
     const real prrr_w_2_t = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2;
     const real prrr_e_1_in_axes3_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t;
-    const real axis_y_prrr_axes3_x = prrr_base_frame_xx*prrr_w_2_t +
-        prrr_base_frame_xy*prrr_e_1_in_axes3_y;
-    const real axis_x_prrr_axes3_x = prrr_base_frame_yx*prrr_w_2_t +
-        prrr_base_frame_yy*prrr_e_1_in_axes3_y;
+    const real axis_y_prrr_axes3_x = m->prrr_base_frame_xx[i]*prrr_w_2_t +
+        m->prrr_base_frame_xy[i]*prrr_e_1_in_axes3_y;
+    const real axis_x_prrr_axes3_x = m->prrr_base_frame_yx[i]*prrr_w_2_t +
+        m->prrr_base_frame_yy[i]*prrr_e_1_in_axes3_y;
     const real inv_prrr_r_2_in_axes3_y = 1/prrr_r_2_in_axes3_y;
     const real prrr_w_2_x = -axis_x_prrr_axes3_x*inv_prrr_r_2_in_axes3_y;
     const real prrr_w_2_y = axis_y_prrr_axes3_x*inv_prrr_r_2_in_axes3_y;
@@ -1533,11 +1558,9 @@ INLINE void stage_prrr_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
     const real t_dot_y = V[1*w + j];
     const real prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y;
     /* (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-    const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
     const real prrr_yd_1 = V[3*w + j];
-    const real prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1;
-    const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-    const real prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1;
+    const real prrr_S_dot_rest_x = prrr_S_dot_x - m->prrr_base_frame_xy[i]*prrr_yd_1;
+    const real prrr_S_dot_rest_y = prrr_S_dot_y - m->prrr_base_frame_yy[i]*prrr_yd_1;
     /* (prrr-qd_2) rate of joint 2 */
     const real prrr_qd_2 =
         -v->inv_prrr_r_2_in_axes3_y*(v->axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
@@ -1545,17 +1568,15 @@ INLINE void stage_prrr_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
     /* (prrr-W_2) centripetal tensor of link 2 */
     const real prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2;
     /* (prrr-omega_3) angular velocity of link 3 */
-    const real prrr_w_3_in_axes3_y = m->prrr_w_3_in_axes3_y[i];
     const real prrr_omega_3_in_axes3_z = prrr_qd_2 +
-        prrr_w_3_in_axes3_y*(v->axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
+        m->prrr_w_3_in_axes3_y[i]*(v->axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
         v->axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*v->prrr_r_2_in_axes3_x);
     /* (prrr-W_3) centripetal tensor of link 3 */
     const real prrr_W_3_t = prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z;
     /* (prrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-    const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
-    const real prrr_bias_in_axes3_x = prrr_W_2_in_axes2_xx*v->prrr_c_3*prrr_joint3_offset_x -
-        prrr_W_3_t*prrr_platform_joint_offset_x;
+    const real prrr_bias_in_axes3_x =
+        prrr_W_2_in_axes2_xx*v->prrr_c_3*m->prrr_joint3_offset_x[i] -
+        prrr_W_3_t*m->prrr_platform_joint_offset_x[i];
     v->prrr_S_dot_t = prrr_S_dot_t;
     v->prrr_S_dot_t_2 = prrr_S_dot_t_2;
     v->prrr_S_dot_rest_x = prrr_S_dot_rest_x;
@@ -1578,20 +1599,15 @@ INLINE void stage_prrr_A_V_X(size_t w, size_t j, const real *V, values_prrr *v)
 INLINE void stage_prrr_H_condition(const prepared *m, size_t i, values_prrr *v)
 {
     /* (prrr-r_2) from joint 2 to the connection point, along the links */
-    const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
     const real prrr_r_2_in_axes3_y = v->prrr_r_2_in_axes2_x*v->prrr_s_3_t -
-        v->prrr_c_3*prrr_platform_joint_offset_x*v->prrr_s_3_t;
+        v->prrr_c_3*m->prrr_platform_joint_offset_x[i]*v->prrr_s_3_t;
     /* (prrr-w_2) reciprocal vector 1 */
     const real inv_prrr_r_2_in_axes3_y = 1/prrr_r_2_in_axes3_y;
     const real prrr_w_2_t_2 = -inv_prrr_r_2_in_axes3_y*v->prrr_w_2_t;
-    const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-    const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-    const real prrr_w_2_x = -inv_prrr_r_2_in_axes3_y*(prrr_base_frame_yx*v->prrr_w_2_t +
-        prrr_base_frame_yy*v->prrr_e_1_in_axes3_y);
-    const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
-    const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
-    const real prrr_w_2_y = inv_prrr_r_2_in_axes3_y*(prrr_base_frame_xx*v->prrr_w_2_t +
-        prrr_base_frame_xy*v->prrr_e_1_in_axes3_y);
+    const real prrr_w_2_x = -inv_prrr_r_2_in_axes3_y*(m->prrr_base_frame_yx[i]*v->prrr_w_2_t +
+        m->prrr_base_frame_yy[i]*v->prrr_e_1_in_axes3_y);
+    const real prrr_w_2_y = inv_prrr_r_2_in_axes3_y*(m->prrr_base_frame_xx[i]*v->prrr_w_2_t +
+        m->prrr_base_frame_xy[i]*v->prrr_e_1_in_axes3_y);
     /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
     const real prrr_H_a_2_z = v->prrr_q_x*prrr_w_2_y - v->prrr_q_y*prrr_w_2_x;
     v->prrr_r_2_in_axes3_y = prrr_r_2_in_axes3_y;
@@ -1604,42 +1620,32 @@ INLINE void stage_prrr_H_condition(const prepared *m, size_t i, values_prrr *v)
 INLINE void stage_prrr_M_dynamics(const prepared *m, size_t i, values_prrr *v)
 {
     /* (prrr-w_3) reciprocal vector 2 */
-    const real prrr_w_3_in_axes3_y = m->prrr_w_3_in_axes3_y[i];
     const real prrr_w_3_in_axes3_x =
-        v->inv_prrr_r_2_in_axes3_y*v->prrr_r_2_in_axes3_x*prrr_w_3_in_axes3_y;
+        v->inv_prrr_r_2_in_axes3_y*v->prrr_r_2_in_axes3_x*m->prrr_w_3_in_axes3_y[i];
     /* (prrr-P_c_2) force that accelerates joint 2, per unit */
-    const real prrr_h_2_in_spec2_x = m->prrr_h_2_in_spec2_x[i];
-    const real prrr_h_2_in_spec2_y = m->prrr_h_2_in_spec2_y[i];
-    const real prrr_P_c_2_in_axes0_x = v->prrr_c_2*prrr_h_2_in_spec2_x -
-        prrr_h_2_in_spec2_y*v->prrr_s_2;
+    const real prrr_P_c_2_in_axes0_x = v->prrr_c_2*m->prrr_h_2_in_spec2_x[i] -
+        m->prrr_h_2_in_spec2_y[i]*v->prrr_s_2;
     /* (prrr-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
        inertia and weight */
-    const real prrr_d_Gamma_3_t = m->prrr_d_Gamma_3_t[i];
-    const real prrr_d_Gamma_3_t_2 = prrr_d_Gamma_3_t*v->prrr_r_2_in_axes3_x;
-    const real prrr_J_3_in_spec3_zz = m->prrr_J_3_in_spec3_zz[i];
-    const real prrr_h_3_in_spec3_y = m->prrr_h_3_in_spec3_y[i];
-    const real prrr_d_Gamma_3_in_axes3_x = -prrr_h_3_in_spec3_y -
-        v->inv_prrr_r_2_in_axes3_y*(prrr_J_3_in_spec3_zz - prrr_d_Gamma_3_t_2);
+    const real prrr_d_Gamma_3_t_2 = m->prrr_d_Gamma_3_t[i]*v->prrr_r_2_in_axes3_x;
+    const real prrr_d_Gamma_3_in_axes3_x = -m->prrr_h_3_in_spec3_y[i] -
+        v->inv_prrr_r_2_in_axes3_y*(m->prrr_J_3_in_spec3_zz[i] - prrr_d_Gamma_3_t_2);
     /* (prrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
        inertia and weight */
-    const real prrr_Jc_2_in_axes2_zz = m->prrr_Jc_2_in_axes2_zz[i];
-    const real prrr_d_Gamma_2_in_axes3_x = -prrr_h_3_in_spec3_y -
-        v->inv_prrr_r_2_in_axes3_y*(prrr_Jc_2_in_axes2_zz - prrr_d_Gamma_3_t_2);
+    const real prrr_d_Gamma_2_in_axes3_x = -m->prrr_h_3_in_spec3_y[i] -
+        v->inv_prrr_r_2_in_axes3_y*(m->prrr_Jc_2_in_axes2_zz[i] - prrr_d_Gamma_3_t_2);
     /* (prrr-d_G) coefficient of the acceleration in: force at the connection point that balances the
        leg's inertia and weight along all degrees of freedom */
     const real prrr_d_G_in_axes3_xx = prrr_d_Gamma_3_in_axes3_x*prrr_w_3_in_axes3_x -
         v->inv_prrr_r_2_in_axes3_y*prrr_d_Gamma_2_in_axes3_x;
-    const real prrr_d_Gamma_3_in_axes3_y = m->prrr_d_Gamma_3_in_axes3_y[i];
-    const real prrr_d_G_in_axes3_xy = prrr_d_Gamma_3_in_axes3_y*prrr_w_3_in_axes3_x -
-        v->inv_prrr_r_2_in_axes3_y*prrr_d_Gamma_3_in_axes3_y;
+    const real prrr_d_G_in_axes3_xy = m->prrr_d_Gamma_3_in_axes3_y[i]*prrr_w_3_in_axes3_x -
+        v->inv_prrr_r_2_in_axes3_y*m->prrr_d_Gamma_3_in_axes3_y[i];
     /* (prrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
        without the mass at the connection point */
-    const real prrr_d_phi_3_t = m->prrr_d_phi_3_t[i];
-    const real prrr_d_c_in_axes3_xy = prrr_d_phi_3_t - prrr_d_G_in_axes3_xy;
+    const real prrr_d_c_in_axes3_xy = m->prrr_d_phi_3_t[i] - prrr_d_G_in_axes3_xy;
     /* (prrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real prrr_d_c_in_axes3_yy = m->prrr_d_c_in_axes3_yy[i];
-    const real prrr_Q_t = prrr_h_3_in_spec3_y*(prrr_w_3_in_axes3_x -
-        v->inv_prrr_r_2_in_axes3_y) - prrr_d_G_in_axes3_xx - prrr_d_c_in_axes3_yy;
+    const real prrr_Q_t = m->prrr_h_3_in_spec3_y[i]*(prrr_w_3_in_axes3_x -
+        v->inv_prrr_r_2_in_axes3_y) - prrr_d_G_in_axes3_xx - m->prrr_d_c_in_axes3_yy[i];
     const real prrr_Q_t_2 = R(0.5)*prrr_Q_t;
     v->prrr_P_c_2_in_axes0_x = prrr_P_c_2_in_axes0_x;
     v->prrr_d_Gamma_3_in_axes3_x = prrr_d_Gamma_3_in_axes3_x;
@@ -1657,12 +1663,10 @@ INLINE void stage_prrr_Z_dynamics(const prepared *m, size_t w, size_t i, size_t 
     const real prrr_u_1_x = -omega_z*v->prrr_S_dot_t_2;
     const real prrr_u_1_t = omega_z*v->prrr_S_dot_t;
     /* (prrr-f_2_o) remainder of: inertia force of link 2 less its weight */
-    const real prrr_acc_1_in_axes0_y = m->prrr_acc_1_in_axes0_y[i];
-    const real prrr_g_in_axes0_x = m->prrr_g_in_axes0_x[i];
-    const real prrr_g_in_axes2_x = prrr_acc_1_in_axes0_y*v->prrr_c_2 +
-        prrr_g_in_axes0_x*v->prrr_s_2;
-    const real prrr_g_in_axes2_y = v->prrr_c_2*prrr_g_in_axes0_x -
-        prrr_acc_1_in_axes0_y*v->prrr_s_2;
+    const real prrr_g_in_axes2_x = m->prrr_acc_1_in_axes0_y[i]*v->prrr_c_2 +
+        m->prrr_g_in_axes0_x[i]*v->prrr_s_2;
+    const real prrr_g_in_axes2_y = v->prrr_c_2*m->prrr_g_in_axes0_x[i] -
+        m->prrr_acc_1_in_axes0_y[i]*v->prrr_s_2;
     v->prrr_u_1_x = prrr_u_1_x;
     v->prrr_u_1_t = prrr_u_1_t;
     v->prrr_g_in_axes2_x = prrr_g_in_axes2_x;
@@ -1675,50 +1679,39 @@ INLINE void stage_prrr_inverse_kinematics_potential(const prepared *m, size_t w,
     /* (prrr-S) from the base point to the connection point */
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
-    const real prrr_base_point_x = m->prrr_base_point_x[i];
-    const real prrr_platform_point_x = m->prrr_platform_point_x[i];
-    const real prrr_platform_point_y = m->prrr_platform_point_y[i];
     const real t_x = X[0*w + j];
-    const real prrr_S_x = t_x + R_xx*prrr_platform_point_x - prrr_base_point_x -
-        R_yx*prrr_platform_point_y;
-    const real prrr_base_point_y = m->prrr_base_point_y[i];
+    const real prrr_S_x = t_x + R_xx*m->prrr_platform_point_x[i] - m->prrr_base_point_x[i] -
+        R_yx*m->prrr_platform_point_y[i];
     const real t_y = X[1*w + j];
-    const real prrr_S_y = t_y + R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x -
-        prrr_base_point_y;
-    const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
-    const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-    const real prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
+    const real prrr_S_y = t_y + R_xx*m->prrr_platform_point_y[i] +
+        R_yx*m->prrr_platform_point_x[i] - m->prrr_base_point_y[i];
+    const real prrr_S_in_axes0_y = -prrr_S_x*m->prrr_base_frame_xx[i] -
+        prrr_S_y*m->prrr_base_frame_yx[i];
     /* (prrr-x_2) from the origin of joint 2 to the connection point */
-    const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
-    const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
     const real prrr_y_1_extra = X[3*w + j];
-    const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
-        - prrr_y_1_extra;
+    const real prrr_x_2_in_axes0_x = prrr_S_x*m->prrr_base_frame_xy[i] +
+        prrr_S_y*m->prrr_base_frame_yy[i] - prrr_y_1_extra;
     /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 2 */
     const real prrr_Kd_2_t_3 = prrr_S_in_axes0_y*prrr_S_in_axes0_y +
         prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x;
-    const real prrr_Kd_2_t = m->prrr_Kd_2_t[i];
-    const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
-    const real prrr_Kd_2 = prrr_Kd_2_t + R(0.5)*prrr_Kd_2_t_3 - prrr_Kd_2_t_2;
+    const real prrr_Kd_2 = m->prrr_Kd_2_t[i] + R(0.5)*prrr_Kd_2_t_3 - m->prrr_Kd_2_t_2[i];
     /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
-    const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-    const real prrr_Kc_2 = -prrr_S_in_axes0_y*prrr_joint3_offset_x;
+    const real prrr_Kc_2 = -prrr_S_in_axes0_y*m->prrr_joint3_offset_x[i];
     /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
-    const real prrr_Ks_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x;
+    const real prrr_Ks_2 = m->prrr_joint3_offset_x[i]*prrr_x_2_in_axes0_x;
     /* (prrr-rho2_2) squared amplitude */
     const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
     /* (prrr-disc_2) discriminant */
     const real prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2;
     /* (prrr-root_2) root, with the sign of the branch */
-    const real prrr_branch_2 = m->prrr_branch_2[i];
-    const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
+    const real prrr_root_2 = m->prrr_branch_2[i]*root(prrr_disc_2);
     /* (prrr-q_2) displacement of joint 2 */
     const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
     /* (prrr-x_3) from the origin of joint 3 to the connection point */
-    const real inv_prrr_size_t = m->inv_prrr_size_t[i];
-    const real prrr_x_3_in_axes2_x = inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x -
-        prrr_joint3_offset_x;
+    const real prrr_x_3_in_axes2_x =
+        m->inv_prrr_size_t[i]*prrr_Kd_2*m->prrr_joint3_offset_x[i] -
+        m->prrr_joint3_offset_x[i];
     v->prrr_Kd_2 = prrr_Kd_2;
     v->prrr_Kc_2 = prrr_Kc_2;
     v->prrr_Ks_2 = prrr_Ks_2;
@@ -1741,52 +1734,42 @@ INLINE void stage_prrr_legs_required(const prepared *m, size_t w, size_t i, size
     const real prrr_ydd_1 = A[3*w + j];
     const real prrr_rel_in_axes3_x = prrr_S_ddot_in_axes3_x + v->prrr_w_2_t*prrr_ydd_1 -
         v->prrr_bias_in_axes3_x;
-    const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
     const real prrr_rel_in_axes3_y = prrr_S_ddot_in_axes3_y -
         v->prrr_e_1_in_axes3_y*prrr_ydd_1 -
-        v->prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*v->prrr_s_3_t;
+        v->prrr_W_2_in_axes2_xx*m->prrr_joint3_offset_x[i]*v->prrr_s_3_t;
     /* (prrr-B_2) acceleration tensor of link 2 */
     const real prrr_B_2_in_axes2_xy = v->inv_prrr_r_2_in_axes3_y*prrr_rel_in_axes3_x;
     /* (prrr-alpha_3) angular acceleration of link 3 */
-    const real prrr_w_3_in_axes3_y = m->prrr_w_3_in_axes3_y[i];
-    const real prrr_alpha_3_in_axes3_z = prrr_w_3_in_axes3_y*(prrr_rel_in_axes3_y +
+    const real prrr_alpha_3_in_axes3_z = m->prrr_w_3_in_axes3_y[i]*(prrr_rel_in_axes3_y +
         prrr_B_2_in_axes2_xy*v->prrr_r_2_in_axes3_x) - prrr_B_2_in_axes2_xy;
     /* (prrr-acc_2) acceleration of the reference point of link 2, less gravity */
-    const real prrr_acc_1_in_axes0_y = m->prrr_acc_1_in_axes0_y[i];
-    const real prrr_g_in_axes0_x = m->prrr_g_in_axes0_x[i];
     const real prrr_acc_2_in_axes2_x = v->prrr_s_2*prrr_ydd_1 -
-        prrr_acc_1_in_axes0_y*v->prrr_c_2 - prrr_g_in_axes0_x*v->prrr_s_2;
-    const real prrr_acc_2_in_axes2_y = prrr_acc_1_in_axes0_y*v->prrr_s_2 +
-        v->prrr_c_2*prrr_ydd_1 - v->prrr_c_2*prrr_g_in_axes0_x;
+        m->prrr_acc_1_in_axes0_y[i]*v->prrr_c_2 - m->prrr_g_in_axes0_x[i]*v->prrr_s_2;
+    const real prrr_acc_2_in_axes2_y = m->prrr_acc_1_in_axes0_y[i]*v->prrr_s_2 +
+        v->prrr_c_2*prrr_ydd_1 - v->prrr_c_2*m->prrr_g_in_axes0_x[i];
     /* (prrr-acc_3) acceleration of the reference point of link 3, less gravity */
-    const real gravity_x = m->gravity_x;
-    const real gravity_y = m->gravity_y;
     const real prrr_acc_3_in_axes3_x = prrr_S_ddot_in_axes3_x +
-        v->axis_y_prrr_axes3_x*gravity_y - v->axis_x_prrr_axes3_x*gravity_x;
+        v->axis_y_prrr_axes3_x*m->gravity_y - v->axis_x_prrr_axes3_x*m->gravity_x;
     const real prrr_acc_3_in_axes3_y = prrr_S_ddot_in_axes3_y -
-        v->axis_x_prrr_axes3_x*gravity_y - v->axis_y_prrr_axes3_x*gravity_x;
+        v->axis_x_prrr_axes3_x*m->gravity_y - v->axis_y_prrr_axes3_x*m->gravity_x;
     /* (prrr-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-    const real prrr_J_3_in_spec3_zz = m->prrr_J_3_in_spec3_zz[i];
-    const real prrr_h_3_in_spec3_x = m->prrr_h_3_in_spec3_x[i];
-    const real prrr_h_3_in_spec3_y = m->prrr_h_3_in_spec3_y[i];
-    const real prrr_mu_3_in_axes3_z = prrr_J_3_in_spec3_zz*prrr_alpha_3_in_axes3_z +
-        prrr_acc_3_in_axes3_y*prrr_h_3_in_spec3_x - prrr_acc_3_in_axes3_x*prrr_h_3_in_spec3_y;
+    const real prrr_mu_3_in_axes3_z = m->prrr_J_3_in_spec3_zz[i]*prrr_alpha_3_in_axes3_z +
+        prrr_acc_3_in_axes3_y*m->prrr_h_3_in_spec3_x[i] -
+        prrr_acc_3_in_axes3_x*m->prrr_h_3_in_spec3_y[i];
     /* (prrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real prrr_J_2_in_spec2_zz = m->prrr_J_2_in_spec2_zz[i];
-    const real prrr_h_2_in_spec2_x = m->prrr_h_2_in_spec2_x[i];
-    const real prrr_h_2_in_spec2_y = m->prrr_h_2_in_spec2_y[i];
-    const real prrr_mu_2_in_axes2_z = prrr_acc_2_in_axes2_y*prrr_h_2_in_spec2_x -
-        prrr_B_2_in_axes2_xy*prrr_J_2_in_spec2_zz - prrr_acc_2_in_axes2_x*prrr_h_2_in_spec2_y;
+    const real prrr_mu_2_in_axes2_z = prrr_acc_2_in_axes2_y*m->prrr_h_2_in_spec2_x[i] -
+        prrr_B_2_in_axes2_xy*m->prrr_J_2_in_spec2_zz[i] -
+        prrr_acc_2_in_axes2_x*m->prrr_h_2_in_spec2_y[i];
     /* (prrr-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
        left out */
     const real prrr_N_2_in_axes2_z = prrr_mu_2_in_axes2_z + prrr_mu_3_in_axes3_z;
     /* (prrr-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
-    const real prrr_G_in_axes3_y = prrr_mu_3_in_axes3_z*prrr_w_3_in_axes3_y;
+    const real prrr_G_in_axes3_y = prrr_mu_3_in_axes3_z*m->prrr_w_3_in_axes3_y[i];
     /* (prrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real prrr_c_in_axes3_y = v->prrr_W_3_t*prrr_h_3_in_spec3_y - prrr_G_in_axes3_y -
-        prrr_alpha_3_in_axes3_z*prrr_h_3_in_spec3_x;
+    const real prrr_c_in_axes3_y = v->prrr_W_3_t*m->prrr_h_3_in_spec3_y[i] - prrr_G_in_axes3_y
+        - prrr_alpha_3_in_axes3_z*m->prrr_h_3_in_spec3_x[i];
     v->prrr_B_2_in_axes2_xy = prrr_B_2_in_axes2_xy;
     v->prrr_alpha_3_in_axes3_z = prrr_alpha_3_in_axes3_z;
     v->prrr_acc_2_in_axes2_x = prrr_acc_2_in_axes2_x;
@@ -1816,68 +1799,55 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (rrr-S) from the base point to the connection point */
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
-    const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-    const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-    const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-    const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-    const real rrr_base_point_x = m->rrr_base_point_x[i];
+    const real rrr_q_x = R_xx*m->rrr_platform_point_x[i] - R_yx*m->rrr_platform_point_y[i];
+    const real rrr_q_y = R_xx*m->rrr_platform_point_y[i] + R_yx*m->rrr_platform_point_x[i];
     const real t_x = X[0*w + j];
-    const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
-    const real rrr_base_point_y = m->rrr_base_point_y[i];
+    const real rrr_S_x = rrr_q_x + t_x - m->rrr_base_point_x[i];
     const real t_y = X[1*w + j];
-    const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
+    const real rrr_S_y = rrr_q_y + t_y - m->rrr_base_point_y[i];
     /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 1 */
     const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-    const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-    const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-    const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
+    const real rrr_Kd_1 = m->rrr_Kd_1_t[i] + R(0.5)*rrr_Kd_1_t_3 - m->rrr_Kd_1_t_2[i];
     /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-    const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-    const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-    const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-    const real rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx +
-        rrr_S_y*rrr_base_frame_yx);
+    const real rrr_Kc_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xx[i] +
+        rrr_S_y*m->rrr_base_frame_yx[i]);
     /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-    const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-    const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-    const real rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy +
-        rrr_S_y*rrr_base_frame_yy);
+    const real rrr_Ks_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xy[i] +
+        rrr_S_y*m->rrr_base_frame_yy[i]);
     /* (rrr-rho2_1) squared amplitude */
     const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
     /* (rrr-disc_1) discriminant */
     const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
     /* (rrr-root_1) root, with the sign of the branch */
-    const real rrr_branch_1 = m->rrr_branch_1[i];
-    const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+    const real rrr_root_1 = m->rrr_branch_1[i]*root(rrr_disc_1);
     /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
     const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
     const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
     /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
     const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
     /* (rrr-x_2) from the origin of joint 2 to the connection point */
-    const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-    const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-        rrr_joint2_offset_x;
+    const real rrr_x_2_in_axes1_x = m->inv_rrr_size_t[i]*rrr_Kd_1*m->rrr_joint2_offset_x[i] -
+        m->rrr_joint2_offset_x[i];
     /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-    const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-    const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+    const real rrr_c_2 =
+        m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*rrr_x_2_in_axes1_x;
     /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
     const real rrr_s_2 =
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        -m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*rrr_root_1;
     /* (rrr-r_1) from joint 1 to the connection point, along the links */
-    const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-    const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+    const real rrr_r_1_in_axes1_y = m->rrr_platform_joint_offset_x[i]*rrr_s_2;
+    const real rrr_r_1_in_axes1_x = m->rrr_joint2_offset_x[i] +
+        rrr_c_2*m->rrr_platform_joint_offset_x[i];
     const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
     const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
     /* (rrr-w_1) reciprocal vector 1 */
     const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
     const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-    const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
-        rrr_base_frame_xx*rrr_w_1_t;
-    const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
-        rrr_base_frame_yx*rrr_w_1_t;
+    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*rrr_w_1_t_2 -
+        m->rrr_base_frame_xx[i]*rrr_w_1_t;
+    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*rrr_w_1_t_2 -
+        m->rrr_base_frame_yx[i]*rrr_w_1_t;
     const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
     const real rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
     const real rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
@@ -1934,16 +1904,14 @@ INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     /* (rrr-W_1) centripetal tensor of link 1 */
     const real rrr_W_1_t = rrr_qd_1_t*rrr_qd_1_t;
     /* (rrr-omega_2) angular velocity of link 2 */
-    const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-    const real rrr_omega_2_in_axes2_z = rrr_w_2_in_axes2_y*(v->axis_x_rrr_axes2_x*rrr_S_dot_y
-        + v->axis_y_rrr_axes2_x*rrr_S_dot_x + rrr_qd_1_t*v->rrr_r_1_in_axes2_x) - rrr_qd_1_t;
+    const real rrr_omega_2_in_axes2_z =
+        m->rrr_w_2_in_axes2_y[i]*(v->axis_x_rrr_axes2_x*rrr_S_dot_y +
+        v->axis_y_rrr_axes2_x*rrr_S_dot_x + rrr_qd_1_t*v->rrr_r_1_in_axes2_x) - rrr_qd_1_t;
     /* (rrr-W_2) centripetal tensor of link 2 */
     const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
     /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-    const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-    const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-        rrr_W_1_t*v->rrr_c_2*rrr_joint2_offset_x;
+    const real rrr_bias_in_axes2_x = -rrr_W_2_t*m->rrr_platform_joint_offset_x[i] -
+        rrr_W_1_t*v->rrr_c_2*m->rrr_joint2_offset_x[i];
     v->rrr_S_dot_t = rrr_S_dot_t;
     v->rrr_S_dot_t_2 = rrr_S_dot_t_2;
     v->rrr_S_dot_x = rrr_S_dot_x;
@@ -1966,19 +1934,14 @@ INLINE void stage_rrr_A_V_X(size_t w, size_t j, const real *V, values_rrr *v)
 INLINE void stage_rrr_H_condition(const prepared *m, size_t i, values_rrr *v)
 {
     /* (rrr-r_1) from joint 1 to the connection point, along the links */
-    const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-    const real rrr_r_1_in_axes2_y = v->rrr_c_2*rrr_platform_joint_offset_x*v->rrr_s_2 -
+    const real rrr_r_1_in_axes2_y = v->rrr_c_2*m->rrr_platform_joint_offset_x[i]*v->rrr_s_2 -
         v->rrr_r_1_in_axes1_x*v->rrr_s_2;
     /* (rrr-w_1) reciprocal vector 1 */
     const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
-    const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-    const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-    const real rrr_w_1_x = -inv_rrr_r_1_in_axes2_y*(rrr_base_frame_yy*v->rrr_w_1_t_2 -
-        rrr_base_frame_yx*v->rrr_w_1_t);
-    const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-    const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-    const real rrr_w_1_y = inv_rrr_r_1_in_axes2_y*(rrr_base_frame_xy*v->rrr_w_1_t_2 -
-        rrr_base_frame_xx*v->rrr_w_1_t);
+    const real rrr_w_1_x = -inv_rrr_r_1_in_axes2_y*(m->rrr_base_frame_yy[i]*v->rrr_w_1_t_2 -
+        m->rrr_base_frame_yx[i]*v->rrr_w_1_t);
+    const real rrr_w_1_y = inv_rrr_r_1_in_axes2_y*(m->rrr_base_frame_xy[i]*v->rrr_w_1_t_2 -
+        m->rrr_base_frame_xx[i]*v->rrr_w_1_t);
     /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
     const real rrr_H_a_1_z = v->rrr_q_x*rrr_w_1_y - v->rrr_q_y*rrr_w_1_x;
     v->rrr_r_1_in_axes2_y = rrr_r_1_in_axes2_y;
@@ -1990,28 +1953,21 @@ INLINE void stage_rrr_H_condition(const prepared *m, size_t i, values_rrr *v)
 INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
 {
     /* (rrr-w_2) reciprocal vector 2 */
-    const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
     const real rrr_w_2_in_axes2_x =
-        v->inv_rrr_r_1_in_axes2_y*v->rrr_r_1_in_axes2_x*rrr_w_2_in_axes2_y;
+        v->inv_rrr_r_1_in_axes2_y*v->rrr_r_1_in_axes2_x*m->rrr_w_2_in_axes2_y[i];
     /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
        inertia and weight */
-    const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
-    const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*v->rrr_r_1_in_axes2_x;
-    const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
-    const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-    const real rrr_d_Gamma_2_in_axes2_x = -rrr_h_2_in_spec2_y -
-        v->inv_rrr_r_1_in_axes2_y*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2);
+    const real rrr_d_Gamma_2_t_2 = m->rrr_d_Gamma_2_t[i]*v->rrr_r_1_in_axes2_x;
+    const real rrr_d_Gamma_2_in_axes2_x = -m->rrr_h_2_in_spec2_y[i] -
+        v->inv_rrr_r_1_in_axes2_y*(m->rrr_J_2_in_spec2_zz[i] - rrr_d_Gamma_2_t_2);
     /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
-    const real rrr_Jc_1_in_axes1_zz = m->rrr_Jc_1_in_axes1_zz[i];
-    const real rrr_d_Gamma_1_in_axes2_x = -rrr_h_2_in_spec2_y -
-        v->inv_rrr_r_1_in_axes2_y*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2);
+    const real rrr_d_Gamma_1_in_axes2_x = -m->rrr_h_2_in_spec2_y[i] -
+        v->inv_rrr_r_1_in_axes2_y*(m->rrr_Jc_1_in_axes1_zz[i] - rrr_d_Gamma_2_t_2);
     /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
        without the mass at the connection point */
-    const real rrr_d_Gamma_2_in_axes2_y = m->rrr_d_Gamma_2_in_axes2_y[i];
-    const real rrr_d_phi_2_in_axes2_xy = m->rrr_d_phi_2_in_axes2_xy[i];
-    const real rrr_d_c_in_axes2_xy = v->inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_2_in_axes2_y -
-        rrr_d_phi_2_in_axes2_xy - rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x;
+    const real rrr_d_c_in_axes2_xy = v->inv_rrr_r_1_in_axes2_y*m->rrr_d_Gamma_2_in_axes2_y[i]
+        - m->rrr_d_phi_2_in_axes2_xy[i] - m->rrr_d_Gamma_2_in_axes2_y[i]*rrr_w_2_in_axes2_x;
     v->rrr_w_2_in_axes2_x = rrr_w_2_in_axes2_x;
     v->rrr_d_Gamma_2_in_axes2_x = rrr_d_Gamma_2_in_axes2_x;
     v->rrr_d_Gamma_1_in_axes2_x = rrr_d_Gamma_1_in_axes2_x;
@@ -2024,46 +1980,33 @@ INLINE void stage_rrr_inverse_kinematics_potential(const prepared *m, size_t w, 
     /* (rrr-S) from the base point to the connection point */
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
-    const real rrr_base_point_x = m->rrr_base_point_x[i];
-    const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-    const real rrr_platform_point_y = m->rrr_platform_point_y[i];
     const real t_x = X[0*w + j];
-    const real rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x -
-        R_yx*rrr_platform_point_y;
-    const real rrr_base_point_y = m->rrr_base_point_y[i];
+    const real rrr_S_x = t_x + R_xx*m->rrr_platform_point_x[i] - m->rrr_base_point_x[i] -
+        R_yx*m->rrr_platform_point_y[i];
     const real t_y = X[1*w + j];
-    const real rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x -
-        rrr_base_point_y;
+    const real rrr_S_y = t_y + R_xx*m->rrr_platform_point_y[i] +
+        R_yx*m->rrr_platform_point_x[i] - m->rrr_base_point_y[i];
     /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 1 */
     const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-    const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-    const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-    const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
+    const real rrr_Kd_1 = m->rrr_Kd_1_t[i] + R(0.5)*rrr_Kd_1_t_3 - m->rrr_Kd_1_t_2[i];
     /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-    const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-    const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-    const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-    const real rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx +
-        rrr_S_y*rrr_base_frame_yx);
+    const real rrr_Kc_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xx[i] +
+        rrr_S_y*m->rrr_base_frame_yx[i]);
     /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-    const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-    const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-    const real rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy +
-        rrr_S_y*rrr_base_frame_yy);
+    const real rrr_Ks_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xy[i] +
+        rrr_S_y*m->rrr_base_frame_yy[i]);
     /* (rrr-rho2_1) squared amplitude */
     const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
     /* (rrr-disc_1) discriminant */
     const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
     /* (rrr-root_1) root, with the sign of the branch */
-    const real rrr_branch_1 = m->rrr_branch_1[i];
-    const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+    const real rrr_root_1 = m->rrr_branch_1[i]*root(rrr_disc_1);
     /* (rrr-q_1) displacement of joint 1 */
     const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
     /* (rrr-x_2) from the origin of joint 2 to the connection point */
-    const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-    const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-        rrr_joint2_offset_x;
+    const real rrr_x_2_in_axes1_x = m->inv_rrr_size_t[i]*rrr_Kd_1*m->rrr_joint2_offset_x[i] -
+        m->rrr_joint2_offset_x[i];
     v->rrr_Kd_1 = rrr_Kd_1;
     v->rrr_Kc_1 = rrr_Kc_1;
     v->rrr_Ks_1 = rrr_Ks_1;
@@ -2083,51 +2026,41 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
         v->axis_y_rrr_axes2_x*v->rrr_S_ddot_x;
     /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
     const real rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - v->rrr_bias_in_axes2_x;
-    const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
     const real rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y -
-        v->rrr_W_1_t*rrr_joint2_offset_x*v->rrr_s_2;
+        v->rrr_W_1_t*m->rrr_joint2_offset_x[i]*v->rrr_s_2;
     /* (rrr-B_1) acceleration tensor of link 1 */
     const real rrr_B_1_in_axes1_xy = v->inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x;
     /* (rrr-alpha_2) angular acceleration of link 2 */
-    const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-    const real rrr_alpha_2_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
+    const real rrr_alpha_2_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_in_axes2_y +
         rrr_B_1_in_axes1_xy*v->rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
     /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
-    const real gravity_x = m->gravity_x;
-    const real gravity_y = m->gravity_y;
-    const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x + v->axis_y_rrr_axes2_x*gravity_y
-        - v->axis_x_rrr_axes2_x*gravity_x;
-    const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - v->axis_x_rrr_axes2_x*gravity_y
-        - v->axis_y_rrr_axes2_x*gravity_x;
+    const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x +
+        v->axis_y_rrr_axes2_x*m->gravity_y - v->axis_x_rrr_axes2_x*m->gravity_x;
+    const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y -
+        v->axis_x_rrr_axes2_x*m->gravity_y - v->axis_y_rrr_axes2_x*m->gravity_x;
     /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
-    const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
-    const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-    const real rrr_mu_2_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z +
-        rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y;
+    const real rrr_mu_2_in_axes2_z = m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_in_axes2_z +
+        rrr_acc_2_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
+        rrr_acc_2_in_axes2_x*m->rrr_h_2_in_spec2_y[i];
     /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-    const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
-    const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
-    const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
-    const real rrr_mu_1_t = m->rrr_mu_1_t[i];
-    const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
-    const real rrr_mu_1_in_axes1_z = rrr_h_1_in_spec1_y*(v->rrr_c_1*rrr_mu_1_t +
-        rrr_mu_1_t_2*v->rrr_s_1) - rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz -
-        rrr_h_1_in_spec1_x*(v->rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v->rrr_s_1);
+    const real rrr_mu_1_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v->rrr_c_1*m->rrr_mu_1_t[i] +
+        m->rrr_mu_1_t_2[i]*v->rrr_s_1) - rrr_B_1_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i] -
+        m->rrr_h_1_in_spec1_x[i]*(v->rrr_c_1*m->rrr_mu_1_t_2[i] -
+        m->rrr_mu_1_t[i]*v->rrr_s_1);
     /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
     /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
-    const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y;
+    const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
     /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rrr_c_in_axes2_x = v->rrr_W_2_t*rrr_h_2_in_spec2_x +
-        rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y -
+    const real rrr_c_in_axes2_x = v->rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
+        rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_y[i] -
         v->inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*v->rrr_r_1_in_axes2_x -
         rrr_N_1_in_axes1_z);
-    const real rrr_c_in_axes2_y = v->rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
-        rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x;
+    const real rrr_c_in_axes2_y = v->rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] - rrr_G_in_axes2_y -
+        rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_x[i];
     v->rrr_acc_2_in_axes2_x = rrr_acc_2_in_axes2_x;
     v->rrr_acc_2_in_axes2_y = rrr_acc_2_in_axes2_y;
     v->rrr_c_in_axes2_x = rrr_c_in_axes2_x;
@@ -2137,1064 +2070,959 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_V(w, k, V, &v);
-        stage_X(m, w, k, X, &v);
-        /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = v.W_p_xx*v.h_star_x - Z_p_t;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = v.W_p_xx*v.h_star_y - Z_p_t_2;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real Z_q_z = gravity_x*v.h_star_y - gravity_y*v.h_star_x;
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-        s[2*w + k] = v.h_star_x;
-        s[3*w + k] = v.h_star_y;
-        s[4*w + k] = Z_p_x;
-        s[5*w + k] = Z_p_y;
-        s[6*w + k] = Z_q_z;
-    }
+    values v;
+    stage_V(w, k, V, &v);
+    stage_X(m, w, k, X, &v);
+    /* (Z_p) centripetal force and weight of the platform */
+    const real Z_p_x = v.W_p_xx*v.h_star_x - m->Z_p_t;
+    const real Z_p_y = v.W_p_xx*v.h_star_y - m->Z_p_t_2;
+    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    const real Z_q_z = m->gravity_x*v.h_star_y - m->gravity_y*v.h_star_x;
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
+    s[2*w + k] = v.h_star_x;
+    s[3*w + k] = v.h_star_y;
+    s[4*w + k] = Z_p_x;
+    s[5*w + k] = Z_p_y;
+    s[6*w + k] = Z_q_z;
 }
 
-INLINE void dynamics_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
+INLINE void dynamics_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_prrr v;
-        stage_prrr_X(m, w, i, j, s, X, &v);
-        stage_prrr_V_X(m, w, i, j, V, &v);
-        stage_prrr_M_dynamics(m, i, &v);
-        stage_prrr_Z_dynamics(m, w, i, j, V, &v);
-        /* (prrr-w_2) reciprocal vector 1 */
-        const real prrr_w_2_t_2 = -v.inv_prrr_r_2_in_axes3_y*v.prrr_w_2_t;
-        /* (prrr-u_1) centripetal acceleration of the connection point */
-        const real prrr_u_1_in_axes3_x = v.axis_x_prrr_axes3_x*v.prrr_u_1_x +
-            v.axis_y_prrr_axes3_x*v.prrr_u_1_t;
-        const real prrr_u_1_in_axes3_y = v.axis_y_prrr_axes3_x*v.prrr_u_1_x -
-            v.axis_x_prrr_axes3_x*v.prrr_u_1_t;
-        /* (prrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-           */
-        const real prrr_rel_o_in_axes3_x = prrr_u_1_in_axes3_x - v.prrr_bias_in_axes3_x;
-        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_rel_o_in_axes3_y = prrr_u_1_in_axes3_y -
-            v.prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*v.prrr_s_3_t;
-        /* (prrr-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real prrr_B_2_o_in_axes2_xy = v.inv_prrr_r_2_in_axes3_y*prrr_rel_o_in_axes3_x;
-        /* (prrr-alpha_3_o) remainder of: angular acceleration of link 3 */
-        const real prrr_w_3_in_axes3_y = m->prrr_w_3_in_axes3_y[i];
-        const real prrr_alpha_3_o_in_axes3_z = prrr_w_3_in_axes3_y*(prrr_rel_o_in_axes3_y +
-            prrr_B_2_o_in_axes2_xy*v.prrr_r_2_in_axes3_x) - prrr_B_2_o_in_axes2_xy;
-        /* (prrr-f_2_o) remainder of: inertia force of link 2 less its weight */
-        const real prrr_h_2_in_spec2_x = m->prrr_h_2_in_spec2_x[i];
-        const real prrr_h_2_in_spec2_y = m->prrr_h_2_in_spec2_y[i];
-        const real prrr_link2_mass = m->prrr_link2_mass[i];
-        const real prrr_f_2_o_in_axes2_x = prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_y +
-            v.prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_x - v.prrr_g_in_axes2_x*prrr_link2_mass;
-        const real prrr_f_2_o_in_axes2_y = v.prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_y -
-            prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_x - v.prrr_g_in_axes2_y*prrr_link2_mass;
-        /* (prrr-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real prrr_acc_3_o_in_axes3_x = prrr_u_1_in_axes3_x + v.axis_y_prrr_axes3_x*gravity_y
-            - v.axis_x_prrr_axes3_x*gravity_x;
-        const real prrr_acc_3_o_in_axes3_y = prrr_u_1_in_axes3_y - v.axis_x_prrr_axes3_x*gravity_y
-            - v.axis_y_prrr_axes3_x*gravity_x;
-        /* (prrr-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
-           reference points */
-        const real prrr_J_3_in_spec3_zz = m->prrr_J_3_in_spec3_zz[i];
-        const real prrr_h_3_in_spec3_x = m->prrr_h_3_in_spec3_x[i];
-        const real prrr_h_3_in_spec3_y = m->prrr_h_3_in_spec3_y[i];
-        const real prrr_mu_3_o_in_axes3_z = prrr_J_3_in_spec3_zz*prrr_alpha_3_o_in_axes3_z +
-            prrr_acc_3_o_in_axes3_y*prrr_h_3_in_spec3_x -
-            prrr_acc_3_o_in_axes3_x*prrr_h_3_in_spec3_y;
-        /* (prrr-dy_1_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
-           links' inertia and weight */
-        const real prrr_dy_1_Gamma_3_t =
-            prrr_J_3_in_spec3_zz*prrr_w_3_in_axes3_y*(v.prrr_e_1_in_axes3_y +
-            v.prrr_r_2_in_axes3_x*prrr_w_2_t_2);
-        const real prrr_dy_1_Gamma_3 = prrr_J_3_in_spec3_zz*prrr_w_2_t_2 - prrr_dy_1_Gamma_3_t;
-        /* (prrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-           reference points */
-        const real prrr_J_2_in_spec2_zz = m->prrr_J_2_in_spec2_zz[i];
-        const real prrr_mu_2_o_in_axes2_z = v.prrr_g_in_axes2_x*prrr_h_2_in_spec2_y -
-            prrr_B_2_o_in_axes2_xy*prrr_J_2_in_spec2_zz - v.prrr_g_in_axes2_y*prrr_h_2_in_spec2_x;
-        /* (prrr-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
-           connection point left out */
-        const real prrr_N_2_o_in_axes2_z = prrr_mu_2_o_in_axes2_z + prrr_mu_3_o_in_axes3_z;
-        /* (prrr-dy_1_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
-           links' inertia and weight */
-        const real prrr_Jc_2_in_axes2_zz = m->prrr_Jc_2_in_axes2_zz[i];
-        const real prrr_dy_1_Gamma_2 = v.prrr_P_c_2_in_axes0_x +
-            prrr_Jc_2_in_axes2_zz*prrr_w_2_t_2 - prrr_dy_1_Gamma_3_t;
-        /* (prrr-T_1_o) remainder of: inertia force of the links from 1 outwards, the last link left out
-           */
-        const real prrr_f_1_o_in_axes0_x = m->prrr_f_1_o_in_axes0_x[i];
-        const real prrr_T_1_o_in_axes0_x = prrr_f_1_o_in_axes0_x +
-            v.prrr_c_2*prrr_f_2_o_in_axes2_y + prrr_f_2_o_in_axes2_x*v.prrr_s_2;
-        /* (prrr-dy_1_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
-           inertia and weight */
-        const real prrr_P_c_1_in_axes0_x = m->prrr_P_c_1_in_axes0_x[i];
-        const real prrr_dy_1_Gamma_1 = prrr_P_c_1_in_axes0_x +
-            v.prrr_P_c_2_in_axes0_x*prrr_w_2_t_2;
-        /* (prrr-dy_1_G) coefficient of the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
-        const real prrr_dy_1_G_in_axes3_y = prrr_dy_1_Gamma_3*prrr_w_3_in_axes3_y;
-        /* (prrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real prrr_G_o_in_axes3_y = prrr_mu_3_o_in_axes3_z*prrr_w_3_in_axes3_y;
-        const real prrr_G_o_in_axes3_x =
-            v.inv_prrr_r_2_in_axes3_y*(prrr_G_o_in_axes3_y*v.prrr_r_2_in_axes3_x -
-            prrr_N_2_o_in_axes2_z);
-        /* (prrr-c_o) remainder of: leg force on the platform without actuation and without the mass at
-           the connection point */
-        const real prrr_c_o_in_axes3_x = v.prrr_W_3_t*prrr_h_3_in_spec3_x +
-            prrr_alpha_3_o_in_axes3_z*prrr_h_3_in_spec3_y - prrr_G_o_in_axes3_x;
-        const real prrr_c_o_in_axes3_y = v.prrr_W_3_t*prrr_h_3_in_spec3_y - prrr_G_o_in_axes3_y -
-            prrr_alpha_3_o_in_axes3_z*prrr_h_3_in_spec3_x;
-        /* (prrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real prrr_Q_t_3 = v.axis_x_prrr_axes3_x*v.prrr_Q_t_2 +
-            v.axis_y_prrr_axes3_x*v.prrr_d_c_in_axes3_xy;
-        const real prrr_Q_t_4 = v.axis_y_prrr_axes3_x*v.prrr_Q_t_2 -
-            v.axis_x_prrr_axes3_x*v.prrr_d_c_in_axes3_xy;
-        const real prrr_d_c_in_axes3_yy = m->prrr_d_c_in_axes3_yy[i];
-        const real prrr_Q_xx = -prrr_d_c_in_axes3_yy - 2*v.axis_x_prrr_axes3_x*prrr_Q_t_3;
-        const real prrr_Q_xy = v.axis_x_prrr_axes3_x*prrr_Q_t_4 +
-            v.axis_y_prrr_axes3_x*prrr_Q_t_3;
-        const real prrr_Q_yy = -prrr_d_c_in_axes3_yy - 2*v.axis_y_prrr_axes3_x*prrr_Q_t_4;
-        /* (prrr-U) velocity and gravity terms of the leg force */
-        const real prrr_U_x = -v.axis_x_prrr_axes3_x*prrr_c_o_in_axes3_x -
-            v.axis_y_prrr_axes3_x*prrr_c_o_in_axes3_y;
-        const real prrr_U_y = v.axis_y_prrr_axes3_x*prrr_c_o_in_axes3_x -
-            v.axis_x_prrr_axes3_x*prrr_c_o_in_axes3_y;
-        /* (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the
-           extra degree of freedom of joint 1 */
-        const real prrr_dy_1_P_1_t =
-            v.inv_prrr_r_2_in_axes3_y*v.prrr_w_2_t*(prrr_dy_1_G_in_axes3_y*v.prrr_r_2_in_axes3_x -
-            prrr_dy_1_Gamma_2) - prrr_dy_1_G_in_axes3_y*v.prrr_e_1_in_axes3_y;
-        const real prrr_dy_1_P_1 = prrr_dy_1_Gamma_1 + prrr_dy_1_P_1_t;
-        /* (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra
-           degree of freedom of joint 1 */
-        const real prrr_d_G_in_axes3_yy = m->prrr_d_G_in_axes3_yy[i];
-        const real prrr_d_P_1_in_axes3_y = v.prrr_d_G_in_axes3_xy*v.prrr_w_2_t -
-            prrr_d_G_in_axes3_yy*v.prrr_e_1_in_axes3_y;
-        const real prrr_d_P_1_in_axes3_x = v.prrr_d_G_in_axes3_xx*v.prrr_w_2_t -
-            v.inv_prrr_r_2_in_axes3_y*v.prrr_P_c_2_in_axes0_x -
-            v.prrr_d_Gamma_3_in_axes3_x*v.prrr_e_1_in_axes3_y*prrr_w_3_in_axes3_y;
-        const real prrr_d_P_1_x = v.axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_x +
-            v.axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_y;
-        const real prrr_d_P_1_y = v.axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_y -
-            v.axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_x;
-        /* (prrr-P_1_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
-           joint 1 */
-        const real prrr_P_1_o_t = prrr_G_o_in_axes3_x*v.prrr_w_2_t -
-            prrr_G_o_in_axes3_y*v.prrr_e_1_in_axes3_y;
-        const real prrr_P_1_o = prrr_P_1_o_t + prrr_T_1_o_in_axes0_x;
-        /* (M_ta) coupling block of M */
-        const real prrr_M_ta_t = prrr_Q_xy*v.prrr_q_x - prrr_Q_xx*v.prrr_q_y;
-        const real prrr_M_ta_t_2 = prrr_Q_yy*v.prrr_q_x - prrr_Q_xy*v.prrr_q_y;
-        /* (M_aa) rotational block of M */
-        const real prrr_M_aa_t = prrr_M_ta_t_2*v.prrr_q_x - prrr_M_ta_t*v.prrr_q_y;
-        /* (Z_a) rotational part of Z */
-        const real prrr_Z_a_t = prrr_U_y*v.prrr_q_x - prrr_U_x*v.prrr_q_y;
-        /* (prrr-M_ya_1) coupling of extra joint 1 with the rotation of the platform */
-        const real prrr_M_ya_1_z = prrr_d_P_1_y*v.prrr_q_x - prrr_d_P_1_x*v.prrr_q_y;
-        /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
-        const real prrr_H_a_2_z = v.prrr_q_x*v.prrr_w_2_y - v.prrr_q_y*v.prrr_w_2_x;
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, prrr_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, prrr_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, prrr_Q_yy);  /* M_tt_yy_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[3*count + k], add, prrr_M_ta_t);  /* M_ta_xz_of_legs */
-        gather(&terms[4*count + k], add, prrr_M_ta_t_2);  /* M_ta_yz_of_legs */
-        /* (M_aa) rotational block of M */
-        gather(&terms[5*count + k], add, prrr_M_aa_t);  /* M_aa_zz_of_legs */
-        /* (Z_t) translational part of Z */
-        gather(&terms[6*count + k], add, prrr_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[7*count + k], add, prrr_U_y);  /* Z_t_y_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[8*count + k], add, prrr_Z_a_t);  /* Z_a_z_of_legs */
-        /* (prrr-P_1_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
-           joint 1 */
-        o[0*count + k] = prrr_P_1_o;
-        /* (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra
-           degree of freedom of joint 1 */
-        o[1*count + k] = prrr_d_P_1_x;
-        o[2*count + k] = prrr_d_P_1_x;
-        o[3*count + k] = prrr_d_P_1_y;
-        o[4*count + k] = prrr_d_P_1_y;
-        /* (prrr-M_ya_1) coupling of extra joint 1 with the rotation of the platform */
-        o[5*count + k] = prrr_M_ya_1_z;
-        o[6*count + k] = prrr_M_ya_1_z;
-        /* (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the
-           extra degree of freedom of joint 1 */
-        o[7*count + k] = prrr_dy_1_P_1;
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        o[8*count + k] = 1;
-        /* (prrr-w_2) reciprocal vector 1 */
-        o[9*count + k] = v.prrr_w_2_x;
-        o[10*count + k] = v.prrr_w_2_y;
-        /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
-        o[11*count + k] = prrr_H_a_2_z;
-        /* (prrr-w_2) reciprocal vector 1 */
-        o[12*count + k] = prrr_w_2_t_2;
-        o[15*count + k] = ((prrr_P_1_o + prrr_d_P_1_x) + (prrr_d_P_1_y + prrr_M_ya_1_z)) +
-            ((prrr_dy_1_P_1 + v.prrr_w_2_x) + (v.prrr_w_2_y + (prrr_H_a_2_z + prrr_w_2_t_2)));
-        const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
-        const real prrr_size = m->prrr_size[i];
-        o[14*count + k] = UNLESS(magnitude(v.prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
-            UNLESS(magnitude(v.prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
-        o[13*count + k] = UNLESS(v.prrr_disc_2 >= 0);
-    }
+    values_prrr v;
+    stage_prrr_X(m, w, i, j, s, X, &v);
+    stage_prrr_V_X(m, w, i, j, V, &v);
+    stage_prrr_M_dynamics(m, i, &v);
+    stage_prrr_Z_dynamics(m, w, i, j, V, &v);
+    /* (prrr-w_2) reciprocal vector 1 */
+    const real prrr_w_2_t_2 = -v.inv_prrr_r_2_in_axes3_y*v.prrr_w_2_t;
+    /* (prrr-u_1) centripetal acceleration of the connection point */
+    const real prrr_u_1_in_axes3_x = v.axis_x_prrr_axes3_x*v.prrr_u_1_x +
+        v.axis_y_prrr_axes3_x*v.prrr_u_1_t;
+    const real prrr_u_1_in_axes3_y = v.axis_y_prrr_axes3_x*v.prrr_u_1_x -
+        v.axis_x_prrr_axes3_x*v.prrr_u_1_t;
+    /* (prrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real prrr_rel_o_in_axes3_x = prrr_u_1_in_axes3_x - v.prrr_bias_in_axes3_x;
+    const real prrr_rel_o_in_axes3_y = prrr_u_1_in_axes3_y -
+        v.prrr_W_2_in_axes2_xx*m->prrr_joint3_offset_x[i]*v.prrr_s_3_t;
+    /* (prrr-B_2_o) remainder of the acceleration tensor of link 2 */
+    const real prrr_B_2_o_in_axes2_xy = v.inv_prrr_r_2_in_axes3_y*prrr_rel_o_in_axes3_x;
+    /* (prrr-alpha_3_o) remainder of: angular acceleration of link 3 */
+    const real prrr_alpha_3_o_in_axes3_z = m->prrr_w_3_in_axes3_y[i]*(prrr_rel_o_in_axes3_y +
+        prrr_B_2_o_in_axes2_xy*v.prrr_r_2_in_axes3_x) - prrr_B_2_o_in_axes2_xy;
+    /* (prrr-f_2_o) remainder of: inertia force of link 2 less its weight */
+    const real prrr_f_2_o_in_axes2_x = prrr_B_2_o_in_axes2_xy*m->prrr_h_2_in_spec2_y[i] +
+        v.prrr_W_2_in_axes2_xx*m->prrr_h_2_in_spec2_x[i] -
+        v.prrr_g_in_axes2_x*m->prrr_link2_mass[i];
+    const real prrr_f_2_o_in_axes2_y = v.prrr_W_2_in_axes2_xx*m->prrr_h_2_in_spec2_y[i] -
+        prrr_B_2_o_in_axes2_xy*m->prrr_h_2_in_spec2_x[i] -
+        v.prrr_g_in_axes2_y*m->prrr_link2_mass[i];
+    /* (prrr-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
+    const real prrr_acc_3_o_in_axes3_x = prrr_u_1_in_axes3_x +
+        v.axis_y_prrr_axes3_x*m->gravity_y - v.axis_x_prrr_axes3_x*m->gravity_x;
+    const real prrr_acc_3_o_in_axes3_y = prrr_u_1_in_axes3_y -
+        v.axis_x_prrr_axes3_x*m->gravity_y - v.axis_y_prrr_axes3_x*m->gravity_x;
+    /* (prrr-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+       reference points */
+    const real prrr_mu_3_o_in_axes3_z = m->prrr_J_3_in_spec3_zz[i]*prrr_alpha_3_o_in_axes3_z +
+        prrr_acc_3_o_in_axes3_y*m->prrr_h_3_in_spec3_x[i] -
+        prrr_acc_3_o_in_axes3_x*m->prrr_h_3_in_spec3_y[i];
+    /* (prrr-dy_1_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
+       links' inertia and weight */
+    const real prrr_dy_1_Gamma_3_t =
+        m->prrr_J_3_in_spec3_zz[i]*m->prrr_w_3_in_axes3_y[i]*(v.prrr_e_1_in_axes3_y +
+        v.prrr_r_2_in_axes3_x*prrr_w_2_t_2);
+    const real prrr_dy_1_Gamma_3 = m->prrr_J_3_in_spec3_zz[i]*prrr_w_2_t_2 -
+        prrr_dy_1_Gamma_3_t;
+    /* (prrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real prrr_mu_2_o_in_axes2_z = v.prrr_g_in_axes2_x*m->prrr_h_2_in_spec2_y[i] -
+        prrr_B_2_o_in_axes2_xy*m->prrr_J_2_in_spec2_zz[i] -
+        v.prrr_g_in_axes2_y*m->prrr_h_2_in_spec2_x[i];
+    /* (prrr-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+       connection point left out */
+    const real prrr_N_2_o_in_axes2_z = prrr_mu_2_o_in_axes2_z + prrr_mu_3_o_in_axes3_z;
+    /* (prrr-dy_1_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
+       links' inertia and weight */
+    const real prrr_dy_1_Gamma_2 = v.prrr_P_c_2_in_axes0_x +
+        m->prrr_Jc_2_in_axes2_zz[i]*prrr_w_2_t_2 - prrr_dy_1_Gamma_3_t;
+    /* (prrr-T_1_o) remainder of: inertia force of the links from 1 outwards, the last link left out
+       */
+    const real prrr_T_1_o_in_axes0_x = m->prrr_f_1_o_in_axes0_x[i] +
+        v.prrr_c_2*prrr_f_2_o_in_axes2_y + prrr_f_2_o_in_axes2_x*v.prrr_s_2;
+    /* (prrr-dy_1_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
+       inertia and weight */
+    const real prrr_dy_1_Gamma_1 = m->prrr_P_c_1_in_axes0_x[i] +
+        v.prrr_P_c_2_in_axes0_x*prrr_w_2_t_2;
+    /* (prrr-dy_1_G) coefficient of the acceleration in: force at the connection point that balances
+       the leg's inertia and weight along all degrees of freedom */
+    const real prrr_dy_1_G_in_axes3_y = prrr_dy_1_Gamma_3*m->prrr_w_3_in_axes3_y[i];
+    /* (prrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real prrr_G_o_in_axes3_y = prrr_mu_3_o_in_axes3_z*m->prrr_w_3_in_axes3_y[i];
+    const real prrr_G_o_in_axes3_x =
+        v.inv_prrr_r_2_in_axes3_y*(prrr_G_o_in_axes3_y*v.prrr_r_2_in_axes3_x -
+        prrr_N_2_o_in_axes2_z);
+    /* (prrr-c_o) remainder of: leg force on the platform without actuation and without the mass at
+       the connection point */
+    const real prrr_c_o_in_axes3_x = v.prrr_W_3_t*m->prrr_h_3_in_spec3_x[i] +
+        prrr_alpha_3_o_in_axes3_z*m->prrr_h_3_in_spec3_y[i] - prrr_G_o_in_axes3_x;
+    const real prrr_c_o_in_axes3_y = v.prrr_W_3_t*m->prrr_h_3_in_spec3_y[i] -
+        prrr_G_o_in_axes3_y - prrr_alpha_3_o_in_axes3_z*m->prrr_h_3_in_spec3_x[i];
+    /* (prrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real prrr_Q_t_3 = v.axis_x_prrr_axes3_x*v.prrr_Q_t_2 +
+        v.axis_y_prrr_axes3_x*v.prrr_d_c_in_axes3_xy;
+    const real prrr_Q_t_4 = v.axis_y_prrr_axes3_x*v.prrr_Q_t_2 -
+        v.axis_x_prrr_axes3_x*v.prrr_d_c_in_axes3_xy;
+    const real prrr_Q_xx = -m->prrr_d_c_in_axes3_yy[i] - 2*v.axis_x_prrr_axes3_x*prrr_Q_t_3;
+    const real prrr_Q_xy = v.axis_x_prrr_axes3_x*prrr_Q_t_4 +
+        v.axis_y_prrr_axes3_x*prrr_Q_t_3;
+    const real prrr_Q_yy = -m->prrr_d_c_in_axes3_yy[i] - 2*v.axis_y_prrr_axes3_x*prrr_Q_t_4;
+    /* (prrr-U) velocity and gravity terms of the leg force */
+    const real prrr_U_x = -v.axis_x_prrr_axes3_x*prrr_c_o_in_axes3_x -
+        v.axis_y_prrr_axes3_x*prrr_c_o_in_axes3_y;
+    const real prrr_U_y = v.axis_y_prrr_axes3_x*prrr_c_o_in_axes3_x -
+        v.axis_x_prrr_axes3_x*prrr_c_o_in_axes3_y;
+    /* (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the
+       extra degree of freedom of joint 1 */
+    const real prrr_dy_1_P_1_t =
+        v.inv_prrr_r_2_in_axes3_y*v.prrr_w_2_t*(prrr_dy_1_G_in_axes3_y*v.prrr_r_2_in_axes3_x -
+        prrr_dy_1_Gamma_2) - prrr_dy_1_G_in_axes3_y*v.prrr_e_1_in_axes3_y;
+    const real prrr_dy_1_P_1 = prrr_dy_1_Gamma_1 + prrr_dy_1_P_1_t;
+    /* (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra
+       degree of freedom of joint 1 */
+    const real prrr_d_P_1_in_axes3_y = v.prrr_d_G_in_axes3_xy*v.prrr_w_2_t -
+        m->prrr_d_G_in_axes3_yy[i]*v.prrr_e_1_in_axes3_y;
+    const real prrr_d_P_1_in_axes3_x = v.prrr_d_G_in_axes3_xx*v.prrr_w_2_t -
+        v.inv_prrr_r_2_in_axes3_y*v.prrr_P_c_2_in_axes0_x -
+        v.prrr_d_Gamma_3_in_axes3_x*v.prrr_e_1_in_axes3_y*m->prrr_w_3_in_axes3_y[i];
+    const real prrr_d_P_1_x = v.axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_x +
+        v.axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_y;
+    const real prrr_d_P_1_y = v.axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_y -
+        v.axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_x;
+    /* (prrr-P_1_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
+       joint 1 */
+    const real prrr_P_1_o_t = prrr_G_o_in_axes3_x*v.prrr_w_2_t -
+        prrr_G_o_in_axes3_y*v.prrr_e_1_in_axes3_y;
+    const real prrr_P_1_o = prrr_P_1_o_t + prrr_T_1_o_in_axes0_x;
+    /* (M_ta) coupling block of M */
+    const real prrr_M_ta_t = prrr_Q_xy*v.prrr_q_x - prrr_Q_xx*v.prrr_q_y;
+    const real prrr_M_ta_t_2 = prrr_Q_yy*v.prrr_q_x - prrr_Q_xy*v.prrr_q_y;
+    /* (M_aa) rotational block of M */
+    const real prrr_M_aa_t = prrr_M_ta_t_2*v.prrr_q_x - prrr_M_ta_t*v.prrr_q_y;
+    /* (Z_a) rotational part of Z */
+    const real prrr_Z_a_t = prrr_U_y*v.prrr_q_x - prrr_U_x*v.prrr_q_y;
+    /* (prrr-M_ya_1) coupling of extra joint 1 with the rotation of the platform */
+    const real prrr_M_ya_1_z = prrr_d_P_1_y*v.prrr_q_x - prrr_d_P_1_x*v.prrr_q_y;
+    /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
+    const real prrr_H_a_2_z = v.prrr_q_x*v.prrr_w_2_y - v.prrr_q_y*v.prrr_w_2_x;
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, prrr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, prrr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, prrr_Q_yy);  /* M_tt_yy_of_legs */
+    /* (M_ta) */
+    gather(&terms[3*count + k], add, prrr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, prrr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    /* (M_aa) */
+    gather(&terms[5*count + k], add, prrr_M_aa_t);  /* M_aa_zz_of_legs */
+    /* (Z_t) translational part of Z */
+    gather(&terms[6*count + k], add, prrr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[7*count + k], add, prrr_U_y);  /* Z_t_y_of_legs */
+    /* (Z_a) */
+    gather(&terms[8*count + k], add, prrr_Z_a_t);  /* Z_a_z_of_legs */
+    /* (prrr-P_1_o) */
+    o[0*count + k] = prrr_P_1_o;
+    /* (prrr-d_P_1) */
+    o[1*count + k] = prrr_d_P_1_x;
+    o[2*count + k] = prrr_d_P_1_x;
+    o[3*count + k] = prrr_d_P_1_y;
+    o[4*count + k] = prrr_d_P_1_y;
+    /* (prrr-M_ya_1) */
+    o[5*count + k] = prrr_M_ya_1_z;
+    o[6*count + k] = prrr_M_ya_1_z;
+    /* (prrr-dy_1_P_1) */
+    o[7*count + k] = prrr_dy_1_P_1;
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    o[8*count + k] = 1;
+    /* (prrr-w_2) */
+    o[9*count + k] = v.prrr_w_2_x;
+    o[10*count + k] = v.prrr_w_2_y;
+    /* (prrr-H_a_2) */
+    o[11*count + k] = prrr_H_a_2_z;
+    /* (prrr-w_2) */
+    o[12*count + k] = prrr_w_2_t_2;
+    o[15*count + k] = ((prrr_P_1_o + prrr_d_P_1_x) + (prrr_d_P_1_y + prrr_M_ya_1_z)) +
+        ((prrr_dy_1_P_1 + v.prrr_w_2_x) + (v.prrr_w_2_y + (prrr_H_a_2_z + prrr_w_2_t_2)));
+    o[14*count + k] = UNLESS(magnitude(v.prrr_rho2_2) >
+        TOLERANCE*TOLERANCE*m->prrr_rho2_2_t[i]) + UNLESS(magnitude(v.prrr_r_2_in_axes3_y) >
+        TOLERANCE*m->prrr_size[i]);
+    o[13*count + k] = UNLESS(v.prrr_disc_2 >= 0);
 }
 
-INLINE void dynamics_place_prrr(size_t w, size_t count, const real *o, size_t first, real *M, real
-    *Z, real *H, verdict *t)
+INLINE void dynamics_place_prrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
+    *M, real *Z, real *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        Z[3*w + k] = o[0*count + first + k];
-        M[3*NV*w + k] = o[1*count + first + k];
-        M[3*w + k] = o[2*count + first + k];
-        M[(3*NV + 1)*w + k] = o[3*count + first + k];
-        M[(NV + 3)*w + k] = o[4*count + first + k];
-        M[(3*NV + 2)*w + k] = o[5*count + first + k];
-        M[(2*NV + 3)*w + k] = o[6*count + first + k];
-        M[(3*NV + 3)*w + k] = o[7*count + first + k];
-        H[3*NU*w + k] = o[8*count + first + k];
-        H[1*w + k] = o[9*count + first + k];
-        H[(NU + 1)*w + k] = o[10*count + first + k];
-        H[(2*NU + 1)*w + k] = o[11*count + first + k];
-        H[(3*NU + 1)*w + k] = o[12*count + first + k];
-        t->unreachable[k] += o[13*count + first + k];
-        t->singular[k] += o[14*count + first + k];
-        t->total[k] += o[15*count + first + k];
-    }
+    Z[3*w + k] = o[0*count + at];
+    M[3*NV*w + k] = o[1*count + at];
+    M[3*w + k] = o[2*count + at];
+    M[(3*NV + 1)*w + k] = o[3*count + at];
+    M[(NV + 3)*w + k] = o[4*count + at];
+    M[(3*NV + 2)*w + k] = o[5*count + at];
+    M[(2*NV + 3)*w + k] = o[6*count + at];
+    M[(3*NV + 3)*w + k] = o[7*count + at];
+    H[3*NU*w + k] = o[8*count + at];
+    H[1*w + k] = o[9*count + at];
+    H[(NU + 1)*w + k] = o[10*count + at];
+    H[(2*NU + 1)*w + k] = o[11*count + at];
+    H[(3*NU + 1)*w + k] = o[12*count + at];
+    t->unreachable[k] += o[13*count + at];
+    t->singular[k] += o[14*count + at];
+    t->total[k] += o[15*count + at];
 }
 
-INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
+INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_X(m, w, i, j, s, X, &v);
-        stage_rrr_V_X(m, w, i, j, V, &v);
-        stage_rrr_M_dynamics(m, i, &v);
-        /* (rrr-u_1) centripetal acceleration of the connection point */
-        const real omega_z = V[2*w + j];
-        const real rrr_u_1_x = -omega_z*v.rrr_S_dot_t_2;
-        const real rrr_u_1_t = omega_z*v.rrr_S_dot_t;
-        const real rrr_u_1_in_axes2_x = v.axis_x_rrr_axes2_x*rrr_u_1_x +
-            v.axis_y_rrr_axes2_x*rrr_u_1_t;
-        const real rrr_u_1_in_axes2_y = v.axis_y_rrr_axes2_x*rrr_u_1_x -
-            v.axis_x_rrr_axes2_x*rrr_u_1_t;
-        /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-           */
-        const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - v.rrr_bias_in_axes2_x;
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
-            v.rrr_W_1_t*rrr_joint2_offset_x*v.rrr_s_2;
-        /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
-        const real rrr_B_1_o_in_axes1_xy = v.inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x;
-        /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_alpha_2_o_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y +
-            rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
-        /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + v.axis_y_rrr_axes2_x*gravity_y -
-            v.axis_x_rrr_axes2_x*gravity_x;
-        const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - v.axis_x_rrr_axes2_x*gravity_y -
-            v.axis_y_rrr_axes2_x*gravity_x;
-        /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-           reference points */
-        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
-        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
-        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-        const real rrr_mu_2_o_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
-            rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y;
-        /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-           reference points */
-        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
-        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
-        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
-        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
-        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
-        const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(v.rrr_c_1*rrr_mu_1_t +
-            rrr_mu_1_t_2*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
-            rrr_h_1_in_spec1_x*(v.rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v.rrr_s_1);
-        /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
-           connection point left out */
-        const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
-        /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y;
-        /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-           connection point */
-        const real rrr_c_o_in_axes2_x = v.rrr_W_2_t*rrr_h_2_in_spec2_x +
-            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
-            v.inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x -
-            rrr_N_1_o_in_axes1_z);
-        const real rrr_c_o_in_axes2_y = v.rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
-            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x;
-        /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rrr_d_c_in_axes2_yy = m->rrr_d_c_in_axes2_yy[i];
-        const real rrr_Q_t = v.inv_rrr_r_1_in_axes2_y*v.rrr_d_Gamma_1_in_axes2_x +
-            rrr_h_2_in_spec2_y*(v.rrr_w_2_in_axes2_x - v.inv_rrr_r_1_in_axes2_y) -
-            rrr_d_c_in_axes2_yy - v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
-        const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
-        const real rrr_Q_t_3 = v.axis_x_rrr_axes2_x*rrr_Q_t_2 +
-            v.axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
-        const real rrr_Q_t_4 = v.axis_y_rrr_axes2_x*rrr_Q_t_2 -
-            v.axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
-        const real rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2*v.axis_x_rrr_axes2_x*rrr_Q_t_3;
-        const real rrr_Q_xy = v.axis_x_rrr_axes2_x*rrr_Q_t_4 + v.axis_y_rrr_axes2_x*rrr_Q_t_3;
-        const real rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2*v.axis_y_rrr_axes2_x*rrr_Q_t_4;
-        /* (rrr-U) velocity and gravity terms of the leg force */
-        const real rrr_U_x = -v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
-            v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
-        const real rrr_U_y = v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
-            v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
-        /* (M_ta) coupling block of M */
-        const real rrr_M_ta_t = rrr_Q_xy*v.rrr_q_x - rrr_Q_xx*v.rrr_q_y;
-        const real rrr_M_ta_t_2 = rrr_Q_yy*v.rrr_q_x - rrr_Q_xy*v.rrr_q_y;
-        /* (M_aa) rotational block of M */
-        const real rrr_M_aa_t = rrr_M_ta_t_2*v.rrr_q_x - rrr_M_ta_t*v.rrr_q_y;
-        /* (Z_a) rotational part of Z */
-        const real rrr_Z_a_t = rrr_U_y*v.rrr_q_x - rrr_U_x*v.rrr_q_y;
-        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_H_a_1_z = v.rrr_q_x*v.rrr_w_1_y - v.rrr_q_y*v.rrr_w_1_x;
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, rrr_Q_yy);  /* M_tt_yy_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[3*count + k], add, rrr_M_ta_t);  /* M_ta_xz_of_legs */
-        gather(&terms[4*count + k], add, rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
-        /* (M_aa) rotational block of M */
-        gather(&terms[5*count + k], add, rrr_M_aa_t);  /* M_aa_zz_of_legs */
-        /* (Z_t) translational part of Z */
-        gather(&terms[6*count + k], add, rrr_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[7*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[8*count + k], add, rrr_Z_a_t);  /* Z_a_z_of_legs */
-        /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = v.rrr_w_1_x;
-        o[1*count + k] = v.rrr_w_1_y;
-        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = rrr_H_a_1_z;
-        o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + rrr_H_a_1_z);
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        const real rrr_size = m->rrr_size[i];
-        o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
+    values_rrr v;
+    stage_rrr_X(m, w, i, j, s, X, &v);
+    stage_rrr_V_X(m, w, i, j, V, &v);
+    stage_rrr_M_dynamics(m, i, &v);
+    /* (rrr-u_1) centripetal acceleration of the connection point */
+    const real omega_z = V[2*w + j];
+    const real rrr_u_1_x = -omega_z*v.rrr_S_dot_t_2;
+    const real rrr_u_1_t = omega_z*v.rrr_S_dot_t;
+    const real rrr_u_1_in_axes2_x = v.axis_x_rrr_axes2_x*rrr_u_1_x +
+        v.axis_y_rrr_axes2_x*rrr_u_1_t;
+    const real rrr_u_1_in_axes2_y = v.axis_y_rrr_axes2_x*rrr_u_1_x -
+        v.axis_x_rrr_axes2_x*rrr_u_1_t;
+    /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - v.rrr_bias_in_axes2_x;
+    const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
+        v.rrr_W_1_t*m->rrr_joint2_offset_x[i]*v.rrr_s_2;
+    /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
+    const real rrr_B_1_o_in_axes1_xy = v.inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x;
+    /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real rrr_alpha_2_o_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_o_in_axes2_y +
+        rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
+    /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
+    const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + v.axis_y_rrr_axes2_x*m->gravity_y
+        - v.axis_x_rrr_axes2_x*m->gravity_x;
+    const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - v.axis_x_rrr_axes2_x*m->gravity_y
+        - v.axis_y_rrr_axes2_x*m->gravity_x;
+    /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real rrr_mu_2_o_in_axes2_z = m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z +
+        rrr_acc_2_o_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
+        rrr_acc_2_o_in_axes2_x*m->rrr_h_2_in_spec2_y[i];
+    /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
+    const real rrr_mu_1_o_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] +
+        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i] -
+        m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v.rrr_s_1);
+    /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+       connection point left out */
+    const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
+    /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
+    /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
+    const real rrr_c_o_in_axes2_x = v.rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] -
+        v.inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x -
+        rrr_N_1_o_in_axes1_z);
+    const real rrr_c_o_in_axes2_y = v.rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] - rrr_G_o_in_axes2_y
+        - rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i];
+    /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rrr_Q_t = v.inv_rrr_r_1_in_axes2_y*v.rrr_d_Gamma_1_in_axes2_x +
+        m->rrr_h_2_in_spec2_y[i]*(v.rrr_w_2_in_axes2_x - v.inv_rrr_r_1_in_axes2_y) -
+        m->rrr_d_c_in_axes2_yy[i] - v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
+    const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
+    const real rrr_Q_t_3 = v.axis_x_rrr_axes2_x*rrr_Q_t_2 +
+        v.axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+    const real rrr_Q_t_4 = v.axis_y_rrr_axes2_x*rrr_Q_t_2 -
+        v.axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+    const real rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v.axis_x_rrr_axes2_x*rrr_Q_t_3;
+    const real rrr_Q_xy = v.axis_x_rrr_axes2_x*rrr_Q_t_4 + v.axis_y_rrr_axes2_x*rrr_Q_t_3;
+    const real rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v.axis_y_rrr_axes2_x*rrr_Q_t_4;
+    /* (rrr-U) velocity and gravity terms of the leg force */
+    const real rrr_U_x = -v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
+        v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
+    const real rrr_U_y = v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
+        v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
+    /* (M_ta) */
+    const real rrr_M_ta_t = rrr_Q_xy*v.rrr_q_x - rrr_Q_xx*v.rrr_q_y;
+    const real rrr_M_ta_t_2 = rrr_Q_yy*v.rrr_q_x - rrr_Q_xy*v.rrr_q_y;
+    /* (M_aa) */
+    const real rrr_M_aa_t = rrr_M_ta_t_2*v.rrr_q_x - rrr_M_ta_t*v.rrr_q_y;
+    /* (Z_a) */
+    const real rrr_Z_a_t = rrr_U_y*v.rrr_q_x - rrr_U_x*v.rrr_q_y;
+    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+    const real rrr_H_a_1_z = v.rrr_q_x*v.rrr_w_1_y - v.rrr_q_y*v.rrr_w_1_x;
+    /* (M_tt) */
+    gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, rrr_Q_yy);  /* M_tt_yy_of_legs */
+    /* (M_ta) */
+    gather(&terms[3*count + k], add, rrr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    /* (M_aa) */
+    gather(&terms[5*count + k], add, rrr_M_aa_t);  /* M_aa_zz_of_legs */
+    /* (Z_t) */
+    gather(&terms[6*count + k], add, rrr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[7*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
+    /* (Z_a) */
+    gather(&terms[8*count + k], add, rrr_Z_a_t);  /* Z_a_z_of_legs */
+    /* (rrr-w_1) reciprocal vector 1 */
+    o[0*count + k] = v.rrr_w_1_x;
+    o[1*count + k] = v.rrr_w_1_y;
+    /* (rrr-H_a_1) */
+    o[2*count + k] = rrr_H_a_1_z;
+    o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + rrr_H_a_1_z);
+    o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
+        + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
+    o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void dynamics_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *H, verdict *t)
+INLINE void dynamics_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count, const real
+    *o, real *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[(2 + leg)*w + k] = o[0*count + first + k];
-        H[(NU + 2 + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + 2 + leg)*w + k] = o[2*count + first + k];
-        t->unreachable[k] += o[3*count + first + k];
-        t->singular[k] += o[4*count + first + k];
-        t->total[k] += o[5*count + first + k];
-    }
+    H[(2 + i)*w + k] = o[0*count + at];
+    H[(NU + 2 + i)*w + k] = o[1*count + at];
+    H[(2*NU + 2 + i)*w + k] = o[2*count + at];
+    t->unreachable[k] += o[3*count + at];
+    t->singular[k] += o[4*count + at];
+    t->total[k] += o[5*count + at];
 }
 
-INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const real *sums, real *M,
-    real *Z, verdict *t)
+INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
+    real *M, real *Z, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (M_tt) translational block of M */
-        const real M_tt_xx_of_legs = sums[0*w + k];
-        const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_xx_of_legs + m_star;
-        const real M_tt_yy_of_legs = sums[2*w + k];
-        const real M_tt_yy = M_tt_yy_of_legs + m_star;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xz_of_legs = sums[3*w + k];
-        const real h_star_y = s[3*w + k];
-        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-        const real M_ta_yz_of_legs = sums[4*w + k];
-        const real h_star_x = s[2*w + k];
-        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
-        /* (M_aa) rotational block of M */
-        const real J_star_zz = m->J_star_zz;
-        const real M_aa_zz_of_legs = sums[5*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-        /* (Z_t) translational part of Z */
-        const real Z_p_x = s[4*w + k];
-        const real Z_t_x_of_legs = sums[6*w + k];
-        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[5*w + k];
-        const real Z_t_y_of_legs = sums[7*w + k];
-        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        /* (Z_a) rotational part of Z */
-        const real Z_a_z_of_legs = sums[8*w + k];
-        const real Z_q_z = s[6*w + k];
-        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
-        /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        const real M_tt_xy = sums[1*w + k];
-        M[1*w + k] = M_tt_xy;
-        M[NV*w + k] = M_tt_xy;
-        M[(NV + 1)*w + k] = M_tt_yy;
-        /* (M_ta) coupling block of M */
-        M[2*w + k] = M_ta_xz;
-        M[2*NV*w + k] = M_ta_xz;
-        M[(NV + 2)*w + k] = M_ta_yz;
-        M[(2*NV + 1)*w + k] = M_ta_yz;
-        /* (M_aa) rotational block of M */
-        M[(2*NV + 2)*w + k] = M_aa_zz;
-        /* (Z_t) translational part of Z */
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-        /* (Z_a) rotational part of Z */
-        Z[2*w + k] = Z_a_z;
-        t->total[k] += ((M_tt_xx + M_tt_xy) + (M_tt_yy + M_ta_xz)) + ((M_ta_yz + M_aa_zz) + (Z_t_x
-            + (Z_t_y + Z_a_z)));
-    }
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_yy_of_legs = sums[2*w + k];
+    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    /* (M_ta) */
+    const real M_ta_xz_of_legs = sums[3*w + k];
+    const real h_star_y = s[3*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yz_of_legs = sums[4*w + k];
+    const real h_star_x = s[2*w + k];
+    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    /* (M_aa) */
+    const real M_aa_zz_of_legs = sums[5*w + k];
+    const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
+    /* (Z_t) */
+    const real Z_p_x = s[4*w + k];
+    const real Z_t_x_of_legs = sums[6*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[5*w + k];
+    const real Z_t_y_of_legs = sums[7*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    /* (Z_a) */
+    const real Z_a_z_of_legs = sums[8*w + k];
+    const real Z_q_z = s[6*w + k];
+    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    /* (M_ta) */
+    M[2*w + k] = M_ta_xz;
+    M[2*NV*w + k] = M_ta_xz;
+    M[(NV + 2)*w + k] = M_ta_yz;
+    M[(2*NV + 1)*w + k] = M_ta_yz;
+    /* (M_aa) */
+    M[(2*NV + 2)*w + k] = M_aa_zz;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    /* (Z_a) */
+    Z[2*w + k] = Z_a_z;
+    t->total[k] += ((M_tt_xx + M_tt_xy) + (M_tt_yy + M_ta_xz)) + ((M_ta_yz + M_aa_zz) + (Z_t_x
+        + (Z_t_y + Z_a_z)));
 }
 
-INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
+APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, verdict *t)
 {
     real s[7] = {0}, sums[9] = {0};
     real terms_prrr[9*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[16*LEGS(LEGS_OF_prrr)] = {0};
     real terms_rrr[9*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
     clear(H, NV*NU);
-    dynamics_before(m, 1, X, V, s);
-    dynamics_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), 0, X, V, terms_prrr, o_prrr);
-    dynamics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, V, terms_rrr, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
-        dynamics_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, M, Z, H, t);
+    dynamics_before(m, 1, 0, X, V, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
+        dynamics_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), 0, s, X, V, terms_prrr, o_prrr);
+    }
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        dynamics_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, V, terms_rrr, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
+        dynamics_place_prrr(1, 0, i, LEGS(LEGS_OF_prrr), o_prrr, M, Z, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
         sums[n] = total(terms_prrr + n*LEGS(LEGS_OF_prrr), LEGS_OF_prrr);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        dynamics_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, H, t);
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        dynamics_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
-    dynamics_after(m, 1, s, sums, M, Z, t);
+    dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
-INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
-    real *H, verdict *t)
+APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
+    real *restrict Z, real *restrict H, verdict *restrict t)
 {
     real s[7*LANES], sums[9*LANES];
     real o_prrr[16*LANES];
     real o_rrr[6*LANES];
     clear(H, NV*NU*LANES);
-    dynamics_before(m, LANES, X, V, s);
+    for (size_t k = 0; k < LANES; ++k) {
+        dynamics_before(m, LANES, k, X, V, s);
+    }
     clear(sums, 9*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
-        dynamics_legs_prrr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_prrr);
-        dynamics_place_prrr(LANES, LANES, o_prrr, 0, M, Z, H, t);
+    for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_legs_prrr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_prrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_place_prrr(LANES, k, k, LANES, o_prrr, M, Z, H, t);
+        }
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        dynamics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rrr);
-        dynamics_place_rrr(LANES, LANES, o_rrr, leg, 0, H, t);
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_place_rrr(LANES, i, k, k, LANES, o_rrr, H, t);
+        }
     }
-    dynamics_after(m, LANES, s, sums, M, Z, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        dynamics_after(m, LANES, k, s, sums, M, Z, t);
+    }
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-        s[2*w + k] = v.h_star_x;
-        s[3*w + k] = v.h_star_y;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
+    s[2*w + k] = v.h_star_x;
+    s[3*w + k] = v.h_star_y;
 }
 
-INLINE void M_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void M_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_prrr v;
-        stage_prrr_X(m, w, i, j, s, X, &v);
-        stage_prrr_M_dynamics(m, i, &v);
-        /* (prrr-dy_1_rel) coefficient of the acceleration in: acceleration of the connection point left
-           to the joint accelerations */
-        const real prrr_dy_1_rel_in_axes3_x = v.prrr_c_2*v.prrr_s_3_t - v.prrr_c_3*v.prrr_s_2;
-        /* (prrr-dy_1_qdd_2) coefficient of the acceleration in: acceleration of joint 2 */
-        const real prrr_dy_1_qdd_2 = -v.inv_prrr_r_2_in_axes3_y*prrr_dy_1_rel_in_axes3_x;
-        /* (prrr-dy_1_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
-           links' inertia and weight */
-        const real prrr_J_3_in_spec3_zz = m->prrr_J_3_in_spec3_zz[i];
-        const real prrr_w_3_in_axes3_y = m->prrr_w_3_in_axes3_y[i];
-        const real prrr_dy_1_Gamma_3_t =
-            prrr_J_3_in_spec3_zz*prrr_w_3_in_axes3_y*(v.prrr_e_1_in_axes3_y +
-            prrr_dy_1_qdd_2*v.prrr_r_2_in_axes3_x);
-        const real prrr_dy_1_Gamma_3 = prrr_J_3_in_spec3_zz*prrr_dy_1_qdd_2 - prrr_dy_1_Gamma_3_t;
-        /* (prrr-dy_1_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
-           links' inertia and weight */
-        const real prrr_Jc_2_in_axes2_zz = m->prrr_Jc_2_in_axes2_zz[i];
-        const real prrr_dy_1_Gamma_2 = v.prrr_P_c_2_in_axes0_x +
-            prrr_Jc_2_in_axes2_zz*prrr_dy_1_qdd_2 - prrr_dy_1_Gamma_3_t;
-        /* (prrr-dy_1_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
-           inertia and weight */
-        const real prrr_P_c_1_in_axes0_x = m->prrr_P_c_1_in_axes0_x[i];
-        const real prrr_dy_1_Gamma_1 = prrr_P_c_1_in_axes0_x +
-            v.prrr_P_c_2_in_axes0_x*prrr_dy_1_qdd_2;
-        /* (prrr-dy_1_G) coefficient of the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
-        const real prrr_dy_1_G_in_axes3_y = prrr_dy_1_Gamma_3*prrr_w_3_in_axes3_y;
-        /* (prrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
-        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
-        const real axis_y_prrr_axes3_x = prrr_base_frame_xx*prrr_dy_1_rel_in_axes3_x +
-            prrr_base_frame_xy*v.prrr_e_1_in_axes3_y;
-        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real axis_x_prrr_axes3_x = prrr_base_frame_yx*prrr_dy_1_rel_in_axes3_x +
-            prrr_base_frame_yy*v.prrr_e_1_in_axes3_y;
-        const real prrr_Q_t_3 = axis_x_prrr_axes3_x*v.prrr_Q_t_2 +
-            axis_y_prrr_axes3_x*v.prrr_d_c_in_axes3_xy;
-        const real prrr_Q_t_4 = axis_y_prrr_axes3_x*v.prrr_Q_t_2 -
-            axis_x_prrr_axes3_x*v.prrr_d_c_in_axes3_xy;
-        const real prrr_d_c_in_axes3_yy = m->prrr_d_c_in_axes3_yy[i];
-        const real prrr_Q_xx = -prrr_d_c_in_axes3_yy - 2*axis_x_prrr_axes3_x*prrr_Q_t_3;
-        const real prrr_Q_xy = axis_x_prrr_axes3_x*prrr_Q_t_4 + axis_y_prrr_axes3_x*prrr_Q_t_3;
-        const real prrr_Q_yy = -prrr_d_c_in_axes3_yy - 2*axis_y_prrr_axes3_x*prrr_Q_t_4;
-        /* (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the
-           extra degree of freedom of joint 1 */
-        const real prrr_dy_1_P_1_t =
-            v.inv_prrr_r_2_in_axes3_y*prrr_dy_1_rel_in_axes3_x*(prrr_dy_1_G_in_axes3_y*v.prrr_r_2_in_axes3_x
-            - prrr_dy_1_Gamma_2) - prrr_dy_1_G_in_axes3_y*v.prrr_e_1_in_axes3_y;
-        const real prrr_dy_1_P_1 = prrr_dy_1_Gamma_1 + prrr_dy_1_P_1_t;
-        /* (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra
-           degree of freedom of joint 1 */
-        const real prrr_d_G_in_axes3_yy = m->prrr_d_G_in_axes3_yy[i];
-        const real prrr_d_P_1_in_axes3_y = v.prrr_d_G_in_axes3_xy*prrr_dy_1_rel_in_axes3_x -
-            prrr_d_G_in_axes3_yy*v.prrr_e_1_in_axes3_y;
-        const real prrr_d_P_1_in_axes3_x = v.prrr_d_G_in_axes3_xx*prrr_dy_1_rel_in_axes3_x -
-            v.inv_prrr_r_2_in_axes3_y*v.prrr_P_c_2_in_axes0_x -
-            v.prrr_d_Gamma_3_in_axes3_x*v.prrr_e_1_in_axes3_y*prrr_w_3_in_axes3_y;
-        const real prrr_d_P_1_x = axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_x +
-            axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_y;
-        const real prrr_d_P_1_y = axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_y -
-            axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_x;
-        /* (M_ta) coupling block of M */
-        const real prrr_M_ta_t = prrr_Q_xy*v.prrr_q_x - prrr_Q_xx*v.prrr_q_y;
-        const real prrr_M_ta_t_2 = prrr_Q_yy*v.prrr_q_x - prrr_Q_xy*v.prrr_q_y;
-        /* (M_aa) rotational block of M */
-        const real prrr_M_aa_t = prrr_M_ta_t_2*v.prrr_q_x - prrr_M_ta_t*v.prrr_q_y;
-        /* (prrr-M_ya_1) coupling of extra joint 1 with the rotation of the platform */
-        const real prrr_M_ya_1_z = prrr_d_P_1_y*v.prrr_q_x - prrr_d_P_1_x*v.prrr_q_y;
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, prrr_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, prrr_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, prrr_Q_yy);  /* M_tt_yy_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[3*count + k], add, prrr_M_ta_t);  /* M_ta_xz_of_legs */
-        gather(&terms[4*count + k], add, prrr_M_ta_t_2);  /* M_ta_yz_of_legs */
-        /* (M_aa) rotational block of M */
-        gather(&terms[5*count + k], add, prrr_M_aa_t);  /* M_aa_zz_of_legs */
-        /* (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra
-           degree of freedom of joint 1 */
-        o[0*count + k] = prrr_d_P_1_x;
-        o[1*count + k] = prrr_d_P_1_x;
-        o[2*count + k] = prrr_d_P_1_y;
-        o[3*count + k] = prrr_d_P_1_y;
-        /* (prrr-M_ya_1) coupling of extra joint 1 with the rotation of the platform */
-        o[4*count + k] = prrr_M_ya_1_z;
-        o[5*count + k] = prrr_M_ya_1_z;
-        /* (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the
-           extra degree of freedom of joint 1 */
-        o[6*count + k] = prrr_dy_1_P_1;
-        o[9*count + k] = (prrr_d_P_1_x + prrr_d_P_1_y) + (prrr_M_ya_1_z + prrr_dy_1_P_1);
-        const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
-        const real prrr_size = m->prrr_size[i];
-        o[8*count + k] = UNLESS(magnitude(v.prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
-            UNLESS(magnitude(v.prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
-        o[7*count + k] = UNLESS(v.prrr_disc_2 >= 0);
-    }
+    values_prrr v;
+    stage_prrr_X(m, w, i, j, s, X, &v);
+    stage_prrr_M_dynamics(m, i, &v);
+    /* (prrr-dy_1_rel) coefficient of the acceleration in: acceleration of the connection point left
+       to the joint accelerations */
+    const real prrr_dy_1_rel_in_axes3_x = v.prrr_c_2*v.prrr_s_3_t - v.prrr_c_3*v.prrr_s_2;
+    /* (prrr-dy_1_qdd_2) coefficient of the acceleration in: acceleration of joint 2 */
+    const real prrr_dy_1_qdd_2 = -v.inv_prrr_r_2_in_axes3_y*prrr_dy_1_rel_in_axes3_x;
+    /* (prrr-dy_1_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
+       links' inertia and weight */
+    const real prrr_dy_1_Gamma_3_t =
+        m->prrr_J_3_in_spec3_zz[i]*m->prrr_w_3_in_axes3_y[i]*(v.prrr_e_1_in_axes3_y +
+        prrr_dy_1_qdd_2*v.prrr_r_2_in_axes3_x);
+    const real prrr_dy_1_Gamma_3 = m->prrr_J_3_in_spec3_zz[i]*prrr_dy_1_qdd_2 -
+        prrr_dy_1_Gamma_3_t;
+    /* (prrr-dy_1_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
+       links' inertia and weight */
+    const real prrr_dy_1_Gamma_2 = v.prrr_P_c_2_in_axes0_x +
+        m->prrr_Jc_2_in_axes2_zz[i]*prrr_dy_1_qdd_2 - prrr_dy_1_Gamma_3_t;
+    /* (prrr-dy_1_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
+       inertia and weight */
+    const real prrr_dy_1_Gamma_1 = m->prrr_P_c_1_in_axes0_x[i] +
+        v.prrr_P_c_2_in_axes0_x*prrr_dy_1_qdd_2;
+    /* (prrr-dy_1_G) coefficient of the acceleration in: force at the connection point that balances
+       the leg's inertia and weight along all degrees of freedom */
+    const real prrr_dy_1_G_in_axes3_y = prrr_dy_1_Gamma_3*m->prrr_w_3_in_axes3_y[i];
+    /* (prrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real axis_y_prrr_axes3_x = m->prrr_base_frame_xx[i]*prrr_dy_1_rel_in_axes3_x +
+        m->prrr_base_frame_xy[i]*v.prrr_e_1_in_axes3_y;
+    const real axis_x_prrr_axes3_x = m->prrr_base_frame_yx[i]*prrr_dy_1_rel_in_axes3_x +
+        m->prrr_base_frame_yy[i]*v.prrr_e_1_in_axes3_y;
+    const real prrr_Q_t_3 = axis_x_prrr_axes3_x*v.prrr_Q_t_2 +
+        axis_y_prrr_axes3_x*v.prrr_d_c_in_axes3_xy;
+    const real prrr_Q_t_4 = axis_y_prrr_axes3_x*v.prrr_Q_t_2 -
+        axis_x_prrr_axes3_x*v.prrr_d_c_in_axes3_xy;
+    const real prrr_Q_xx = -m->prrr_d_c_in_axes3_yy[i] - 2*axis_x_prrr_axes3_x*prrr_Q_t_3;
+    const real prrr_Q_xy = axis_x_prrr_axes3_x*prrr_Q_t_4 + axis_y_prrr_axes3_x*prrr_Q_t_3;
+    const real prrr_Q_yy = -m->prrr_d_c_in_axes3_yy[i] - 2*axis_y_prrr_axes3_x*prrr_Q_t_4;
+    /* (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the
+       extra degree of freedom of joint 1 */
+    const real prrr_dy_1_P_1_t =
+        v.inv_prrr_r_2_in_axes3_y*prrr_dy_1_rel_in_axes3_x*(prrr_dy_1_G_in_axes3_y*v.prrr_r_2_in_axes3_x
+        - prrr_dy_1_Gamma_2) - prrr_dy_1_G_in_axes3_y*v.prrr_e_1_in_axes3_y;
+    const real prrr_dy_1_P_1 = prrr_dy_1_Gamma_1 + prrr_dy_1_P_1_t;
+    /* (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra
+       degree of freedom of joint 1 */
+    const real prrr_d_P_1_in_axes3_y = v.prrr_d_G_in_axes3_xy*prrr_dy_1_rel_in_axes3_x -
+        m->prrr_d_G_in_axes3_yy[i]*v.prrr_e_1_in_axes3_y;
+    const real prrr_d_P_1_in_axes3_x = v.prrr_d_G_in_axes3_xx*prrr_dy_1_rel_in_axes3_x -
+        v.inv_prrr_r_2_in_axes3_y*v.prrr_P_c_2_in_axes0_x -
+        v.prrr_d_Gamma_3_in_axes3_x*v.prrr_e_1_in_axes3_y*m->prrr_w_3_in_axes3_y[i];
+    const real prrr_d_P_1_x = axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_x +
+        axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_y;
+    const real prrr_d_P_1_y = axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_y -
+        axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_x;
+    /* (M_ta) coupling block of M */
+    const real prrr_M_ta_t = prrr_Q_xy*v.prrr_q_x - prrr_Q_xx*v.prrr_q_y;
+    const real prrr_M_ta_t_2 = prrr_Q_yy*v.prrr_q_x - prrr_Q_xy*v.prrr_q_y;
+    /* (M_aa) rotational block of M */
+    const real prrr_M_aa_t = prrr_M_ta_t_2*v.prrr_q_x - prrr_M_ta_t*v.prrr_q_y;
+    /* (prrr-M_ya_1) coupling of extra joint 1 with the rotation of the platform */
+    const real prrr_M_ya_1_z = prrr_d_P_1_y*v.prrr_q_x - prrr_d_P_1_x*v.prrr_q_y;
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, prrr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, prrr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, prrr_Q_yy);  /* M_tt_yy_of_legs */
+    /* (M_ta) */
+    gather(&terms[3*count + k], add, prrr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, prrr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    /* (M_aa) */
+    gather(&terms[5*count + k], add, prrr_M_aa_t);  /* M_aa_zz_of_legs */
+    /* (prrr-d_P_1) */
+    o[0*count + k] = prrr_d_P_1_x;
+    o[1*count + k] = prrr_d_P_1_x;
+    o[2*count + k] = prrr_d_P_1_y;
+    o[3*count + k] = prrr_d_P_1_y;
+    /* (prrr-M_ya_1) */
+    o[4*count + k] = prrr_M_ya_1_z;
+    o[5*count + k] = prrr_M_ya_1_z;
+    /* (prrr-dy_1_P_1) */
+    o[6*count + k] = prrr_dy_1_P_1;
+    o[9*count + k] = (prrr_d_P_1_x + prrr_d_P_1_y) + (prrr_M_ya_1_z + prrr_dy_1_P_1);
+    o[8*count + k] = UNLESS(magnitude(v.prrr_rho2_2) >
+        TOLERANCE*TOLERANCE*m->prrr_rho2_2_t[i]) + UNLESS(magnitude(v.prrr_r_2_in_axes3_y) >
+        TOLERANCE*m->prrr_size[i]);
+    o[7*count + k] = UNLESS(v.prrr_disc_2 >= 0);
 }
 
-INLINE void M_place_prrr(size_t w, size_t count, const real *o, size_t first, real *M, verdict *t)
+INLINE void M_place_prrr(size_t w, size_t k, size_t at, size_t count, const real *o, real *M,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        M[3*NV*w + k] = o[0*count + first + k];
-        M[3*w + k] = o[1*count + first + k];
-        M[(3*NV + 1)*w + k] = o[2*count + first + k];
-        M[(NV + 3)*w + k] = o[3*count + first + k];
-        M[(3*NV + 2)*w + k] = o[4*count + first + k];
-        M[(2*NV + 3)*w + k] = o[5*count + first + k];
-        M[(3*NV + 3)*w + k] = o[6*count + first + k];
-        t->unreachable[k] += o[7*count + first + k];
-        t->singular[k] += o[8*count + first + k];
-        t->total[k] += o[9*count + first + k];
-    }
+    M[3*NV*w + k] = o[0*count + at];
+    M[3*w + k] = o[1*count + at];
+    M[(3*NV + 1)*w + k] = o[2*count + at];
+    M[(NV + 3)*w + k] = o[3*count + at];
+    M[(3*NV + 2)*w + k] = o[4*count + at];
+    M[(2*NV + 3)*w + k] = o[5*count + at];
+    M[(3*NV + 3)*w + k] = o[6*count + at];
+    t->unreachable[k] += o[7*count + at];
+    t->singular[k] += o[8*count + at];
+    t->total[k] += o[9*count + at];
 }
 
-INLINE void M_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_X(m, w, i, j, s, X, &v);
-        stage_rrr_M_dynamics(m, i, &v);
-        /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rrr_Q_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
-        const real rrr_Q_t_2 = v.rrr_c_1*v.rrr_c_2 - v.rrr_s_1*v.rrr_s_2;
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real axis_y_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_xy - rrr_Q_t*rrr_base_frame_xx;
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real axis_x_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_yy - rrr_Q_t*rrr_base_frame_yx;
-        const real rrr_d_c_in_axes2_yy = m->rrr_d_c_in_axes2_yy[i];
-        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-        const real rrr_Q_t_3 = v.inv_rrr_r_1_in_axes2_y*v.rrr_d_Gamma_1_in_axes2_x +
-            rrr_h_2_in_spec2_y*(v.rrr_w_2_in_axes2_x - v.inv_rrr_r_1_in_axes2_y) -
-            rrr_d_c_in_axes2_yy - v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
-        const real rrr_Q_t_4 = R(0.5)*rrr_Q_t_3;
-        const real rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 +
-            axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
-        const real rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 -
-            axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
-        const real rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2*axis_x_rrr_axes2_x*rrr_Q_t_5;
-        const real rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_6 + axis_y_rrr_axes2_x*rrr_Q_t_5;
-        const real rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2*axis_y_rrr_axes2_x*rrr_Q_t_6;
-        /* (M_ta) coupling block of M */
-        const real rrr_M_ta_t = rrr_Q_xy*v.rrr_q_x - rrr_Q_xx*v.rrr_q_y;
-        const real rrr_M_ta_t_2 = rrr_Q_yy*v.rrr_q_x - rrr_Q_xy*v.rrr_q_y;
-        /* (M_aa) rotational block of M */
-        const real rrr_M_aa_t = rrr_M_ta_t_2*v.rrr_q_x - rrr_M_ta_t*v.rrr_q_y;
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, rrr_Q_yy);  /* M_tt_yy_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[3*count + k], add, rrr_M_ta_t);  /* M_ta_xz_of_legs */
-        gather(&terms[4*count + k], add, rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
-        /* (M_aa) rotational block of M */
-        gather(&terms[5*count + k], add, rrr_M_aa_t);  /* M_aa_zz_of_legs */
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        const real rrr_size = m->rrr_size[i];
-        o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
+    values_rrr v;
+    stage_rrr_X(m, w, i, j, s, X, &v);
+    stage_rrr_M_dynamics(m, i, &v);
+    /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rrr_Q_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
+    const real rrr_Q_t_2 = v.rrr_c_1*v.rrr_c_2 - v.rrr_s_1*v.rrr_s_2;
+    const real axis_y_rrr_axes2_x = rrr_Q_t_2*m->rrr_base_frame_xy[i] -
+        rrr_Q_t*m->rrr_base_frame_xx[i];
+    const real axis_x_rrr_axes2_x = rrr_Q_t_2*m->rrr_base_frame_yy[i] -
+        rrr_Q_t*m->rrr_base_frame_yx[i];
+    const real rrr_Q_t_3 = v.inv_rrr_r_1_in_axes2_y*v.rrr_d_Gamma_1_in_axes2_x +
+        m->rrr_h_2_in_spec2_y[i]*(v.rrr_w_2_in_axes2_x - v.inv_rrr_r_1_in_axes2_y) -
+        m->rrr_d_c_in_axes2_yy[i] - v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
+    const real rrr_Q_t_4 = R(0.5)*rrr_Q_t_3;
+    const real rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 +
+        axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+    const real rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 -
+        axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+    const real rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*axis_x_rrr_axes2_x*rrr_Q_t_5;
+    const real rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_6 + axis_y_rrr_axes2_x*rrr_Q_t_5;
+    const real rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*axis_y_rrr_axes2_x*rrr_Q_t_6;
+    /* (M_ta) */
+    const real rrr_M_ta_t = rrr_Q_xy*v.rrr_q_x - rrr_Q_xx*v.rrr_q_y;
+    const real rrr_M_ta_t_2 = rrr_Q_yy*v.rrr_q_x - rrr_Q_xy*v.rrr_q_y;
+    /* (M_aa) */
+    const real rrr_M_aa_t = rrr_M_ta_t_2*v.rrr_q_x - rrr_M_ta_t*v.rrr_q_y;
+    /* (M_tt) */
+    gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, rrr_Q_yy);  /* M_tt_yy_of_legs */
+    /* (M_ta) */
+    gather(&terms[3*count + k], add, rrr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    /* (M_aa) */
+    gather(&terms[5*count + k], add, rrr_M_aa_t);  /* M_aa_zz_of_legs */
+    o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
+        + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
+    o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void M_place_rrr(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void M_place_rrr(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o[0*count + first + k];
-        t->singular[k] += o[1*count + first + k];
-    }
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
 }
 
-INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums, real *M, verdict
-    *t)
+INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
+    *M, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (M_tt) translational block of M */
-        const real M_tt_xx_of_legs = sums[0*w + k];
-        const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_xx_of_legs + m_star;
-        const real M_tt_yy_of_legs = sums[2*w + k];
-        const real M_tt_yy = M_tt_yy_of_legs + m_star;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xz_of_legs = sums[3*w + k];
-        const real h_star_y = s[3*w + k];
-        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-        const real M_ta_yz_of_legs = sums[4*w + k];
-        const real h_star_x = s[2*w + k];
-        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
-        /* (M_aa) rotational block of M */
-        const real J_star_zz = m->J_star_zz;
-        const real M_aa_zz_of_legs = sums[5*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-        /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        const real M_tt_xy = sums[1*w + k];
-        M[1*w + k] = M_tt_xy;
-        M[NV*w + k] = M_tt_xy;
-        M[(NV + 1)*w + k] = M_tt_yy;
-        /* (M_ta) coupling block of M */
-        M[2*w + k] = M_ta_xz;
-        M[2*NV*w + k] = M_ta_xz;
-        M[(NV + 2)*w + k] = M_ta_yz;
-        M[(2*NV + 1)*w + k] = M_ta_yz;
-        /* (M_aa) rotational block of M */
-        M[(2*NV + 2)*w + k] = M_aa_zz;
-        t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
-    }
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_yy_of_legs = sums[2*w + k];
+    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    /* (M_ta) */
+    const real M_ta_xz_of_legs = sums[3*w + k];
+    const real h_star_y = s[3*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yz_of_legs = sums[4*w + k];
+    const real h_star_x = s[2*w + k];
+    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    /* (M_aa) */
+    const real M_aa_zz_of_legs = sums[5*w + k];
+    const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    /* (M_ta) */
+    M[2*w + k] = M_ta_xz;
+    M[2*NV*w + k] = M_ta_xz;
+    M[(NV + 2)*w + k] = M_ta_yz;
+    M[(2*NV + 1)*w + k] = M_ta_yz;
+    /* (M_aa) */
+    M[(2*NV + 2)*w + k] = M_aa_zz;
+    t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
 }
 
-INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
+APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
     real s[4] = {0}, sums[6] = {0};
     real terms_prrr[6*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[10*LEGS(LEGS_OF_prrr)] = {0};
     real terms_rrr[6*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    M_before(m, 1, X, s);
-    M_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), 0, X, terms_prrr, o_prrr);
-    M_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
-        M_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, M, t);
+    M_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
+        M_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), 0, s, X, terms_prrr, o_prrr);
+    }
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        M_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, terms_rrr, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
+        M_place_prrr(1, 0, i, LEGS(LEGS_OF_prrr), o_prrr, M, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_prrr + n*LEGS(LEGS_OF_prrr), LEGS_OF_prrr);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        M_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        M_place_rrr(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
-    M_after(m, 1, s, sums, M, t);
+    M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
+INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verdict *restrict t)
 {
     real s[4*LANES], sums[6*LANES];
     real o_prrr[10*LANES];
     real o_rrr[2*LANES];
-    M_before(m, LANES, X, s);
+    for (size_t k = 0; k < LANES; ++k) {
+        M_before(m, LANES, k, X, s);
+    }
     clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
-        M_legs_prrr(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_prrr);
-        M_place_prrr(LANES, LANES, o_prrr, 0, M, t);
+    for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            M_legs_prrr(m, LANES, i, k, k, LANES, 1, s, X, sums, o_prrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            M_place_prrr(LANES, k, k, LANES, o_prrr, M, t);
+        }
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        M_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_rrr);
-        M_place_rrr(LANES, LANES, o_rrr, 0, t);
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            M_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            M_place_rrr(k, k, LANES, o_rrr, t);
+        }
     }
-    M_after(m, LANES, s, sums, M, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        M_after(m, LANES, k, s, sums, M, t);
+    }
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s)
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_V(w, k, V, &v);
-        stage_X(m, w, k, X, &v);
-        /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = v.W_p_xx*v.h_star_x - Z_p_t;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = v.W_p_xx*v.h_star_y - Z_p_t_2;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real Z_q_z = gravity_x*v.h_star_y - gravity_y*v.h_star_x;
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-        s[2*w + k] = Z_p_x;
-        s[3*w + k] = Z_p_y;
-        s[4*w + k] = Z_q_z;
-    }
+    values v;
+    stage_V(w, k, V, &v);
+    stage_X(m, w, k, X, &v);
+    /* (Z_p) centripetal force and weight of the platform */
+    const real Z_p_x = v.W_p_xx*v.h_star_x - m->Z_p_t;
+    const real Z_p_y = v.W_p_xx*v.h_star_y - m->Z_p_t_2;
+    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    const real Z_q_z = m->gravity_x*v.h_star_y - m->gravity_y*v.h_star_x;
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
+    s[2*w + k] = Z_p_x;
+    s[3*w + k] = Z_p_y;
+    s[4*w + k] = Z_q_z;
 }
 
-INLINE void Z_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
+INLINE void Z_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_prrr v;
-        stage_prrr_X(m, w, i, j, s, X, &v);
-        stage_prrr_V_X(m, w, i, j, V, &v);
-        stage_prrr_Z_dynamics(m, w, i, j, V, &v);
-        /* (prrr-qd_2) rate of joint 2 */
-        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
-        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
-        const real axis_y_prrr_axes3_x = prrr_base_frame_xx*v.prrr_qd_2_t +
-            prrr_base_frame_xy*v.prrr_e_1_in_axes3_y;
-        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real axis_x_prrr_axes3_x = prrr_base_frame_yx*v.prrr_qd_2_t +
-            prrr_base_frame_yy*v.prrr_e_1_in_axes3_y;
-        const real prrr_qd_2 = -v.inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*v.prrr_S_dot_rest_x
-            - axis_y_prrr_axes3_x*v.prrr_S_dot_rest_y);
-        /* (prrr-W_2) centripetal tensor of link 2 */
-        const real prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2;
-        /* (prrr-omega_3) angular velocity of link 3 */
-        const real prrr_w_3_in_axes3_y = m->prrr_w_3_in_axes3_y[i];
-        const real prrr_omega_3_in_axes3_z = prrr_qd_2 +
-            prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*v.prrr_S_dot_rest_y +
-            axis_y_prrr_axes3_x*v.prrr_S_dot_rest_x - prrr_qd_2*v.prrr_r_2_in_axes3_x);
-        /* (prrr-W_3) centripetal tensor of link 3 */
-        const real prrr_W_3_t = prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z;
-        /* (prrr-u_1) centripetal acceleration of the connection point */
-        const real prrr_u_1_in_axes3_x = axis_x_prrr_axes3_x*v.prrr_u_1_x +
-            axis_y_prrr_axes3_x*v.prrr_u_1_t;
-        const real prrr_u_1_in_axes3_y = axis_y_prrr_axes3_x*v.prrr_u_1_x -
-            axis_x_prrr_axes3_x*v.prrr_u_1_t;
-        /* (prrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
-        const real prrr_bias_in_axes3_x = prrr_W_2_in_axes2_xx*v.prrr_c_3*prrr_joint3_offset_x -
-            prrr_W_3_t*prrr_platform_joint_offset_x;
-        /* (prrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-           */
-        const real prrr_rel_o_in_axes3_x = prrr_u_1_in_axes3_x - prrr_bias_in_axes3_x;
-        const real prrr_rel_o_in_axes3_y = prrr_u_1_in_axes3_y -
-            prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*v.prrr_s_3_t;
-        /* (prrr-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real prrr_B_2_o_in_axes2_xy = v.inv_prrr_r_2_in_axes3_y*prrr_rel_o_in_axes3_x;
-        /* (prrr-alpha_3_o) remainder of: angular acceleration of link 3 */
-        const real prrr_alpha_3_o_in_axes3_z = prrr_w_3_in_axes3_y*(prrr_rel_o_in_axes3_y +
-            prrr_B_2_o_in_axes2_xy*v.prrr_r_2_in_axes3_x) - prrr_B_2_o_in_axes2_xy;
-        /* (prrr-f_2_o) remainder of: inertia force of link 2 less its weight */
-        const real prrr_h_2_in_spec2_x = m->prrr_h_2_in_spec2_x[i];
-        const real prrr_h_2_in_spec2_y = m->prrr_h_2_in_spec2_y[i];
-        const real prrr_link2_mass = m->prrr_link2_mass[i];
-        const real prrr_f_2_o_in_axes2_x = prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_y +
-            prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_x - v.prrr_g_in_axes2_x*prrr_link2_mass;
-        const real prrr_f_2_o_in_axes2_y = prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_y -
-            prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_x - v.prrr_g_in_axes2_y*prrr_link2_mass;
-        /* (prrr-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real prrr_acc_3_o_in_axes3_x = prrr_u_1_in_axes3_x + axis_y_prrr_axes3_x*gravity_y -
-            axis_x_prrr_axes3_x*gravity_x;
-        const real prrr_acc_3_o_in_axes3_y = prrr_u_1_in_axes3_y - axis_x_prrr_axes3_x*gravity_y -
-            axis_y_prrr_axes3_x*gravity_x;
-        /* (prrr-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
-           reference points */
-        const real prrr_J_3_in_spec3_zz = m->prrr_J_3_in_spec3_zz[i];
-        const real prrr_h_3_in_spec3_x = m->prrr_h_3_in_spec3_x[i];
-        const real prrr_h_3_in_spec3_y = m->prrr_h_3_in_spec3_y[i];
-        const real prrr_mu_3_o_in_axes3_z = prrr_J_3_in_spec3_zz*prrr_alpha_3_o_in_axes3_z +
-            prrr_acc_3_o_in_axes3_y*prrr_h_3_in_spec3_x -
-            prrr_acc_3_o_in_axes3_x*prrr_h_3_in_spec3_y;
-        /* (prrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-           reference points */
-        const real prrr_J_2_in_spec2_zz = m->prrr_J_2_in_spec2_zz[i];
-        const real prrr_mu_2_o_in_axes2_z = v.prrr_g_in_axes2_x*prrr_h_2_in_spec2_y -
-            prrr_B_2_o_in_axes2_xy*prrr_J_2_in_spec2_zz - v.prrr_g_in_axes2_y*prrr_h_2_in_spec2_x;
-        /* (prrr-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
-           connection point left out */
-        const real prrr_N_2_o_in_axes2_z = prrr_mu_2_o_in_axes2_z + prrr_mu_3_o_in_axes3_z;
-        /* (prrr-T_1_o) remainder of: inertia force of the links from 1 outwards, the last link left out
-           */
-        const real prrr_f_1_o_in_axes0_x = m->prrr_f_1_o_in_axes0_x[i];
-        const real prrr_T_1_o_in_axes0_x = prrr_f_1_o_in_axes0_x +
-            v.prrr_c_2*prrr_f_2_o_in_axes2_y + prrr_f_2_o_in_axes2_x*v.prrr_s_2;
-        /* (prrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real prrr_G_o_in_axes3_y = prrr_mu_3_o_in_axes3_z*prrr_w_3_in_axes3_y;
-        const real prrr_G_o_in_axes3_x =
-            v.inv_prrr_r_2_in_axes3_y*(prrr_G_o_in_axes3_y*v.prrr_r_2_in_axes3_x -
-            prrr_N_2_o_in_axes2_z);
-        /* (prrr-c_o) remainder of: leg force on the platform without actuation and without the mass at
-           the connection point */
-        const real prrr_c_o_in_axes3_x = prrr_W_3_t*prrr_h_3_in_spec3_x +
-            prrr_alpha_3_o_in_axes3_z*prrr_h_3_in_spec3_y - prrr_G_o_in_axes3_x;
-        const real prrr_c_o_in_axes3_y = prrr_W_3_t*prrr_h_3_in_spec3_y - prrr_G_o_in_axes3_y -
-            prrr_alpha_3_o_in_axes3_z*prrr_h_3_in_spec3_x;
-        /* (prrr-U) velocity and gravity terms of the leg force */
-        const real prrr_U_x = -axis_x_prrr_axes3_x*prrr_c_o_in_axes3_x -
-            axis_y_prrr_axes3_x*prrr_c_o_in_axes3_y;
-        const real prrr_U_y = axis_y_prrr_axes3_x*prrr_c_o_in_axes3_x -
-            axis_x_prrr_axes3_x*prrr_c_o_in_axes3_y;
-        /* (prrr-P_1_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
-           joint 1 */
-        const real prrr_P_1_o_t = prrr_G_o_in_axes3_x*v.prrr_qd_2_t -
-            prrr_G_o_in_axes3_y*v.prrr_e_1_in_axes3_y;
-        const real prrr_P_1_o = prrr_P_1_o_t + prrr_T_1_o_in_axes0_x;
-        /* (Z_a) rotational part of Z */
-        const real prrr_Z_a_t = prrr_U_y*v.prrr_q_x - prrr_U_x*v.prrr_q_y;
-        /* (Z_t) translational part of Z */
-        gather(&terms[0*count + k], add, prrr_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[1*count + k], add, prrr_U_y);  /* Z_t_y_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[2*count + k], add, prrr_Z_a_t);  /* Z_a_z_of_legs */
-        /* (prrr-P_1_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
-           joint 1 */
-        o[0*count + k] = prrr_P_1_o;
-        o[3*count + k] = prrr_P_1_o;
-        const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
-        const real prrr_size = m->prrr_size[i];
-        o[2*count + k] = UNLESS(magnitude(v.prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
-            UNLESS(magnitude(v.prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
-        o[1*count + k] = UNLESS(v.prrr_disc_2 >= 0);
-    }
+    values_prrr v;
+    stage_prrr_X(m, w, i, j, s, X, &v);
+    stage_prrr_V_X(m, w, i, j, V, &v);
+    stage_prrr_Z_dynamics(m, w, i, j, V, &v);
+    /* (prrr-qd_2) rate of joint 2 */
+    const real axis_y_prrr_axes3_x = m->prrr_base_frame_xx[i]*v.prrr_qd_2_t +
+        m->prrr_base_frame_xy[i]*v.prrr_e_1_in_axes3_y;
+    const real axis_x_prrr_axes3_x = m->prrr_base_frame_yx[i]*v.prrr_qd_2_t +
+        m->prrr_base_frame_yy[i]*v.prrr_e_1_in_axes3_y;
+    const real prrr_qd_2 = -v.inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*v.prrr_S_dot_rest_x
+        - axis_y_prrr_axes3_x*v.prrr_S_dot_rest_y);
+    /* (prrr-W_2) centripetal tensor of link 2 */
+    const real prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2;
+    /* (prrr-omega_3) angular velocity of link 3 */
+    const real prrr_omega_3_in_axes3_z = prrr_qd_2 +
+        m->prrr_w_3_in_axes3_y[i]*(axis_x_prrr_axes3_x*v.prrr_S_dot_rest_y +
+        axis_y_prrr_axes3_x*v.prrr_S_dot_rest_x - prrr_qd_2*v.prrr_r_2_in_axes3_x);
+    /* (prrr-W_3) centripetal tensor of link 3 */
+    const real prrr_W_3_t = prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z;
+    /* (prrr-u_1) centripetal acceleration of the connection point */
+    const real prrr_u_1_in_axes3_x = axis_x_prrr_axes3_x*v.prrr_u_1_x +
+        axis_y_prrr_axes3_x*v.prrr_u_1_t;
+    const real prrr_u_1_in_axes3_y = axis_y_prrr_axes3_x*v.prrr_u_1_x -
+        axis_x_prrr_axes3_x*v.prrr_u_1_t;
+    /* (prrr-bias) acceleration of the connection point at zero joint accelerations */
+    const real prrr_bias_in_axes3_x =
+        prrr_W_2_in_axes2_xx*v.prrr_c_3*m->prrr_joint3_offset_x[i] -
+        prrr_W_3_t*m->prrr_platform_joint_offset_x[i];
+    /* (prrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real prrr_rel_o_in_axes3_x = prrr_u_1_in_axes3_x - prrr_bias_in_axes3_x;
+    const real prrr_rel_o_in_axes3_y = prrr_u_1_in_axes3_y -
+        prrr_W_2_in_axes2_xx*m->prrr_joint3_offset_x[i]*v.prrr_s_3_t;
+    /* (prrr-B_2_o) remainder of the acceleration tensor of link 2 */
+    const real prrr_B_2_o_in_axes2_xy = v.inv_prrr_r_2_in_axes3_y*prrr_rel_o_in_axes3_x;
+    /* (prrr-alpha_3_o) remainder of: angular acceleration of link 3 */
+    const real prrr_alpha_3_o_in_axes3_z = m->prrr_w_3_in_axes3_y[i]*(prrr_rel_o_in_axes3_y +
+        prrr_B_2_o_in_axes2_xy*v.prrr_r_2_in_axes3_x) - prrr_B_2_o_in_axes2_xy;
+    /* (prrr-f_2_o) remainder of: inertia force of link 2 less its weight */
+    const real prrr_f_2_o_in_axes2_x = prrr_B_2_o_in_axes2_xy*m->prrr_h_2_in_spec2_y[i] +
+        prrr_W_2_in_axes2_xx*m->prrr_h_2_in_spec2_x[i] -
+        v.prrr_g_in_axes2_x*m->prrr_link2_mass[i];
+    const real prrr_f_2_o_in_axes2_y = prrr_W_2_in_axes2_xx*m->prrr_h_2_in_spec2_y[i] -
+        prrr_B_2_o_in_axes2_xy*m->prrr_h_2_in_spec2_x[i] -
+        v.prrr_g_in_axes2_y*m->prrr_link2_mass[i];
+    /* (prrr-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
+    const real prrr_acc_3_o_in_axes3_x = prrr_u_1_in_axes3_x +
+        axis_y_prrr_axes3_x*m->gravity_y - axis_x_prrr_axes3_x*m->gravity_x;
+    const real prrr_acc_3_o_in_axes3_y = prrr_u_1_in_axes3_y -
+        axis_x_prrr_axes3_x*m->gravity_y - axis_y_prrr_axes3_x*m->gravity_x;
+    /* (prrr-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+       reference points */
+    const real prrr_mu_3_o_in_axes3_z = m->prrr_J_3_in_spec3_zz[i]*prrr_alpha_3_o_in_axes3_z +
+        prrr_acc_3_o_in_axes3_y*m->prrr_h_3_in_spec3_x[i] -
+        prrr_acc_3_o_in_axes3_x*m->prrr_h_3_in_spec3_y[i];
+    /* (prrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real prrr_mu_2_o_in_axes2_z = v.prrr_g_in_axes2_x*m->prrr_h_2_in_spec2_y[i] -
+        prrr_B_2_o_in_axes2_xy*m->prrr_J_2_in_spec2_zz[i] -
+        v.prrr_g_in_axes2_y*m->prrr_h_2_in_spec2_x[i];
+    /* (prrr-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+       connection point left out */
+    const real prrr_N_2_o_in_axes2_z = prrr_mu_2_o_in_axes2_z + prrr_mu_3_o_in_axes3_z;
+    /* (prrr-T_1_o) remainder of: inertia force of the links from 1 outwards, the last link left out
+       */
+    const real prrr_T_1_o_in_axes0_x = m->prrr_f_1_o_in_axes0_x[i] +
+        v.prrr_c_2*prrr_f_2_o_in_axes2_y + prrr_f_2_o_in_axes2_x*v.prrr_s_2;
+    /* (prrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real prrr_G_o_in_axes3_y = prrr_mu_3_o_in_axes3_z*m->prrr_w_3_in_axes3_y[i];
+    const real prrr_G_o_in_axes3_x =
+        v.inv_prrr_r_2_in_axes3_y*(prrr_G_o_in_axes3_y*v.prrr_r_2_in_axes3_x -
+        prrr_N_2_o_in_axes2_z);
+    /* (prrr-c_o) remainder of: leg force on the platform without actuation and without the mass at
+       the connection point */
+    const real prrr_c_o_in_axes3_x = prrr_W_3_t*m->prrr_h_3_in_spec3_x[i] +
+        prrr_alpha_3_o_in_axes3_z*m->prrr_h_3_in_spec3_y[i] - prrr_G_o_in_axes3_x;
+    const real prrr_c_o_in_axes3_y = prrr_W_3_t*m->prrr_h_3_in_spec3_y[i] -
+        prrr_G_o_in_axes3_y - prrr_alpha_3_o_in_axes3_z*m->prrr_h_3_in_spec3_x[i];
+    /* (prrr-U) velocity and gravity terms of the leg force */
+    const real prrr_U_x = -axis_x_prrr_axes3_x*prrr_c_o_in_axes3_x -
+        axis_y_prrr_axes3_x*prrr_c_o_in_axes3_y;
+    const real prrr_U_y = axis_y_prrr_axes3_x*prrr_c_o_in_axes3_x -
+        axis_x_prrr_axes3_x*prrr_c_o_in_axes3_y;
+    /* (prrr-P_1_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
+       joint 1 */
+    const real prrr_P_1_o_t = prrr_G_o_in_axes3_x*v.prrr_qd_2_t -
+        prrr_G_o_in_axes3_y*v.prrr_e_1_in_axes3_y;
+    const real prrr_P_1_o = prrr_P_1_o_t + prrr_T_1_o_in_axes0_x;
+    /* (Z_a) rotational part of Z */
+    const real prrr_Z_a_t = prrr_U_y*v.prrr_q_x - prrr_U_x*v.prrr_q_y;
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, prrr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, prrr_U_y);  /* Z_t_y_of_legs */
+    /* (Z_a) */
+    gather(&terms[2*count + k], add, prrr_Z_a_t);  /* Z_a_z_of_legs */
+    /* (prrr-P_1_o) */
+    o[0*count + k] = prrr_P_1_o;
+    o[3*count + k] = prrr_P_1_o;
+    o[2*count + k] = UNLESS(magnitude(v.prrr_rho2_2) >
+        TOLERANCE*TOLERANCE*m->prrr_rho2_2_t[i]) + UNLESS(magnitude(v.prrr_r_2_in_axes3_y) >
+        TOLERANCE*m->prrr_size[i]);
+    o[1*count + k] = UNLESS(v.prrr_disc_2 >= 0);
 }
 
-INLINE void Z_place_prrr(size_t w, size_t count, const real *o, size_t first, real *Z, verdict *t)
+INLINE void Z_place_prrr(size_t w, size_t k, size_t at, size_t count, const real *o, real *Z,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        Z[3*w + k] = o[0*count + first + k];
-        t->unreachable[k] += o[1*count + first + k];
-        t->singular[k] += o[2*count + first + k];
-        t->total[k] += o[3*count + first + k];
-    }
+    Z[3*w + k] = o[0*count + at];
+    t->unreachable[k] += o[1*count + at];
+    t->singular[k] += o[2*count + at];
+    t->total[k] += o[3*count + at];
 }
 
-INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
+INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_X(m, w, i, j, s, X, &v);
-        stage_rrr_V_X(m, w, i, j, V, &v);
-        /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_qd_1_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*v.rrr_qd_1_t_2 -
-            rrr_base_frame_xx*rrr_qd_1_t;
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*v.rrr_qd_1_t_2 -
-            rrr_base_frame_yx*rrr_qd_1_t;
-        const real rrr_qd_1_t_3 = v.inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*v.rrr_S_dot_x -
-            axis_y_rrr_axes2_x*v.rrr_S_dot_y);
-        /* (rrr-W_1) centripetal tensor of link 1 */
-        const real rrr_W_1_t = rrr_qd_1_t_3*rrr_qd_1_t_3;
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_omega_2_in_axes2_z = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*v.rrr_S_dot_y +
-            axis_y_rrr_axes2_x*v.rrr_S_dot_x + rrr_qd_1_t_3*v.rrr_r_1_in_axes2_x) - rrr_qd_1_t_3;
-        /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
-        /* (rrr-u_1) centripetal acceleration of the connection point */
-        const real omega_z = V[2*w + j];
-        const real rrr_u_1_x = -omega_z*v.rrr_S_dot_t_2;
-        const real rrr_u_1_t = omega_z*v.rrr_S_dot_t;
-        const real rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x +
-            axis_y_rrr_axes2_x*rrr_u_1_t;
-        const real rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x -
-            axis_x_rrr_axes2_x*rrr_u_1_t;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-            rrr_W_1_t*v.rrr_c_2*rrr_joint2_offset_x;
-        /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-           */
-        const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x;
-        const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
-            rrr_W_1_t*rrr_joint2_offset_x*v.rrr_s_2;
-        /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
-        const real rrr_B_1_o_in_axes1_xy = v.inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x;
-        /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
-        const real rrr_alpha_2_o_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y +
-            rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
-        /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
-            axis_x_rrr_axes2_x*gravity_x;
-        const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
-            axis_y_rrr_axes2_x*gravity_x;
-        /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-           reference points */
-        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
-        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
-        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-        const real rrr_mu_2_o_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
-            rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y;
-        /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-           reference points */
-        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
-        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
-        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
-        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
-        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
-        const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(v.rrr_c_1*rrr_mu_1_t +
-            rrr_mu_1_t_2*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
-            rrr_h_1_in_spec1_x*(v.rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v.rrr_s_1);
-        /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
-           connection point left out */
-        const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
-        /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y;
-        /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-           connection point */
-        const real rrr_c_o_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
-            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
-            v.inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x -
-            rrr_N_1_o_in_axes1_z);
-        const real rrr_c_o_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
-            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x;
-        /* (rrr-U) velocity and gravity terms of the leg force */
-        const real rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
-            axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
-        const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
-            axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
-        /* (Z_a) rotational part of Z */
-        const real rrr_Z_a_t = rrr_U_y*v.rrr_q_x - rrr_U_x*v.rrr_q_y;
-        /* (Z_t) translational part of Z */
-        gather(&terms[0*count + k], add, rrr_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[1*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[2*count + k], add, rrr_Z_a_t);  /* Z_a_z_of_legs */
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        const real rrr_size = m->rrr_size[i];
-        o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
+    values_rrr v;
+    stage_rrr_X(m, w, i, j, s, X, &v);
+    stage_rrr_V_X(m, w, i, j, V, &v);
+    /* (rrr-qd_1) rate of joint 1 */
+    const real rrr_qd_1_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
+    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*v.rrr_qd_1_t_2 -
+        m->rrr_base_frame_xx[i]*rrr_qd_1_t;
+    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*v.rrr_qd_1_t_2 -
+        m->rrr_base_frame_yx[i]*rrr_qd_1_t;
+    const real rrr_qd_1_t_3 = v.inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*v.rrr_S_dot_x -
+        axis_y_rrr_axes2_x*v.rrr_S_dot_y);
+    /* (rrr-W_1) centripetal tensor of link 1 */
+    const real rrr_W_1_t = rrr_qd_1_t_3*rrr_qd_1_t_3;
+    /* (rrr-omega_2) angular velocity of link 2 */
+    const real rrr_omega_2_in_axes2_z =
+        m->rrr_w_2_in_axes2_y[i]*(axis_x_rrr_axes2_x*v.rrr_S_dot_y +
+        axis_y_rrr_axes2_x*v.rrr_S_dot_x + rrr_qd_1_t_3*v.rrr_r_1_in_axes2_x) - rrr_qd_1_t_3;
+    /* (rrr-W_2) centripetal tensor of link 2 */
+    const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
+    /* (rrr-u_1) centripetal acceleration of the connection point */
+    const real omega_z = V[2*w + j];
+    const real rrr_u_1_x = -omega_z*v.rrr_S_dot_t_2;
+    const real rrr_u_1_t = omega_z*v.rrr_S_dot_t;
+    const real rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x +
+        axis_y_rrr_axes2_x*rrr_u_1_t;
+    const real rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x -
+        axis_x_rrr_axes2_x*rrr_u_1_t;
+    /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+    const real rrr_bias_in_axes2_x = -rrr_W_2_t*m->rrr_platform_joint_offset_x[i] -
+        rrr_W_1_t*v.rrr_c_2*m->rrr_joint2_offset_x[i];
+    /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x;
+    const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
+        rrr_W_1_t*m->rrr_joint2_offset_x[i]*v.rrr_s_2;
+    /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
+    const real rrr_B_1_o_in_axes1_xy = v.inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x;
+    /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real rrr_alpha_2_o_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_o_in_axes2_y +
+        rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
+    /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
+    const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*m->gravity_y -
+        axis_x_rrr_axes2_x*m->gravity_x;
+    const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*m->gravity_y -
+        axis_y_rrr_axes2_x*m->gravity_x;
+    /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real rrr_mu_2_o_in_axes2_z = m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z +
+        rrr_acc_2_o_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
+        rrr_acc_2_o_in_axes2_x*m->rrr_h_2_in_spec2_y[i];
+    /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
+    const real rrr_mu_1_o_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] +
+        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i] -
+        m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v.rrr_s_1);
+    /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+       connection point left out */
+    const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
+    /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
+    /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
+    const real rrr_c_o_in_axes2_x = rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] -
+        v.inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x -
+        rrr_N_1_o_in_axes1_z);
+    const real rrr_c_o_in_axes2_y = rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] - rrr_G_o_in_axes2_y -
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i];
+    /* (rrr-U) velocity and gravity terms of the leg force */
+    const real rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
+        axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
+    const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
+        axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
+    /* (Z_a) */
+    const real rrr_Z_a_t = rrr_U_y*v.rrr_q_x - rrr_U_x*v.rrr_q_y;
+    /* (Z_t) */
+    gather(&terms[0*count + k], add, rrr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
+    /* (Z_a) */
+    gather(&terms[2*count + k], add, rrr_Z_a_t);  /* Z_a_z_of_legs */
+    o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
+        + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
+    o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void Z_place_rrr(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void Z_place_rrr(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o[0*count + first + k];
-        t->singular[k] += o[1*count + first + k];
-    }
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
 }
 
-INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict *t)
+INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (Z_t) translational part of Z */
-        const real Z_p_x = s[2*w + k];
-        const real Z_t_x_of_legs = sums[0*w + k];
-        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[3*w + k];
-        const real Z_t_y_of_legs = sums[1*w + k];
-        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        /* (Z_a) rotational part of Z */
-        const real Z_a_z_of_legs = sums[2*w + k];
-        const real Z_q_z = s[4*w + k];
-        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
-        /* (Z_t) translational part of Z */
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-        /* (Z_a) rotational part of Z */
-        Z[2*w + k] = Z_a_z;
-        t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
-    }
+    /* (Z_t) */
+    const real Z_p_x = s[2*w + k];
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[3*w + k];
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    /* (Z_a) */
+    const real Z_a_z_of_legs = sums[2*w + k];
+    const real Z_q_z = s[4*w + k];
+    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    /* (Z_a) */
+    Z[2*w + k] = Z_a_z;
+    t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
 }
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
@@ -3202,1013 +3030,959 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     real s[5] = {0}, sums[3] = {0};
     real terms_prrr[3*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[4*LEGS(LEGS_OF_prrr)] = {0};
     real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    Z_before(m, 1, X, V, s);
-    Z_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), 0, X, V, terms_prrr, o_prrr);
-    Z_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, V, terms_rrr, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
-        Z_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, Z, t);
+    Z_before(m, 1, 0, X, V, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
+        Z_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), 0, s, X, V, terms_prrr, o_prrr);
+    }
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        Z_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, V, terms_rrr, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
+        Z_place_prrr(1, 0, i, LEGS(LEGS_OF_prrr), o_prrr, Z, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_prrr + n*LEGS(LEGS_OF_prrr), LEGS_OF_prrr);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        Z_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        Z_place_rrr(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
-    Z_after(1, s, sums, Z, t);
+    Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z, verdict
+    *restrict t)
 {
     real s[5*LANES], sums[3*LANES];
     real o_prrr[4*LANES];
     real o_rrr[2*LANES];
-    Z_before(m, LANES, X, V, s);
+    for (size_t k = 0; k < LANES; ++k) {
+        Z_before(m, LANES, k, X, V, s);
+    }
     clear(sums, 3*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
-        Z_legs_prrr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_prrr);
-        Z_place_prrr(LANES, LANES, o_prrr, 0, Z, t);
+    for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_legs_prrr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_prrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_place_prrr(LANES, k, k, LANES, o_prrr, Z, t);
+        }
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        Z_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rrr);
-        Z_place_rrr(LANES, LANES, o_rrr, 0, t);
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_place_rrr(k, k, LANES, o_rrr, t);
+        }
     }
-    Z_after(LANES, s, sums, Z, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        Z_after(LANES, k, s, sums, Z, t);
+    }
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
 }
 
-INLINE void H_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, const real *X, real *o)
+INLINE void H_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_prrr v;
-        stage_prrr_X(m, w, i, j, s, X, &v);
-        stage_prrr_H_condition(m, i, &v);
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        o[0*count + k] = 1;
-        /* (prrr-w_2) reciprocal vector 1 */
-        o[1*count + k] = v.prrr_w_2_x;
-        o[2*count + k] = v.prrr_w_2_y;
-        /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
-        o[3*count + k] = v.prrr_H_a_2_z;
-        /* (prrr-w_2) reciprocal vector 1 */
-        o[4*count + k] = v.prrr_w_2_t_2;
-        o[7*count + k] = (v.prrr_w_2_x + v.prrr_w_2_y) + (v.prrr_H_a_2_z + v.prrr_w_2_t_2);
-        const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
-        const real prrr_size = m->prrr_size[i];
-        o[6*count + k] = UNLESS(magnitude(v.prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
-            UNLESS(magnitude(v.prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
-        o[5*count + k] = UNLESS(v.prrr_disc_2 >= 0);
-    }
+    values_prrr v;
+    stage_prrr_X(m, w, i, j, s, X, &v);
+    stage_prrr_H_condition(m, i, &v);
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    o[0*count + k] = 1;
+    /* (prrr-w_2) reciprocal vector 1 */
+    o[1*count + k] = v.prrr_w_2_x;
+    o[2*count + k] = v.prrr_w_2_y;
+    /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.prrr_H_a_2_z;
+    /* (prrr-w_2) */
+    o[4*count + k] = v.prrr_w_2_t_2;
+    o[7*count + k] = (v.prrr_w_2_x + v.prrr_w_2_y) + (v.prrr_H_a_2_z + v.prrr_w_2_t_2);
+    o[6*count + k] = UNLESS(magnitude(v.prrr_rho2_2) >
+        TOLERANCE*TOLERANCE*m->prrr_rho2_2_t[i]) + UNLESS(magnitude(v.prrr_r_2_in_axes3_y) >
+        TOLERANCE*m->prrr_size[i]);
+    o[5*count + k] = UNLESS(v.prrr_disc_2 >= 0);
 }
 
-INLINE void H_place_prrr(size_t w, size_t count, const real *o, size_t first, real *H, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        H[3*NU*w + k] = o[0*count + first + k];
-        H[1*w + k] = o[1*count + first + k];
-        H[(NU + 1)*w + k] = o[2*count + first + k];
-        H[(2*NU + 1)*w + k] = o[3*count + first + k];
-        H[(3*NU + 1)*w + k] = o[4*count + first + k];
-        t->unreachable[k] += o[5*count + first + k];
-        t->singular[k] += o[6*count + first + k];
-        t->total[k] += o[7*count + first + k];
-    }
-}
-
-INLINE void H_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, const real *X, real *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_X(m, w, i, j, s, X, &v);
-        stage_rrr_H_condition(m, i, &v);
-        /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = v.rrr_w_1_x;
-        o[1*count + k] = v.rrr_w_1_y;
-        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = v.rrr_H_a_1_z;
-        o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + v.rrr_H_a_1_z);
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        const real rrr_size = m->rrr_size[i];
-        o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
-}
-
-INLINE void H_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_t first, real *H,
+INLINE void H_place_prrr(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
     verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[(2 + leg)*w + k] = o[0*count + first + k];
-        H[(NU + 2 + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + 2 + leg)*w + k] = o[2*count + first + k];
-        t->unreachable[k] += o[3*count + first + k];
-        t->singular[k] += o[4*count + first + k];
-        t->total[k] += o[5*count + first + k];
-    }
+    H[3*NU*w + k] = o[0*count + at];
+    H[1*w + k] = o[1*count + at];
+    H[(NU + 1)*w + k] = o[2*count + at];
+    H[(2*NU + 1)*w + k] = o[3*count + at];
+    H[(3*NU + 1)*w + k] = o[4*count + at];
+    t->unreachable[k] += o[5*count + at];
+    t->singular[k] += o[6*count + at];
+    t->total[k] += o[7*count + at];
 }
 
-INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
+INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    const real *s, const real *X, real *o)
+{
+    values_rrr v;
+    stage_rrr_X(m, w, i, j, s, X, &v);
+    stage_rrr_H_condition(m, i, &v);
+    /* (rrr-w_1) reciprocal vector 1 */
+    o[0*count + k] = v.rrr_w_1_x;
+    o[1*count + k] = v.rrr_w_1_y;
+    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v.rrr_H_a_1_z;
+    o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + v.rrr_H_a_1_z);
+    o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
+        + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
+    o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+}
+
+INLINE void H_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
+    *H, verdict *t)
+{
+    H[(2 + i)*w + k] = o[0*count + at];
+    H[(NU + 2 + i)*w + k] = o[1*count + at];
+    H[(2*NU + 2 + i)*w + k] = o[2*count + at];
+    t->unreachable[k] += o[3*count + at];
+    t->singular[k] += o[4*count + at];
+    t->total[k] += o[5*count + at];
+}
+
+APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
     real s[2] = {0};
     real o_prrr[8*LEGS(LEGS_OF_prrr)] = {0};
     real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
     clear(H, NV*NU);
-    H_before(m, 1, X, s);
-    H_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), X, o_prrr);
-    H_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), X, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
-        H_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, H, t);
+    H_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
+        H_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), s, X, o_prrr);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        H_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, H, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        H_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
+        H_place_prrr(1, 0, i, LEGS(LEGS_OF_prrr), o_prrr, H, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        H_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
 }
 
-INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
+INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verdict *restrict t)
 {
     real s[2*LANES];
     real o_prrr[8*LANES];
     real o_rrr[6*LANES];
     clear(H, NV*NU*LANES);
-    H_before(m, LANES, X, s);
-    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
-        H_legs_prrr(m, LANES, leg, 0, s, 1, LANES, X, o_prrr);
-        H_place_prrr(LANES, LANES, o_prrr, 0, H, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        H_before(m, LANES, k, X, s);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        H_legs_rrr(m, LANES, leg, 0, s, 1, LANES, X, o_rrr);
-        H_place_rrr(LANES, LANES, o_rrr, leg, 0, H, t);
+    for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            H_legs_prrr(m, LANES, i, k, k, LANES, s, X, o_prrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            H_place_prrr(LANES, k, k, LANES, o_prrr, H, t);
+        }
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            H_legs_rrr(m, LANES, i, k, k, LANES, s, X, o_rrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            H_place_rrr(LANES, i, k, k, LANES, o_rrr, H, t);
+        }
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, real *s)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_V(w, k, V, &v);
-        stage_X(m, w, k, X, &v);
-        /* (a_t) acceleration of the platform origin, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real t_ddot_x = A[0*w + k];
-        const real a_t_x = t_ddot_x - gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real t_ddot_y = A[1*w + k];
-        const real a_t_y = t_ddot_y - gravity_y;
-        /* (f_p) inertia force of the platform less its weight */
-        const real alpha_z = A[2*w + k];
-        const real m_star = m->m_star;
-        const real f_p_x = v.W_p_xx*v.h_star_x + a_t_x*m_star - alpha_z*v.h_star_y;
-        const real f_p_y = v.W_p_xx*v.h_star_y + a_t_y*m_star + alpha_z*v.h_star_x;
-        /* (mu_p) inertia moment of the platform less that of its weight */
-        const real J_star_zz = m->J_star_zz;
-        const real mu_p_z = J_star_zz*alpha_z + a_t_y*v.h_star_x - a_t_x*v.h_star_y;
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-        s[2*w + k] = f_p_x;
-        s[3*w + k] = f_p_y;
-        s[4*w + k] = mu_p_z;
-    }
+    values v;
+    stage_V(w, k, V, &v);
+    stage_X(m, w, k, X, &v);
+    /* (a_t) acceleration of the platform origin, less gravity */
+    const real t_ddot_x = A[0*w + k];
+    const real a_t_x = t_ddot_x - m->gravity_x;
+    const real t_ddot_y = A[1*w + k];
+    const real a_t_y = t_ddot_y - m->gravity_y;
+    /* (f_p) inertia force of the platform less its weight */
+    const real alpha_z = A[2*w + k];
+    const real f_p_x = v.W_p_xx*v.h_star_x + a_t_x*m->m_star - alpha_z*v.h_star_y;
+    const real f_p_y = v.W_p_xx*v.h_star_y + a_t_y*m->m_star + alpha_z*v.h_star_x;
+    /* (mu_p) inertia moment of the platform less that of its weight */
+    const real mu_p_z = m->J_star_zz*alpha_z + a_t_y*v.h_star_x - a_t_x*v.h_star_y;
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
+    s[2*w + k] = f_p_x;
+    s[3*w + k] = f_p_y;
+    s[4*w + k] = mu_p_z;
 }
 
-INLINE void required_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
-    *terms, real *o)
+INLINE void required_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, const real *V, const real *A, real *terms, real
+    *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_prrr v;
-        stage_prrr_X(m, w, i, j, s, X, &v);
-        stage_prrr_A_X(w, j, A, &v);
-        stage_prrr_V_X(m, w, i, j, V, &v);
-        stage_prrr_A_V_X(w, j, V, &v);
-        stage_prrr_legs_required(m, w, i, j, A, &v);
-        /* (prrr-w_2) reciprocal vector 1 */
-        const real prrr_w_2_t_2 = -v.inv_prrr_r_2_in_axes3_y*v.prrr_w_2_t;
-        /* (prrr-acc_1) acceleration of the reference point of link 1, less gravity */
-        const real prrr_g_in_axes0_x = m->prrr_g_in_axes0_x[i];
-        const real prrr_ydd_1 = A[3*w + j];
-        const real prrr_acc_1_in_axes0_x = prrr_ydd_1 - prrr_g_in_axes0_x;
-        /* (prrr-f_2) inertia force of link 2 less its weight */
-        const real prrr_h_2_in_spec2_x = m->prrr_h_2_in_spec2_x[i];
-        const real prrr_h_2_in_spec2_y = m->prrr_h_2_in_spec2_y[i];
-        const real prrr_link2_mass = m->prrr_link2_mass[i];
-        const real prrr_f_2_in_axes2_x = v.prrr_B_2_in_axes2_xy*prrr_h_2_in_spec2_y +
-            v.prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_x + v.prrr_acc_2_in_axes2_x*prrr_link2_mass;
-        const real prrr_f_2_in_axes2_y = v.prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_y +
-            v.prrr_acc_2_in_axes2_y*prrr_link2_mass - v.prrr_B_2_in_axes2_xy*prrr_h_2_in_spec2_x;
-        /* (prrr-T_1) inertia force of the links from 1 outwards, the last link left out */
-        const real prrr_link1_mass = m->prrr_link1_mass[i];
-        const real prrr_T_1_in_axes0_x = prrr_acc_1_in_axes0_x*prrr_link1_mass +
-            v.prrr_c_2*prrr_f_2_in_axes2_y + prrr_f_2_in_axes2_x*v.prrr_s_2;
-        /* (prrr-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real prrr_G_in_axes3_x =
-            v.inv_prrr_r_2_in_axes3_y*(v.prrr_G_in_axes3_y*v.prrr_r_2_in_axes3_x -
-            v.prrr_N_2_in_axes2_z);
-        /* (prrr-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real prrr_h_3_in_spec3_x = m->prrr_h_3_in_spec3_x[i];
-        const real prrr_h_3_in_spec3_y = m->prrr_h_3_in_spec3_y[i];
-        const real prrr_c_in_axes3_x = v.prrr_W_3_t*prrr_h_3_in_spec3_x +
-            v.prrr_alpha_3_in_axes3_z*prrr_h_3_in_spec3_y - prrr_G_in_axes3_x;
-        const real prrr_c_x = v.axis_x_prrr_axes3_x*prrr_c_in_axes3_x +
-            v.axis_y_prrr_axes3_x*v.prrr_c_in_axes3_y;
-        const real prrr_c_y = v.axis_x_prrr_axes3_x*v.prrr_c_in_axes3_y -
-            v.axis_y_prrr_axes3_x*prrr_c_in_axes3_x;
-        /* (prrr-P_1) inertia and weight of the leg along the extra degree of freedom of joint 1 */
-        const real prrr_P_1_t = prrr_G_in_axes3_x*v.prrr_w_2_t -
-            v.prrr_G_in_axes3_y*v.prrr_e_1_in_axes3_y;
-        const real prrr_P_1 = prrr_P_1_t + prrr_T_1_in_axes0_x;
-        /* (R_a) moment that actuators and external wrench must give */
-        const real prrr_R_a_t = prrr_c_x*v.prrr_q_y - prrr_c_y*v.prrr_q_x;
-        /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
-        const real prrr_H_a_2_z = v.prrr_q_x*v.prrr_w_2_y - v.prrr_q_y*v.prrr_w_2_x;
-        /* (R_t) force that actuators and external wrench must give */
-        gather(&terms[0*count + k], add, prrr_c_x);  /* R_t_x_of_legs */
-        gather(&terms[1*count + k], add, prrr_c_y);  /* R_t_y_of_legs */
-        /* (R_a) moment that actuators and external wrench must give */
-        gather(&terms[2*count + k], add, prrr_R_a_t);  /* R_a_z_of_legs */
-        /* (prrr-P_1) inertia and weight of the leg along the extra degree of freedom of joint 1 */
-        o[0*count + k] = prrr_P_1;
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        o[1*count + k] = 1;
-        /* (prrr-w_2) reciprocal vector 1 */
-        o[2*count + k] = v.prrr_w_2_x;
-        o[3*count + k] = v.prrr_w_2_y;
-        /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
-        o[4*count + k] = prrr_H_a_2_z;
-        /* (prrr-w_2) reciprocal vector 1 */
-        o[5*count + k] = prrr_w_2_t_2;
-        const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
-        const real prrr_size = m->prrr_size[i];
-        o[7*count + k] = UNLESS(magnitude(v.prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
-            UNLESS(magnitude(v.prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
-        o[6*count + k] = UNLESS(v.prrr_disc_2 >= 0);
-    }
+    values_prrr v;
+    stage_prrr_X(m, w, i, j, s, X, &v);
+    stage_prrr_A_X(w, j, A, &v);
+    stage_prrr_V_X(m, w, i, j, V, &v);
+    stage_prrr_A_V_X(w, j, V, &v);
+    stage_prrr_legs_required(m, w, i, j, A, &v);
+    /* (prrr-w_2) reciprocal vector 1 */
+    const real prrr_w_2_t_2 = -v.inv_prrr_r_2_in_axes3_y*v.prrr_w_2_t;
+    /* (prrr-acc_1) acceleration of the reference point of link 1, less gravity */
+    const real prrr_ydd_1 = A[3*w + j];
+    const real prrr_acc_1_in_axes0_x = prrr_ydd_1 - m->prrr_g_in_axes0_x[i];
+    /* (prrr-f_2) inertia force of link 2 less its weight */
+    const real prrr_f_2_in_axes2_x = v.prrr_B_2_in_axes2_xy*m->prrr_h_2_in_spec2_y[i] +
+        v.prrr_W_2_in_axes2_xx*m->prrr_h_2_in_spec2_x[i] +
+        v.prrr_acc_2_in_axes2_x*m->prrr_link2_mass[i];
+    const real prrr_f_2_in_axes2_y = v.prrr_W_2_in_axes2_xx*m->prrr_h_2_in_spec2_y[i] +
+        v.prrr_acc_2_in_axes2_y*m->prrr_link2_mass[i] -
+        v.prrr_B_2_in_axes2_xy*m->prrr_h_2_in_spec2_x[i];
+    /* (prrr-T_1) inertia force of the links from 1 outwards, the last link left out */
+    const real prrr_T_1_in_axes0_x = prrr_acc_1_in_axes0_x*m->prrr_link1_mass[i] +
+        v.prrr_c_2*prrr_f_2_in_axes2_y + prrr_f_2_in_axes2_x*v.prrr_s_2;
+    /* (prrr-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real prrr_G_in_axes3_x =
+        v.inv_prrr_r_2_in_axes3_y*(v.prrr_G_in_axes3_y*v.prrr_r_2_in_axes3_x -
+        v.prrr_N_2_in_axes2_z);
+    /* (prrr-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real prrr_c_in_axes3_x = v.prrr_W_3_t*m->prrr_h_3_in_spec3_x[i] +
+        v.prrr_alpha_3_in_axes3_z*m->prrr_h_3_in_spec3_y[i] - prrr_G_in_axes3_x;
+    const real prrr_c_x = v.axis_x_prrr_axes3_x*prrr_c_in_axes3_x +
+        v.axis_y_prrr_axes3_x*v.prrr_c_in_axes3_y;
+    const real prrr_c_y = v.axis_x_prrr_axes3_x*v.prrr_c_in_axes3_y -
+        v.axis_y_prrr_axes3_x*prrr_c_in_axes3_x;
+    /* (prrr-P_1) inertia and weight of the leg along the extra degree of freedom of joint 1 */
+    const real prrr_P_1_t = prrr_G_in_axes3_x*v.prrr_w_2_t -
+        v.prrr_G_in_axes3_y*v.prrr_e_1_in_axes3_y;
+    const real prrr_P_1 = prrr_P_1_t + prrr_T_1_in_axes0_x;
+    /* (R_a) moment that actuators and external wrench must give */
+    const real prrr_R_a_t = prrr_c_x*v.prrr_q_y - prrr_c_y*v.prrr_q_x;
+    /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
+    const real prrr_H_a_2_z = v.prrr_q_x*v.prrr_w_2_y - v.prrr_q_y*v.prrr_w_2_x;
+    /* (R_t) force that actuators and external wrench must give */
+    gather(&terms[0*count + k], add, prrr_c_x);  /* R_t_x_of_legs */
+    gather(&terms[1*count + k], add, prrr_c_y);  /* R_t_y_of_legs */
+    /* (R_a) */
+    gather(&terms[2*count + k], add, prrr_R_a_t);  /* R_a_z_of_legs */
+    /* (prrr-P_1) */
+    o[0*count + k] = prrr_P_1;
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    o[1*count + k] = 1;
+    /* (prrr-w_2) */
+    o[2*count + k] = v.prrr_w_2_x;
+    o[3*count + k] = v.prrr_w_2_y;
+    /* (prrr-H_a_2) */
+    o[4*count + k] = prrr_H_a_2_z;
+    /* (prrr-w_2) */
+    o[5*count + k] = prrr_w_2_t_2;
+    o[7*count + k] = UNLESS(magnitude(v.prrr_rho2_2) >
+        TOLERANCE*TOLERANCE*m->prrr_rho2_2_t[i]) + UNLESS(magnitude(v.prrr_r_2_in_axes3_y) >
+        TOLERANCE*m->prrr_size[i]);
+    o[6*count + k] = UNLESS(v.prrr_disc_2 >= 0);
 }
 
-INLINE void required_place_prrr(size_t w, size_t count, const real *o, size_t first, real
+INLINE void required_place_prrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
     *required, real *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        required[3*w + k] = o[0*count + first + k];
-        H[3*NU*w + k] = o[1*count + first + k];
-        H[1*w + k] = o[2*count + first + k];
-        H[(NU + 1)*w + k] = o[3*count + first + k];
-        H[(2*NU + 1)*w + k] = o[4*count + first + k];
-        H[(3*NU + 1)*w + k] = o[5*count + first + k];
-        t->unreachable[k] += o[6*count + first + k];
-        t->singular[k] += o[7*count + first + k];
-    }
+    required[3*w + k] = o[0*count + at];
+    H[3*NU*w + k] = o[1*count + at];
+    H[1*w + k] = o[2*count + at];
+    H[(NU + 1)*w + k] = o[3*count + at];
+    H[(2*NU + 1)*w + k] = o[4*count + at];
+    H[(3*NU + 1)*w + k] = o[5*count + at];
+    t->unreachable[k] += o[6*count + at];
+    t->singular[k] += o[7*count + at];
 }
 
-INLINE void required_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
-    *terms, real *o)
+INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, const real *V, const real *A, real *terms, real
+    *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_X(m, w, i, j, s, X, &v);
-        stage_rrr_A_X(w, j, A, &v);
-        stage_rrr_V_X(m, w, i, j, V, &v);
-        stage_rrr_A_V_X(w, j, V, &v);
-        stage_rrr_legs_required(m, i, &v);
-        /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real rrr_c_x = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_x +
-            v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_y;
-        const real rrr_c_y = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_y -
-            v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_x;
-        /* (R_a) moment that actuators and external wrench must give */
-        const real rrr_R_a_t = rrr_c_x*v.rrr_q_y - rrr_c_y*v.rrr_q_x;
-        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_H_a_1_z = v.rrr_q_x*v.rrr_w_1_y - v.rrr_q_y*v.rrr_w_1_x;
-        /* (R_t) force that actuators and external wrench must give */
-        gather(&terms[0*count + k], add, rrr_c_x);  /* R_t_x_of_legs */
-        gather(&terms[1*count + k], add, rrr_c_y);  /* R_t_y_of_legs */
-        /* (R_a) moment that actuators and external wrench must give */
-        gather(&terms[2*count + k], add, rrr_R_a_t);  /* R_a_z_of_legs */
-        /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = v.rrr_w_1_x;
-        o[1*count + k] = v.rrr_w_1_y;
-        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = rrr_H_a_1_z;
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        const real rrr_size = m->rrr_size[i];
-        o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
+    values_rrr v;
+    stage_rrr_X(m, w, i, j, s, X, &v);
+    stage_rrr_A_X(w, j, A, &v);
+    stage_rrr_V_X(m, w, i, j, V, &v);
+    stage_rrr_A_V_X(w, j, V, &v);
+    stage_rrr_legs_required(m, i, &v);
+    /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real rrr_c_x = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_x +
+        v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_y;
+    const real rrr_c_y = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_y -
+        v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_x;
+    /* (R_a) */
+    const real rrr_R_a_t = rrr_c_x*v.rrr_q_y - rrr_c_y*v.rrr_q_x;
+    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+    const real rrr_H_a_1_z = v.rrr_q_x*v.rrr_w_1_y - v.rrr_q_y*v.rrr_w_1_x;
+    /* (R_t) */
+    gather(&terms[0*count + k], add, rrr_c_x);  /* R_t_x_of_legs */
+    gather(&terms[1*count + k], add, rrr_c_y);  /* R_t_y_of_legs */
+    /* (R_a) */
+    gather(&terms[2*count + k], add, rrr_R_a_t);  /* R_a_z_of_legs */
+    /* (rrr-w_1) reciprocal vector 1 */
+    o[0*count + k] = v.rrr_w_1_x;
+    o[1*count + k] = v.rrr_w_1_y;
+    /* (rrr-H_a_1) */
+    o[2*count + k] = rrr_H_a_1_z;
+    o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
+        + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
+    o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void required_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *H, verdict *t)
+INLINE void required_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count, const real
+    *o, real *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[(2 + leg)*w + k] = o[0*count + first + k];
-        H[(NU + 2 + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + 2 + leg)*w + k] = o[2*count + first + k];
-        t->unreachable[k] += o[3*count + first + k];
-        t->singular[k] += o[4*count + first + k];
-    }
+    H[(2 + i)*w + k] = o[0*count + at];
+    H[(NU + 2 + i)*w + k] = o[1*count + at];
+    H[(2*NU + 2 + i)*w + k] = o[2*count + at];
+    t->unreachable[k] += o[3*count + at];
+    t->singular[k] += o[4*count + at];
 }
 
-INLINE void required_after(size_t w, const real *s, const real *sums, real *required)
+INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (R_t) force that actuators and external wrench must give */
-        const real R_t_x_of_legs = sums[0*w + k];
-        const real f_p_x = s[2*w + k];
-        const real R_t_x = f_p_x - R_t_x_of_legs;
-        const real R_t_y_of_legs = sums[1*w + k];
-        const real f_p_y = s[3*w + k];
-        const real R_t_y = f_p_y - R_t_y_of_legs;
-        /* (R_a) moment that actuators and external wrench must give */
-        const real R_a_z_of_legs = sums[2*w + k];
-        const real mu_p_z = s[4*w + k];
-        const real R_a_z = R_a_z_of_legs + mu_p_z;
-        /* (R_t) force that actuators and external wrench must give */
-        required[0*w + k] = R_t_x;
-        required[1*w + k] = R_t_y;
-        /* (R_a) moment that actuators and external wrench must give */
-        required[2*w + k] = R_a_z;
-    }
+    /* (R_t) */
+    const real R_t_x_of_legs = sums[0*w + k];
+    const real f_p_x = s[2*w + k];
+    const real R_t_x = f_p_x - R_t_x_of_legs;
+    const real R_t_y_of_legs = sums[1*w + k];
+    const real f_p_y = s[3*w + k];
+    const real R_t_y = f_p_y - R_t_y_of_legs;
+    /* (R_a) */
+    const real R_a_z_of_legs = sums[2*w + k];
+    const real mu_p_z = s[4*w + k];
+    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    /* (R_t) */
+    required[0*w + k] = R_t_x;
+    required[1*w + k] = R_t_y;
+    /* (R_a) */
+    required[2*w + k] = R_a_z;
 }
 
-INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
     real s[5] = {0}, sums[3] = {0};
     real terms_prrr[3*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[8*LEGS(LEGS_OF_prrr)] = {0};
     real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
     clear(H, NV*NU);
-    required_before(m, 1, X, V, A, s);
-    required_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), 0, X, V, A, terms_prrr, o_prrr);
-    required_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, V, A, terms_rrr, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
-        required_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, required, H, t);
+    required_before(m, 1, 0, X, V, A, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
+        required_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), 0, s, X, V, A, terms_prrr, o_prrr);
+    }
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        required_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, V, A, terms_rrr, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
+        required_place_prrr(1, 0, i, LEGS(LEGS_OF_prrr), o_prrr, required, H, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_prrr + n*LEGS(LEGS_OF_prrr), LEGS_OF_prrr);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        required_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, H, t);
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        required_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
-    required_after(1, s, sums, required);
+    required_after(1, 0, s, sums, required);
 }
 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *required, real *H, verdict *t)
+    real *restrict required, real *restrict H, verdict *restrict t)
 {
     real s[5*LANES], sums[3*LANES];
     real o_prrr[8*LANES];
     real o_rrr[5*LANES];
     clear(H, NV*NU*LANES);
-    required_before(m, LANES, X, V, A, s);
+    for (size_t k = 0; k < LANES; ++k) {
+        required_before(m, LANES, k, X, V, A, s);
+    }
     clear(sums, 3*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
-        required_legs_prrr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, A, sums, o_prrr);
-        required_place_prrr(LANES, LANES, o_prrr, 0, required, H, t);
+    for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            required_legs_prrr(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_prrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            required_place_prrr(LANES, k, k, LANES, o_prrr, required, H, t);
+        }
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        required_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, A, sums, o_rrr);
-        required_place_rrr(LANES, LANES, o_rrr, leg, 0, H, t);
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            required_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_rrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            required_place_rrr(LANES, i, k, k, LANES, o_rrr, H, t);
+        }
     }
-    required_after(LANES, s, sums, required);
+    for (size_t k = 0; k < LANES; ++k) {
+        required_after(LANES, k, s, sums, required);
+    }
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, real
+    *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
 }
 
-INLINE void inverse_kinematics_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, const real *X, real *o)
+INLINE void inverse_kinematics_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t
+    k, size_t count, const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_prrr v;
-        stage_prrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-        /* (prrr-q_2) displacement of joint 2 */
-        const real prrr_q_2 = angle(-v.inv_prrr_rho2_2*(-v.prrr_Kc_2*v.prrr_root_2 -
-            v.prrr_Kd_2*v.prrr_Ks_2), -v.inv_prrr_rho2_2*(v.prrr_Ks_2*v.prrr_root_2 -
-            v.prrr_Kc_2*v.prrr_Kd_2));
-        /* (prrr-q_3) displacement of joint 3 */
-        const real inv_prrr_size_t = m->inv_prrr_size_t[i];
-        const real inv_prrr_size_t_2 = m->inv_prrr_size_t_2[i];
-        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
-        const real prrr_q_3 =
-            angle(-inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*v.prrr_root_2,
-            inv_prrr_size_t_2*prrr_platform_joint_offset_x*v.prrr_x_3_in_axes2_x);
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        const real prrr_y_1_extra = X[3*w + j];
-        o[0*count + k] = prrr_y_1_extra;
-        /* (prrr-q_2) displacement of joint 2 */
-        o[1*count + k] = prrr_q_2;
-        /* (prrr-q_3) displacement of joint 3 */
-        o[2*count + k] = prrr_q_3;
-        o[5*count + k] = prrr_y_1_extra + (prrr_q_2 + prrr_q_3);
-        const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
-        o[4*count + k] = UNLESS(magnitude(v.prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t);
-        o[3*count + k] = UNLESS(v.prrr_disc_2 >= 0);
-    }
+    values_prrr v;
+    stage_prrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
+    /* (prrr-q_2) displacement of joint 2 */
+    const real prrr_q_2 = angle(-v.inv_prrr_rho2_2*(-v.prrr_Kc_2*v.prrr_root_2 -
+        v.prrr_Kd_2*v.prrr_Ks_2), -v.inv_prrr_rho2_2*(v.prrr_Ks_2*v.prrr_root_2 -
+        v.prrr_Kc_2*v.prrr_Kd_2));
+    /* (prrr-q_3) displacement of joint 3 */
+    const real prrr_q_3 =
+        angle(-m->inv_prrr_size_t[i]*m->inv_prrr_size_t_2[i]*m->prrr_joint3_offset_x[i]*m->prrr_platform_joint_offset_x[i]*v.prrr_root_2,
+        m->inv_prrr_size_t_2[i]*m->prrr_platform_joint_offset_x[i]*v.prrr_x_3_in_axes2_x);
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    const real prrr_y_1_extra = X[3*w + j];
+    o[0*count + k] = prrr_y_1_extra;
+    /* (prrr-q_2) */
+    o[1*count + k] = prrr_q_2;
+    /* (prrr-q_3) */
+    o[2*count + k] = prrr_q_3;
+    o[5*count + k] = prrr_y_1_extra + (prrr_q_2 + prrr_q_3);
+    o[4*count + k] = UNLESS(magnitude(v.prrr_rho2_2) >
+        TOLERANCE*TOLERANCE*m->prrr_rho2_2_t[i]);
+    o[3*count + k] = UNLESS(v.prrr_disc_2 >= 0);
 }
 
-INLINE void inverse_kinematics_place_prrr(size_t w, size_t count, const real *o, size_t first,
-    real *q, verdict *t)
+INLINE void inverse_kinematics_place_prrr(size_t w, size_t k, size_t at, size_t count, const real
+    *o, real *q, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        q[0*w + k] = o[0*count + first + k];
-        q[1*w + k] = o[1*count + first + k];
-        q[2*w + k] = o[2*count + first + k];
-        t->unreachable[k] += o[3*count + first + k];
-        t->singular[k] += o[4*count + first + k];
-        t->total[k] += o[5*count + first + k];
-    }
+    q[0*w + k] = o[0*count + at];
+    q[1*w + k] = o[1*count + at];
+    q[2*w + k] = o[2*count + at];
+    t->unreachable[k] += o[3*count + at];
+    t->singular[k] += o[4*count + at];
+    t->total[k] += o[5*count + at];
 }
 
-INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, const real *X, real *o)
+INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k,
+    size_t count, const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-        /* (rrr-q_1) displacement of joint 1 */
-        const real rrr_q_1 = angle(v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_root_1 +
-            v.rrr_Kd_1*v.rrr_Ks_1), v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 -
-            v.rrr_Ks_1*v.rrr_root_1));
-        /* (rrr-q_2) displacement of joint 2 */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_q_2 =
-            angle(-inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*v.rrr_root_1,
-            inv_rrr_size_t_2*rrr_platform_joint_offset_x*v.rrr_x_2_in_axes1_x);
-        /* (rrr-q_1) displacement of joint 1 */
-        o[0*count + k] = rrr_q_1;
-        /* (rrr-q_2) displacement of joint 2 */
-        o[1*count + k] = rrr_q_2;
-        o[4*count + k] = rrr_q_1 + rrr_q_2;
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
-        o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
+    values_rrr v;
+    stage_rrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
+    /* (rrr-q_1) displacement of joint 1 */
+    const real rrr_q_1 = angle(v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_root_1 +
+        v.rrr_Kd_1*v.rrr_Ks_1), v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 -
+        v.rrr_Ks_1*v.rrr_root_1));
+    /* (rrr-q_2) displacement of joint 2 */
+    const real rrr_q_2 =
+        angle(-m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_root_1,
+        m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_x_2_in_axes1_x);
+    /* (rrr-q_1) */
+    o[0*count + k] = rrr_q_1;
+    /* (rrr-q_2) */
+    o[1*count + k] = rrr_q_2;
+    o[4*count + k] = rrr_q_1 + rrr_q_2;
+    o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
+    o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void inverse_kinematics_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_t
-    first, real *q, verdict *t)
+INLINE void inverse_kinematics_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count,
+    const real *o, real *q, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        q[(3 + 2*leg)*w + k] = o[0*count + first + k];
-        q[(4 + 2*leg)*w + k] = o[1*count + first + k];
-        t->unreachable[k] += o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
+    q[(3 + 2*i)*w + k] = o[0*count + at];
+    q[(4 + 2*i)*w + k] = o[1*count + at];
+    t->unreachable[k] += o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
 }
 
-INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
+APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
     real s[2] = {0};
     real o_prrr[6*LEGS(LEGS_OF_prrr)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    inverse_kinematics_before(m, 1, X, s);
-    inverse_kinematics_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), X, o_prrr);
-    inverse_kinematics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), X, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
-        inverse_kinematics_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, q, t);
+    inverse_kinematics_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
+        inverse_kinematics_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), s, X, o_prrr);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        inverse_kinematics_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, q, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        inverse_kinematics_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
+        inverse_kinematics_place_prrr(1, 0, i, LEGS(LEGS_OF_prrr), o_prrr, q, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        inverse_kinematics_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, q, t);
     }
 }
 
-INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
+INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
+    verdict *restrict t)
 {
     real s[2*LANES];
     real o_prrr[6*LANES];
     real o_rrr[5*LANES];
-    inverse_kinematics_before(m, LANES, X, s);
-    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
-        inverse_kinematics_legs_prrr(m, LANES, leg, 0, s, 1, LANES, X, o_prrr);
-        inverse_kinematics_place_prrr(LANES, LANES, o_prrr, 0, q, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        inverse_kinematics_before(m, LANES, k, X, s);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        inverse_kinematics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, X, o_rrr);
-        inverse_kinematics_place_rrr(LANES, LANES, o_rrr, leg, 0, q, t);
+    for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_legs_prrr(m, LANES, i, k, k, LANES, s, X, o_prrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_place_prrr(LANES, k, k, LANES, o_prrr, q, t);
+        }
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_legs_rrr(m, LANES, i, k, k, LANES, s, X, o_rrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_place_rrr(LANES, i, k, k, LANES, o_rrr, q, t);
+        }
     }
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
 }
 
-INLINE void joint_rates_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, const real *X, const real *V, real *o)
+INLINE void joint_rates_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t k,
+    size_t count, const real *s, const real *X, const real *V, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_prrr v;
-        stage_prrr_X(m, w, i, j, s, X, &v);
-        /* (prrr-S_dot) velocity of the connection point */
-        const real omega_z = V[2*w + j];
-        const real t_dot_x = V[0*w + j];
-        const real prrr_S_dot_x = t_dot_x - omega_z*v.prrr_q_y;
-        const real t_dot_y = V[1*w + j];
-        const real prrr_S_dot_y = t_dot_y + omega_z*v.prrr_q_x;
-        /* (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
-        const real prrr_yd_1 = V[3*w + j];
-        const real prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1;
-        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1;
-        /* (prrr-qd_2) rate of joint 2 */
-        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
-        const real axis_y_prrr_axes3_x = prrr_base_frame_xx*v.prrr_qd_2_t +
-            prrr_base_frame_xy*v.prrr_e_1_in_axes3_y;
-        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real axis_x_prrr_axes3_x = prrr_base_frame_yx*v.prrr_qd_2_t +
-            prrr_base_frame_yy*v.prrr_e_1_in_axes3_y;
-        const real prrr_qd_2 = -(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_y)/v.prrr_r_2_in_axes3_y;
-        /* (prrr-qd_3) rate of joint 3 */
-        const real prrr_w_3_in_axes3_y = m->prrr_w_3_in_axes3_y[i];
-        const real prrr_qd_3 = prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*(v.prrr_c_3*v.prrr_r_2_in_axes2_x +
-            v.prrr_r_2_t*v.prrr_s_3_t));
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        o[0*count + k] = prrr_yd_1;
-        /* (prrr-qd_2) rate of joint 2 */
-        o[1*count + k] = prrr_qd_2;
-        /* (prrr-qd_3) rate of joint 3 */
-        o[2*count + k] = prrr_qd_3;
-        o[5*count + k] = prrr_yd_1 + (prrr_qd_2 + prrr_qd_3);
-        const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
-        const real prrr_size = m->prrr_size[i];
-        o[4*count + k] = UNLESS(magnitude(v.prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
-            UNLESS(magnitude(v.prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
-        o[3*count + k] = UNLESS(v.prrr_disc_2 >= 0);
-    }
+    values_prrr v;
+    stage_prrr_X(m, w, i, j, s, X, &v);
+    /* (prrr-S_dot) velocity of the connection point */
+    const real omega_z = V[2*w + j];
+    const real t_dot_x = V[0*w + j];
+    const real prrr_S_dot_x = t_dot_x - omega_z*v.prrr_q_y;
+    const real t_dot_y = V[1*w + j];
+    const real prrr_S_dot_y = t_dot_y + omega_z*v.prrr_q_x;
+    /* (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra */
+    const real prrr_yd_1 = V[3*w + j];
+    const real prrr_S_dot_rest_x = prrr_S_dot_x - m->prrr_base_frame_xy[i]*prrr_yd_1;
+    const real prrr_S_dot_rest_y = prrr_S_dot_y - m->prrr_base_frame_yy[i]*prrr_yd_1;
+    /* (prrr-qd_2) rate of joint 2 */
+    const real axis_y_prrr_axes3_x = m->prrr_base_frame_xx[i]*v.prrr_qd_2_t +
+        m->prrr_base_frame_xy[i]*v.prrr_e_1_in_axes3_y;
+    const real axis_x_prrr_axes3_x = m->prrr_base_frame_yx[i]*v.prrr_qd_2_t +
+        m->prrr_base_frame_yy[i]*v.prrr_e_1_in_axes3_y;
+    const real prrr_qd_2 = -(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
+        axis_y_prrr_axes3_x*prrr_S_dot_rest_y)/v.prrr_r_2_in_axes3_y;
+    /* (prrr-qd_3) rate of joint 3 */
+    const real prrr_qd_3 = m->prrr_w_3_in_axes3_y[i]*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
+        axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*(v.prrr_c_3*v.prrr_r_2_in_axes2_x +
+        v.prrr_r_2_t*v.prrr_s_3_t));
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    o[0*count + k] = prrr_yd_1;
+    /* (prrr-qd_2) */
+    o[1*count + k] = prrr_qd_2;
+    /* (prrr-qd_3) */
+    o[2*count + k] = prrr_qd_3;
+    o[5*count + k] = prrr_yd_1 + (prrr_qd_2 + prrr_qd_3);
+    o[4*count + k] = UNLESS(magnitude(v.prrr_rho2_2) >
+        TOLERANCE*TOLERANCE*m->prrr_rho2_2_t[i]) + UNLESS(magnitude(v.prrr_r_2_in_axes3_y) >
+        TOLERANCE*m->prrr_size[i]);
+    o[3*count + k] = UNLESS(v.prrr_disc_2 >= 0);
 }
 
-INLINE void joint_rates_place_prrr(size_t w, size_t count, const real *o, size_t first, real *qd,
-    verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        qd[0*w + k] = o[0*count + first + k];
-        qd[1*w + k] = o[1*count + first + k];
-        qd[2*w + k] = o[2*count + first + k];
-        t->unreachable[k] += o[3*count + first + k];
-        t->singular[k] += o[4*count + first + k];
-        t->total[k] += o[5*count + first + k];
-    }
-}
-
-INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, const real *X, const real *V, real *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_X(m, w, i, j, s, X, &v);
-        /* (rrr-S_dot) velocity of the connection point */
-        const real omega_z = V[2*w + j];
-        const real t_dot_x = V[0*w + j];
-        const real rrr_S_dot_x = t_dot_x - omega_z*v.rrr_q_y;
-        const real t_dot_y = V[1*w + j];
-        const real rrr_S_dot_y = t_dot_y + omega_z*v.rrr_q_x;
-        /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_qd_1_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*v.rrr_qd_1_t_2 -
-            rrr_base_frame_xx*rrr_qd_1_t;
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*v.rrr_qd_1_t_2 -
-            rrr_base_frame_yx*rrr_qd_1_t;
-        const real rrr_qd_1_t_3 = (axis_x_rrr_axes2_x*rrr_S_dot_x -
-            axis_y_rrr_axes2_x*rrr_S_dot_y)/v.rrr_r_1_in_axes2_y;
-        /* (rrr-qd_2) rate of joint 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_qd_2 = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
-            axis_y_rrr_axes2_x*rrr_S_dot_x + rrr_qd_1_t_3*(v.rrr_c_2*v.rrr_r_1_in_axes1_x +
-            v.rrr_r_1_in_axes1_y*v.rrr_s_2));
-        /* (rrr-qd_1) rate of joint 1 */
-        o[0*count + k] = -rrr_qd_1_t_3;
-        /* (rrr-qd_2) rate of joint 2 */
-        o[1*count + k] = rrr_qd_2;
-        o[4*count + k] = rrr_qd_1_t_3 + rrr_qd_2;
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        const real rrr_size = m->rrr_size[i];
-        o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
-}
-
-INLINE void joint_rates_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_t first,
+INLINE void joint_rates_place_prrr(size_t w, size_t k, size_t at, size_t count, const real *o,
     real *qd, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        qd[(3 + 2*leg)*w + k] = o[0*count + first + k];
-        qd[(4 + 2*leg)*w + k] = o[1*count + first + k];
-        t->unreachable[k] += o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
+    qd[0*w + k] = o[0*count + at];
+    qd[1*w + k] = o[1*count + at];
+    qd[2*w + k] = o[2*count + at];
+    t->unreachable[k] += o[3*count + at];
+    t->singular[k] += o[4*count + at];
+    t->total[k] += o[5*count + at];
 }
 
-INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, const real *s, const real *X, const real *V, real *o)
+{
+    values_rrr v;
+    stage_rrr_X(m, w, i, j, s, X, &v);
+    /* (rrr-S_dot) velocity of the connection point */
+    const real omega_z = V[2*w + j];
+    const real t_dot_x = V[0*w + j];
+    const real rrr_S_dot_x = t_dot_x - omega_z*v.rrr_q_y;
+    const real t_dot_y = V[1*w + j];
+    const real rrr_S_dot_y = t_dot_y + omega_z*v.rrr_q_x;
+    /* (rrr-qd_1) rate of joint 1 */
+    const real rrr_qd_1_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
+    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*v.rrr_qd_1_t_2 -
+        m->rrr_base_frame_xx[i]*rrr_qd_1_t;
+    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*v.rrr_qd_1_t_2 -
+        m->rrr_base_frame_yx[i]*rrr_qd_1_t;
+    const real rrr_qd_1_t_3 = (axis_x_rrr_axes2_x*rrr_S_dot_x -
+        axis_y_rrr_axes2_x*rrr_S_dot_y)/v.rrr_r_1_in_axes2_y;
+    /* (rrr-qd_2) rate of joint 2 */
+    const real rrr_qd_2 = m->rrr_w_2_in_axes2_y[i]*(axis_x_rrr_axes2_x*rrr_S_dot_y +
+        axis_y_rrr_axes2_x*rrr_S_dot_x + rrr_qd_1_t_3*(v.rrr_c_2*v.rrr_r_1_in_axes1_x +
+        v.rrr_r_1_in_axes1_y*v.rrr_s_2));
+    /* (rrr-qd_1) */
+    o[0*count + k] = -rrr_qd_1_t_3;
+    /* (rrr-qd_2) */
+    o[1*count + k] = rrr_qd_2;
+    o[4*count + k] = rrr_qd_1_t_3 + rrr_qd_2;
+    o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
+        + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
+    o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+}
+
+INLINE void joint_rates_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count, const
+    real *o, real *qd, verdict *t)
+{
+    qd[(3 + 2*i)*w + k] = o[0*count + at];
+    qd[(4 + 2*i)*w + k] = o[1*count + at];
+    t->unreachable[k] += o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
+}
+
+APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
     real s[2] = {0};
     real o_prrr[6*LEGS(LEGS_OF_prrr)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    joint_rates_before(m, 1, X, s);
-    joint_rates_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), X, V, o_prrr);
-    joint_rates_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), X, V, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
-        joint_rates_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, qd, t);
+    joint_rates_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
+        joint_rates_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), s, X, V, o_prrr);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        joint_rates_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, qd, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        joint_rates_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, V, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
+        joint_rates_place_prrr(1, 0, i, LEGS(LEGS_OF_prrr), o_prrr, qd, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        joint_rates_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, qd, t);
     }
 }
 
-INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
-    verdict *t)
+INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
+    qd, verdict *restrict t)
 {
     real s[2*LANES];
     real o_prrr[6*LANES];
     real o_rrr[5*LANES];
-    joint_rates_before(m, LANES, X, s);
-    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
-        joint_rates_legs_prrr(m, LANES, leg, 0, s, 1, LANES, X, V, o_prrr);
-        joint_rates_place_prrr(LANES, LANES, o_prrr, 0, qd, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        joint_rates_before(m, LANES, k, X, s);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        joint_rates_legs_rrr(m, LANES, leg, 0, s, 1, LANES, X, V, o_rrr);
-        joint_rates_place_rrr(LANES, LANES, o_rrr, leg, 0, qd, t);
+    for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_legs_prrr(m, LANES, i, k, k, LANES, s, X, V, o_prrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_place_prrr(LANES, k, k, LANES, o_prrr, qd, t);
+        }
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_legs_rrr(m, LANES, i, k, k, LANES, s, X, V, o_rrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_place_rrr(LANES, i, k, k, LANES, o_rrr, qd, t);
+        }
     }
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
+    *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
 }
 
-INLINE void joint_accelerations_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
-    *o)
+INLINE void joint_accelerations_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t
+    k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_prrr v;
-        stage_prrr_X(m, w, i, j, s, X, &v);
-        stage_prrr_A_X(w, j, A, &v);
-        stage_prrr_V_X(m, w, i, j, V, &v);
-        stage_prrr_A_V_X(w, j, V, &v);
-        /* (prrr-qd_2) rate of joint 2 */
-        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
-        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
-        const real axis_y_prrr_axes3_x = prrr_base_frame_xx*v.prrr_qd_2_t +
-            prrr_base_frame_xy*v.prrr_e_1_in_axes3_y;
-        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real axis_x_prrr_axes3_x = prrr_base_frame_yx*v.prrr_qd_2_t +
-            prrr_base_frame_yy*v.prrr_e_1_in_axes3_y;
-        const real prrr_qd_2 = -v.inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*v.prrr_S_dot_rest_x
-            - axis_y_prrr_axes3_x*v.prrr_S_dot_rest_y);
-        /* (prrr-W_2) centripetal tensor of link 2 */
-        const real prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2;
-        /* (prrr-omega_3) angular velocity of link 3 */
-        const real prrr_w_3_in_axes3_y = m->prrr_w_3_in_axes3_y[i];
-        const real prrr_omega_3_in_axes3_z = prrr_qd_2 +
-            prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*v.prrr_S_dot_rest_y +
-            axis_y_prrr_axes3_x*v.prrr_S_dot_rest_x - prrr_qd_2*v.prrr_r_2_in_axes3_x);
-        /* (prrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
-        const real prrr_bias_in_axes3_x = prrr_W_2_in_axes2_xx*v.prrr_c_3*prrr_joint3_offset_x -
-            prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z*prrr_platform_joint_offset_x;
-        /* (prrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real prrr_ydd_1 = A[3*w + j];
-        const real prrr_rel_in_axes3_x = axis_x_prrr_axes3_x*v.prrr_S_ddot_x +
-            v.prrr_qd_2_t*prrr_ydd_1 - prrr_bias_in_axes3_x - axis_y_prrr_axes3_x*v.prrr_S_ddot_y;
-        const real prrr_rel_in_axes3_y = axis_x_prrr_axes3_x*v.prrr_S_ddot_y +
-            axis_y_prrr_axes3_x*v.prrr_S_ddot_x - v.prrr_e_1_in_axes3_y*prrr_ydd_1 -
-            prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*v.prrr_s_3_t;
-        /* (prrr-qdd_2) acceleration of joint 2 */
-        const real prrr_qdd_2_t = v.inv_prrr_r_2_in_axes3_y*prrr_rel_in_axes3_x;
-        /* (prrr-qdd_3) acceleration of joint 3 */
-        const real prrr_qdd_3 = prrr_w_3_in_axes3_y*(prrr_rel_in_axes3_y +
-            prrr_qdd_2_t*v.prrr_r_2_in_axes3_x);
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        o[0*count + k] = prrr_ydd_1;
-        /* (prrr-qdd_2) acceleration of joint 2 */
-        o[1*count + k] = -prrr_qdd_2_t;
-        /* (prrr-qdd_3) acceleration of joint 3 */
-        o[2*count + k] = prrr_qdd_3;
-        o[5*count + k] = prrr_ydd_1 + (prrr_qdd_2_t + prrr_qdd_3);
-        const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
-        const real prrr_size = m->prrr_size[i];
-        o[4*count + k] = UNLESS(magnitude(v.prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
-            UNLESS(magnitude(v.prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
-        o[3*count + k] = UNLESS(v.prrr_disc_2 >= 0);
-    }
+    values_prrr v;
+    stage_prrr_X(m, w, i, j, s, X, &v);
+    stage_prrr_A_X(w, j, A, &v);
+    stage_prrr_V_X(m, w, i, j, V, &v);
+    stage_prrr_A_V_X(w, j, V, &v);
+    /* (prrr-qd_2) rate of joint 2 */
+    const real axis_y_prrr_axes3_x = m->prrr_base_frame_xx[i]*v.prrr_qd_2_t +
+        m->prrr_base_frame_xy[i]*v.prrr_e_1_in_axes3_y;
+    const real axis_x_prrr_axes3_x = m->prrr_base_frame_yx[i]*v.prrr_qd_2_t +
+        m->prrr_base_frame_yy[i]*v.prrr_e_1_in_axes3_y;
+    const real prrr_qd_2 = -v.inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*v.prrr_S_dot_rest_x
+        - axis_y_prrr_axes3_x*v.prrr_S_dot_rest_y);
+    /* (prrr-W_2) centripetal tensor of link 2 */
+    const real prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2;
+    /* (prrr-omega_3) angular velocity of link 3 */
+    const real prrr_omega_3_in_axes3_z = prrr_qd_2 +
+        m->prrr_w_3_in_axes3_y[i]*(axis_x_prrr_axes3_x*v.prrr_S_dot_rest_y +
+        axis_y_prrr_axes3_x*v.prrr_S_dot_rest_x - prrr_qd_2*v.prrr_r_2_in_axes3_x);
+    /* (prrr-bias) acceleration of the connection point at zero joint accelerations */
+    const real prrr_bias_in_axes3_x =
+        prrr_W_2_in_axes2_xx*v.prrr_c_3*m->prrr_joint3_offset_x[i] -
+        prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z*m->prrr_platform_joint_offset_x[i];
+    /* (prrr-rel) acceleration of the connection point left to the joint accelerations */
+    const real prrr_ydd_1 = A[3*w + j];
+    const real prrr_rel_in_axes3_x = axis_x_prrr_axes3_x*v.prrr_S_ddot_x +
+        v.prrr_qd_2_t*prrr_ydd_1 - prrr_bias_in_axes3_x - axis_y_prrr_axes3_x*v.prrr_S_ddot_y;
+    const real prrr_rel_in_axes3_y = axis_x_prrr_axes3_x*v.prrr_S_ddot_y +
+        axis_y_prrr_axes3_x*v.prrr_S_ddot_x - v.prrr_e_1_in_axes3_y*prrr_ydd_1 -
+        prrr_W_2_in_axes2_xx*m->prrr_joint3_offset_x[i]*v.prrr_s_3_t;
+    /* (prrr-qdd_2) acceleration of joint 2 */
+    const real prrr_qdd_2_t = v.inv_prrr_r_2_in_axes3_y*prrr_rel_in_axes3_x;
+    /* (prrr-qdd_3) acceleration of joint 3 */
+    const real prrr_qdd_3 = m->prrr_w_3_in_axes3_y[i]*(prrr_rel_in_axes3_y +
+        prrr_qdd_2_t*v.prrr_r_2_in_axes3_x);
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    o[0*count + k] = prrr_ydd_1;
+    /* (prrr-qdd_2) */
+    o[1*count + k] = -prrr_qdd_2_t;
+    /* (prrr-qdd_3) */
+    o[2*count + k] = prrr_qdd_3;
+    o[5*count + k] = prrr_ydd_1 + (prrr_qdd_2_t + prrr_qdd_3);
+    o[4*count + k] = UNLESS(magnitude(v.prrr_rho2_2) >
+        TOLERANCE*TOLERANCE*m->prrr_rho2_2_t[i]) + UNLESS(magnitude(v.prrr_r_2_in_axes3_y) >
+        TOLERANCE*m->prrr_size[i]);
+    o[3*count + k] = UNLESS(v.prrr_disc_2 >= 0);
 }
 
-INLINE void joint_accelerations_place_prrr(size_t w, size_t count, const real *o, size_t first,
+INLINE void joint_accelerations_place_prrr(size_t w, size_t k, size_t at, size_t count, const real
+    *o, real *qdd, verdict *t)
+{
+    qdd[0*w + k] = o[0*count + at];
+    qdd[1*w + k] = o[1*count + at];
+    qdd[2*w + k] = o[2*count + at];
+    t->unreachable[k] += o[3*count + at];
+    t->singular[k] += o[4*count + at];
+    t->total[k] += o[5*count + at];
+}
+
+INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t
+    k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
+{
+    values_rrr v;
+    stage_rrr_X(m, w, i, j, s, X, &v);
+    stage_rrr_A_X(w, j, A, &v);
+    stage_rrr_V_X(m, w, i, j, V, &v);
+    stage_rrr_A_V_X(w, j, V, &v);
+    /* (rrr-qd_1) rate of joint 1 */
+    const real rrr_qd_1_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
+    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*v.rrr_qd_1_t_2 -
+        m->rrr_base_frame_xx[i]*rrr_qd_1_t;
+    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*v.rrr_qd_1_t_2 -
+        m->rrr_base_frame_yx[i]*rrr_qd_1_t;
+    const real rrr_qd_1_t_3 = v.inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*v.rrr_S_dot_x -
+        axis_y_rrr_axes2_x*v.rrr_S_dot_y);
+    /* (rrr-W_1) centripetal tensor of link 1 */
+    const real rrr_W_1_t = rrr_qd_1_t_3*rrr_qd_1_t_3;
+    /* (rrr-omega_2) angular velocity of link 2 */
+    const real rrr_omega_2_in_axes2_z =
+        m->rrr_w_2_in_axes2_y[i]*(axis_x_rrr_axes2_x*v.rrr_S_dot_y +
+        axis_y_rrr_axes2_x*v.rrr_S_dot_x + rrr_qd_1_t_3*v.rrr_r_1_in_axes2_x) - rrr_qd_1_t_3;
+    /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+    const real rrr_bias_in_axes2_x =
+        -rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*m->rrr_platform_joint_offset_x[i] -
+        rrr_W_1_t*v.rrr_c_2*m->rrr_joint2_offset_x[i];
+    /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
+    const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*v.rrr_S_ddot_x - rrr_bias_in_axes2_x -
+        axis_y_rrr_axes2_x*v.rrr_S_ddot_y;
+    const real rrr_rel_in_axes2_y = axis_x_rrr_axes2_x*v.rrr_S_ddot_y +
+        axis_y_rrr_axes2_x*v.rrr_S_ddot_x - rrr_W_1_t*m->rrr_joint2_offset_x[i]*v.rrr_s_2;
+    /* (rrr-qdd_1) acceleration of joint 1 */
+    const real rrr_qdd_1_t = v.inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x;
+    /* (rrr-qdd_2) acceleration of joint 2 */
+    const real rrr_qdd_2 = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_in_axes2_y +
+        rrr_qdd_1_t*v.rrr_r_1_in_axes2_x);
+    /* (rrr-qdd_1) */
+    o[0*count + k] = -rrr_qdd_1_t;
+    /* (rrr-qdd_2) */
+    o[1*count + k] = rrr_qdd_2;
+    o[4*count + k] = rrr_qdd_1_t + rrr_qdd_2;
+    o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
+        + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
+    o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+}
+
+INLINE void joint_accelerations_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count,
+    const real *o, real *qdd, verdict *t)
+{
+    qdd[(3 + 2*i)*w + k] = o[0*count + at];
+    qdd[(4 + 2*i)*w + k] = o[1*count + at];
+    t->unreachable[k] += o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
+}
+
+APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        qdd[0*w + k] = o[0*count + first + k];
-        qdd[1*w + k] = o[1*count + first + k];
-        qdd[2*w + k] = o[2*count + first + k];
-        t->unreachable[k] += o[3*count + first + k];
-        t->singular[k] += o[4*count + first + k];
-        t->total[k] += o[5*count + first + k];
-    }
-}
-
-INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
-    *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_X(m, w, i, j, s, X, &v);
-        stage_rrr_A_X(w, j, A, &v);
-        stage_rrr_V_X(m, w, i, j, V, &v);
-        stage_rrr_A_V_X(w, j, V, &v);
-        /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_qd_1_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*v.rrr_qd_1_t_2 -
-            rrr_base_frame_xx*rrr_qd_1_t;
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*v.rrr_qd_1_t_2 -
-            rrr_base_frame_yx*rrr_qd_1_t;
-        const real rrr_qd_1_t_3 = v.inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*v.rrr_S_dot_x -
-            axis_y_rrr_axes2_x*v.rrr_S_dot_y);
-        /* (rrr-W_1) centripetal tensor of link 1 */
-        const real rrr_W_1_t = rrr_qd_1_t_3*rrr_qd_1_t_3;
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_omega_2_in_axes2_z = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*v.rrr_S_dot_y +
-            axis_y_rrr_axes2_x*v.rrr_S_dot_x + rrr_qd_1_t_3*v.rrr_r_1_in_axes2_x) - rrr_qd_1_t_3;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_bias_in_axes2_x =
-            -rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x -
-            rrr_W_1_t*v.rrr_c_2*rrr_joint2_offset_x;
-        /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*v.rrr_S_ddot_x - rrr_bias_in_axes2_x -
-            axis_y_rrr_axes2_x*v.rrr_S_ddot_y;
-        const real rrr_rel_in_axes2_y = axis_x_rrr_axes2_x*v.rrr_S_ddot_y +
-            axis_y_rrr_axes2_x*v.rrr_S_ddot_x - rrr_W_1_t*rrr_joint2_offset_x*v.rrr_s_2;
-        /* (rrr-qdd_1) acceleration of joint 1 */
-        const real rrr_qdd_1_t = v.inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x;
-        /* (rrr-qdd_2) acceleration of joint 2 */
-        const real rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
-            rrr_qdd_1_t*v.rrr_r_1_in_axes2_x);
-        /* (rrr-qdd_1) acceleration of joint 1 */
-        o[0*count + k] = -rrr_qdd_1_t;
-        /* (rrr-qdd_2) acceleration of joint 2 */
-        o[1*count + k] = rrr_qdd_2;
-        o[4*count + k] = rrr_qdd_1_t + rrr_qdd_2;
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        const real rrr_size = m->rrr_size[i];
-        o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
-}
-
-INLINE void joint_accelerations_place_rrr(size_t w, size_t count, const real *o, size_t leg,
-    size_t first, real *qdd, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        qdd[(3 + 2*leg)*w + k] = o[0*count + first + k];
-        qdd[(4 + 2*leg)*w + k] = o[1*count + first + k];
-        t->unreachable[k] += o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
-}
-
-INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd, verdict *t)
 {
     real s[2] = {0};
     real o_prrr[6*LEGS(LEGS_OF_prrr)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    joint_accelerations_before(m, 1, X, s);
-    joint_accelerations_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), X, V, A, o_prrr);
-    joint_accelerations_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), X, V, A, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
-        joint_accelerations_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, qdd, t);
+    joint_accelerations_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
+        joint_accelerations_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), s, X, V, A, o_prrr);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        joint_accelerations_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, qdd, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        joint_accelerations_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, V, A, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
+        joint_accelerations_place_prrr(1, 0, i, LEGS(LEGS_OF_prrr), o_prrr, qdd, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        joint_accelerations_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, qdd, t);
     }
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *qdd, verdict *t)
+    real *A, real *restrict qdd, verdict *restrict t)
 {
     real s[2*LANES];
     real o_prrr[6*LANES];
     real o_rrr[5*LANES];
-    joint_accelerations_before(m, LANES, X, s);
-    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
-        joint_accelerations_legs_prrr(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_prrr);
-        joint_accelerations_place_prrr(LANES, LANES, o_prrr, 0, qdd, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        joint_accelerations_before(m, LANES, k, X, s);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        joint_accelerations_legs_rrr(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_rrr);
-        joint_accelerations_place_rrr(LANES, LANES, o_rrr, leg, 0, qdd, t);
+    for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_legs_prrr(m, LANES, i, k, k, LANES, s, X, V, A, o_prrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_place_prrr(LANES, k, k, LANES, o_prrr, qdd, t);
+        }
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_legs_rrr(m, LANES, i, k, k, LANES, s, X, V, A, o_rrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_place_rrr(LANES, i, k, k, LANES, o_rrr, qdd, t);
+        }
     }
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
 }
 
-INLINE void legs_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
+INLINE void legs_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_prrr v;
-        stage_prrr_X(m, w, i, j, s, X, &v);
-        stage_prrr_A_X(w, j, A, &v);
-        stage_prrr_V_X(m, w, i, j, V, &v);
-        stage_prrr_A_V_X(w, j, V, &v);
-        stage_prrr_legs_required(m, w, i, j, A, &v);
-        /* (prrr-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real prrr_h_3_in_spec3_x = m->prrr_h_3_in_spec3_x[i];
-        const real prrr_h_3_in_spec3_y = m->prrr_h_3_in_spec3_y[i];
-        const real prrr_c_in_axes3_x = v.prrr_W_3_t*prrr_h_3_in_spec3_x +
-            v.prrr_alpha_3_in_axes3_z*prrr_h_3_in_spec3_y -
-            v.inv_prrr_r_2_in_axes3_y*(v.prrr_G_in_axes3_y*v.prrr_r_2_in_axes3_x -
-            v.prrr_N_2_in_axes2_z);
-        /* (prrr-c_true) leg force on the platform without actuation, the last link's mass included */
-        const real prrr_link3_mass = m->prrr_link3_mass[i];
-        const real prrr_c_true_in_axes3_x = prrr_c_in_axes3_x -
-            v.prrr_acc_3_in_axes3_x*prrr_link3_mass;
-        const real prrr_c_true_in_axes3_y = v.prrr_c_in_axes3_y -
-            v.prrr_acc_3_in_axes3_y*prrr_link3_mass;
-        const real prrr_c_true_x = v.axis_x_prrr_axes3_x*prrr_c_true_in_axes3_x +
-            v.axis_y_prrr_axes3_x*prrr_c_true_in_axes3_y;
-        const real prrr_c_true_y = v.axis_x_prrr_axes3_x*prrr_c_true_in_axes3_y -
-            v.axis_y_prrr_axes3_x*prrr_c_true_in_axes3_x;
-        /* (prrr-c_true) leg force on the platform without actuation, the last link's mass included */
-        o[0*count + k] = prrr_c_true_x;
-        o[1*count + k] = prrr_c_true_y;
-        /* (prrr-w_2) reciprocal vector 1 */
-        o[2*count + k] = v.prrr_w_2_x;
-        o[3*count + k] = v.prrr_w_2_y;
-        const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
-        const real prrr_size = m->prrr_size[i];
-        o[5*count + k] = UNLESS(magnitude(v.prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
-            UNLESS(magnitude(v.prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
-        o[4*count + k] = UNLESS(v.prrr_disc_2 >= 0);
-    }
+    values_prrr v;
+    stage_prrr_X(m, w, i, j, s, X, &v);
+    stage_prrr_A_X(w, j, A, &v);
+    stage_prrr_V_X(m, w, i, j, V, &v);
+    stage_prrr_A_V_X(w, j, V, &v);
+    stage_prrr_legs_required(m, w, i, j, A, &v);
+    /* (prrr-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real prrr_c_in_axes3_x = v.prrr_W_3_t*m->prrr_h_3_in_spec3_x[i] +
+        v.prrr_alpha_3_in_axes3_z*m->prrr_h_3_in_spec3_y[i] -
+        v.inv_prrr_r_2_in_axes3_y*(v.prrr_G_in_axes3_y*v.prrr_r_2_in_axes3_x -
+        v.prrr_N_2_in_axes2_z);
+    /* (prrr-c_true) leg force on the platform without actuation, the last link's mass included */
+    const real prrr_c_true_in_axes3_x = prrr_c_in_axes3_x -
+        v.prrr_acc_3_in_axes3_x*m->prrr_link3_mass[i];
+    const real prrr_c_true_in_axes3_y = v.prrr_c_in_axes3_y -
+        v.prrr_acc_3_in_axes3_y*m->prrr_link3_mass[i];
+    const real prrr_c_true_x = v.axis_x_prrr_axes3_x*prrr_c_true_in_axes3_x +
+        v.axis_y_prrr_axes3_x*prrr_c_true_in_axes3_y;
+    const real prrr_c_true_y = v.axis_x_prrr_axes3_x*prrr_c_true_in_axes3_y -
+        v.axis_y_prrr_axes3_x*prrr_c_true_in_axes3_x;
+    /* (prrr-c_true) */
+    o[0*count + k] = prrr_c_true_x;
+    o[1*count + k] = prrr_c_true_y;
+    /* (prrr-w_2) reciprocal vector 1 */
+    o[2*count + k] = v.prrr_w_2_x;
+    o[3*count + k] = v.prrr_w_2_y;
+    o[5*count + k] = UNLESS(magnitude(v.prrr_rho2_2) >
+        TOLERANCE*TOLERANCE*m->prrr_rho2_2_t[i]) + UNLESS(magnitude(v.prrr_r_2_in_axes3_y) >
+        TOLERANCE*m->prrr_size[i]);
+    o[4*count + k] = UNLESS(v.prrr_disc_2 >= 0);
 }
 
-INLINE void legs_place_prrr(size_t w, size_t count, const real *o, size_t first, real *leg_force,
-    real *actuator, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        leg_force[0*w + k] = o[0*count + first + k];
-        leg_force[1*w + k] = o[1*count + first + k];
-        actuator[3*w + k] = o[2*count + first + k];
-        actuator[(3 + 1)*w + k] = o[3*count + first + k];
-        t->unreachable[k] += o[4*count + first + k];
-        t->singular[k] += o[5*count + first + k];
-    }
-}
-
-INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_X(m, w, i, j, s, X, &v);
-        stage_rrr_A_X(w, j, A, &v);
-        stage_rrr_V_X(m, w, i, j, V, &v);
-        stage_rrr_A_V_X(w, j, V, &v);
-        stage_rrr_legs_required(m, i, &v);
-        /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
-        const real rrr_link2_mass = m->rrr_link2_mass[i];
-        const real rrr_c_true_in_axes2_x = v.rrr_c_in_axes2_x -
-            v.rrr_acc_2_in_axes2_x*rrr_link2_mass;
-        const real rrr_c_true_in_axes2_y = v.rrr_c_in_axes2_y -
-            v.rrr_acc_2_in_axes2_y*rrr_link2_mass;
-        const real rrr_c_true_x = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x +
-            v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y;
-        const real rrr_c_true_y = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y -
-            v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x;
-        /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
-        o[0*count + k] = rrr_c_true_x;
-        o[1*count + k] = rrr_c_true_y;
-        /* (rrr-w_1) reciprocal vector 1 */
-        o[2*count + k] = v.rrr_w_1_x;
-        o[3*count + k] = v.rrr_w_1_y;
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        const real rrr_size = m->rrr_size[i];
-        o[5*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
-}
-
-INLINE void legs_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_t first, real
+INLINE void legs_place_prrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
     *leg_force, real *actuator, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        leg_force[(3*(1 + leg))*w + k] = o[0*count + first + k];
-        leg_force[(3*(1 + leg) + 1)*w + k] = o[1*count + first + k];
-        actuator[(3*(2 + leg))*w + k] = o[2*count + first + k];
-        actuator[(3*(2 + leg) + 1)*w + k] = o[3*count + first + k];
-        t->unreachable[k] += o[4*count + first + k];
-        t->singular[k] += o[5*count + first + k];
-    }
+    leg_force[0*w + k] = o[0*count + at];
+    leg_force[1*w + k] = o[1*count + at];
+    actuator[3*w + k] = o[2*count + at];
+    actuator[(3 + 1)*w + k] = o[3*count + at];
+    t->unreachable[k] += o[4*count + at];
+    t->singular[k] += o[5*count + at];
+}
+
+INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    const real *s, const real *X, const real *V, const real *A, real *o)
+{
+    values_rrr v;
+    stage_rrr_X(m, w, i, j, s, X, &v);
+    stage_rrr_A_X(w, j, A, &v);
+    stage_rrr_V_X(m, w, i, j, V, &v);
+    stage_rrr_A_V_X(w, j, V, &v);
+    stage_rrr_legs_required(m, i, &v);
+    /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
+    const real rrr_c_true_in_axes2_x = v.rrr_c_in_axes2_x -
+        v.rrr_acc_2_in_axes2_x*m->rrr_link2_mass[i];
+    const real rrr_c_true_in_axes2_y = v.rrr_c_in_axes2_y -
+        v.rrr_acc_2_in_axes2_y*m->rrr_link2_mass[i];
+    const real rrr_c_true_x = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x +
+        v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y;
+    const real rrr_c_true_y = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y -
+        v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x;
+    /* (rrr-c_true) */
+    o[0*count + k] = rrr_c_true_x;
+    o[1*count + k] = rrr_c_true_y;
+    /* (rrr-w_1) reciprocal vector 1 */
+    o[2*count + k] = v.rrr_w_1_x;
+    o[3*count + k] = v.rrr_w_1_y;
+    o[5*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
+        + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
+    o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+}
+
+INLINE void legs_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *leg_force, real *actuator, verdict *t)
+{
+    leg_force[(3*(1 + i))*w + k] = o[0*count + at];
+    leg_force[(3*(1 + i) + 1)*w + k] = o[1*count + at];
+    actuator[(3*(2 + i))*w + k] = o[2*count + at];
+    actuator[(3*(2 + i) + 1)*w + k] = o[3*count + at];
+    t->unreachable[k] += o[4*count + at];
+    t->singular[k] += o[5*count + at];
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
@@ -4219,172 +3993,126 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
     clear(leg_force, 3*NL);
     clear(actuator, 12);
-    legs_before(m, 1, X, s);
-    legs_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), X, V, A, o_prrr);
-    legs_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), X, V, A, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
-        legs_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, leg_force, actuator, t);
+    legs_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
+        legs_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), s, X, V, A, o_prrr);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        legs_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, leg_force, actuator, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        legs_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, V, A, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
+        legs_place_prrr(1, 0, i, LEGS(LEGS_OF_prrr), o_prrr, leg_force, actuator, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        legs_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, leg_force, actuator, t);
     }
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        /* (potential) potential energy */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real m_star = m->m_star;
-        const real t_x = X[0*w + k];
-        const real t_y = X[1*w + k];
-        const real potential_t = gravity_x*(v.R_xx*h_star_in_platform_x + m_star*t_x -
-            v.R_yx*h_star_in_platform_y) + gravity_y*(v.R_xx*h_star_in_platform_y +
-            v.R_yx*h_star_in_platform_x + m_star*t_y);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-        s[2*w + k] = potential_t;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    /* (potential) potential energy */
+    const real t_x = X[0*w + k];
+    const real t_y = X[1*w + k];
+    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x + m->m_star*t_x -
+        v.R_yx*m->h_star_in_platform_y) + m->gravity_y*(v.R_xx*m->h_star_in_platform_y +
+        v.R_yx*m->h_star_in_platform_x + m->m_star*t_y);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
+    s[2*w + k] = potential_t;
 }
 
-INLINE void potential_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void potential_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_prrr v;
-        stage_prrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-        /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real prrr_c_2 = -v.inv_prrr_rho2_2*(v.prrr_Ks_2*v.prrr_root_2 -
-            v.prrr_Kc_2*v.prrr_Kd_2);
-        /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prrr_s_2 = -v.inv_prrr_rho2_2*(-v.prrr_Kc_2*v.prrr_root_2 -
-            v.prrr_Kd_2*v.prrr_Ks_2);
-        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_prrr_size_t_2 = m->inv_prrr_size_t_2[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
-        const real prrr_c_3 =
-            inv_prrr_size_t_2*prrr_platform_joint_offset_x*v.prrr_x_3_in_axes2_x;
-        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
-        const real inv_prrr_size_t = m->inv_prrr_size_t[i];
-        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_s_3_t =
-            inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*v.prrr_root_2;
-        /* (potential) potential energy */
-        const real prrr_b_in_axes0_x = m->prrr_b_in_axes0_x[i];
-        const real prrr_y_1_extra = X[3*w + j];
-        const real prrr_potential_t_3 = prrr_b_in_axes0_x + prrr_y_1_extra;
-        const real prrr_h_3_in_spec3_x = m->prrr_h_3_in_spec3_x[i];
-        const real prrr_h_3_in_spec3_y = m->prrr_h_3_in_spec3_y[i];
-        const real prrr_potential_t_4 = prrr_c_3*prrr_h_3_in_spec3_x +
-            prrr_h_3_in_spec3_y*prrr_s_3_t;
-        const real prrr_potential_t_5 = prrr_c_3*prrr_h_3_in_spec3_y -
-            prrr_h_3_in_spec3_x*prrr_s_3_t;
-        const real prrr_acc_1_in_axes0_y = m->prrr_acc_1_in_axes0_y[i];
-        const real prrr_g_in_axes0_x = m->prrr_g_in_axes0_x[i];
-        const real prrr_h_1_in_spec0_x = m->prrr_h_1_in_spec0_x[i];
-        const real prrr_h_1_in_spec0_y = m->prrr_h_1_in_spec0_y[i];
-        const real prrr_h_2_in_spec2_x = m->prrr_h_2_in_spec2_x[i];
-        const real prrr_h_2_in_spec2_y = m->prrr_h_2_in_spec2_y[i];
-        const real prrr_link1_mass = m->prrr_link1_mass[i];
-        const real prrr_link2_mass = m->prrr_link2_mass[i];
-        const real prrr_potential_t = m->prrr_potential_t[i];
-        const real prrr_potential_t_2 = m->prrr_potential_t_2[i];
-        const real prrr_potential_t_6 = prrr_acc_1_in_axes0_y*(prrr_h_1_in_spec0_x +
-            prrr_c_2*prrr_h_2_in_spec2_x + prrr_c_2*prrr_potential_t_4 - prrr_potential_t -
-            prrr_potential_t_2 - prrr_h_2_in_spec2_y*prrr_s_2 - prrr_potential_t_5*prrr_s_2) +
-            prrr_g_in_axes0_x*(prrr_h_1_in_spec0_y + prrr_c_2*prrr_h_2_in_spec2_y +
-            prrr_c_2*prrr_potential_t_5 + prrr_h_2_in_spec2_x*prrr_s_2 +
-            prrr_link1_mass*prrr_potential_t_3 + prrr_link2_mass*prrr_potential_t_3 +
-            prrr_potential_t_4*prrr_s_2);
-        /* (potential) potential energy */
-        gather(&terms[0*count + k], add, -prrr_potential_t_6);  /* potential_of_legs */
-        const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
-        o[1*count + k] = UNLESS(magnitude(v.prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t);
-        o[0*count + k] = UNLESS(v.prrr_disc_2 >= 0);
-    }
+    values_prrr v;
+    stage_prrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
+    /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real prrr_c_2 = -v.inv_prrr_rho2_2*(v.prrr_Ks_2*v.prrr_root_2 -
+        v.prrr_Kc_2*v.prrr_Kd_2);
+    /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
+    const real prrr_s_2 = -v.inv_prrr_rho2_2*(-v.prrr_Kc_2*v.prrr_root_2 -
+        v.prrr_Kd_2*v.prrr_Ks_2);
+    /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
+    const real prrr_c_3 =
+        m->inv_prrr_size_t_2[i]*m->prrr_platform_joint_offset_x[i]*v.prrr_x_3_in_axes2_x;
+    /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
+    const real prrr_s_3_t =
+        m->inv_prrr_size_t[i]*m->inv_prrr_size_t_2[i]*m->prrr_joint3_offset_x[i]*m->prrr_platform_joint_offset_x[i]*v.prrr_root_2;
+    /* (potential) */
+    const real prrr_y_1_extra = X[3*w + j];
+    const real prrr_potential_t_3 = m->prrr_b_in_axes0_x[i] + prrr_y_1_extra;
+    const real prrr_potential_t_4 = prrr_c_3*m->prrr_h_3_in_spec3_x[i] +
+        m->prrr_h_3_in_spec3_y[i]*prrr_s_3_t;
+    const real prrr_potential_t_5 = prrr_c_3*m->prrr_h_3_in_spec3_y[i] -
+        m->prrr_h_3_in_spec3_x[i]*prrr_s_3_t;
+    const real prrr_potential_t_6 = m->prrr_acc_1_in_axes0_y[i]*(m->prrr_h_1_in_spec0_x[i] +
+        prrr_c_2*m->prrr_h_2_in_spec2_x[i] + prrr_c_2*prrr_potential_t_4 -
+        m->prrr_potential_t[i] - m->prrr_potential_t_2[i] - m->prrr_h_2_in_spec2_y[i]*prrr_s_2
+        - prrr_potential_t_5*prrr_s_2) + m->prrr_g_in_axes0_x[i]*(m->prrr_h_1_in_spec0_y[i] +
+        prrr_c_2*m->prrr_h_2_in_spec2_y[i] + prrr_c_2*prrr_potential_t_5 +
+        m->prrr_h_2_in_spec2_x[i]*prrr_s_2 + m->prrr_link1_mass[i]*prrr_potential_t_3 +
+        m->prrr_link2_mass[i]*prrr_potential_t_3 + prrr_potential_t_4*prrr_s_2);
+    /* (potential) */
+    gather(&terms[0*count + k], add, -prrr_potential_t_6);  /* potential_of_legs */
+    o[1*count + k] = UNLESS(magnitude(v.prrr_rho2_2) >
+        TOLERANCE*TOLERANCE*m->prrr_rho2_2_t[i]);
+    o[0*count + k] = UNLESS(v.prrr_disc_2 >= 0);
 }
 
-INLINE void potential_place_prrr(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void potential_place_prrr(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o[0*count + first + k];
-        t->singular[k] += o[1*count + first + k];
-    }
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
 }
 
-INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real rrr_c_1 = v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 - v.rrr_Ks_1*v.rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_root_1 + v.rrr_Kd_1*v.rrr_Ks_1);
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*v.rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*v.rrr_root_1;
-        /* (potential) potential energy */
-        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
-        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
-        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
-        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-        const real rrr_link1_mass = m->rrr_link1_mass[i];
-        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
-        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
-        const real rrr_potential_t = m->rrr_potential_t[i];
-        const real rrr_potential_t_2 = m->rrr_potential_t_2[i];
-        const real rrr_potential_t_3 = (rrr_c_1*rrr_mu_1_t +
-            rrr_mu_1_t_2*rrr_s_1)*(rrr_h_1_in_spec1_x + rrr_c_2*rrr_h_2_in_spec2_x +
-            rrr_link1_mass*(rrr_c_1*rrr_potential_t + rrr_potential_t_2*rrr_s_1) -
-            rrr_h_2_in_spec2_y*rrr_s_2) + (rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)*(rrr_h_1_in_spec1_y + rrr_c_2*rrr_h_2_in_spec2_y +
-            rrr_h_2_in_spec2_x*rrr_s_2 + rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 -
-            rrr_potential_t*rrr_s_1));
-        /* (potential) potential energy */
-        gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_2 */
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
-        o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
+    values_rrr v;
+    stage_rrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
+    /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real rrr_c_1 = v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 - v.rrr_Ks_1*v.rrr_root_1);
+    /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+    const real rrr_s_1 = v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_root_1 + v.rrr_Kd_1*v.rrr_Ks_1);
+    /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real rrr_c_2 =
+        m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_x_2_in_axes1_x;
+    /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+    const real rrr_s_2 =
+        -m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_root_1;
+    /* (potential) */
+    const real rrr_potential_t_3 = (rrr_c_1*m->rrr_mu_1_t[i] +
+        m->rrr_mu_1_t_2[i]*rrr_s_1)*(m->rrr_h_1_in_spec1_x[i] +
+        rrr_c_2*m->rrr_h_2_in_spec2_x[i] + m->rrr_link1_mass[i]*(rrr_c_1*m->rrr_potential_t[i]
+        + m->rrr_potential_t_2[i]*rrr_s_1) - m->rrr_h_2_in_spec2_y[i]*rrr_s_2) +
+        (rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*rrr_s_1)*(m->rrr_h_1_in_spec1_y[i] +
+        rrr_c_2*m->rrr_h_2_in_spec2_y[i] + m->rrr_h_2_in_spec2_x[i]*rrr_s_2 +
+        m->rrr_link1_mass[i]*(rrr_c_1*m->rrr_potential_t_2[i] -
+        m->rrr_potential_t[i]*rrr_s_1));
+    /* (potential) */
+    gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_2 */
+    o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
+    o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void potential_place_rrr(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void potential_place_rrr(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o[0*count + first + k];
-        t->singular[k] += o[1*count + first + k];
-    }
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
 }
 
-INLINE void potential_after(size_t w, const real *s, const real *sums, real *potential)
+INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (potential) potential energy */
-        const real potential_of_legs = sums[0*w + k];
-        const real potential_t = s[2*w + k];
-        const real potential_t_2 = sums[1*w + k];
-        const real potential_ = potential_of_legs - potential_t - potential_t_2;
-        /* (potential) potential energy */
-        potential[0*w + k] = potential_;
-    }
+    /* (potential) */
+    const real potential_of_legs = sums[0*w + k];
+    const real potential_t = s[2*w + k];
+    const real potential_t_2 = sums[1*w + k];
+    const real potential_ = potential_of_legs - potential_t - potential_t_2;
+    /* (potential) */
+    potential[0*w + k] = potential_;
 }
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
@@ -4392,215 +4120,189 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
     real s[3] = {0}, sums[2] = {0};
     real terms_prrr[2*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[2*LEGS(LEGS_OF_prrr)] = {0};
     real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    potential_before(m, 1, X, s);
-    potential_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), 0, X, terms_prrr, o_prrr);
-    potential_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
-        potential_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, t);
+    potential_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
+        potential_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), 0, s, X, terms_prrr, o_prrr);
+    }
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        potential_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, terms_rrr, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
+        potential_place_prrr(0, i, LEGS(LEGS_OF_prrr), o_prrr, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         sums[n] = total(terms_prrr + n*LEGS(LEGS_OF_prrr), LEGS_OF_prrr);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        potential_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        potential_place_rrr(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
-    potential_after(1, s, sums, potential);
+    potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
-    verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
+    *lengths, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        const real legs_size = m->legs_size;
-        lengths[1*w + k] = legs_size;
-        t->total[k] += legs_size;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    lengths[1*w + k] = m->legs_size;
+    t->total[k] += m->legs_size;
 }
 
-INLINE void condition_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void condition_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_prrr v;
-        stage_prrr_X(m, w, i, j, s, X, &v);
-        stage_prrr_H_condition(m, i, &v);
-        /* (prrr-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real prrr_pivot_size = magnitude(v.prrr_rho2_2);
-        const real prrr_pivot_size_2 = magnitude(v.prrr_r_2_in_axes3_y);
-        const real inv_prrr_rho2_2_t = m->inv_prrr_rho2_2_t[i];
-        const real inv_prrr_size = m->inv_prrr_size[i];
-        const real prrr_least_pivots = lesser(root(inv_prrr_rho2_2_t*prrr_pivot_size),
-            inv_prrr_size*prrr_pivot_size_2);
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_in_platform_x = m->b_c_in_platform_x;
-        const real prrr_platform_point_x = m->prrr_platform_point_x[i];
-        const real prrr_spread_t = b_c_in_platform_x - prrr_platform_point_x;
-        const real b_c_in_platform_y = m->b_c_in_platform_y;
-        const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real prrr_spread_t_2 = b_c_in_platform_y - prrr_platform_point_y;
-        const real prrr_spread_t_3 = prrr_spread_t*prrr_spread_t +
-            prrr_spread_t_2*prrr_spread_t_2;
-        /* (spread) rms distance of the platform points from their centroid */
-        gather(&terms[0*count + k], add, prrr_spread_t_3);  /* spread_prrr */
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        o[0*count + k] = 1;
-        /* (prrr-w_2) reciprocal vector 1 */
-        o[1*count + k] = v.prrr_w_2_x;
-        o[2*count + k] = v.prrr_w_2_y;
-        /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
-        o[3*count + k] = v.prrr_H_a_2_z;
-        /* (prrr-w_2) reciprocal vector 1 */
-        o[4*count + k] = v.prrr_w_2_t_2;
-        /* (prrr-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        o[5*count + k] = prrr_least_pivots;
-        o[6*count + k] = v.prrr_disc_2;
-        o[9*count + k] = (v.prrr_w_2_x + (v.prrr_w_2_y + v.prrr_H_a_2_z)) + (v.prrr_w_2_t_2 +
-            (prrr_least_pivots + v.prrr_disc_2));
-        const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
-        const real prrr_size = m->prrr_size[i];
-        o[8*count + k] = UNLESS(magnitude(v.prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
-            UNLESS(magnitude(v.prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
-        o[7*count + k] = UNLESS(v.prrr_disc_2 >= 0);
-    }
+    values_prrr v;
+    stage_prrr_X(m, w, i, j, s, X, &v);
+    stage_prrr_H_condition(m, i, &v);
+    /* (prrr-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real prrr_pivot_size = magnitude(v.prrr_rho2_2);
+    const real prrr_pivot_size_2 = magnitude(v.prrr_r_2_in_axes3_y);
+    const real prrr_least_pivots = lesser(root(m->inv_prrr_rho2_2_t[i]*prrr_pivot_size),
+        m->inv_prrr_size[i]*prrr_pivot_size_2);
+    /* (spread) rms distance of the platform points from their centroid */
+    const real prrr_spread_t = m->b_c_in_platform_x - m->prrr_platform_point_x[i];
+    const real prrr_spread_t_2 = m->b_c_in_platform_y - m->prrr_platform_point_y[i];
+    const real prrr_spread_t_3 = prrr_spread_t*prrr_spread_t +
+        prrr_spread_t_2*prrr_spread_t_2;
+    /* (spread) */
+    gather(&terms[0*count + k], add, prrr_spread_t_3);  /* spread_prrr */
+    /* (legs_size) */
+    o[0*count + k] = 1;
+    /* (prrr-w_2) reciprocal vector 1 */
+    o[1*count + k] = v.prrr_w_2_x;
+    o[2*count + k] = v.prrr_w_2_y;
+    /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.prrr_H_a_2_z;
+    /* (prrr-w_2) */
+    o[4*count + k] = v.prrr_w_2_t_2;
+    /* (prrr-G) */
+    o[5*count + k] = prrr_least_pivots;
+    o[6*count + k] = v.prrr_disc_2;
+    o[9*count + k] = (v.prrr_w_2_x + (v.prrr_w_2_y + v.prrr_H_a_2_z)) + (v.prrr_w_2_t_2 +
+        (prrr_least_pivots + v.prrr_disc_2));
+    o[8*count + k] = UNLESS(magnitude(v.prrr_rho2_2) >
+        TOLERANCE*TOLERANCE*m->prrr_rho2_2_t[i]) + UNLESS(magnitude(v.prrr_r_2_in_axes3_y) >
+        TOLERANCE*m->prrr_size[i]);
+    o[7*count + k] = UNLESS(v.prrr_disc_2 >= 0);
 }
 
-INLINE void condition_place_prrr(size_t w, size_t count, const real *o, size_t first, real *H,
-    real *pivots, real *reach, verdict *t)
+INLINE void condition_place_prrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
+    *H, real *pivots, real *reach, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[3*NU*w + k] = o[0*count + first + k];
-        H[1*w + k] = o[1*count + first + k];
-        H[(NU + 1)*w + k] = o[2*count + first + k];
-        H[(2*NU + 1)*w + k] = o[3*count + first + k];
-        H[(3*NU + 1)*w + k] = o[4*count + first + k];
-        pivots[0*w + k] = o[5*count + first + k];
-        reach[0*w + k] = o[6*count + first + k];
-        t->unreachable[k] += o[7*count + first + k];
-        t->singular[k] += o[8*count + first + k];
-        t->total[k] += o[9*count + first + k];
-    }
+    H[3*NU*w + k] = o[0*count + at];
+    H[1*w + k] = o[1*count + at];
+    H[(NU + 1)*w + k] = o[2*count + at];
+    H[(2*NU + 1)*w + k] = o[3*count + at];
+    H[(3*NU + 1)*w + k] = o[4*count + at];
+    pivots[0*w + k] = o[5*count + at];
+    reach[0*w + k] = o[6*count + at];
+    t->unreachable[k] += o[7*count + at];
+    t->singular[k] += o[8*count + at];
+    t->total[k] += o[9*count + at];
 }
 
-INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_X(m, w, i, j, s, X, &v);
-        stage_rrr_H_condition(m, i, &v);
-        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real rrr_pivot_size = magnitude(v.rrr_rho2_1);
-        const real rrr_pivot_size_2 = magnitude(v.rrr_r_1_in_axes2_y);
-        const real inv_rrr_rho2_1_t = m->inv_rrr_rho2_1_t[i];
-        const real inv_rrr_size = m->inv_rrr_size[i];
-        const real rrr_least_pivots = lesser(root(inv_rrr_rho2_1_t*rrr_pivot_size),
-            inv_rrr_size*rrr_pivot_size_2);
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_in_platform_x = m->b_c_in_platform_x;
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_spread_t = b_c_in_platform_x - rrr_platform_point_x;
-        const real b_c_in_platform_y = m->b_c_in_platform_y;
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_spread_t_2 = b_c_in_platform_y - rrr_platform_point_y;
-        const real rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2;
-        /* (spread) rms distance of the platform points from their centroid */
-        gather(&terms[1*count + k], add, rrr_spread_t_3);  /* spread_rrr */
-        /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = v.rrr_w_1_x;
-        o[1*count + k] = v.rrr_w_1_y;
-        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = v.rrr_H_a_1_z;
-        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        o[3*count + k] = rrr_least_pivots;
-        o[4*count + k] = v.rrr_disc_1;
-        o[7*count + k] = (v.rrr_w_1_x + v.rrr_w_1_y) + (v.rrr_H_a_1_z + (rrr_least_pivots +
-            v.rrr_disc_1));
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        const real rrr_size = m->rrr_size[i];
-        o[6*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[5*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
+    values_rrr v;
+    stage_rrr_X(m, w, i, j, s, X, &v);
+    stage_rrr_H_condition(m, i, &v);
+    /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real rrr_pivot_size = magnitude(v.rrr_rho2_1);
+    const real rrr_pivot_size_2 = magnitude(v.rrr_r_1_in_axes2_y);
+    const real rrr_least_pivots = lesser(root(m->inv_rrr_rho2_1_t[i]*rrr_pivot_size),
+        m->inv_rrr_size[i]*rrr_pivot_size_2);
+    /* (spread) */
+    const real rrr_spread_t = m->b_c_in_platform_x - m->rrr_platform_point_x[i];
+    const real rrr_spread_t_2 = m->b_c_in_platform_y - m->rrr_platform_point_y[i];
+    const real rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2;
+    /* (spread) */
+    gather(&terms[1*count + k], add, rrr_spread_t_3);  /* spread_rrr */
+    /* (rrr-w_1) reciprocal vector 1 */
+    o[0*count + k] = v.rrr_w_1_x;
+    o[1*count + k] = v.rrr_w_1_y;
+    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v.rrr_H_a_1_z;
+    /* (rrr-G) */
+    o[3*count + k] = rrr_least_pivots;
+    o[4*count + k] = v.rrr_disc_1;
+    o[7*count + k] = (v.rrr_w_1_x + v.rrr_w_1_y) + (v.rrr_H_a_1_z + (rrr_least_pivots +
+        v.rrr_disc_1));
+    o[6*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
+        + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
+    o[5*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void condition_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *H, real *pivots, real *reach, verdict *t)
+INLINE void condition_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count, const real
+    *o, real *H, real *pivots, real *reach, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[(2 + leg)*w + k] = o[0*count + first + k];
-        H[(NU + 2 + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + 2 + leg)*w + k] = o[2*count + first + k];
-        pivots[(1 + leg)*w + k] = o[3*count + first + k];
-        reach[(1 + leg)*w + k] = o[4*count + first + k];
-        t->unreachable[k] += o[5*count + first + k];
-        t->singular[k] += o[6*count + first + k];
-        t->total[k] += o[7*count + first + k];
-    }
+    H[(2 + i)*w + k] = o[0*count + at];
+    H[(NU + 2 + i)*w + k] = o[1*count + at];
+    H[(2*NU + 2 + i)*w + k] = o[2*count + at];
+    pivots[(1 + i)*w + k] = o[3*count + at];
+    reach[(1 + i)*w + k] = o[4*count + at];
+    t->unreachable[k] += o[5*count + at];
+    t->singular[k] += o[6*count + at];
+    t->total[k] += o[7*count + at];
 }
 
-INLINE void condition_after(size_t w, const real *sums, real *lengths, verdict *t)
+INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (spread) rms distance of the platform points from their centroid */
-        const real spread_prrr = sums[0*w + k];
-        const real spread_rrr = sums[1*w + k];
-        const real spread_ = root(R(0.3333333333333333)*spread_prrr +
-            R(0.3333333333333333)*spread_rrr);
-        /* (spread) rms distance of the platform points from their centroid */
-        lengths[0*w + k] = spread_;
-        t->total[k] += spread_;
-    }
+    /* (spread) */
+    const real spread_prrr = sums[0*w + k];
+    const real spread_rrr = sums[1*w + k];
+    const real spread_ = root(R(0.3333333333333333)*spread_prrr +
+        R(0.3333333333333333)*spread_rrr);
+    /* (spread) */
+    lengths[0*w + k] = spread_;
+    t->total[k] += spread_;
 }
 
-INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
+APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, verdict *t)
 {
     real s[2] = {0}, sums[2] = {0};
     real terms_prrr[2*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[10*LEGS(LEGS_OF_prrr)] = {0};
     real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[8*LEGS(LEGS_OF_rrr)] = {0};
     clear(H, NV*NU);
-    condition_before(m, 1, X, s, lengths, t);
-    condition_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), 0, X, terms_prrr, o_prrr);
-    condition_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
-        condition_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, H, pivots, reach, t);
+    condition_before(m, 1, 0, X, s, lengths, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
+        condition_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), 0, s, X, terms_prrr, o_prrr);
+    }
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        condition_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, terms_rrr, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
+        condition_place_prrr(1, 0, i, LEGS(LEGS_OF_prrr), o_prrr, H, pivots, reach, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         sums[n] = total(terms_prrr + n*LEGS(LEGS_OF_prrr), LEGS_OF_prrr);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        condition_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, H, pivots, reach, t);
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        condition_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, pivots, reach, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
-    condition_after(1, sums, lengths, t);
+    condition_after(1, 0, sums, lengths, t);
 }
 
 /* ---- what users call, as steps over these ---- */
 
-INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
+int planar_redundant_M(const prepared *m, const real *X, real *M_out)
 {
     real M[NV*NV] = {0};
     verdict why;
@@ -4611,9 +4313,11 @@ INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
         check(NV*NV, 1, M, why.overflow);
     }
     copy(NV*NV, M, M_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NV, M_out);
     }
+    return code;
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -4627,7 +4331,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
     deliver(NV*NV, M, M_out);
 }
 
-INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
+int planar_redundant_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     real Z[NV] = {0};
     verdict why;
@@ -4642,9 +4346,11 @@ INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, 
         check(NV, 1, Z, why.overflow);
     }
     copy(NV, Z, Z_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, Z_out);
     }
+    return code;
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -4659,7 +4365,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
     deliver(NV, Z, Z_out);
 }
 
-INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
+int planar_redundant_H(const prepared *m, const real *X, real *H_out)
 {
     real H[NV*NU] = {0};
     verdict why;
@@ -4670,9 +4376,11 @@ INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
         check(NV*NU, 1, H, why.overflow);
     }
     copy(NV*NU, H, H_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NU, H_out);
     }
+    return code;
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -4686,7 +4394,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
     deliver(NV*NU, H, H_out);
 }
 
-INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out, int *code)
+int planar_redundant_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
     real q[NJ] = {0};
     verdict why;
@@ -4697,9 +4405,11 @@ INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out
         check(NJ, 1, q, why.overflow);
     }
     copy(NJ, q, q_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, q_out);
     }
+    return code;
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -4713,8 +4423,7 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
     deliver(NJ, q, q_out);
 }
 
-INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
-    *code)
+int planar_redundant_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd[NJ] = {0};
     verdict why;
@@ -4729,9 +4438,11 @@ INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, rea
         check(NJ, 1, qd, why.overflow);
     }
     copy(NJ, qd, qd_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, qd_out);
     }
+    return code;
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -4747,8 +4458,8 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
     deliver(NJ, qd, qd_out);
 }
 
-INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out, int *code)
+int planar_redundant_joint_accelerations(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out)
 {
     real qdd[NJ] = {0};
     verdict why;
@@ -4764,9 +4475,11 @@ INLINE void joint_accelerations_one(const prepared *m, const real *X, const real
         check(NJ, 1, qdd, why.overflow);
     }
     copy(NJ, qdd, qdd_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, qdd_out);
     }
+    return code;
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4783,8 +4496,8 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
     deliver(NJ, qdd, qdd_out);
 }
 
-INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
-    *Z_out, real *H_out, int *code)
+int planar_redundant_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out)
 {
     real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0};
     verdict why;
@@ -4803,11 +4516,13 @@ INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *
     copy(NV*NV, M, M_out);
     copy(NV, Z, Z_out);
     copy(NV*NU, H, H_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NV, M_out);
         refuse(NV, Z_out);
         refuse(NV*NU, H_out);
     }
+    return code;
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -4903,8 +4618,8 @@ INLINE void eliminate_4(size_t w, size_t stride, const size_t *order, const real
 static const size_t order_tau[] = {3, 1, 2, 0};
 static const real sizes_tau[] = {1.0, 4.0, 0.25, 4.0};
 
-INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *tau_out, int *code)
+int planar_redundant_inverse_dynamics(const prepared *m, const real *X, const real *V, const real
+    *A, const real *wrench, real *tau_out)
 {
     real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, extend_1[4] = {0}, subtract_1[NV] = {0},
         unsure_tau[1] = {0}, work[NV*PADDED(NV)];
@@ -4933,9 +4648,11 @@ INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, tau_out);
     }
+    return code;
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -4964,8 +4681,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 static const size_t order_A[] = {0, 1, 2, 3};
 static const real sizes_A[] = {4.0, 4.0, 0.25, 4.0};
 
-INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
-    const real *wrench, real *A_out, int *code)
+int planar_redundant_forward_dynamics(const prepared *m, const real *X, const real *V, const real
+    *tau, const real *wrench, real *A_out)
 {
     real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, extend_1[4] =
         {0}, add_1[NV] = {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
@@ -4998,9 +4715,11 @@ INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, A_out);
     }
+    return code;
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -5031,21 +4750,28 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     deliver(NV, A, A_out);
 }
 
-INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
+int planar_redundant_complete_acceleration(const prepared *m, const real *X, const real *V, const
+    real *A, const real *wrench, real *completed_out)
 {
+    (void)m;
+    (void)X;
+    (void)V;
+    (void)wrench;
     verdict why;
     start(1, &why);
     check(NV, 1, A, why.invalid);
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, completed_out);
     }
+    return code;
 }
 
-INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces_out, int *code)
+int planar_redundant_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *forces_out)
 {
     static const size_t places_forces[] = {0, 0, 1, 2};
     real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, extend_1[4] = {0}, subtract_1[NV] = {0},
@@ -5080,13 +4806,15 @@ INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, c
     add_forces(NV, 3, 1, places_forces, solve_1, actuator, forces);
     check(NL*NL, 1, forces, why.overflow);
     copy(NL*NL, forces, forces_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NL*NL, forces_out);
     }
+    return code;
 }
 
-INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
-    *potential_out, int *code)
+int planar_redundant_energy(const prepared *m, const real *X, const real *V, real *kinetic_out,
+    real *potential_out)
 {
     real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
@@ -5104,15 +4832,17 @@ INLINE void energy_one(const prepared *m, const real *X, const real *V, real *ki
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, kinetic_out);
         refuse(1, potential_out);
     }
+    return code;
 }
 
-INLINE void condition_one(const prepared *m, const real *X, const real *length, real *sigma_out,
-    real *legs_out, int *code)
+int planar_redundant_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
+    const real *length = NULL;
     static const size_t places_divide_rows_1[] = {2};
     real length_in[1], H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
         choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
@@ -5138,14 +4868,16 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, sigma_out);
         refuse(NL, legs_out);
     }
+    return code;
 }
 
-INLINE void manipulability_one(const prepared *m, const real *X, real *measure_out, real
-    *isotropy_out, int *code)
+int planar_redundant_manipulability(const prepared *m, const real *X, real *measure_out, real
+    *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {2};
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
@@ -5175,14 +4907,16 @@ INLINE void manipulability_one(const prepared *m, const real *X, real *measure_o
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, measure_out);
         refuse(1, isotropy_out);
     }
+    return code;
 }
 
-INLINE void singularity_distance_one(const prepared *m, const real *X, real *actuators_out, real
-    *legs_out, int *code)
+int planar_redundant_singularity_distance(const prepared *m, const real *X, real *actuators_out,
+    real *legs_out)
 {
     static const size_t places_divide_rows_1[] = {2};
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
@@ -5212,14 +4946,15 @@ INLINE void singularity_distance_one(const prepared *m, const real *X, real *act
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, actuators_out);
         refuse(1, legs_out);
     }
+    return code;
 }
 
-static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
-    int *code)
+static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
 {
     static const size_t places_gap[] = {1, 2, 3};
     real q[NJ] = {0}, q_of_inverse_kinematics_from_0[4] = {0}, subtract_1[NU] = {0}, gap[NU] = {0};
@@ -5241,12 +4976,14 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
     wrap_turns(3, 1, places_gap, gap);
     check(NU, 1, gap, why.overflow);
     copy(NU, gap, gap_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, gap_out);
     }
+    return code;
 }
 
-static void slope_one(const prepared *m, const real *X, real *slope_out, int *code)
+static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     real slope[NV*NU] = {0};
     verdict why;
@@ -5257,9 +4994,11 @@ static void slope_one(const prepared *m, const real *X, real *slope_out, int *co
         check(NV*NU, 1, slope, why.overflow);
     }
     copy(NV*NU, slope, slope_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NU, slope_out);
     }
+    return code;
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -5270,12 +5009,12 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    mismatch_one(m, found, q_actuated, gap, &code);
+    code = mismatch_one(m, found, q_actuated, gap);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        slope_one(m, found, slope, &code);
+        code = slope_one(m, found, slope);
         if (code != OK) {
             break;
         }
@@ -5289,7 +5028,7 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            mismatch_one(m, trial, q_actuated, next, &tried);
+            tried = mismatch_one(m, trial, q_actuated, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -5307,8 +5046,8 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 }
 
 
-INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
-    *X_out, int *code)
+int planar_redundant_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0,
+    real *X_out)
 {
     real X[NQ] = {0};
     verdict why;
@@ -5321,13 +5060,18 @@ INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, co
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
-INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
+int planar_redundant_dissipation(const prepared *m, const real *X, const real *V, real
+    *dissipation_out)
 {
+    (void)m;
+    (void)X;
     real subtract_1[NV] = {0};
     verdict why;
     start(1, &why);
@@ -5338,13 +5082,14 @@ INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, dissipation_out);
     }
+    return code;
 }
 
-INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
-    *code)
+int planar_redundant_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
     real M[NV*NV] = {0}, momentum[NV] = {0};
     verdict why;
@@ -5358,27 +5103,14 @@ INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, momentum_out);
     }
+    return code;
 }
 
-INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
-    int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], momentum[NV*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    M_run_lanes(m, X, M, &why);
-    product(NV, NV, 1, LANES, M, V, momentum);
-    add_up(NV, momentum, why.total);
-    suspect(&why, code);
-    deliver(NV, momentum, momentum_out);
-}
-
-INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
+int planar_redundant_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6};
     real q[NJ] = {0}, margins[NJ] = {0};
@@ -5391,28 +5123,14 @@ INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_ou
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, margins_out);
     }
+    return code;
 }
 
-INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
-{
-    static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6};
-    real X_in[NQ*LANES], q[NJ*LANES], margins[NJ*LANES];
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < NJ*LANES; ++i) {
-        margins[i] = q[i];
-    }
-    unlimited(NJ, NJ, LANES, places_margins, margins, why.invalid);
-    suspect(&why, code);
-    deliver(NJ, margins, margins_out);
-}
-
-INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
+int planar_redundant_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
     verdict why;
@@ -5425,28 +5143,14 @@ INLINE void within_limits_one(const prepared *m, const real *X, real *within_out
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, within_out);
     }
+    return code;
 }
 
-INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
-{
-    real X_in[NQ*LANES], q[NJ*LANES], subtract_1[NJ*LANES], within[LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < NJ*LANES; ++i) {
-        subtract_1[i] = q[i] - q[i];
-    }
-    not_negative(NJ, LANES, subtract_1, within, why.invalid);
-    add_up(1, within, why.total);
-    suspect(&why, code);
-    deliver(1, within, within_out);
-}
-
-INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
+int planar_redundant_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
     verdict why;
@@ -5456,26 +5160,14 @@ INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out
     take(NU, 1, planar_redundant_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, q_out);
     }
+    return code;
 }
 
-INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
-{
-    real X_in[NQ*LANES], q_of_inverse_kinematics[NJ*LANES], q[NU*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
-    take(NU, LANES, planar_redundant_ACTUATED, q_of_inverse_kinematics, q);
-    add_up(NU, q, why.total);
-    suspect(&why, code);
-    deliver(NU, q, q_out);
-}
-
-INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
-    *code)
+int planar_redundant_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
     verdict why;
@@ -5489,28 +5181,15 @@ INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, 
     take(NU, 1, planar_redundant_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, qd_out);
     }
+    return code;
 }
 
-INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
-    int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], qd_of_joint_rates[NJ*LANES], qd[NU*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
-    take(NU, LANES, planar_redundant_ACTUATED, qd_of_joint_rates, qd);
-    add_up(NU, qd, why.total);
-    suspect(&why, code);
-    deliver(NU, qd, qd_out);
-}
-
-INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out, int *code)
+int planar_redundant_actuator_accelerations(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
     verdict why;
@@ -5525,30 +5204,15 @@ INLINE void actuator_accelerations_one(const prepared *m, const real *X, const r
     take(NU, 1, planar_redundant_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, qdd_out);
     }
+    return code;
 }
 
-INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *qdd_out, int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd_of_joint_accelerations[NJ*LANES],
-        qdd[NU*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    A = side_by_side(NV, A, A_in, why.total);
-    joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
-    take(NU, LANES, planar_redundant_ACTUATED, qdd_of_joint_accelerations, qdd);
-    add_up(NU, qdd, why.total);
-    suspect(&why, code);
-    deliver(NU, qdd, qdd_out);
-}
-
-INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out, int *code)
+int planar_redundant_power(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out)
 {
     real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
     verdict why;
@@ -5564,30 +5228,14 @@ INLINE void power_one(const prepared *m, const real *X, const real *V, const rea
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, power_out);
     }
+    return code;
 }
 
-INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out, int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0},
-        power[LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    tau = side_by_side(NU, tau, tau_in, why.total);
-    H_run_lanes(m, X, H, &why);
-    product(NV, NU, 1, LANES, H, tau, times_1);
-    inner(NV, LANES, times_1, V, power);
-    add_up(1, power, why.total);
-    suspect(&why, code);
-    deliver(1, power, power_out);
-}
-
-INLINE void rotation_one(const real *X, real *R_out, int *code)
+int planar_redundant_rotation(const real *X, real *R_out)
 {
     real R[4] = {0};
     verdict why;
@@ -5597,12 +5245,14 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     rotation_of_angle(X_from_2, R);
     check(4, 1, R, why.overflow);
     copy(4, R, R_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(4, R_out);
     }
+    return code;
 }
 
-INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
+int planar_redundant_pose(const real *t, const real *R, real *X_out)
 {
     real angle_of_rotation_1[1] = {0}, join_1[3] = {0}, X[NQ] = {0};
     verdict why;
@@ -5619,12 +5269,14 @@ INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
     }
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
-INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
+int planar_redundant_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     verdict why;
     start(1, &why);
@@ -5636,12 +5288,14 @@ INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
     const real *const X_dot = V;
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_dot_out);
     }
+    return code;
 }
 
-INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
+int planar_redundant_retract(const real *X, const real *step, real *X_moved_out)
 {
     real X_moved[NQ] = {0};
     verdict why;
@@ -5656,12 +5310,14 @@ INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int 
     }
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_moved_out);
     }
+    return code;
 }
 
-INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
+int planar_redundant_difference(const real *X0, const real *X1, real *step_out)
 {
     static const size_t places_step[] = {2};
     real subtract_1[NQ] = {0}, step[NV] = {0};
@@ -5681,12 +5337,14 @@ INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *
     wrap_turns(1, 1, places_step, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, step_out);
     }
+    return code;
 }
 
-INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
+int planar_redundant_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     static const size_t places_wrap_turns_1[] = {2};
     real subtract_1[NQ] = {0}, wrap_turns_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
@@ -5713,721 +5371,202 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
     }
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
 /* ---- one state, and batches ---- */
 
-int planar_redundant_M(const prepared *model, const real *X, real *M)
+size_t planar_redundant_M_batch(const prepared *m, size_t n, const real *X, real *M, int *status)
 {
-    int code;
-    M_one(model, X, M, &code);
-    return code;
+    SIDE_BY_SIDE(M_lanes(m, X + NQ*i, M + NV*NV*i, codes), planar_redundant_M(m, X + NQ*j, M +
+        NV*NV*j));
 }
 
-size_t planar_redundant_M_batch(const prepared *model, size_t n, const real *X, real *M, int
-    *status)
+size_t planar_redundant_Z_batch(const prepared *m, size_t n, const real *X, const real *V, real
+    *Z, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = planar_redundant_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(Z_lanes(m, X + NQ*i, V + NV*i, Z + NV*i, codes), planar_redundant_Z(m, X + NQ*j, V +
+        NV*j, Z + NV*j));
 }
 
-int planar_redundant_Z(const prepared *model, const real *X, const real *V, real *Z)
+size_t planar_redundant_H_batch(const prepared *m, size_t n, const real *X, real *H, int *status)
 {
-    int code;
-    Z_one(model, X, V, Z, &code);
-    return code;
+    SIDE_BY_SIDE(H_lanes(m, X + NQ*i, H + NV*NU*i, codes), planar_redundant_H(m, X + NQ*j, H +
+        NV*NU*j));
 }
 
-size_t planar_redundant_Z_batch(const prepared *model, size_t n, const real *X, const real *V,
-    real *Z, int *status)
+size_t planar_redundant_inverse_kinematics_batch(const prepared *m, size_t n, const real *X, real
+    *q, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = planar_redundant_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(inverse_kinematics_lanes(m, X + NQ*i, q + NJ*i, codes),
+        planar_redundant_inverse_kinematics(m, X + NQ*j, q + NJ*j));
 }
 
-int planar_redundant_H(const prepared *model, const real *X, real *H)
+size_t planar_redundant_joint_rates_batch(const prepared *m, size_t n, const real *X, const real
+    *V, real *rates, int *status)
 {
-    int code;
-    H_one(model, X, H, &code);
-    return code;
+    SIDE_BY_SIDE(joint_rates_lanes(m, X + NQ*i, V + NV*i, rates + NJ*i, codes),
+        planar_redundant_joint_rates(m, X + NQ*j, V + NV*j, rates + NJ*j));
 }
 
-size_t planar_redundant_H_batch(const prepared *model, size_t n, const real *X, real *H, int
-    *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = planar_redundant_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_redundant_inverse_kinematics(const prepared *model, const real *X, real *q)
-{
-    int code;
-    inverse_kinematics_one(model, X, q, &code);
-    return code;
-}
-
-size_t planar_redundant_inverse_kinematics_batch(const prepared *model, size_t n, const real *X,
-    real *q, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = planar_redundant_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_redundant_joint_rates(const prepared *model, const real *X, const real *V, real *rates)
-{
-    int code;
-    joint_rates_one(model, X, V, rates, &code);
-    return code;
-}
-
-size_t planar_redundant_joint_rates_batch(const prepared *model, size_t n, const real *X, const
-    real *V, real *rates, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = planar_redundant_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i +
-                    k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_redundant_joint_accelerations(const prepared *model, const real *X, const real *V,
-    const real *A, real *accelerations)
-{
-    int code;
-    joint_accelerations_one(model, X, V, A, accelerations, &code);
-    return code;
-}
-
-size_t planar_redundant_joint_accelerations_batch(const prepared *model, size_t n, const real *X,
+size_t planar_redundant_joint_accelerations_batch(const prepared *m, size_t n, const real *X,
     const real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = planar_redundant_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
-                    k), accelerations + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(joint_accelerations_lanes(m, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i,
+        codes), planar_redundant_joint_accelerations(m, X + NQ*j, V + NV*j, A + NV*j, accelerations +
+        NJ*j));
 }
 
-int planar_redundant_dynamics(const prepared *model, const real *X, const real *V, real *M, real
-    *Z, real *H)
+size_t planar_redundant_dynamics_batch(const prepared *m, size_t n, const real *X, const real *V,
+    real *M, real *Z, real *H, int *status)
 {
-    int code;
-    dynamics_one(model, X, V, M, Z, H, &code);
-    return code;
+    SIDE_BY_SIDE(dynamics_lanes(m, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes),
+        planar_redundant_dynamics(m, X + NQ*j, V + NV*j, M + NV*NV*j, Z + NV*j, H + NV*NU*j));
 }
 
-size_t planar_redundant_dynamics_batch(const prepared *model, size_t n, const real *X, const real
-    *V, real *M, real *Z, real *H, int *status)
+size_t planar_redundant_inverse_dynamics_batch(const prepared *m, size_t n, const real *X, const
+    real *V, const real *A, const real *wrench, real *tau, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = planar_redundant_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z +
-                    NV*(i + k), H + NV*NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(inverse_dynamics_lanes(m, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i :
+        NULL, tau + NU*i, codes), planar_redundant_inverse_dynamics(m, X + NQ*j, V + NV*j, A + NV*j,
+        wrench ? wrench + NW*j : NULL, tau + NU*j));
 }
 
-int planar_redundant_inverse_dynamics(const prepared *model, const real *X, const real *V, const
-    real *A, const real *wrench, real *tau)
+size_t planar_redundant_forward_dynamics_batch(const prepared *m, size_t n, const real *X, const
+    real *V, const real *tau, const real *wrench, real *A, int *status)
 {
-    int code;
-    inverse_dynamics_one(model, X, V, A, wrench, tau, &code);
-    return code;
+    SIDE_BY_SIDE(forward_dynamics_lanes(m, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i :
+        NULL, A + NV*i, codes), planar_redundant_forward_dynamics(m, X + NQ*j, V + NV*j, tau + NU*j,
+        wrench ? wrench + NW*j : NULL, A + NV*j));
 }
 
-size_t planar_redundant_inverse_dynamics_batch(const prepared *model, size_t n, const real *X,
-    const real *V, const real *A, const real *wrench, real *tau, int *status)
+size_t planar_redundant_complete_acceleration_batch(const prepared *m, size_t n, const real *X,
+    const real *V, const real *A, const real *wrench, real *completed, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
-                NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = planar_redundant_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
-                    k), wrench ? wrench + NW*(i + k) : NULL, tau + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(planar_redundant_complete_acceleration(m, X + NQ*j, V + NV*j, A + NV*j, wrench ? wrench
+        + NW*j : NULL, completed + NV*j));
 }
 
-int planar_redundant_forward_dynamics(const prepared *model, const real *X, const real *V, const
-    real *tau, const real *wrench, real *A)
+size_t planar_redundant_leg_reactions_batch(const prepared *m, size_t n, const real *X, const real
+    *V, const real *A, const real *wrench, real *forces, int *status)
 {
-    int code;
-    forward_dynamics_one(model, X, V, tau, wrench, A, &code);
-    return code;
+    ONE_BY_ONE(planar_redundant_leg_reactions(m, X + NQ*j, V + NV*j, A + NV*j, wrench ? wrench + NW*j
+        : NULL, forces + 9*j));
 }
 
-size_t planar_redundant_forward_dynamics_batch(const prepared *model, size_t n, const real *X,
-    const real *V, const real *tau, const real *wrench, real *A, int *status)
+size_t planar_redundant_energy_batch(const prepared *m, size_t n, const real *X, const real *V,
+    real *kinetic, real *potential, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
-                NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = planar_redundant_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i +
-                    k), wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(planar_redundant_energy(m, X + NQ*j, V + NV*j, kinetic + j, potential + j));
 }
 
-int planar_redundant_complete_acceleration(const prepared *model, const real *X, const real *V,
-    const real *A, const real *wrench, real *completed)
+size_t planar_redundant_condition_batch(const prepared *m, size_t n, const real *X, real *sigma,
+    real *legs, int *status)
 {
-    int code;
-    (void)model, (void)X, (void)V, (void)wrench;
-    complete_acceleration_one(A, completed, &code);
-    return code;
+    ONE_BY_ONE(planar_redundant_condition(m, X + NQ*j, sigma + 4*j, legs + 3*j));
 }
 
-size_t planar_redundant_complete_acceleration_batch(const prepared *model, size_t n, const real
-    *X, const real *V, const real *A, const real *wrench, real *completed, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_redundant_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i,
-            wrench ? wrench + NW*i : NULL, completed + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_redundant_leg_reactions(const prepared *model, const real *X, const real *V, const real
-    *A, const real *wrench, real *forces)
-{
-    int code;
-    leg_reactions_one(model, X, V, A, wrench, forces, &code);
-    return code;
-}
-
-size_t planar_redundant_leg_reactions_batch(const prepared *model, size_t n, const real *X, const
-    real *V, const real *A, const real *wrench, real *forces, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_redundant_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
-            wrench + NW*i : NULL, forces + 9*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_redundant_energy(const prepared *model, const real *X, const real *V, real *kinetic,
-    real *potential)
-{
-    int code;
-    energy_one(model, X, V, kinetic, potential, &code);
-    return code;
-}
-
-size_t planar_redundant_energy_batch(const prepared *model, size_t n, const real *X, const real
-    *V, real *kinetic, real *potential, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_redundant_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_redundant_condition(const prepared *model, const real *X, real *sigma, real *legs)
-{
-    int code;
-    condition_one(model, X, NULL, sigma, legs, &code);
-    return code;
-}
-
-size_t planar_redundant_condition_batch(const prepared *model, size_t n, const real *X, real
-    *sigma, real *legs, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_redundant_condition(model, X + NQ*i, sigma + 4*i, legs + 3*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_redundant_manipulability(const prepared *model, const real *X, real *measure, real
-    *isotropy)
-{
-    int code;
-    manipulability_one(model, X, measure, isotropy, &code);
-    return code;
-}
-
-size_t planar_redundant_manipulability_batch(const prepared *model, size_t n, const real *X, real
+size_t planar_redundant_manipulability_batch(const prepared *m, size_t n, const real *X, real
     *measure, real *isotropy, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_redundant_manipulability(model, X + NQ*i, measure + i, isotropy + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(planar_redundant_manipulability(m, X + NQ*j, measure + j, isotropy + j));
 }
 
-int planar_redundant_singularity_distance(const prepared *model, const real *X, real *actuators,
-    real *legs)
-{
-    int code;
-    singularity_distance_one(model, X, actuators, legs, &code);
-    return code;
-}
-
-size_t planar_redundant_singularity_distance_batch(const prepared *model, size_t n, const real *X,
+size_t planar_redundant_singularity_distance_batch(const prepared *m, size_t n, const real *X,
     real *actuators, real *legs, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_redundant_singularity_distance(model, X + NQ*i, actuators + i, legs + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(planar_redundant_singularity_distance(m, X + NQ*j, actuators + j, legs + j));
 }
 
-int planar_redundant_forward_kinematics(const prepared *model, const real *q_actuated, const real
-    *X0, real *X)
-{
-    int code;
-    forward_kinematics_one(model, q_actuated, X0, X, &code);
-    return code;
-}
-
-size_t planar_redundant_forward_kinematics_batch(const prepared *model, size_t n, const real
+size_t planar_redundant_forward_kinematics_batch(const prepared *m, size_t n, const real
     *q_actuated, const real *X0, real *X, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_redundant_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X +
-            NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(planar_redundant_forward_kinematics(m, q_actuated + NU*j, X0 + NQ*j, X + NQ*j));
 }
 
-int planar_redundant_dissipation(const prepared *model, const real *X, const real *V, real
-    *dissipation)
+size_t planar_redundant_dissipation_batch(const prepared *m, size_t n, const real *X, const real
+    *V, real *dissipation, int *status)
 {
-    int code;
-    (void)model, (void)X;
-    dissipation_one(V, dissipation, &code);
-    return code;
+    ONE_BY_ONE(planar_redundant_dissipation(m, X + NQ*j, V + NV*j, dissipation + j));
 }
 
-size_t planar_redundant_dissipation_batch(const prepared *model, size_t n, const real *X, const
-    real *V, real *dissipation, int *status)
+size_t planar_redundant_momentum_batch(const prepared *m, size_t n, const real *X, const real *V,
+    real *momentum, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_redundant_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(planar_redundant_momentum(m, X + NQ*j, V + NV*j, momentum + NV*j));
 }
 
-int planar_redundant_momentum(const prepared *model, const real *X, const real *V, real *momentum)
-{
-    int code;
-    momentum_one(model, X, V, momentum, &code);
-    return code;
-}
-
-size_t planar_redundant_momentum_batch(const prepared *model, size_t n, const real *X, const real
-    *V, real *momentum, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = planar_redundant_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i +
-                    k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_redundant_joint_margins(const prepared *model, const real *X, real *margins)
-{
-    int code;
-    joint_margins_one(model, X, margins, &code);
-    return code;
-}
-
-size_t planar_redundant_joint_margins_batch(const prepared *model, size_t n, const real *X, real
+size_t planar_redundant_joint_margins_batch(const prepared *m, size_t n, const real *X, real
     *margins, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = planar_redundant_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(planar_redundant_joint_margins(m, X + NQ*j, margins + NJ*j));
 }
 
-int planar_redundant_within_limits(const prepared *model, const real *X, real *within)
-{
-    int code;
-    within_limits_one(model, X, within, &code);
-    return code;
-}
-
-size_t planar_redundant_within_limits_batch(const prepared *model, size_t n, const real *X, real
+size_t planar_redundant_within_limits_batch(const prepared *m, size_t n, const real *X, real
     *within, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            within_limits_lanes(model, X + NQ*i, within + i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = planar_redundant_within_limits(model, X + NQ*(i + k), within + (i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(planar_redundant_within_limits(m, X + NQ*j, within + j));
 }
 
-int planar_redundant_actuator_positions(const prepared *model, const real *X, real *q)
+size_t planar_redundant_actuator_positions_batch(const prepared *m, size_t n, const real *X, real
+    *q, int *status)
 {
-    int code;
-    actuator_positions_one(model, X, q, &code);
-    return code;
+    ONE_BY_ONE(planar_redundant_actuator_positions(m, X + NQ*j, q + NU*j));
 }
 
-size_t planar_redundant_actuator_positions_batch(const prepared *model, size_t n, const real *X,
-    real *q, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = planar_redundant_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_redundant_actuator_rates(const prepared *model, const real *X, const real *V, real
-    *rates)
-{
-    int code;
-    actuator_rates_one(model, X, V, rates, &code);
-    return code;
-}
-
-size_t planar_redundant_actuator_rates_batch(const prepared *model, size_t n, const real *X, const
+size_t planar_redundant_actuator_rates_batch(const prepared *m, size_t n, const real *X, const
     real *V, real *rates, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = planar_redundant_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i +
-                    k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(planar_redundant_actuator_rates(m, X + NQ*j, V + NV*j, rates + NU*j));
 }
 
-int planar_redundant_actuator_accelerations(const prepared *model, const real *X, const real *V,
-    const real *A, real *accelerations)
+size_t planar_redundant_actuator_accelerations_batch(const prepared *m, size_t n, const real *X,
+    const real *V, const real *A, real *accelerations, int *status)
 {
-    int code;
-    actuator_accelerations_one(model, X, V, A, accelerations, &code);
-    return code;
+    ONE_BY_ONE(planar_redundant_actuator_accelerations(m, X + NQ*j, V + NV*j, A + NV*j, accelerations
+        + NU*j));
 }
 
-size_t planar_redundant_actuator_accelerations_batch(const prepared *model, size_t n, const real
-    *X, const real *V, const real *A, real *accelerations, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = planar_redundant_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A +
-                    NV*(i + k), accelerations + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_redundant_power(const prepared *model, const real *X, const real *V, const real *tau,
-    real *power)
-{
-    int code;
-    power_one(model, X, V, tau, power, &code);
-    return code;
-}
-
-size_t planar_redundant_power_batch(const prepared *model, size_t n, const real *X, const real *V,
+size_t planar_redundant_power_batch(const prepared *m, size_t n, const real *X, const real *V,
     const real *tau, real *power, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = planar_redundant_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power +
-                    (i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_redundant_rotation(const real *X, real *R)
-{
-    int code;
-    rotation_one(X, R, &code);
-    return code;
+    ONE_BY_ONE(planar_redundant_power(m, X + NQ*j, V + NV*j, tau + NU*j, power + j));
 }
 
 size_t planar_redundant_rotation_batch(size_t n, const real *X, real *R, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_redundant_rotation(X + NQ*i, R + 4*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_redundant_pose(const real *t, const real *R, real *X)
-{
-    int code;
-    pose_one(t, R, X, &code);
-    return code;
+    ONE_BY_ONE(planar_redundant_rotation(X + NQ*j, R + 4*j));
 }
 
 size_t planar_redundant_pose_batch(size_t n, const real *t, const real *R, real *X, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_redundant_pose(t + 2*i, R + 4*i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_redundant_X_dot(const real *X, const real *V, real *X_dot)
-{
-    int code;
-    X_dot_one(X, V, X_dot, &code);
-    return code;
+    ONE_BY_ONE(planar_redundant_pose(t + 2*j, R + 4*j, X + NQ*j));
 }
 
 size_t planar_redundant_X_dot_batch(size_t n, const real *X, const real *V, real *X_dot, int
     *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_redundant_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_redundant_retract(const real *X, const real *step, real *X_moved)
-{
-    int code;
-    retract_one(X, step, X_moved, &code);
-    return code;
+    ONE_BY_ONE(planar_redundant_X_dot(X + NQ*j, V + NV*j, X_dot + NQ*j));
 }
 
 size_t planar_redundant_retract_batch(size_t n, const real *X, const real *step, real *X_moved,
     int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_redundant_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_redundant_difference(const real *X0, const real *X1, real *step)
-{
-    int code;
-    difference_one(X0, X1, step, &code);
-    return code;
+    ONE_BY_ONE(planar_redundant_retract(X + NQ*j, step + NV*j, X_moved + NQ*j));
 }
 
 size_t planar_redundant_difference_batch(size_t n, const real *X0, const real *X1, real *step, int
     *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_redundant_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int planar_redundant_interpolate(const real *X0, const real *X1, const real *s, real *X)
-{
-    int code;
-    interpolate_one(X0, X1, s, X, &code);
-    return code;
+    ONE_BY_ONE(planar_redundant_difference(X0 + NQ*j, X1 + NQ*j, step + NV*j));
 }
 
 size_t planar_redundant_interpolate_batch(size_t n, const real *X0, const real *X1, const real *s,
     real *X, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = planar_redundant_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(planar_redundant_interpolate(X0 + NQ*j, X1 + NQ*j, s + j, X + NQ*j));
 }

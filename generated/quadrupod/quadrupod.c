@@ -191,13 +191,27 @@ INLINE int sum_is_finite(const real *x, size_t n)
     return is_finite(total(sum, LANES));
 }
 
+/* How many of some numbers are not finite. */
+APART real not_finite(size_t n, const real *x)
+{
+    real count = 0;
+    if (!sum_is_finite(x, n)) {
+        for (size_t i = 0; i < n; ++i) {
+            count += UNLESS(is_finite(x[i]));
+        }
+    }
+    return count;
+}
+
 /* Flag the states with entries that are not finite; the states stand side by side. */
 INLINE void check(size_t size, size_t w, const real *x, real *flags)
 {
-    if (!sum_is_finite(x, size*w)) {
-        for (size_t i = 0; i < size*w; ++i) {
-            flags[i%w] += UNLESS(is_finite(x[i]));
-        }
+    if (w == 1) {
+        flags[0] += not_finite(size, x);
+        return;
+    }
+    for (size_t i = 0; i < size*w; ++i) {
+        flags[i%w] += UNLESS(is_finite(x[i]));
     }
 }
 
@@ -252,18 +266,17 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE int judge(const verdict *t, int *code)
+INLINE int judge(const verdict *t)
 {
-    *code = t->invalid[0] > 0 ? INVALID
+    return t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
         : t->unreachable[0] > 0 ? UNREACHABLE
         : t->singular[0] > 0 ? SINGULAR
         : t->overflow[0] > 0 ? INVALID : OK;
-    return *code;
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
-INLINE void suspect(const verdict *t, int *code)
+APART void suspect(const verdict *t, int *code)
 {
     real flags[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -285,7 +298,7 @@ INLINE void blame(int code, verdict *t)
 }
 
 /* Outputs of an impossible state. */
-INLINE void refuse(size_t size, real *out)
+APART void refuse(size_t size, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
@@ -321,6 +334,32 @@ INLINE size_t record(const int *code, size_t w, int *status)
     }
     return failed;
 }
+
+/* Bodies of batches.  lanes: settles the states from number i on, side by side, in codes; one: settles
+   state j, what fails and what is left too. */
+#define SIDE_BY_SIDE(lanes, one) \
+    size_t failed = 0, w; \
+    for (size_t i = 0; i < n; i += w) { \
+        int codes[LANES] = {INVALID}; \
+        w = LANES > 1 && i + LANES <= n ? LANES : 1; \
+        if (w > 1) { \
+            lanes; \
+        } \
+        for (size_t j = i; j < i + w; ++j) { \
+            if (codes[j - i] != OK) { \
+                codes[j - i] = one; \
+            } \
+        } \
+        failed += record(codes, w, status ? status + i : NULL); \
+    } \
+    return failed
+#define ONE_BY_ONE(one) \
+    size_t failed = 0; \
+    for (size_t j = 0; j < n; ++j) { \
+        const int code = one; \
+        failed += record(&code, 1, status ? status + j : NULL); \
+    } \
+    return failed
 
 /* What the reader of specifications allows; floats have less to offer. */
 #define ROUNDED BY_TYPE(1e-5, 1e-06, 1e-06)  /* lengths and products of unit vectors */
@@ -671,11 +710,11 @@ int quadrupod_prepare(const quadrupod_params *params, quadrupod_model *model)
         const real ups_Sigma_2_in_axes2_xx = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_xx;
         const real ups_Sigma_2_in_axes2_yy = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_yy;
         const real ups_Sigma_2_in_axes2_zz = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_zz;
-        /* (h_star) first moment about the platform origin */
+        /* (h_star) */
         const real ups_h_star_t = ups_link3_mass*ups_platform_point_x;
         const real ups_h_star_t_2 = ups_link3_mass*ups_platform_point_y;
         const real ups_h_star_t_3 = ups_link3_mass*ups_platform_point_z;
-        /* (J_star) inertia tensor about the platform origin */
+        /* (J_star) */
         const real ups_J_star_t = ups_platform_point_x*ups_platform_point_x;
         const real ups_J_star_t_2 = ups_platform_point_y*ups_platform_point_y;
         const real ups_J_star_t_3 = ups_platform_point_z*ups_platform_point_z;
@@ -850,7 +889,7 @@ int quadrupod_prepare(const quadrupod_params *params, quadrupod_model *model)
         const real tube_Sigma_2_in_axes2_xx = tube_Sigma_2_t_2 - tube_J_group_2_in_axes2_xx;
         const real tube_Sigma_2_in_axes2_yy = tube_Sigma_2_t_2 - tube_J_group_2_in_axes2_yy;
         const real tube_Sigma_2_in_axes2_zz = tube_Sigma_2_t_2 - tube_J_group_2_in_axes2_zz;
-        /* (potential) potential energy */
+        /* (potential) */
         const real tube_potential_t = tube_base_frame_xx*tube_base_point_x +
             tube_base_frame_yx*tube_base_point_y + tube_base_frame_zx*tube_base_point_z;
         const real tube_potential_t_2 = tube_base_frame_xy*tube_base_point_x +
@@ -912,11 +951,11 @@ int quadrupod_prepare(const quadrupod_params *params, quadrupod_model *model)
     }
     /* (m_star) mass of the platform with the gathered masses */
     const real m_star = m_star_of_legs + platform_mass;
-    /* (h_star) first moment about the platform origin */
+    /* (h_star) */
     const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
     const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
     const real h_star_in_platform_z = h_star_in_platform_z_of_legs + h_star_t_3;
-    /* (J_star) inertia tensor about the platform origin */
+    /* (J_star) */
     const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + platform_inertia_xx -
         J_star_t_5;
     const real J_star_in_platform_xy = J_star_in_platform_xy_of_legs + platform_inertia_xy -
@@ -1911,15 +1950,12 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real R_zy = quaternion_wx + quaternion_yz;
     const real R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (h_star) first moment about the platform origin */
-    const real h_star_in_platform_x = m->h_star_in_platform_x;
-    const real h_star_in_platform_y = m->h_star_in_platform_y;
-    const real h_star_in_platform_z = m->h_star_in_platform_z;
-    const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-        R_xz*h_star_in_platform_z;
-    const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-        R_yz*h_star_in_platform_z;
-    const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-        R_zz*h_star_in_platform_z;
+    const real h_star_x = R_xx*m->h_star_in_platform_x + R_xy*m->h_star_in_platform_y +
+        R_xz*m->h_star_in_platform_z;
+    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yy*m->h_star_in_platform_y +
+        R_yz*m->h_star_in_platform_z;
+    const real h_star_z = R_zx*m->h_star_in_platform_x + R_zy*m->h_star_in_platform_y +
+        R_zz*m->h_star_in_platform_z;
     v->quaternion_scale = quaternion_scale;
     v->R_xx = R_xx;
     v->R_xy = R_xy;
@@ -1952,33 +1988,27 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
 INLINE void stage_M_dynamics(const prepared *m, values *v)
 {
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-    const real J_star_t_12 = m->J_star_t_12;
-    const real J_star_t = J_star_in_platform_xy*v->R_xx + J_star_in_platform_yz*v->R_xz -
-        J_star_t_12*v->R_xy;
-    const real J_star_t_2 = J_star_in_platform_xy*v->R_yx + J_star_in_platform_yz*v->R_yz -
-        J_star_t_12*v->R_yy;
-    const real J_star_t_3 = J_star_in_platform_xy*v->R_zx + J_star_in_platform_yz*v->R_zz -
-        J_star_t_12*v->R_zy;
-    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-    const real J_star_t_14 = m->J_star_t_14;
-    const real J_star_t_4 = J_star_t_14*v->R_xz - J_star_in_platform_xz*v->R_xx;
-    const real J_star_t_5 = J_star_t_14*v->R_yz - J_star_in_platform_xz*v->R_yx;
-    const real J_star_t_6 = J_star_t_14*v->R_zz - J_star_in_platform_xz*v->R_zx;
+    const real J_star_t = m->J_star_in_platform_xy*v->R_xx + m->J_star_in_platform_yz*v->R_xz
+        - m->J_star_t_12*v->R_xy;
+    const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
+        m->J_star_in_platform_yz*v->R_yz - m->J_star_t_12*v->R_yy;
+    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx +
+        m->J_star_in_platform_yz*v->R_zz - m->J_star_t_12*v->R_zy;
+    const real J_star_t_4 = m->J_star_t_14*v->R_xz - m->J_star_in_platform_xz*v->R_xx;
+    const real J_star_t_5 = m->J_star_t_14*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
+    const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
-    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-    const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+    const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
     const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
         J_star_t_5*v->R_xz;
     const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
     const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
-    const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+    const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
     const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
         J_star_t_6*v->R_yz;
     const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
-    const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
+    const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
     v->J_star_xx = J_star_xx;
     v->J_star_xy = J_star_xy;
     v->J_star_xz = J_star_xz;
@@ -1996,46 +2026,34 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real omega_x = V[3*w + k];
     const real Z_p_t_5 = v->h_star_x*omega_z - v->h_star_z*omega_x;
     const real Z_p_t_6 = v->h_star_y*omega_x - v->h_star_x*omega_y;
-    const real Z_p_t = m->Z_p_t;
-    const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-    const real Z_p_t_2 = m->Z_p_t_2;
-    const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-    const real Z_p_t_3 = m->Z_p_t_3;
-    const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
+    const real Z_p_x = Z_p_t_6*omega_y - m->Z_p_t - Z_p_t_5*omega_z;
+    const real Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
+    const real Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real gravity_x = m->gravity_x;
-    const real gravity_y = m->gravity_y;
-    const real gravity_z = m->gravity_z;
-    const real g_in_platform_x = v->R_xx*gravity_x + v->R_yx*gravity_y + v->R_zx*gravity_z;
-    const real g_in_platform_y = v->R_xy*gravity_x + v->R_yy*gravity_y + v->R_zy*gravity_z;
-    const real g_in_platform_z = v->R_xz*gravity_x + v->R_yz*gravity_y + v->R_zz*gravity_z;
-    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-    const real Z_q_t = J_star_in_platform_xx*v->omega_in_platform_x +
-        J_star_in_platform_xy*v->omega_in_platform_y +
-        J_star_in_platform_xz*v->omega_in_platform_z;
-    const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-    const real Z_q_t_2 = J_star_in_platform_xy*v->omega_in_platform_x +
-        J_star_in_platform_yy*v->omega_in_platform_y +
-        J_star_in_platform_yz*v->omega_in_platform_z;
-    const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-    const real Z_q_t_3 = J_star_in_platform_xz*v->omega_in_platform_x +
-        J_star_in_platform_yz*v->omega_in_platform_y +
-        J_star_in_platform_zz*v->omega_in_platform_z;
-    const real h_star_in_platform_y = m->h_star_in_platform_y;
-    const real h_star_in_platform_z = m->h_star_in_platform_z;
+    const real g_in_platform_x = v->R_xx*m->gravity_x + v->R_yx*m->gravity_y +
+        v->R_zx*m->gravity_z;
+    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_yy*m->gravity_y +
+        v->R_zy*m->gravity_z;
+    const real g_in_platform_z = v->R_xz*m->gravity_x + v->R_yz*m->gravity_y +
+        v->R_zz*m->gravity_z;
+    const real Z_q_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
+        m->J_star_in_platform_xy*v->omega_in_platform_y +
+        m->J_star_in_platform_xz*v->omega_in_platform_z;
+    const real Z_q_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
+        m->J_star_in_platform_yy*v->omega_in_platform_y +
+        m->J_star_in_platform_yz*v->omega_in_platform_z;
+    const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
+        m->J_star_in_platform_yz*v->omega_in_platform_y +
+        m->J_star_in_platform_zz*v->omega_in_platform_z;
     const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
-        g_in_platform_y*h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
-        g_in_platform_z*h_star_in_platform_y;
-    const real h_star_in_platform_x = m->h_star_in_platform_x;
+        g_in_platform_y*m->h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
+        g_in_platform_z*m->h_star_in_platform_y;
     const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
-        g_in_platform_z*h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
-        g_in_platform_x*h_star_in_platform_z;
+        g_in_platform_z*m->h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
+        g_in_platform_x*m->h_star_in_platform_z;
     const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
-        g_in_platform_x*h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
-        g_in_platform_y*h_star_in_platform_x;
+        g_in_platform_x*m->h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
+        g_in_platform_y*m->h_star_in_platform_x;
     const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
         v->R_xz*Z_q_in_platform_z;
     const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
@@ -2093,50 +2111,34 @@ INLINE void stage_tube_X(const prepared *m, size_t w, size_t i, size_t j, const 
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real tube_platform_point_x = m->tube_platform_point_x[i];
-    const real tube_platform_point_y = m->tube_platform_point_y[i];
-    const real tube_platform_point_z = m->tube_platform_point_z[i];
-    const real tube_q_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
-        R_xz*tube_platform_point_z;
+    const real tube_q_x = R_xx*m->tube_platform_point_x[i] + R_xy*m->tube_platform_point_y[i]
+        + R_xz*m->tube_platform_point_z[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real tube_q_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
-        R_yz*tube_platform_point_z;
+    const real tube_q_y = R_yx*m->tube_platform_point_x[i] + R_yy*m->tube_platform_point_y[i]
+        + R_yz*m->tube_platform_point_z[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
-    const real tube_q_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
-        R_zz*tube_platform_point_z;
+    const real tube_q_z = R_zx*m->tube_platform_point_x[i] + R_zy*m->tube_platform_point_y[i]
+        + R_zz*m->tube_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real tube_base_point_x = m->tube_base_point_x[i];
-    const real tube_S_x = t_x + tube_q_x - tube_base_point_x;
+    const real tube_S_x = t_x + tube_q_x - m->tube_base_point_x[i];
     const real t_y = X[1*w + j];
-    const real tube_base_point_y = m->tube_base_point_y[i];
-    const real tube_S_y = t_y + tube_q_y - tube_base_point_y;
+    const real tube_S_y = t_y + tube_q_y - m->tube_base_point_y[i];
     const real t_z = X[2*w + j];
-    const real tube_base_point_z = m->tube_base_point_z[i];
-    const real tube_S_z = t_z + tube_q_z - tube_base_point_z;
-    const real tube_base_frame_xx = m->tube_base_frame_xx[i];
-    const real tube_base_frame_yx = m->tube_base_frame_yx[i];
-    const real tube_base_frame_zx = m->tube_base_frame_zx[i];
-    const real tube_S_in_turn1_x = tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx +
-        tube_S_z*tube_base_frame_zx;
-    const real tube_base_frame_xy = m->tube_base_frame_xy[i];
-    const real tube_base_frame_yy = m->tube_base_frame_yy[i];
-    const real tube_base_frame_zy = m->tube_base_frame_zy[i];
-    const real tube_S_in_turn1_y = tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy +
-        tube_S_z*tube_base_frame_zy;
-    const real tube_base_frame_xz = m->tube_base_frame_xz[i];
-    const real tube_base_frame_yz = m->tube_base_frame_yz[i];
-    const real tube_base_frame_zz = m->tube_base_frame_zz[i];
-    const real tube_S_in_turn1_z = tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz +
-        tube_S_z*tube_base_frame_zz;
+    const real tube_S_z = t_z + tube_q_z - m->tube_base_point_z[i];
+    const real tube_S_in_turn1_x = tube_S_x*m->tube_base_frame_xx[i] +
+        tube_S_y*m->tube_base_frame_yx[i] + tube_S_z*m->tube_base_frame_zx[i];
+    const real tube_S_in_turn1_y = tube_S_x*m->tube_base_frame_xy[i] +
+        tube_S_y*m->tube_base_frame_yy[i] + tube_S_z*m->tube_base_frame_zy[i];
+    const real tube_S_in_turn1_z = tube_S_x*m->tube_base_frame_xz[i] +
+        tube_S_y*m->tube_base_frame_yz[i] + tube_S_z*m->tube_base_frame_zz[i];
     /* (tube-root_1) amplitude, the length across axis 1, with the sign of the branch */
     const real tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x +
         tube_S_in_turn1_y*tube_S_in_turn1_y;
-    const real tube_branch_1 = m->tube_branch_1[i];
-    const real tube_root_1 = tube_branch_1*root(tube_root_1_t);
+    const real tube_root_1 = m->tube_branch_1[i]*root(tube_root_1_t);
     /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
     const real inv_tube_root_1 = 1/tube_root_1;
     const real tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x;
@@ -2144,27 +2146,26 @@ INLINE void stage_tube_X(const prepared *m, size_t w, size_t i, size_t j, const 
     const real tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y;
     /* (tube-q_3) displacement of joint 3 */
     const real tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t;
-    const real tube_branch_2 = m->tube_branch_2[i];
-    const real tube_q_3 = tube_branch_2*root(tube_q_3_t);
+    const real tube_q_3 = m->tube_branch_2[i]*root(tube_q_3_t);
     /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
     const real inv_tube_q_3 = 1/tube_q_3;
     const real tube_c_2 = inv_tube_q_3*tube_root_1;
     /* (tube-S_dot) velocity of the connection point */
     const real tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z;
-    const real axis_z_tube_axes2_x = tube_base_frame_xy*tube_c_1 -
-        tube_base_frame_xx*tube_s_1;
-    const real axis_z_tube_axes2_y = tube_base_frame_yy*tube_c_1 -
-        tube_base_frame_yx*tube_s_1;
-    const real axis_z_tube_axes2_z = tube_base_frame_zy*tube_c_1 -
-        tube_base_frame_zx*tube_s_1;
+    const real axis_z_tube_axes2_x = m->tube_base_frame_xy[i]*tube_c_1 -
+        m->tube_base_frame_xx[i]*tube_s_1;
+    const real axis_z_tube_axes2_y = m->tube_base_frame_yy[i]*tube_c_1 -
+        m->tube_base_frame_yx[i]*tube_s_1;
+    const real axis_z_tube_axes2_z = m->tube_base_frame_zy[i]*tube_c_1 -
+        m->tube_base_frame_zx[i]*tube_s_1;
     const real tube_S_dot_t = tube_c_1*tube_e_1_in_axes2_x;
     const real tube_S_dot_t_2 = tube_e_1_in_axes2_x*tube_s_1;
-    const real axis_y_tube_axes2_x = tube_S_dot_t*tube_base_frame_xx +
-        tube_S_dot_t_2*tube_base_frame_xy - tube_base_frame_xz*tube_c_2;
-    const real axis_y_tube_axes2_y = tube_S_dot_t*tube_base_frame_yx +
-        tube_S_dot_t_2*tube_base_frame_yy - tube_base_frame_yz*tube_c_2;
-    const real axis_y_tube_axes2_z = tube_S_dot_t*tube_base_frame_zx +
-        tube_S_dot_t_2*tube_base_frame_zy - tube_base_frame_zz*tube_c_2;
+    const real axis_y_tube_axes2_x = tube_S_dot_t*m->tube_base_frame_xx[i] +
+        tube_S_dot_t_2*m->tube_base_frame_xy[i] - m->tube_base_frame_xz[i]*tube_c_2;
+    const real axis_y_tube_axes2_y = tube_S_dot_t*m->tube_base_frame_yx[i] +
+        tube_S_dot_t_2*m->tube_base_frame_yy[i] - m->tube_base_frame_yz[i]*tube_c_2;
+    const real axis_y_tube_axes2_z = tube_S_dot_t*m->tube_base_frame_zx[i] +
+        tube_S_dot_t_2*m->tube_base_frame_zy[i] - m->tube_base_frame_zz[i]*tube_c_2;
     const real axis_x_tube_axes2_x = axis_y_tube_axes2_y*axis_z_tube_axes2_z -
         axis_y_tube_axes2_z*axis_z_tube_axes2_y;
     const real axis_x_tube_axes2_y = axis_y_tube_axes2_z*axis_z_tube_axes2_x -
@@ -2172,54 +2173,48 @@ INLINE void stage_tube_X(const prepared *m, size_t w, size_t i, size_t j, const 
     const real axis_x_tube_axes2_z = axis_y_tube_axes2_x*axis_z_tube_axes2_y -
         axis_y_tube_axes2_y*axis_z_tube_axes2_x;
     /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-    const real tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx +
-        R_zx*tube_base_frame_zx;
-    const real tube_n_m1_t_2 = R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx +
-        R_zy*tube_base_frame_zx;
-    const real tube_n_m1_t_3 = R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx +
-        R_zz*tube_base_frame_zx;
-    const real tube_n_m1_t_4 = R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy +
-        R_zx*tube_base_frame_zy;
-    const real tube_n_m1_t_5 = R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy +
-        R_zy*tube_base_frame_zy;
-    const real tube_n_m1_t_6 = R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy +
-        R_zz*tube_base_frame_zy;
-    const real tube_n_m1_t_7 = R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz +
-        R_zx*tube_base_frame_zz;
-    const real tube_n_m1_t_8 = R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz +
-        R_zy*tube_base_frame_zz;
-    const real tube_n_m1_t_9 = R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz +
-        R_zz*tube_base_frame_zz;
-    const real tube_platform_joint_rotation_yx = m->tube_platform_joint_rotation_yx[i];
-    const real tube_platform_joint_rotation_yy = m->tube_platform_joint_rotation_yy[i];
-    const real tube_platform_joint_rotation_yz = m->tube_platform_joint_rotation_yz[i];
-    const real tube_n_m1_t_10 = tube_n_m1_t*tube_platform_joint_rotation_yx +
-        tube_n_m1_t_2*tube_platform_joint_rotation_yy +
-        tube_n_m1_t_3*tube_platform_joint_rotation_yz;
-    const real tube_n_m1_t_11 = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
-        tube_n_m1_t_5*tube_platform_joint_rotation_yy +
-        tube_n_m1_t_6*tube_platform_joint_rotation_yz;
-    const real tube_n_m1_t_12 = tube_n_m1_t_7*tube_platform_joint_rotation_yx +
-        tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-        tube_n_m1_t_9*tube_platform_joint_rotation_yz;
+    const real tube_n_m1_t = R_xx*m->tube_base_frame_xx[i] + R_yx*m->tube_base_frame_yx[i] +
+        R_zx*m->tube_base_frame_zx[i];
+    const real tube_n_m1_t_2 = R_xy*m->tube_base_frame_xx[i] + R_yy*m->tube_base_frame_yx[i] +
+        R_zy*m->tube_base_frame_zx[i];
+    const real tube_n_m1_t_3 = R_xz*m->tube_base_frame_xx[i] + R_yz*m->tube_base_frame_yx[i] +
+        R_zz*m->tube_base_frame_zx[i];
+    const real tube_n_m1_t_4 = R_xx*m->tube_base_frame_xy[i] + R_yx*m->tube_base_frame_yy[i] +
+        R_zx*m->tube_base_frame_zy[i];
+    const real tube_n_m1_t_5 = R_xy*m->tube_base_frame_xy[i] + R_yy*m->tube_base_frame_yy[i] +
+        R_zy*m->tube_base_frame_zy[i];
+    const real tube_n_m1_t_6 = R_xz*m->tube_base_frame_xy[i] + R_yz*m->tube_base_frame_yy[i] +
+        R_zz*m->tube_base_frame_zy[i];
+    const real tube_n_m1_t_7 = R_xx*m->tube_base_frame_xz[i] + R_yx*m->tube_base_frame_yz[i] +
+        R_zx*m->tube_base_frame_zz[i];
+    const real tube_n_m1_t_8 = R_xy*m->tube_base_frame_xz[i] + R_yy*m->tube_base_frame_yz[i] +
+        R_zy*m->tube_base_frame_zz[i];
+    const real tube_n_m1_t_9 = R_xz*m->tube_base_frame_xz[i] + R_yz*m->tube_base_frame_yz[i] +
+        R_zz*m->tube_base_frame_zz[i];
+    const real tube_n_m1_t_10 = tube_n_m1_t*m->tube_platform_joint_rotation_yx[i] +
+        tube_n_m1_t_2*m->tube_platform_joint_rotation_yy[i] +
+        tube_n_m1_t_3*m->tube_platform_joint_rotation_yz[i];
+    const real tube_n_m1_t_11 = tube_n_m1_t_4*m->tube_platform_joint_rotation_yx[i] +
+        tube_n_m1_t_5*m->tube_platform_joint_rotation_yy[i] +
+        tube_n_m1_t_6*m->tube_platform_joint_rotation_yz[i];
+    const real tube_n_m1_t_12 = tube_n_m1_t_7*m->tube_platform_joint_rotation_yx[i] +
+        tube_n_m1_t_8*m->tube_platform_joint_rotation_yy[i] +
+        tube_n_m1_t_9*m->tube_platform_joint_rotation_yz[i];
     const real tube_n_m1_t_13 = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1;
     const real tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_11 - tube_n_m1_t_10*tube_s_1;
     const real tube_n_m1_in_axes2_z = tube_e_1_in_axes2_x*tube_n_m1_t_13 -
         tube_c_2*tube_n_m1_t_12;
     const real tube_n_m1_in_axes1_z = tube_c_2*tube_end_p1_in_axes2_z;
     /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
-    const real tube_platform_joint_rotation_zx = m->tube_platform_joint_rotation_zx[i];
-    const real tube_platform_joint_rotation_zy = m->tube_platform_joint_rotation_zy[i];
-    const real tube_platform_joint_rotation_zz = m->tube_platform_joint_rotation_zz[i];
-    const real tube_n_m2_t = tube_n_m1_t*tube_platform_joint_rotation_zx +
-        tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-        tube_n_m1_t_3*tube_platform_joint_rotation_zz;
-    const real tube_n_m2_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_zx +
-        tube_n_m1_t_5*tube_platform_joint_rotation_zy +
-        tube_n_m1_t_6*tube_platform_joint_rotation_zz;
-    const real tube_n_m2_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
-        tube_n_m1_t_8*tube_platform_joint_rotation_zy +
-        tube_n_m1_t_9*tube_platform_joint_rotation_zz;
+    const real tube_n_m2_t = tube_n_m1_t*m->tube_platform_joint_rotation_zx[i] +
+        tube_n_m1_t_2*m->tube_platform_joint_rotation_zy[i] +
+        tube_n_m1_t_3*m->tube_platform_joint_rotation_zz[i];
+    const real tube_n_m2_t_2 = tube_n_m1_t_4*m->tube_platform_joint_rotation_zx[i] +
+        tube_n_m1_t_5*m->tube_platform_joint_rotation_zy[i] +
+        tube_n_m1_t_6*m->tube_platform_joint_rotation_zz[i];
+    const real tube_n_m2_t_3 = tube_n_m1_t_7*m->tube_platform_joint_rotation_zx[i] +
+        tube_n_m1_t_8*m->tube_platform_joint_rotation_zy[i] +
+        tube_n_m1_t_9*m->tube_platform_joint_rotation_zz[i];
     const real tube_n_m2_t_4 = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1;
     const real tube_n_m2_in_axes2_y = tube_c_2*tube_n_m2_t_4 +
         tube_e_1_in_axes2_x*tube_n_m2_t_3;
@@ -2228,18 +2223,15 @@ INLINE void stage_tube_X(const prepared *m, size_t w, size_t i, size_t j, const 
     const real tube_n_m2_t_5 = tube_c_2*tube_n_m2_in_axes2_y +
         tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y;
     /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
-    const real tube_platform_joint_rotation_xx = m->tube_platform_joint_rotation_xx[i];
-    const real tube_platform_joint_rotation_xy = m->tube_platform_joint_rotation_xy[i];
-    const real tube_platform_joint_rotation_xz = m->tube_platform_joint_rotation_xz[i];
-    const real tube_n_m3_t = tube_n_m1_t*tube_platform_joint_rotation_xx +
-        tube_n_m1_t_2*tube_platform_joint_rotation_xy +
-        tube_n_m1_t_3*tube_platform_joint_rotation_xz;
-    const real tube_n_m3_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
-        tube_n_m1_t_5*tube_platform_joint_rotation_xy +
-        tube_n_m1_t_6*tube_platform_joint_rotation_xz;
-    const real tube_n_m3_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_xx +
-        tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-        tube_n_m1_t_9*tube_platform_joint_rotation_xz;
+    const real tube_n_m3_t = tube_n_m1_t*m->tube_platform_joint_rotation_xx[i] +
+        tube_n_m1_t_2*m->tube_platform_joint_rotation_xy[i] +
+        tube_n_m1_t_3*m->tube_platform_joint_rotation_xz[i];
+    const real tube_n_m3_t_2 = tube_n_m1_t_4*m->tube_platform_joint_rotation_xx[i] +
+        tube_n_m1_t_5*m->tube_platform_joint_rotation_xy[i] +
+        tube_n_m1_t_6*m->tube_platform_joint_rotation_xz[i];
+    const real tube_n_m3_t_3 = tube_n_m1_t_7*m->tube_platform_joint_rotation_xx[i] +
+        tube_n_m1_t_8*m->tube_platform_joint_rotation_xy[i] +
+        tube_n_m1_t_9*m->tube_platform_joint_rotation_xz[i];
     const real tube_n_m3_t_4 = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1;
     const real tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t_2 - tube_n_m3_t*tube_s_1;
     const real tube_n_m3_in_axes2_z = tube_c_2*tube_n_m3_t_4 +
@@ -2396,22 +2388,24 @@ INLINE void stage_tube_X(const prepared *m, size_t w, size_t i, size_t j, const 
     const real tube_end_p3_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m3_t_4 -
         tube_c_2*tube_n_m3_t_3;
     /* (tube-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real tube_acc_3_t = m->tube_acc_3_t[i];
-    const real tube_acc_3_t_2 = m->tube_acc_3_t_2[i];
-    const real tube_g_in_axes2_z = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1;
+    const real tube_g_in_axes2_z = m->tube_acc_3_t_2[i]*tube_c_1 -
+        m->tube_acc_3_t[i]*tube_s_1;
     /* (tube-n_c1) unit force of the constraint wrench */
     const real tube_n_c1_t = tube_c_1*tube_e_1_in_axes2_x;
     const real tube_n_c1_t_2 = tube_e_1_in_axes2_x*tube_s_1;
-    const real tube_n_c1_x = tube_base_frame_xx*tube_n_c1_t + tube_base_frame_xy*tube_n_c1_t_2
-        - tube_base_frame_xz*tube_c_2;
-    const real tube_n_c1_y = tube_base_frame_yx*tube_n_c1_t + tube_base_frame_yy*tube_n_c1_t_2
-        - tube_base_frame_yz*tube_c_2;
-    const real tube_n_c1_z = tube_base_frame_zx*tube_n_c1_t + tube_base_frame_zy*tube_n_c1_t_2
-        - tube_base_frame_zz*tube_c_2;
+    const real tube_n_c1_x = m->tube_base_frame_xx[i]*tube_n_c1_t +
+        m->tube_base_frame_xy[i]*tube_n_c1_t_2 - m->tube_base_frame_xz[i]*tube_c_2;
+    const real tube_n_c1_y = m->tube_base_frame_yx[i]*tube_n_c1_t +
+        m->tube_base_frame_yy[i]*tube_n_c1_t_2 - m->tube_base_frame_yz[i]*tube_c_2;
+    const real tube_n_c1_z = m->tube_base_frame_zx[i]*tube_n_c1_t +
+        m->tube_base_frame_zy[i]*tube_n_c1_t_2 - m->tube_base_frame_zz[i]*tube_c_2;
     /* (tube-n_c2) unit force of the constraint wrench */
-    const real tube_n_c2_x = tube_base_frame_xy*tube_c_1 - tube_base_frame_xx*tube_s_1;
-    const real tube_n_c2_y = tube_base_frame_yy*tube_c_1 - tube_base_frame_yx*tube_s_1;
-    const real tube_n_c2_z = tube_base_frame_zy*tube_c_1 - tube_base_frame_zx*tube_s_1;
+    const real tube_n_c2_x = m->tube_base_frame_xy[i]*tube_c_1 -
+        m->tube_base_frame_xx[i]*tube_s_1;
+    const real tube_n_c2_y = m->tube_base_frame_yy[i]*tube_c_1 -
+        m->tube_base_frame_yx[i]*tube_s_1;
+    const real tube_n_c2_z = m->tube_base_frame_zy[i]*tube_c_1 -
+        m->tube_base_frame_zx[i]*tube_s_1;
     v->tube_q_x = tube_q_x;
     v->tube_q_y = tube_q_y;
     v->tube_q_z = tube_q_z;
@@ -2657,14 +2651,12 @@ INLINE void stage_tube_A_V_X(size_t w, size_t j, const real *V, values_tube *v)
 INLINE void stage_tube_Z_dynamics(const prepared *m, size_t i, values_tube *v)
 {
     /* (tube-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real tube_acc_3_t = m->tube_acc_3_t[i];
-    const real tube_acc_3_t_2 = m->tube_acc_3_t_2[i];
-    const real tube_acc_3_o_t = tube_acc_3_t*v->tube_c_1 + tube_acc_3_t_2*v->tube_s_1;
-    const real tube_acc_3_t_3 = m->tube_acc_3_t_3[i];
+    const real tube_acc_3_o_t = m->tube_acc_3_t[i]*v->tube_c_1 +
+        m->tube_acc_3_t_2[i]*v->tube_s_1;
     const real tube_g_in_axes2_x = tube_acc_3_o_t*v->tube_c_2 +
-        tube_acc_3_t_3*v->tube_e_1_in_axes2_x;
+        m->tube_acc_3_t_3[i]*v->tube_e_1_in_axes2_x;
     const real tube_g_in_axes2_y = tube_acc_3_o_t*v->tube_e_1_in_axes2_x -
-        tube_acc_3_t_3*v->tube_c_2;
+        m->tube_acc_3_t_3[i]*v->tube_c_2;
     const real tube_acc_3_o_in_axes2_x = v->axis_x_tube_axes2_x*v->tube_u_1_x +
         v->axis_x_tube_axes2_y*v->tube_u_1_y + v->axis_x_tube_axes2_z*v->tube_u_1_z -
         tube_g_in_axes2_x;
@@ -3046,14 +3038,12 @@ INLINE void stage_tube_legs_required(const prepared *m, size_t i, values_tube *v
     const real tube_B_2_in_axes2_zx = tube_W_2_in_axes2_xz - tube_alpha_2_in_axes2_y;
     const real tube_B_2_in_axes2_zy = tube_W_2_in_axes2_yz + tube_alpha_2_in_axes2_x;
     /* (tube-acc_3) acceleration of the reference point of link 3, less gravity */
-    const real tube_acc_3_t = m->tube_acc_3_t[i];
-    const real tube_acc_3_t_2 = m->tube_acc_3_t_2[i];
-    const real tube_acc_3_t_4 = tube_acc_3_t*v->tube_c_1 + tube_acc_3_t_2*v->tube_s_1;
-    const real tube_acc_3_t_3 = m->tube_acc_3_t_3[i];
-    const real tube_g_in_axes2_x = tube_acc_3_t_3*v->tube_e_1_in_axes2_x +
+    const real tube_acc_3_t_4 = m->tube_acc_3_t[i]*v->tube_c_1 +
+        m->tube_acc_3_t_2[i]*v->tube_s_1;
+    const real tube_g_in_axes2_x = m->tube_acc_3_t_3[i]*v->tube_e_1_in_axes2_x +
         tube_acc_3_t_4*v->tube_c_2;
     const real tube_g_in_axes2_y = tube_acc_3_t_4*v->tube_e_1_in_axes2_x -
-        tube_acc_3_t_3*v->tube_c_2;
+        m->tube_acc_3_t_3[i]*v->tube_c_2;
     const real tube_acc_3_in_axes2_x = v->axis_x_tube_axes2_x*v->tube_S_ddot_x +
         v->axis_x_tube_axes2_y*v->tube_S_ddot_y + v->axis_x_tube_axes2_z*v->tube_S_ddot_z -
         tube_g_in_axes2_x;
@@ -3065,50 +3055,45 @@ INLINE void stage_tube_legs_required(const prepared *m, size_t i, values_tube *v
     const real tube_f_3_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x;
     const real tube_f_3_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y;
     const real tube_f_3_t_3 = tube_qd_2*tube_qd_2;
-    const real tube_h_3_in_spec2_x = m->tube_h_3_in_spec2_x[i];
-    const real tube_h_3_in_spec2_y = m->tube_h_3_in_spec2_y[i];
-    const real tube_h_3_in_spec2_z = m->tube_h_3_in_spec2_z[i];
-    const real tube_link3_mass = m->tube_link3_mass[i];
-    const real tube_f_3_in_axes2_x = tube_acc_3_in_axes2_x*tube_link3_mass +
-        tube_alpha_1_in_axes2_y*tube_h_3_in_spec2_y - tube_B_2_in_axes2_xy*tube_h_3_in_spec2_z
-        - tube_h_3_in_spec2_x*(tube_f_3_t_2 + tube_f_3_t_3);
-    const real tube_f_3_in_axes2_y = tube_B_2_in_axes2_yx*tube_h_3_in_spec2_x +
-        tube_acc_3_in_axes2_y*tube_link3_mass + tube_h_3_in_spec2_z*(tube_f_3_t +
-        tube_f_3_t_3) - tube_alpha_1_in_axes2_x*tube_h_3_in_spec2_y;
-    const real tube_f_3_in_axes2_z = tube_B_2_in_axes2_zx*tube_h_3_in_spec2_x +
-        tube_acc_3_in_axes2_z*tube_link3_mass - tube_B_2_in_axes2_zy*tube_h_3_in_spec2_z -
-        tube_h_3_in_spec2_y*(tube_f_3_t + tube_f_3_t_2);
+    const real tube_f_3_in_axes2_x = tube_acc_3_in_axes2_x*m->tube_link3_mass[i] +
+        tube_alpha_1_in_axes2_y*m->tube_h_3_in_spec2_y[i] -
+        tube_B_2_in_axes2_xy*m->tube_h_3_in_spec2_z[i] -
+        m->tube_h_3_in_spec2_x[i]*(tube_f_3_t_2 + tube_f_3_t_3);
+    const real tube_f_3_in_axes2_y = tube_B_2_in_axes2_yx*m->tube_h_3_in_spec2_x[i] +
+        tube_acc_3_in_axes2_y*m->tube_link3_mass[i] + m->tube_h_3_in_spec2_z[i]*(tube_f_3_t +
+        tube_f_3_t_3) - tube_alpha_1_in_axes2_x*m->tube_h_3_in_spec2_y[i];
+    const real tube_f_3_in_axes2_z = tube_B_2_in_axes2_zx*m->tube_h_3_in_spec2_x[i] +
+        tube_acc_3_in_axes2_z*m->tube_link3_mass[i] -
+        tube_B_2_in_axes2_zy*m->tube_h_3_in_spec2_z[i] - m->tube_h_3_in_spec2_y[i]*(tube_f_3_t
+        + tube_f_3_t_2);
     /* (tube-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real tube_J_group_2_in_axes2_xy = m->tube_J_group_2_in_axes2_xy[i];
-    const real tube_J_group_2_in_axes2_xz = m->tube_J_group_2_in_axes2_xz[i];
-    const real tube_J_group_2_in_axes2_yz = m->tube_J_group_2_in_axes2_yz[i];
-    const real tube_Sigma_2_in_axes2_yy = m->tube_Sigma_2_in_axes2_yy[i];
-    const real tube_Sigma_2_in_axes2_zz = m->tube_Sigma_2_in_axes2_zz[i];
-    const real tube_h_2_in_spec2_y = m->tube_h_2_in_spec2_y[i];
-    const real tube_h_2_in_spec2_z = m->tube_h_2_in_spec2_z[i];
-    const real tube_mu_2_in_axes2_x = tube_B_2_in_axes2_yx*tube_J_group_2_in_axes2_xz +
-        tube_B_2_in_axes2_zy*tube_Sigma_2_in_axes2_yy +
-        tube_J_group_2_in_axes2_yz*(tube_f_3_t_2 - tube_f_3_t_3) +
-        tube_Sigma_2_in_axes2_zz*tube_alpha_1_in_axes2_x +
-        tube_g_in_axes2_y*tube_h_2_in_spec2_y + v->tube_g_in_axes2_z*tube_h_2_in_spec2_z -
-        tube_B_2_in_axes2_zx*tube_J_group_2_in_axes2_xy -
-        tube_acc_3_in_axes2_y*tube_h_3_in_spec2_y - tube_acc_3_in_axes2_z*tube_h_3_in_spec2_z;
-    const real tube_Sigma_2_in_axes2_xx = m->tube_Sigma_2_in_axes2_xx[i];
-    const real tube_h_2_in_spec2_x = m->tube_h_2_in_spec2_x[i];
-    const real tube_mu_2_in_axes2_y = tube_B_2_in_axes2_zy*tube_J_group_2_in_axes2_xy +
-        tube_Sigma_2_in_axes2_zz*tube_alpha_1_in_axes2_y +
-        tube_acc_3_in_axes2_x*tube_h_3_in_spec2_y + v->tube_g_in_axes2_z*tube_h_2_in_spec2_x -
-        tube_B_2_in_axes2_xy*tube_J_group_2_in_axes2_yz -
-        tube_B_2_in_axes2_zx*tube_Sigma_2_in_axes2_xx - tube_J_group_2_in_axes2_xz*(tube_f_3_t
-        - tube_f_3_t_3) - tube_acc_3_in_axes2_z*tube_h_3_in_spec2_x -
-        tube_g_in_axes2_x*tube_h_2_in_spec2_y;
-    const real tube_mu_2_in_axes2_z = tube_B_2_in_axes2_yx*tube_Sigma_2_in_axes2_xx +
-        tube_J_group_2_in_axes2_xy*(tube_f_3_t - tube_f_3_t_2) +
-        tube_J_group_2_in_axes2_xz*tube_alpha_1_in_axes2_x +
-        tube_J_group_2_in_axes2_yz*tube_alpha_1_in_axes2_y +
-        tube_acc_3_in_axes2_x*tube_h_3_in_spec2_z + tube_acc_3_in_axes2_y*tube_h_3_in_spec2_x
-        - tube_B_2_in_axes2_xy*tube_Sigma_2_in_axes2_yy -
-        tube_g_in_axes2_x*tube_h_2_in_spec2_z - tube_g_in_axes2_y*tube_h_2_in_spec2_x;
+    const real tube_mu_2_in_axes2_x = tube_B_2_in_axes2_yx*m->tube_J_group_2_in_axes2_xz[i] +
+        tube_B_2_in_axes2_zy*m->tube_Sigma_2_in_axes2_yy[i] +
+        m->tube_J_group_2_in_axes2_yz[i]*(tube_f_3_t_2 - tube_f_3_t_3) +
+        m->tube_Sigma_2_in_axes2_zz[i]*tube_alpha_1_in_axes2_x +
+        tube_g_in_axes2_y*m->tube_h_2_in_spec2_y[i] +
+        v->tube_g_in_axes2_z*m->tube_h_2_in_spec2_z[i] -
+        tube_B_2_in_axes2_zx*m->tube_J_group_2_in_axes2_xy[i] -
+        tube_acc_3_in_axes2_y*m->tube_h_3_in_spec2_y[i] -
+        tube_acc_3_in_axes2_z*m->tube_h_3_in_spec2_z[i];
+    const real tube_mu_2_in_axes2_y = tube_B_2_in_axes2_zy*m->tube_J_group_2_in_axes2_xy[i] +
+        m->tube_Sigma_2_in_axes2_zz[i]*tube_alpha_1_in_axes2_y +
+        tube_acc_3_in_axes2_x*m->tube_h_3_in_spec2_y[i] +
+        v->tube_g_in_axes2_z*m->tube_h_2_in_spec2_x[i] -
+        tube_B_2_in_axes2_xy*m->tube_J_group_2_in_axes2_yz[i] -
+        tube_B_2_in_axes2_zx*m->tube_Sigma_2_in_axes2_xx[i] -
+        m->tube_J_group_2_in_axes2_xz[i]*(tube_f_3_t - tube_f_3_t_3) -
+        tube_acc_3_in_axes2_z*m->tube_h_3_in_spec2_x[i] -
+        tube_g_in_axes2_x*m->tube_h_2_in_spec2_y[i];
+    const real tube_mu_2_in_axes2_z = tube_B_2_in_axes2_yx*m->tube_Sigma_2_in_axes2_xx[i] +
+        m->tube_J_group_2_in_axes2_xy[i]*(tube_f_3_t - tube_f_3_t_2) +
+        m->tube_J_group_2_in_axes2_xz[i]*tube_alpha_1_in_axes2_x +
+        m->tube_J_group_2_in_axes2_yz[i]*tube_alpha_1_in_axes2_y +
+        tube_acc_3_in_axes2_x*m->tube_h_3_in_spec2_z[i] +
+        tube_acc_3_in_axes2_y*m->tube_h_3_in_spec2_x[i] -
+        tube_B_2_in_axes2_xy*m->tube_Sigma_2_in_axes2_yy[i] -
+        tube_g_in_axes2_x*m->tube_h_2_in_spec2_z[i] -
+        tube_g_in_axes2_y*m->tube_h_2_in_spec2_x[i];
     /* (tube-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
        left out */
     const real tube_N_2_in_axes2_y = tube_mu_2_in_axes2_y - tube_f_3_in_axes2_z*v->tube_q_3;
@@ -3190,50 +3175,34 @@ INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real ups_platform_point_x = m->ups_platform_point_x[i];
-    const real ups_platform_point_y = m->ups_platform_point_y[i];
-    const real ups_platform_point_z = m->ups_platform_point_z[i];
-    const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
-        R_xz*ups_platform_point_z;
+    const real ups_q_x = R_xx*m->ups_platform_point_x[i] + R_xy*m->ups_platform_point_y[i] +
+        R_xz*m->ups_platform_point_z[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
-        R_yz*ups_platform_point_z;
+    const real ups_q_y = R_yx*m->ups_platform_point_x[i] + R_yy*m->ups_platform_point_y[i] +
+        R_yz*m->ups_platform_point_z[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
-    const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
-        R_zz*ups_platform_point_z;
+    const real ups_q_z = R_zx*m->ups_platform_point_x[i] + R_zy*m->ups_platform_point_y[i] +
+        R_zz*m->ups_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real ups_base_point_x = m->ups_base_point_x[i];
-    const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
+    const real ups_S_x = t_x + ups_q_x - m->ups_base_point_x[i];
     const real t_y = X[1*w + j];
-    const real ups_base_point_y = m->ups_base_point_y[i];
-    const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
+    const real ups_S_y = t_y + ups_q_y - m->ups_base_point_y[i];
     const real t_z = X[2*w + j];
-    const real ups_base_point_z = m->ups_base_point_z[i];
-    const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
-    const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-    const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-    const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-    const real ups_S_in_turn1_x = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-        ups_S_z*ups_base_frame_zx;
-    const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-    const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-    const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-    const real ups_S_in_turn1_y = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-        ups_S_z*ups_base_frame_zy;
-    const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-    const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-    const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-    const real ups_S_in_turn1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-        ups_S_z*ups_base_frame_zz;
+    const real ups_S_z = t_z + ups_q_z - m->ups_base_point_z[i];
+    const real ups_S_in_turn1_x = ups_S_x*m->ups_base_frame_xx[i] +
+        ups_S_y*m->ups_base_frame_yx[i] + ups_S_z*m->ups_base_frame_zx[i];
+    const real ups_S_in_turn1_y = ups_S_x*m->ups_base_frame_xy[i] +
+        ups_S_y*m->ups_base_frame_yy[i] + ups_S_z*m->ups_base_frame_zy[i];
+    const real ups_S_in_turn1_z = ups_S_x*m->ups_base_frame_xz[i] +
+        ups_S_y*m->ups_base_frame_yz[i] + ups_S_z*m->ups_base_frame_zz[i];
     /* (ups-root_1) amplitude, the length across axis 1, with the sign of the branch */
     const real ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x +
         ups_S_in_turn1_y*ups_S_in_turn1_y;
-    const real ups_branch_1 = m->ups_branch_1[i];
-    const real ups_root_1 = ups_branch_1*root(ups_root_1_t);
+    const real ups_root_1 = m->ups_branch_1[i]*root(ups_root_1_t);
     /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
     const real inv_ups_root_1 = 1/ups_root_1;
     const real ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x;
@@ -3241,8 +3210,7 @@ INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y;
     /* (ups-q_3) displacement of joint 3 */
     const real ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t;
-    const real ups_branch_2 = m->ups_branch_2[i];
-    const real ups_q_3 = ups_branch_2*root(ups_q_3_t);
+    const real ups_q_3 = m->ups_branch_2[i]*root(ups_q_3_t);
     /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
     const real inv_ups_q_3 = 1/ups_q_3;
     const real ups_c_2 = inv_ups_q_3*ups_root_1;
@@ -3251,9 +3219,12 @@ INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y;
     const real axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z;
     /* (ups-qd_1) rate of joint 1 */
-    const real axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1;
-    const real axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1;
-    const real axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1;
+    const real axis_z_ups_axes2_x = m->ups_base_frame_xy[i]*ups_c_1 -
+        m->ups_base_frame_xx[i]*ups_s_1;
+    const real axis_z_ups_axes2_y = m->ups_base_frame_yy[i]*ups_c_1 -
+        m->ups_base_frame_yx[i]*ups_s_1;
+    const real axis_z_ups_axes2_z = m->ups_base_frame_zy[i]*ups_c_1 -
+        m->ups_base_frame_zx[i]*ups_s_1;
     /* (ups-qd_2) rate of joint 2 */
     const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
         axis_x_ups_axes2_y*axis_z_ups_axes2_z;
@@ -3264,9 +3235,7 @@ INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (ups-omega_1) angular velocity of link 1 */
     const real ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z;
     /* (ups-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real ups_acc_3_t = m->ups_acc_3_t[i];
-    const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
-    const real ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1;
+    const real ups_g_in_axes2_z = m->ups_acc_3_t_2[i]*ups_c_1 - m->ups_acc_3_t[i]*ups_s_1;
     /* (ups-w_2) reciprocal vector 2 */
     const real ups_w_2_in_axes2_y = 1/ups_q_3;
     /* (ups-w_3) reciprocal vector 3 */
@@ -3418,14 +3387,11 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real ups_B_2_o_in_axes2_zx = v->ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y;
     const real ups_B_2_o_in_axes2_zy = v->ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x;
     /* (ups-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real ups_acc_3_t = m->ups_acc_3_t[i];
-    const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
-    const real ups_acc_3_o_t = ups_acc_3_t*v->ups_c_1 + ups_acc_3_t_2*v->ups_s_1;
-    const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
+    const real ups_acc_3_o_t = m->ups_acc_3_t[i]*v->ups_c_1 + m->ups_acc_3_t_2[i]*v->ups_s_1;
     const real ups_g_in_axes2_x = ups_acc_3_o_t*v->ups_c_2 +
-        ups_acc_3_t_3*v->ups_e_1_in_axes2_x;
+        m->ups_acc_3_t_3[i]*v->ups_e_1_in_axes2_x;
     const real ups_g_in_axes2_y = ups_acc_3_o_t*v->ups_e_1_in_axes2_x -
-        ups_acc_3_t_3*v->ups_c_2;
+        m->ups_acc_3_t_3[i]*v->ups_c_2;
     const real ups_acc_3_o_in_axes2_x = v->axis_x_ups_axes2_x*ups_u_1_x +
         v->axis_x_ups_axes2_y*ups_u_1_y + v->axis_x_ups_axes2_z*ups_u_1_z - ups_g_in_axes2_x;
     const real ups_acc_3_o_in_axes2_y = ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 -
@@ -3435,54 +3401,48 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
        */
     const real ups_phi_3_o_t = v->ups_omega_1_in_axes2_y*v->ups_omega_1_in_axes2_y;
     const real ups_phi_3_o_t_2 = v->ups_qd_2*v->ups_qd_2;
-    const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
-    const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
-    const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
-    const real ups_phi_3_o_in_axes2_x = ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y +
-        ups_h_3_in_spec2_x*(-ups_phi_3_o_t - ups_phi_3_o_t_2) -
-        ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z;
+    const real ups_phi_3_o_in_axes2_x = ups_alpha_1_o_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
+        m->ups_h_3_in_spec2_x[i]*(-ups_phi_3_o_t - ups_phi_3_o_t_2) -
+        ups_B_2_o_in_axes2_xy*m->ups_h_3_in_spec2_z[i];
     /* (ups-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real ups_mu_2_o_t = v->ups_omega_1_in_axes2_x*v->ups_omega_1_in_axes2_x;
-    const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
-    const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
-    const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
-    const real ups_Sigma_2_in_axes2_yy = m->ups_Sigma_2_in_axes2_yy[i];
-    const real ups_Sigma_2_in_axes2_zz = m->ups_Sigma_2_in_axes2_zz[i];
-    const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
-    const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
-    const real ups_mu_2_o_in_axes2_x = ups_B_2_o_in_axes2_yx*ups_J_group_2_in_axes2_xz +
-        ups_B_2_o_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
-        ups_J_group_2_in_axes2_yz*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
-        ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_x + ups_g_in_axes2_y*ups_h_2_in_spec2_y
-        + v->ups_g_in_axes2_z*ups_h_2_in_spec2_z -
-        ups_B_2_o_in_axes2_zx*ups_J_group_2_in_axes2_xy -
-        ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_z;
-    const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
-    const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
-    const real ups_mu_2_o_in_axes2_y = ups_B_2_o_in_axes2_zy*ups_J_group_2_in_axes2_xy +
-        ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_y +
-        ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_y + v->ups_g_in_axes2_z*ups_h_2_in_spec2_x -
-        ups_B_2_o_in_axes2_xy*ups_J_group_2_in_axes2_yz -
-        ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
-        ups_J_group_2_in_axes2_xz*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
-        ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_x - ups_g_in_axes2_x*ups_h_2_in_spec2_y;
-    const real ups_mu_2_o_in_axes2_z = ups_B_2_o_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
-        ups_J_group_2_in_axes2_xy*(ups_mu_2_o_t - ups_phi_3_o_t) +
-        ups_J_group_2_in_axes2_xz*ups_alpha_1_o_in_axes2_x +
-        ups_J_group_2_in_axes2_yz*ups_alpha_1_o_in_axes2_y +
-        ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_x
-        - ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z
-        - ups_g_in_axes2_y*ups_h_2_in_spec2_x;
+    const real ups_mu_2_o_in_axes2_x = ups_B_2_o_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
+        ups_B_2_o_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] +
+        m->ups_J_group_2_in_axes2_yz[i]*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
+        m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_in_axes2_x +
+        ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] +
+        v->ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] -
+        ups_B_2_o_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i] -
+        ups_acc_3_o_in_axes2_y*m->ups_h_3_in_spec2_y[i] -
+        ups_acc_3_o_in_axes2_z*m->ups_h_3_in_spec2_z[i];
+    const real ups_mu_2_o_in_axes2_y = ups_B_2_o_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] +
+        m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_in_axes2_y +
+        ups_acc_3_o_in_axes2_x*m->ups_h_3_in_spec2_y[i] +
+        v->ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
+        ups_B_2_o_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] -
+        ups_B_2_o_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i] -
+        m->ups_J_group_2_in_axes2_xz[i]*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
+        ups_acc_3_o_in_axes2_z*m->ups_h_3_in_spec2_x[i] -
+        ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i];
+    const real ups_mu_2_o_in_axes2_z = ups_B_2_o_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
+        m->ups_J_group_2_in_axes2_xy[i]*(ups_mu_2_o_t - ups_phi_3_o_t) +
+        m->ups_J_group_2_in_axes2_xz[i]*ups_alpha_1_o_in_axes2_x +
+        m->ups_J_group_2_in_axes2_yz[i]*ups_alpha_1_o_in_axes2_y +
+        ups_acc_3_o_in_axes2_x*m->ups_h_3_in_spec2_z[i] +
+        ups_acc_3_o_in_axes2_y*m->ups_h_3_in_spec2_x[i] -
+        ups_B_2_o_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] -
+        ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] - ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i];
     /* (ups-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
-    const real ups_c_o_in_axes2_y = ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y -
-        v->inv_ups_q_3*ups_mu_2_o_in_axes2_z - ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x -
-        ups_h_3_in_spec2_z*(ups_mu_2_o_t + ups_phi_3_o_t_2);
+    const real ups_c_o_in_axes2_y = ups_alpha_1_o_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
+        v->inv_ups_q_3*ups_mu_2_o_in_axes2_z - ups_B_2_o_in_axes2_yx*m->ups_h_3_in_spec2_x[i]
+        - m->ups_h_3_in_spec2_z[i]*(ups_mu_2_o_t + ups_phi_3_o_t_2);
     const real ups_c_o_in_axes2_z = v->inv_ups_root_1*(v->ups_c_2*ups_mu_2_o_in_axes2_y -
         v->ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x) +
-        ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_o_t +
-        ups_phi_3_o_t) - ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x;
+        ups_B_2_o_in_axes2_zy*m->ups_h_3_in_spec2_z[i] +
+        m->ups_h_3_in_spec2_y[i]*(ups_mu_2_o_t + ups_phi_3_o_t) -
+        ups_B_2_o_in_axes2_zx*m->ups_h_3_in_spec2_x[i];
     /* (ups-U) velocity and gravity terms of the leg force */
     const real ups_U_x = v->axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x -
         v->axis_y_ups_axes2_x*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_x*ups_c_o_in_axes2_z;
@@ -3510,52 +3470,38 @@ INLINE void stage_ups_inverse_kinematics_potential(const prepared *m, size_t w, 
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
     const real t_x = X[0*w + j];
-    const real ups_base_point_x = m->ups_base_point_x[i];
-    const real ups_platform_point_x = m->ups_platform_point_x[i];
-    const real ups_platform_point_y = m->ups_platform_point_y[i];
-    const real ups_platform_point_z = m->ups_platform_point_z[i];
-    const real ups_S_x = t_x + R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
-        R_xz*ups_platform_point_z - ups_base_point_x;
+    const real ups_S_x = t_x + R_xx*m->ups_platform_point_x[i] +
+        R_xy*m->ups_platform_point_y[i] + R_xz*m->ups_platform_point_z[i] -
+        m->ups_base_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real t_y = X[1*w + j];
-    const real ups_base_point_y = m->ups_base_point_y[i];
-    const real ups_S_y = t_y + R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
-        R_yz*ups_platform_point_z - ups_base_point_y;
+    const real ups_S_y = t_y + R_yx*m->ups_platform_point_x[i] +
+        R_yy*m->ups_platform_point_y[i] + R_yz*m->ups_platform_point_z[i] -
+        m->ups_base_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real t_z = X[2*w + j];
-    const real ups_base_point_z = m->ups_base_point_z[i];
-    const real ups_S_z = t_z + R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
-        R_zz*ups_platform_point_z - ups_base_point_z;
-    const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-    const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-    const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-    const real ups_S_in_turn1_x = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-        ups_S_z*ups_base_frame_zx;
-    const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-    const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-    const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-    const real ups_S_in_turn1_y = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-        ups_S_z*ups_base_frame_zy;
-    const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-    const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-    const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-    const real ups_S_in_turn1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-        ups_S_z*ups_base_frame_zz;
+    const real ups_S_z = t_z + R_zx*m->ups_platform_point_x[i] +
+        R_zy*m->ups_platform_point_y[i] + R_zz*m->ups_platform_point_z[i] -
+        m->ups_base_point_z[i];
+    const real ups_S_in_turn1_x = ups_S_x*m->ups_base_frame_xx[i] +
+        ups_S_y*m->ups_base_frame_yx[i] + ups_S_z*m->ups_base_frame_zx[i];
+    const real ups_S_in_turn1_y = ups_S_x*m->ups_base_frame_xy[i] +
+        ups_S_y*m->ups_base_frame_yy[i] + ups_S_z*m->ups_base_frame_zy[i];
+    const real ups_S_in_turn1_z = ups_S_x*m->ups_base_frame_xz[i] +
+        ups_S_y*m->ups_base_frame_yz[i] + ups_S_z*m->ups_base_frame_zz[i];
     /* (ups-root_1) amplitude, the length across axis 1, with the sign of the branch */
     const real ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x +
         ups_S_in_turn1_y*ups_S_in_turn1_y;
-    const real ups_branch_1 = m->ups_branch_1[i];
-    const real ups_root_1 = ups_branch_1*root(ups_root_1_t);
+    const real ups_root_1 = m->ups_branch_1[i]*root(ups_root_1_t);
     /* (ups-q_1) displacement of joint 1 */
     const real inv_ups_root_1 = 1/ups_root_1;
     /* (ups-q_3) displacement of joint 3 */
     const real ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t;
-    const real ups_branch_2 = m->ups_branch_2[i];
-    const real ups_q_3 = ups_branch_2*root(ups_q_3_t);
+    const real ups_q_3 = m->ups_branch_2[i]*root(ups_q_3_t);
     /* (ups-q_2) displacement of joint 2 */
     const real inv_ups_q_3 = 1/ups_q_3;
     v->ups_S_in_turn1_x = ups_S_in_turn1_x;
@@ -3594,14 +3540,11 @@ INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
     const real ups_B_2_in_axes2_zx = v->ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y;
     const real ups_B_2_in_axes2_zy = v->ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x;
     /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
-    const real ups_acc_3_t = m->ups_acc_3_t[i];
-    const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
-    const real ups_acc_3_t_4 = ups_acc_3_t*v->ups_c_1 + ups_acc_3_t_2*v->ups_s_1;
-    const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
-    const real ups_g_in_axes2_x = ups_acc_3_t_3*v->ups_e_1_in_axes2_x +
+    const real ups_acc_3_t_4 = m->ups_acc_3_t[i]*v->ups_c_1 + m->ups_acc_3_t_2[i]*v->ups_s_1;
+    const real ups_g_in_axes2_x = m->ups_acc_3_t_3[i]*v->ups_e_1_in_axes2_x +
         ups_acc_3_t_4*v->ups_c_2;
     const real ups_g_in_axes2_y = ups_acc_3_t_4*v->ups_e_1_in_axes2_x -
-        ups_acc_3_t_3*v->ups_c_2;
+        m->ups_acc_3_t_3[i]*v->ups_c_2;
     const real ups_acc_3_in_axes2_x = v->axis_x_ups_axes2_x*v->ups_S_ddot_x +
         v->axis_x_ups_axes2_y*v->ups_S_ddot_y + v->axis_x_ups_axes2_z*v->ups_S_ddot_z -
         ups_g_in_axes2_x;
@@ -3627,2541 +3570,2478 @@ INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s,
-    verdict *t)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        stage_V_X(w, k, V, &v);
-        stage_M_dynamics(m, &v);
-        stage_Z_dynamics(m, w, k, V, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = v.h_star_x;
-        s[10*w + k] = v.h_star_y;
-        s[11*w + k] = v.h_star_z;
-        s[12*w + k] = v.J_star_xx;
-        s[13*w + k] = v.J_star_xy;
-        s[14*w + k] = v.J_star_xz;
-        s[15*w + k] = v.J_star_yy;
-        s[16*w + k] = v.J_star_yz;
-        s[17*w + k] = v.J_star_zz;
-        s[18*w + k] = v.Z_p_x;
-        s[19*w + k] = v.Z_p_y;
-        s[20*w + k] = v.Z_p_z;
-        s[21*w + k] = v.Z_q_x;
-        s[22*w + k] = v.Z_q_y;
-        s[23*w + k] = v.Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    stage_V_X(w, k, V, &v);
+    stage_M_dynamics(m, &v);
+    stage_Z_dynamics(m, w, k, V, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = v.h_star_x;
+    s[10*w + k] = v.h_star_y;
+    s[11*w + k] = v.h_star_z;
+    s[12*w + k] = v.J_star_xx;
+    s[13*w + k] = v.J_star_xy;
+    s[14*w + k] = v.J_star_xz;
+    s[15*w + k] = v.J_star_yy;
+    s[16*w + k] = v.J_star_yz;
+    s[17*w + k] = v.J_star_zz;
+    s[18*w + k] = v.Z_p_x;
+    s[19*w + k] = v.Z_p_y;
+    s[20*w + k] = v.Z_p_z;
+    s[21*w + k] = v.Z_q_x;
+    s[22*w + k] = v.Z_q_y;
+    s[23*w + k] = v.Z_q_z;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
+INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_ups v;
-        stage_ups_X(m, w, i, j, s, X, &v);
-        stage_ups_V_X(w, j, V, &v);
-        stage_ups_Z_dynamics(m, w, i, j, V, &v);
-        /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real ups_d_alpha_1_in_axes2_xz = v.inv_ups_root_1*v.ups_e_1_in_axes2_x;
-        /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
-           about its reference point */
-        const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
-        const real ups_d_phi_3_in_axes2_xy = v.inv_ups_q_3*ups_h_3_in_spec2_z;
-        const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
-        const real ups_d_phi_3_in_axes2_yy = v.inv_ups_q_3*ups_h_3_in_spec2_x;
-        /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
-        const real ups_d_c_in_axes2_xz = v.inv_ups_q_3*ups_h_3_in_spec2_y;
-        const real ups_J_group_2_in_axes2_zz = m->ups_J_group_2_in_axes2_zz[i];
-        const real ups_d_c_in_axes2_yy = -ups_d_phi_3_in_axes2_yy -
-            v.inv_ups_q_3*(ups_h_3_in_spec2_x + v.inv_ups_q_3*ups_J_group_2_in_axes2_zz);
-        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
-        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
-        const real ups_d_c_in_axes2_yz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_y -
-            v.inv_ups_q_3*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
-            v.inv_ups_q_3*ups_J_group_2_in_axes2_yz);
-        const real ups_J_group_2_in_axes2_xx = m->ups_J_group_2_in_axes2_xx[i];
-        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
-        const real ups_J_group_2_in_axes2_yy = m->ups_J_group_2_in_axes2_yy[i];
-        const real ups_d_c_in_axes2_zz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_z -
-            ups_d_phi_3_in_axes2_yy -
-            v.inv_ups_root_1*(v.ups_e_1_in_axes2_x*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz
-            - ups_h_3_in_spec2_z - v.inv_ups_q_3*ups_J_group_2_in_axes2_xy) -
-            v.ups_c_2*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz - ups_h_3_in_spec2_x -
-            v.inv_ups_q_3*ups_J_group_2_in_axes2_yy));
-        /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
-        const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
-        const real ups_Q_t_3 = v.axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy -
-            v.axis_y_ups_axes2_x*ups_Q_t - v.axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
-        const real ups_Q_t_4 = v.axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy -
-            v.axis_y_ups_axes2_y*ups_Q_t - v.axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-        const real ups_Q_t_5 = v.axis_y_ups_axes2_z*ups_Q_t +
-            v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz -
-            v.axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy;
-        const real ups_Q_t_6 = v.axis_x_ups_axes2_x*ups_d_c_in_axes2_xz +
-            v.axis_z_ups_axes2_x*ups_Q_t_2;
-        const real ups_Q_t_7 = v.axis_x_ups_axes2_y*ups_d_c_in_axes2_xz +
-            v.axis_z_ups_axes2_y*ups_Q_t_2;
-        const real ups_Q_t_8 = v.axis_x_ups_axes2_z*ups_d_c_in_axes2_xz +
-            v.axis_z_ups_axes2_z*ups_Q_t_2;
-        const real ups_Q_t_9 = v.axis_z_ups_axes2_x*ups_Q_t_6 - v.axis_y_ups_axes2_x*ups_Q_t_3;
-        const real ups_Q_xx = -2*ups_Q_t_9;
-        const real ups_Q_xy = v.axis_y_ups_axes2_x*ups_Q_t_4 + v.axis_y_ups_axes2_y*ups_Q_t_3 -
-            v.axis_z_ups_axes2_x*ups_Q_t_7 - v.axis_z_ups_axes2_y*ups_Q_t_6;
-        const real ups_Q_xz = v.axis_y_ups_axes2_z*ups_Q_t_3 - v.axis_y_ups_axes2_x*ups_Q_t_5 -
-            v.axis_z_ups_axes2_x*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_6;
-        const real ups_Q_t_10 = v.axis_z_ups_axes2_y*ups_Q_t_7 - v.axis_y_ups_axes2_y*ups_Q_t_4;
-        const real ups_Q_yy = -2*ups_Q_t_10;
-        const real ups_Q_yz = v.axis_y_ups_axes2_z*ups_Q_t_4 - v.axis_y_ups_axes2_y*ups_Q_t_5 -
-            v.axis_z_ups_axes2_y*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_7;
-        const real ups_Q_t_11 = v.axis_y_ups_axes2_z*ups_Q_t_5 + v.axis_z_ups_axes2_z*ups_Q_t_8;
-        const real ups_Q_zz = -2*ups_Q_t_11;
-        /* (M_ta) coupling block of M */
-        const real ups_M_ta_t = ups_Q_xy*v.ups_q_z;
-        const real ups_M_ta_t_2 = ups_Q_xz*v.ups_q_y;
-        const real ups_M_ta_t_3 = ups_M_ta_t_2 - ups_M_ta_t;
-        const real ups_M_ta_t_4 = ups_Q_xx*v.ups_q_z - ups_Q_xz*v.ups_q_x;
-        const real ups_M_ta_t_5 = ups_Q_xy*v.ups_q_x - ups_Q_xx*v.ups_q_y;
-        const real ups_M_ta_t_6 = ups_Q_yz*v.ups_q_y - ups_Q_yy*v.ups_q_z;
-        const real ups_M_ta_t_7 = ups_Q_yz*v.ups_q_x;
-        const real ups_M_ta_t_8 = ups_M_ta_t - ups_M_ta_t_7;
-        const real ups_M_ta_t_9 = ups_Q_yy*v.ups_q_x - ups_Q_xy*v.ups_q_y;
-        const real ups_M_ta_t_10 = ups_Q_zz*v.ups_q_y - ups_Q_yz*v.ups_q_z;
-        const real ups_M_ta_t_11 = ups_Q_xz*v.ups_q_z - ups_Q_zz*v.ups_q_x;
-        const real ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2;
-        /* (M_aa) rotational block of M */
-        const real ups_M_aa_t = ups_M_ta_t_10*v.ups_q_y - ups_M_ta_t_6*v.ups_q_z;
-        const real ups_M_aa_t_2 = ups_M_ta_t_11*v.ups_q_y - ups_M_ta_t_8*v.ups_q_z;
-        const real ups_M_aa_t_3 = ups_M_ta_t_12*v.ups_q_y - ups_M_ta_t_9*v.ups_q_z;
-        const real ups_M_aa_t_4 = ups_M_ta_t_4*v.ups_q_z - ups_M_ta_t_11*v.ups_q_x;
-        const real ups_M_aa_t_5 = ups_M_ta_t_5*v.ups_q_z - ups_M_ta_t_12*v.ups_q_x;
-        const real ups_M_aa_t_6 = ups_M_ta_t_9*v.ups_q_x - ups_M_ta_t_5*v.ups_q_y;
-        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        const real ups_H_a_3_x = v.axis_x_ups_axes2_z*v.ups_q_y - v.axis_x_ups_axes2_y*v.ups_q_z;
-        const real ups_H_a_3_y = v.axis_x_ups_axes2_x*v.ups_q_z - v.axis_x_ups_axes2_z*v.ups_q_x;
-        const real ups_H_a_3_z = v.axis_x_ups_axes2_y*v.ups_q_x - v.axis_x_ups_axes2_x*v.ups_q_y;
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, ups_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, ups_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, ups_Q_xz);  /* M_tt_xz */
-        gather(&terms[3*count + k], add, ups_Q_yy);  /* M_tt_yy_of_legs */
-        gather(&terms[4*count + k], add, ups_Q_yz);  /* M_tt_yz */
-        gather(&terms[5*count + k], add, ups_Q_zz);  /* M_tt_zz_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[6*count + k], add, ups_M_ta_t_3);  /* M_ta_xx */
-        gather(&terms[7*count + k], add, ups_M_ta_t_4);  /* M_ta_xy_of_legs */
-        gather(&terms[8*count + k], add, ups_M_ta_t_5);  /* M_ta_xz_of_legs */
-        gather(&terms[9*count + k], add, ups_M_ta_t_6);  /* M_ta_yx_of_legs */
-        gather(&terms[10*count + k], add, ups_M_ta_t_8);  /* M_ta_yy */
-        gather(&terms[11*count + k], add, ups_M_ta_t_9);  /* M_ta_yz_of_legs */
-        gather(&terms[12*count + k], add, ups_M_ta_t_10);  /* M_ta_zx_of_legs */
-        gather(&terms[13*count + k], add, ups_M_ta_t_11);  /* M_ta_zy_of_legs */
-        gather(&terms[14*count + k], add, ups_M_ta_t_12);  /* M_ta_zz */
-        /* (M_aa) rotational block of M */
-        gather(&terms[15*count + k], add, ups_M_aa_t);  /* M_aa_xx_of_legs */
-        gather(&terms[16*count + k], add, ups_M_aa_t_2);  /* M_aa_xy_of_legs */
-        gather(&terms[17*count + k], add, ups_M_aa_t_3);  /* M_aa_xz_of_legs */
-        gather(&terms[18*count + k], add, ups_M_aa_t_4);  /* M_aa_yy_of_legs */
-        gather(&terms[19*count + k], add, ups_M_aa_t_5);  /* M_aa_yz_of_legs */
-        gather(&terms[20*count + k], add, ups_M_aa_t_6);  /* M_aa_zz_of_legs */
-        /* (Z_t) translational part of Z */
-        gather(&terms[21*count + k], add, v.ups_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[22*count + k], add, v.ups_U_y);  /* Z_t_y_of_legs */
-        gather(&terms[23*count + k], add, v.ups_U_z);  /* Z_t_z_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[24*count + k], add, v.ups_Z_a_t);  /* Z_a_x_of_legs */
-        gather(&terms[25*count + k], add, v.ups_Z_a_t_2);  /* Z_a_y_of_legs */
-        gather(&terms[26*count + k], add, v.ups_Z_a_t_3);  /* Z_a_z_of_legs */
-        /* (ups-w_3) reciprocal vector 3 */
-        o[0*count + k] = v.axis_x_ups_axes2_x;
-        o[1*count + k] = v.axis_x_ups_axes2_y;
-        o[2*count + k] = v.axis_x_ups_axes2_z;
-        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        o[3*count + k] = ups_H_a_3_x;
-        o[4*count + k] = ups_H_a_3_y;
-        o[5*count + k] = ups_H_a_3_z;
-        o[7*count + k] = (v.axis_x_ups_axes2_x + (v.axis_x_ups_axes2_y + v.axis_x_ups_axes2_z)) +
-            (ups_H_a_3_x + (ups_H_a_3_y + ups_H_a_3_z));
-        o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
-    }
+    values_ups v;
+    stage_ups_X(m, w, i, j, s, X, &v);
+    stage_ups_V_X(w, j, V, &v);
+    stage_ups_Z_dynamics(m, w, i, j, V, &v);
+    /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+    const real ups_d_alpha_1_in_axes2_xz = v.inv_ups_root_1*v.ups_e_1_in_axes2_x;
+    /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
+       about its reference point */
+    const real ups_d_phi_3_in_axes2_xy = v.inv_ups_q_3*m->ups_h_3_in_spec2_z[i];
+    const real ups_d_phi_3_in_axes2_yy = v.inv_ups_q_3*m->ups_h_3_in_spec2_x[i];
+    /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real ups_d_c_in_axes2_xz = v.inv_ups_q_3*m->ups_h_3_in_spec2_y[i];
+    const real ups_d_c_in_axes2_yy = -ups_d_phi_3_in_axes2_yy -
+        v.inv_ups_q_3*(m->ups_h_3_in_spec2_x[i] +
+        v.inv_ups_q_3*m->ups_J_group_2_in_axes2_zz[i]);
+    const real ups_d_c_in_axes2_yz = ups_d_alpha_1_in_axes2_xz*m->ups_h_3_in_spec2_y[i] -
+        v.inv_ups_q_3*(m->ups_J_group_2_in_axes2_xz[i]*ups_d_alpha_1_in_axes2_xz -
+        v.inv_ups_q_3*m->ups_J_group_2_in_axes2_yz[i]);
+    const real ups_d_c_in_axes2_zz = ups_d_alpha_1_in_axes2_xz*m->ups_h_3_in_spec2_z[i] -
+        ups_d_phi_3_in_axes2_yy -
+        v.inv_ups_root_1*(v.ups_e_1_in_axes2_x*(m->ups_J_group_2_in_axes2_xx[i]*ups_d_alpha_1_in_axes2_xz
+        - m->ups_h_3_in_spec2_z[i] - v.inv_ups_q_3*m->ups_J_group_2_in_axes2_xy[i]) -
+        v.ups_c_2*(m->ups_J_group_2_in_axes2_xy[i]*ups_d_alpha_1_in_axes2_xz -
+        m->ups_h_3_in_spec2_x[i] - v.inv_ups_q_3*m->ups_J_group_2_in_axes2_yy[i]));
+    /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
+    const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
+    const real ups_Q_t_3 = v.axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy -
+        v.axis_y_ups_axes2_x*ups_Q_t - v.axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_4 = v.axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy -
+        v.axis_y_ups_axes2_y*ups_Q_t - v.axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_5 = v.axis_y_ups_axes2_z*ups_Q_t +
+        v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz -
+        v.axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy;
+    const real ups_Q_t_6 = v.axis_x_ups_axes2_x*ups_d_c_in_axes2_xz +
+        v.axis_z_ups_axes2_x*ups_Q_t_2;
+    const real ups_Q_t_7 = v.axis_x_ups_axes2_y*ups_d_c_in_axes2_xz +
+        v.axis_z_ups_axes2_y*ups_Q_t_2;
+    const real ups_Q_t_8 = v.axis_x_ups_axes2_z*ups_d_c_in_axes2_xz +
+        v.axis_z_ups_axes2_z*ups_Q_t_2;
+    const real ups_Q_t_9 = v.axis_z_ups_axes2_x*ups_Q_t_6 - v.axis_y_ups_axes2_x*ups_Q_t_3;
+    const real ups_Q_xx = -2*ups_Q_t_9;
+    const real ups_Q_xy = v.axis_y_ups_axes2_x*ups_Q_t_4 + v.axis_y_ups_axes2_y*ups_Q_t_3 -
+        v.axis_z_ups_axes2_x*ups_Q_t_7 - v.axis_z_ups_axes2_y*ups_Q_t_6;
+    const real ups_Q_xz = v.axis_y_ups_axes2_z*ups_Q_t_3 - v.axis_y_ups_axes2_x*ups_Q_t_5 -
+        v.axis_z_ups_axes2_x*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_6;
+    const real ups_Q_t_10 = v.axis_z_ups_axes2_y*ups_Q_t_7 - v.axis_y_ups_axes2_y*ups_Q_t_4;
+    const real ups_Q_yy = -2*ups_Q_t_10;
+    const real ups_Q_yz = v.axis_y_ups_axes2_z*ups_Q_t_4 - v.axis_y_ups_axes2_y*ups_Q_t_5 -
+        v.axis_z_ups_axes2_y*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_7;
+    const real ups_Q_t_11 = v.axis_y_ups_axes2_z*ups_Q_t_5 + v.axis_z_ups_axes2_z*ups_Q_t_8;
+    const real ups_Q_zz = -2*ups_Q_t_11;
+    /* (M_ta) coupling block of M */
+    const real ups_M_ta_t = ups_Q_xy*v.ups_q_z;
+    const real ups_M_ta_t_2 = ups_Q_xz*v.ups_q_y;
+    const real ups_M_ta_t_3 = ups_M_ta_t_2 - ups_M_ta_t;
+    const real ups_M_ta_t_4 = ups_Q_xx*v.ups_q_z - ups_Q_xz*v.ups_q_x;
+    const real ups_M_ta_t_5 = ups_Q_xy*v.ups_q_x - ups_Q_xx*v.ups_q_y;
+    const real ups_M_ta_t_6 = ups_Q_yz*v.ups_q_y - ups_Q_yy*v.ups_q_z;
+    const real ups_M_ta_t_7 = ups_Q_yz*v.ups_q_x;
+    const real ups_M_ta_t_8 = ups_M_ta_t - ups_M_ta_t_7;
+    const real ups_M_ta_t_9 = ups_Q_yy*v.ups_q_x - ups_Q_xy*v.ups_q_y;
+    const real ups_M_ta_t_10 = ups_Q_zz*v.ups_q_y - ups_Q_yz*v.ups_q_z;
+    const real ups_M_ta_t_11 = ups_Q_xz*v.ups_q_z - ups_Q_zz*v.ups_q_x;
+    const real ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2;
+    /* (M_aa) rotational block of M */
+    const real ups_M_aa_t = ups_M_ta_t_10*v.ups_q_y - ups_M_ta_t_6*v.ups_q_z;
+    const real ups_M_aa_t_2 = ups_M_ta_t_11*v.ups_q_y - ups_M_ta_t_8*v.ups_q_z;
+    const real ups_M_aa_t_3 = ups_M_ta_t_12*v.ups_q_y - ups_M_ta_t_9*v.ups_q_z;
+    const real ups_M_aa_t_4 = ups_M_ta_t_4*v.ups_q_z - ups_M_ta_t_11*v.ups_q_x;
+    const real ups_M_aa_t_5 = ups_M_ta_t_5*v.ups_q_z - ups_M_ta_t_12*v.ups_q_x;
+    const real ups_M_aa_t_6 = ups_M_ta_t_9*v.ups_q_x - ups_M_ta_t_5*v.ups_q_y;
+    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
+    const real ups_H_a_3_x = v.axis_x_ups_axes2_z*v.ups_q_y - v.axis_x_ups_axes2_y*v.ups_q_z;
+    const real ups_H_a_3_y = v.axis_x_ups_axes2_x*v.ups_q_z - v.axis_x_ups_axes2_z*v.ups_q_x;
+    const real ups_H_a_3_z = v.axis_x_ups_axes2_y*v.ups_q_x - v.axis_x_ups_axes2_x*v.ups_q_y;
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, ups_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, ups_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, ups_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, ups_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, ups_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, ups_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) */
+    gather(&terms[6*count + k], add, ups_M_ta_t_3);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, ups_M_ta_t_4);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, ups_M_ta_t_5);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, ups_M_ta_t_6);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, ups_M_ta_t_8);  /* M_ta_yy */
+    gather(&terms[11*count + k], add, ups_M_ta_t_9);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, ups_M_ta_t_10);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, ups_M_ta_t_11);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, ups_M_ta_t_12);  /* M_ta_zz */
+    /* (M_aa) */
+    gather(&terms[15*count + k], add, ups_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, ups_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, ups_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, ups_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, ups_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, ups_M_aa_t_6);  /* M_aa_zz_of_legs */
+    /* (Z_t) translational part of Z */
+    gather(&terms[21*count + k], add, v.ups_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[22*count + k], add, v.ups_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[23*count + k], add, v.ups_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[24*count + k], add, v.ups_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[25*count + k], add, v.ups_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[26*count + k], add, v.ups_Z_a_t_3);  /* Z_a_z_of_legs */
+    /* (ups-w_3) reciprocal vector 3 */
+    o[0*count + k] = v.axis_x_ups_axes2_x;
+    o[1*count + k] = v.axis_x_ups_axes2_y;
+    o[2*count + k] = v.axis_x_ups_axes2_z;
+    /* (ups-H_a_3) */
+    o[3*count + k] = ups_H_a_3_x;
+    o[4*count + k] = ups_H_a_3_y;
+    o[5*count + k] = ups_H_a_3_z;
+    o[7*count + k] = (v.axis_x_ups_axes2_x + (v.axis_x_ups_axes2_y + v.axis_x_ups_axes2_z)) +
+        (ups_H_a_3_x + (ups_H_a_3_y + ups_H_a_3_z));
+    o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void dynamics_place_ups(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *H, verdict *t)
+INLINE void dynamics_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real
+    *o, real *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        H[(3*NU + leg)*w + k] = o[3*count + first + k];
-        H[(4*NU + leg)*w + k] = o[4*count + first + k];
-        H[(5*NU + leg)*w + k] = o[5*count + first + k];
-        t->singular[k] += o[6*count + first + k];
-        t->total[k] += o[7*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    H[(3*NU + i)*w + k] = o[3*count + at];
+    H[(4*NU + i)*w + k] = o[4*count + at];
+    H[(5*NU + i)*w + k] = o[5*count + at];
+    t->singular[k] += o[6*count + at];
+    t->total[k] += o[7*count + at];
 }
 
-INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
+INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_tube v;
-        stage_tube_X(m, w, i, j, s, X, &v);
-        stage_tube_V_X(w, j, V, &v);
-        stage_tube_Z_dynamics(m, i, &v);
-        stage_tube_dynamics_required(&v);
-        /* (tube-w_1) force part of reciprocal wrench 1 */
-        const real tube_w_1_t_76 = v.inv_tube_w_1_t_75*v.tube_w_1_t_70;
-        const real tube_w_1_t_77 = v.inv_tube_w_1_t_75*v.tube_w_1_t_71;
-        const real tube_w_1_in_axes2_y = v.inv_tube_w_1_t_75*tube_w_1_t_76;
-        const real tube_w_1_in_axes2_z = v.inv_tube_w_1_t_75*tube_w_1_t_77;
-        const real tube_w_1_in_axes1_x = v.tube_e_1_in_axes2_x*tube_w_1_in_axes2_y;
-        const real tube_w_1_t_78 = v.tube_c_2*tube_w_1_in_axes2_y;
-        /* (tube-m1_w_1) moment part 1 of reciprocal wrench 1 */
-        const real tube_m1_w_1_t = v.inv_tube_w_1_t_75*v.tube_w_1_t_72;
-        const real tube_m1_w_1 = R(1.35)*v.inv_tube_w_1_t_75*tube_m1_w_1_t;
-        /* (tube-m2_w_1) moment part 2 of reciprocal wrench 1 */
-        const real tube_m2_w_1_t = v.inv_tube_w_1_t_75*v.tube_w_1_t_73;
-        const real tube_m2_w_1 = -R(1.35)*v.inv_tube_w_1_t_75*tube_m2_w_1_t;
-        /* (tube-m3_w_1) moment part 3 of reciprocal wrench 1 */
-        const real tube_m3_w_1_t = v.inv_tube_w_1_t_75*v.tube_w_1_t_74;
-        const real tube_m3_w_1 = R(1.35)*v.inv_tube_w_1_t_75*tube_m3_w_1_t;
-        /* (tube-w_2) force part of reciprocal wrench 2 */
-        const real tube_w_2_t = v.inv_tube_w_1_t_13*v.inv_tube_w_1_t_33*v.tube_w_1_t_17;
-        const real tube_w_2_t_2 = v.inv_tube_w_1_t_49*(v.inv_tube_w_1_t_13*v.tube_w_1_t_21 -
-            v.tube_w_1_t_37*tube_w_2_t);
-        const real tube_w_2_t_3 = v.inv_tube_w_1_t_63*(v.tube_w_1_t_41*tube_w_2_t +
-            v.tube_w_1_t_53*tube_w_2_t_2 - v.inv_tube_w_1_t_13*v.tube_w_1_t_25);
-        const real tube_w_2_t_4 = v.inv_tube_w_1_t_75*(v.inv_tube_w_1_t_13*v.tube_w_1_t_29 +
-            v.tube_w_1_t_69*tube_w_2_t_3 - v.tube_w_1_t_45*tube_w_2_t -
-            v.tube_w_1_t_58*tube_w_2_t_2);
-        const real tube_w_2_in_axes2_y = v.inv_tube_w_1_t_13*v.tube_w_1_t_14 +
-            v.tube_w_1_t_34*tube_w_2_t + v.tube_w_1_t_50*tube_w_2_t_2 +
-            v.tube_w_1_t_64*tube_w_2_t_3 - tube_w_1_t_76*tube_w_2_t_4;
-        const real tube_w_2_in_axes2_z = v.inv_tube_w_1_t_49*tube_w_2_t_2 +
-            v.tube_w_1_t_65*tube_w_2_t_3 - tube_w_1_t_77*tube_w_2_t_4;
-        /* (tube-m1_w_2) moment part 1 of reciprocal wrench 2 */
-        const real tube_m1_w_2_t = v.inv_tube_w_1_t_13*v.tube_w_1_t_15 +
-            v.tube_w_1_t_35*tube_w_2_t + v.tube_w_1_t_51*tube_w_2_t_2 +
-            v.tube_w_1_t_66*tube_w_2_t_3 - tube_m1_w_1_t*tube_w_2_t_4;
-        const real tube_m1_w_2 = R(1.35)*tube_m1_w_2_t;
-        /* (tube-m2_w_2) moment part 2 of reciprocal wrench 2 */
-        const real tube_m2_w_2_t = tube_m2_w_1_t*tube_w_2_t_4 + v.tube_w_1_t_67*tube_w_2_t_3;
-        const real tube_m2_w_2 = R(1.35)*tube_m2_w_2_t;
-        /* (tube-m3_w_2) moment part 3 of reciprocal wrench 2 */
-        const real tube_m3_w_2_t = v.inv_tube_w_1_t_13*v.tube_w_1_t_16 +
-            v.tube_w_1_t_36*tube_w_2_t + v.tube_w_1_t_52*tube_w_2_t_2 +
-            v.tube_w_1_t_68*tube_w_2_t_3 - tube_m3_w_1_t*tube_w_2_t_4;
-        const real tube_m3_w_2 = R(1.35)*tube_m3_w_2_t;
-        /* (tube-o_1) moment part of reciprocal wrench 1 */
-        const real tube_o_1_in_axes2_x = -v.tube_end_p2_in_axes2_y*tube_m2_w_1 -
-            v.tube_end_p3_in_axes2_z*tube_m3_w_1;
-        const real tube_o_1_in_axes2_y = tube_m2_w_1*v.tube_n_m2_in_axes2_y -
-            v.tube_end_p1_in_axes2_z*tube_m1_w_1;
-        const real tube_o_1_in_axes2_z = tube_m1_w_1*v.tube_n_m1_in_axes2_z +
-            tube_m3_w_1*v.tube_n_m3_in_axes2_z;
-        /* (tube-o_2) moment part of reciprocal wrench 2 */
-        const real tube_o_2_in_axes2_x = -v.tube_end_p2_in_axes2_y*tube_m2_w_2 -
-            v.tube_end_p3_in_axes2_z*tube_m3_w_2;
-        const real tube_o_2_in_axes2_y = tube_m2_w_2*v.tube_n_m2_in_axes2_y -
-            v.tube_end_p1_in_axes2_z*tube_m1_w_2;
-        const real tube_o_2_in_axes2_z = tube_m1_w_2*v.tube_n_m1_in_axes2_z +
-            tube_m3_w_2*v.tube_n_m3_in_axes2_z;
-        /* (tube-qd_1) rate of joint 1 */
-        const real tube_qd_1_t = R(1.35)*v.tube_eta_1;
-        const real tube_qd_1_t_2 = R(1.35)*v.tube_eta_2;
-        const real tube_qd_1_t_3 = R(1.35)*v.tube_eta_3;
-        const real tube_qd_1 = v.inv_tube_w_1_t_75*(v.tube_S_dot_in_axes2_y*tube_w_1_t_76 +
-            v.tube_S_dot_in_axes2_z*tube_w_1_t_77 + tube_m1_w_1_t*tube_qd_1_t +
-            tube_m3_w_1_t*tube_qd_1_t_3 - tube_m2_w_1_t*tube_qd_1_t_2);
-        /* (tube-qd_2) rate of joint 2 */
-        const real tube_qd_2_t = v.inv_tube_w_1_t_63*(v.tube_S_dot_in_axes2_y*v.tube_w_1_t_64 +
-            v.tube_S_dot_in_axes2_z*v.tube_w_1_t_65 + tube_qd_1_t*v.tube_w_1_t_66 +
-            tube_qd_1_t_2*v.tube_w_1_t_67 + tube_qd_1_t_3*v.tube_w_1_t_68 -
-            tube_qd_1*v.tube_w_1_t_69);
-        const real tube_qd_2_t_2 =
-            v.inv_tube_w_1_t_49*(v.inv_tube_w_1_t_49*v.tube_S_dot_in_axes2_z +
-            v.tube_S_dot_in_axes2_y*v.tube_w_1_t_50 + tube_qd_1*v.tube_w_1_t_58 +
-            tube_qd_1_t*v.tube_w_1_t_51 + tube_qd_1_t_3*v.tube_w_1_t_52 +
-            tube_qd_2_t*v.tube_w_1_t_53);
-        const real tube_qd_2_t_3 = v.tube_S_dot_in_axes2_y*v.tube_w_1_t_14 +
-            tube_qd_1_t*v.tube_w_1_t_15 + tube_qd_1_t_3*v.tube_w_1_t_16 +
-            tube_qd_2_t_2*v.tube_w_1_t_21 +
-            v.inv_tube_w_1_t_33*v.tube_w_1_t_17*(v.tube_S_dot_in_axes2_y*v.tube_w_1_t_34 +
-            tube_qd_1*v.tube_w_1_t_45 + tube_qd_1_t*v.tube_w_1_t_35 +
-            tube_qd_1_t_3*v.tube_w_1_t_36 + tube_qd_2_t*v.tube_w_1_t_41 -
-            tube_qd_2_t_2*v.tube_w_1_t_37) - tube_qd_1*v.tube_w_1_t_29 -
-            tube_qd_2_t*v.tube_w_1_t_25;
-        const real tube_qd_2 = v.inv_tube_w_1_t_13*tube_qd_2_t_3;
-        /* (tube-omega_1) angular velocity of link 1 */
-        const real tube_omega_1_in_axes2_x = v.tube_e_1_in_axes2_x*tube_qd_1;
-        const real tube_omega_1_in_axes2_y = -v.tube_c_2*tube_qd_1;
-        /* (tube-W_2) centripetal tensor of link 2 */
-        const real tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2;
-        const real tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2;
-        const real tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y;
-        /* (tube-bias) acceleration of the connection point at zero joint accelerations */
-        const real tube_bias_t = tube_W_2_in_axes2_xz*v.tube_q_3;
-        const real tube_bias_t_2 = -tube_W_2_in_axes2_xy*v.tube_q_3;
-        const real tube_bias_t_4 = v.tube_bias_t_3*tube_qd_2;
-        const real tube_bias_t_5 = v.tube_bias_t_3*tube_omega_1_in_axes2_y;
-        const real tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2;
-        const real tube_bias_in_axes2_z = 2*tube_bias_t - tube_bias_t_5;
-        /* (tube-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-           */
-        const real tube_rel_o_in_axes2_y = v.axis_y_tube_axes2_x*v.tube_u_1_x +
-            v.axis_y_tube_axes2_y*v.tube_u_1_y + v.axis_y_tube_axes2_z*v.tube_u_1_z -
-            tube_bias_in_axes2_y;
-        const real tube_rel_o_in_axes2_z = v.axis_z_tube_axes2_x*v.tube_u_1_x +
-            v.axis_z_tube_axes2_y*v.tube_u_1_y + v.axis_z_tube_axes2_z*v.tube_u_1_z -
-            tube_bias_in_axes2_z;
-        /* (tube-nd_m1) rate of moment direction 1 */
-        const real tube_nd_m1_in_axes2_y = v.tube_end_p1_in_axes2_x*v.tube_omega_in_axes2_y -
-            v.tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
-            v.tube_n_m1_in_axes2_z*v.tube_omega_in_axes2_x;
-        const real tube_nd_m1_in_axes2_z = v.tube_end_p1_in_axes2_x*v.tube_omega_in_axes2_z -
-            v.tube_end_p1_in_axes2_x*tube_qd_2 - v.tube_end_p1_in_axes2_z*v.tube_omega_in_axes2_x;
-        /* (tube-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real tube_nu_1_t = tube_omega_1_in_axes2_x - v.tube_omega_in_axes2_x;
-        const real tube_nu_1_t_2 = v.tube_omega_in_axes2_y - tube_omega_1_in_axes2_y;
-        const real tube_nu_1_t_3 = v.tube_omega_in_axes2_z - tube_qd_2;
-        const real tube_nu_1_t_4 = tube_nd_m1_in_axes2_y*tube_nu_1_t_2 +
-            tube_nd_m1_in_axes2_z*tube_nu_1_t_3 - tube_nu_1_t*(v.tube_end_p1_in_axes2_z*tube_qd_2
-            + v.tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y);
-        const real tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*v.tube_end_p1_in_axes2_z;
-        /* (tube-nd_m2) rate of moment direction 2 */
-        const real tube_nd_m2_in_axes2_x = v.tube_end_p2_in_axes2_z*v.tube_omega_in_axes2_x -
-            v.tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
-            v.tube_n_m2_in_axes2_y*v.tube_omega_in_axes2_z;
-        const real tube_nd_m2_in_axes2_y = v.tube_end_p2_in_axes2_z*v.tube_omega_in_axes2_y -
-            v.tube_end_p2_in_axes2_y*v.tube_omega_in_axes2_z -
-            v.tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y;
-        /* (tube-nu_2) bias of the angular acceleration along moment direction 2 */
-        const real tube_nu_2_t = -tube_W_2_in_axes2_xz*v.tube_n_m2_in_axes2_y -
-            tube_W_2_in_axes2_yz*v.tube_end_p2_in_axes2_y;
-        const real tube_nu_2_t_2 = tube_nd_m2_in_axes2_y*tube_nu_1_t_2 -
-            tube_nd_m2_in_axes2_x*tube_nu_1_t -
-            tube_nu_1_t_3*(-v.tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
-            v.tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x);
-        const real tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t;
-        /* (tube-nd_m3) rate of moment direction 3 */
-        const real tube_nd_m3_in_axes2_x = v.tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
-            v.tube_n_m3_in_axes2_z*v.tube_omega_in_axes2_y -
-            v.tube_end_p3_in_axes2_y*v.tube_omega_in_axes2_x;
-        const real tube_nd_m3_in_axes2_z = v.tube_end_p3_in_axes2_y*tube_qd_2 +
-            v.tube_end_p3_in_axes2_z*v.tube_omega_in_axes2_y -
-            v.tube_end_p3_in_axes2_y*v.tube_omega_in_axes2_z;
-        /* (tube-nu_3) bias of the angular acceleration along moment direction 3 */
-        const real tube_nu_3_t = tube_nd_m3_in_axes2_x*tube_nu_1_t +
-            tube_nu_1_t_2*(v.tube_end_p3_in_axes2_z*tube_qd_2 +
-            v.tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
-        const real tube_nu_3 = tube_W_2_in_axes2_yz*v.tube_end_p3_in_axes2_z - tube_nu_3_t;
-        /* (tube-qdd_1_o) remainder of: acceleration of joint 1 */
-        const real tube_qdd_1_o_t = R(1.35)*tube_nu_1;
-        const real tube_qdd_1_o_t_2 = R(1.35)*tube_nu_2;
-        const real tube_qdd_1_o_t_3 = R(1.35)*tube_nu_3;
-        const real tube_qdd_1_o = v.inv_tube_w_1_t_75*(tube_m1_w_1_t*tube_qdd_1_o_t +
-            tube_m3_w_1_t*tube_qdd_1_o_t_3 + tube_rel_o_in_axes2_y*tube_w_1_t_76 +
-            tube_rel_o_in_axes2_z*tube_w_1_t_77 - tube_m2_w_1_t*tube_qdd_1_o_t_2);
-        /* (tube-qdd_2_o) remainder of: acceleration of joint 2 */
-        const real tube_qdd_2_o_t = v.inv_tube_w_1_t_63*(tube_qdd_1_o_t*v.tube_w_1_t_66 +
-            tube_qdd_1_o_t_2*v.tube_w_1_t_67 + tube_qdd_1_o_t_3*v.tube_w_1_t_68 +
-            tube_rel_o_in_axes2_y*v.tube_w_1_t_64 + tube_rel_o_in_axes2_z*v.tube_w_1_t_65 -
-            tube_qdd_1_o*v.tube_w_1_t_69);
-        const real tube_qdd_2_o_t_2 =
-            v.inv_tube_w_1_t_49*(v.inv_tube_w_1_t_49*tube_rel_o_in_axes2_z +
-            tube_qdd_1_o*v.tube_w_1_t_58 + tube_qdd_1_o_t*v.tube_w_1_t_51 +
-            tube_qdd_1_o_t_3*v.tube_w_1_t_52 + tube_qdd_2_o_t*v.tube_w_1_t_53 +
-            tube_rel_o_in_axes2_y*v.tube_w_1_t_50);
-        const real tube_qdd_2_o_t_3 = tube_qdd_1_o_t*v.tube_w_1_t_15 +
-            tube_qdd_1_o_t_3*v.tube_w_1_t_16 + tube_qdd_2_o_t_2*v.tube_w_1_t_21 +
-            tube_rel_o_in_axes2_y*v.tube_w_1_t_14 +
-            v.inv_tube_w_1_t_33*v.tube_w_1_t_17*(tube_qdd_1_o*v.tube_w_1_t_45 +
-            tube_qdd_1_o_t*v.tube_w_1_t_35 + tube_qdd_1_o_t_3*v.tube_w_1_t_36 +
-            tube_qdd_2_o_t*v.tube_w_1_t_41 + tube_rel_o_in_axes2_y*v.tube_w_1_t_34 -
-            tube_qdd_2_o_t_2*v.tube_w_1_t_37) - tube_qdd_1_o*v.tube_w_1_t_29 -
-            tube_qdd_2_o_t*v.tube_w_1_t_25;
-        const real tube_qdd_2_o = v.inv_tube_w_1_t_13*tube_qdd_2_o_t_3;
-        /* (tube-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real tube_dalpha_alpha_1_t = v.tube_c_2*tube_o_1_in_axes2_x;
-        const real tube_dalpha_alpha_1_in_axes2_xy = v.tube_e_1_in_axes2_x*tube_o_1_in_axes2_y;
-        const real tube_dalpha_alpha_1_t_2 = v.tube_c_2*tube_o_1_in_axes2_y;
-        const real tube_dalpha_alpha_1_in_axes2_xx = v.tube_e_1_in_axes2_x*tube_o_1_in_axes2_x;
-        const real tube_dalpha_alpha_1_in_axes2_xz = v.tube_e_1_in_axes2_x*tube_o_1_in_axes2_z;
-        const real tube_dalpha_alpha_1_t_3 = v.tube_c_2*tube_o_1_in_axes2_z;
-        /* (tube-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real tube_d_alpha_1_in_axes2_xz = v.tube_e_1_in_axes2_x*tube_w_1_in_axes2_z;
-        const real tube_d_alpha_1_t = v.tube_c_2*tube_w_1_in_axes2_z;
-        /* (tube-alpha_1_o) remainder of: angular acceleration of link 1 */
-        const real tube_alpha_1_o_in_axes2_x = v.tube_e_1_in_axes2_x*tube_qdd_1_o;
-        const real tube_alpha_1_o_in_axes2_y = -v.tube_c_2*tube_qdd_1_o;
-        /* (tube-alpha_2_o) remainder of: angular acceleration of link 2 */
-        const real tube_alpha_2_o_in_axes2_x = tube_W_2_in_axes2_yz + tube_alpha_1_o_in_axes2_x;
-        const real tube_alpha_2_o_in_axes2_y = tube_alpha_1_o_in_axes2_y - tube_W_2_in_axes2_xz;
-        /* (tube-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real tube_B_2_o_in_axes2_xy = tube_W_2_in_axes2_xy - tube_qdd_2_o;
-        const real tube_B_2_o_in_axes2_yx = tube_W_2_in_axes2_xy + tube_qdd_2_o;
-        const real tube_B_2_o_in_axes2_zx = tube_W_2_in_axes2_xz - tube_alpha_2_o_in_axes2_y;
-        const real tube_B_2_o_in_axes2_zy = tube_W_2_in_axes2_yz + tube_alpha_2_o_in_axes2_x;
-        /* (tube-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
-        const real tube_dalpha_acc_3_in_axes2_yx = tube_o_2_in_axes2_x*v.tube_q_3;
-        const real tube_dalpha_acc_3_in_axes2_yy = tube_o_2_in_axes2_y*v.tube_q_3;
-        const real tube_dalpha_acc_3_in_axes2_yz = tube_o_2_in_axes2_z*v.tube_q_3;
-        const real tube_dalpha_acc_3_in_axes2_zx = tube_dalpha_alpha_1_t*v.tube_q_3;
-        const real tube_dalpha_acc_3_in_axes2_zy = tube_dalpha_alpha_1_t_2*v.tube_q_3;
-        const real tube_dalpha_acc_3_in_axes2_zz = tube_dalpha_alpha_1_t_3*v.tube_q_3;
-        /* (tube-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link
-           3, less gravity */
-        const real tube_d_acc_3_in_axes2_yy = v.tube_q_3*tube_w_2_in_axes2_y;
-        const real tube_d_acc_3_in_axes2_yz = v.tube_q_3*tube_w_2_in_axes2_z;
-        const real tube_d_acc_3_in_axes2_zy = v.tube_q_3*tube_w_1_t_78;
-        const real tube_d_acc_3_in_axes2_zz = tube_d_alpha_1_t*v.tube_q_3;
-        /* (tube-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-        const real tube_acc_3_o_in_axes2_y = tube_bias_t_4 + v.tube_q_3*tube_qdd_2_o -
-            tube_bias_t_2 - v.tube_g_in_axes2_y;
-        const real tube_acc_3_o_in_axes2_z = tube_bias_t - tube_bias_t_5 - v.tube_g_in_axes2_z -
-            tube_alpha_2_o_in_axes2_y*v.tube_q_3;
-        /* (tube-f_3_o) remainder of: inertia force of link 3 less its weight */
-        const real tube_f_3_o_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x;
-        const real tube_f_3_o_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y;
-        const real tube_f_3_o_t_3 = tube_qd_2*tube_qd_2;
-        const real tube_h_3_in_spec2_x = m->tube_h_3_in_spec2_x[i];
-        const real tube_h_3_in_spec2_y = m->tube_h_3_in_spec2_y[i];
-        const real tube_h_3_in_spec2_z = m->tube_h_3_in_spec2_z[i];
-        const real tube_link3_mass = m->tube_link3_mass[i];
-        const real tube_f_3_o_in_axes2_x = v.tube_acc_3_o_in_axes2_x*tube_link3_mass +
-            tube_alpha_1_o_in_axes2_y*tube_h_3_in_spec2_y -
-            tube_B_2_o_in_axes2_xy*tube_h_3_in_spec2_z - tube_h_3_in_spec2_x*(tube_f_3_o_t_2 +
-            tube_f_3_o_t_3);
-        const real tube_f_3_o_in_axes2_y = tube_B_2_o_in_axes2_yx*tube_h_3_in_spec2_x +
-            tube_acc_3_o_in_axes2_y*tube_link3_mass + tube_h_3_in_spec2_z*(tube_f_3_o_t +
-            tube_f_3_o_t_3) - tube_alpha_1_o_in_axes2_x*tube_h_3_in_spec2_y;
-        const real tube_f_3_o_in_axes2_z = tube_B_2_o_in_axes2_zx*tube_h_3_in_spec2_x +
-            tube_acc_3_o_in_axes2_z*tube_link3_mass - tube_B_2_o_in_axes2_zy*tube_h_3_in_spec2_z -
-            tube_h_3_in_spec2_y*(tube_f_3_o_t + tube_f_3_o_t_2);
-        /* (tube-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-           reference points */
-        const real tube_J_group_2_in_axes2_xy = m->tube_J_group_2_in_axes2_xy[i];
-        const real tube_J_group_2_in_axes2_xz = m->tube_J_group_2_in_axes2_xz[i];
-        const real tube_J_group_2_in_axes2_yz = m->tube_J_group_2_in_axes2_yz[i];
-        const real tube_Sigma_2_in_axes2_yy = m->tube_Sigma_2_in_axes2_yy[i];
-        const real tube_Sigma_2_in_axes2_zz = m->tube_Sigma_2_in_axes2_zz[i];
-        const real tube_h_2_in_spec2_y = m->tube_h_2_in_spec2_y[i];
-        const real tube_h_2_in_spec2_z = m->tube_h_2_in_spec2_z[i];
-        const real tube_mu_2_o_in_axes2_x = tube_B_2_o_in_axes2_yx*tube_J_group_2_in_axes2_xz +
-            tube_B_2_o_in_axes2_zy*tube_Sigma_2_in_axes2_yy +
-            tube_J_group_2_in_axes2_yz*(tube_f_3_o_t_2 - tube_f_3_o_t_3) +
-            tube_Sigma_2_in_axes2_zz*tube_alpha_1_o_in_axes2_x +
-            v.tube_g_in_axes2_y*tube_h_2_in_spec2_y + v.tube_g_in_axes2_z*tube_h_2_in_spec2_z -
-            tube_B_2_o_in_axes2_zx*tube_J_group_2_in_axes2_xy -
-            tube_acc_3_o_in_axes2_y*tube_h_3_in_spec2_y -
-            tube_acc_3_o_in_axes2_z*tube_h_3_in_spec2_z;
-        const real tube_Sigma_2_in_axes2_xx = m->tube_Sigma_2_in_axes2_xx[i];
-        const real tube_h_2_in_spec2_x = m->tube_h_2_in_spec2_x[i];
-        const real tube_mu_2_o_in_axes2_y = tube_B_2_o_in_axes2_zy*tube_J_group_2_in_axes2_xy +
-            tube_Sigma_2_in_axes2_zz*tube_alpha_1_o_in_axes2_y +
-            v.tube_acc_3_o_in_axes2_x*tube_h_3_in_spec2_y +
-            v.tube_g_in_axes2_z*tube_h_2_in_spec2_x -
-            tube_B_2_o_in_axes2_xy*tube_J_group_2_in_axes2_yz -
-            tube_B_2_o_in_axes2_zx*tube_Sigma_2_in_axes2_xx -
-            tube_J_group_2_in_axes2_xz*(tube_f_3_o_t - tube_f_3_o_t_3) -
-            tube_acc_3_o_in_axes2_z*tube_h_3_in_spec2_x - v.tube_g_in_axes2_x*tube_h_2_in_spec2_y;
-        const real tube_mu_2_o_in_axes2_z = tube_B_2_o_in_axes2_yx*tube_Sigma_2_in_axes2_xx +
-            tube_J_group_2_in_axes2_xy*(tube_f_3_o_t - tube_f_3_o_t_2) +
-            tube_J_group_2_in_axes2_xz*tube_alpha_1_o_in_axes2_x +
-            tube_J_group_2_in_axes2_yz*tube_alpha_1_o_in_axes2_y +
-            v.tube_acc_3_o_in_axes2_x*tube_h_3_in_spec2_z +
-            tube_acc_3_o_in_axes2_y*tube_h_3_in_spec2_x -
-            tube_B_2_o_in_axes2_xy*tube_Sigma_2_in_axes2_yy -
-            v.tube_g_in_axes2_x*tube_h_2_in_spec2_z - v.tube_g_in_axes2_y*tube_h_2_in_spec2_x;
-        /* (tube-dalpha_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
-        const real tube_J_group_2_in_axes2_zz = m->tube_J_group_2_in_axes2_zz[i];
-        const real tube_dalpha_N_2_in_axes2_zx =
-            tube_J_group_2_in_axes2_xz*tube_dalpha_alpha_1_in_axes2_xx +
-            tube_J_group_2_in_axes2_zz*tube_o_2_in_axes2_x +
-            tube_dalpha_acc_3_in_axes2_yx*tube_h_3_in_spec2_x +
-            v.tube_q_3*(tube_dalpha_acc_3_in_axes2_yx*tube_link3_mass +
-            tube_h_3_in_spec2_x*tube_o_2_in_axes2_x -
-            tube_dalpha_alpha_1_in_axes2_xx*tube_h_3_in_spec2_y) -
-            tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t;
-        const real tube_dalpha_N_2_in_axes2_zy =
-            tube_J_group_2_in_axes2_xz*tube_dalpha_alpha_1_in_axes2_xy +
-            tube_J_group_2_in_axes2_zz*tube_o_2_in_axes2_y +
-            tube_dalpha_acc_3_in_axes2_yy*tube_h_3_in_spec2_x +
-            v.tube_q_3*(tube_dalpha_acc_3_in_axes2_yy*tube_link3_mass +
-            tube_h_3_in_spec2_x*tube_o_2_in_axes2_y -
-            tube_dalpha_alpha_1_in_axes2_xy*tube_h_3_in_spec2_y) -
-            tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t_2;
-        const real tube_dalpha_N_2_in_axes2_zz =
-            tube_J_group_2_in_axes2_xz*tube_dalpha_alpha_1_in_axes2_xz +
-            tube_J_group_2_in_axes2_zz*tube_o_2_in_axes2_z +
-            tube_dalpha_acc_3_in_axes2_yz*tube_h_3_in_spec2_x +
-            v.tube_q_3*(tube_dalpha_acc_3_in_axes2_yz*tube_link3_mass +
-            tube_h_3_in_spec2_x*tube_o_2_in_axes2_z -
-            tube_dalpha_alpha_1_in_axes2_xz*tube_h_3_in_spec2_y) -
-            tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t_3;
-        /* (tube-d_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
-        const real tube_d_N_2_in_axes2_zy = tube_J_group_2_in_axes2_xz*tube_w_1_in_axes1_x +
-            tube_J_group_2_in_axes2_zz*tube_w_2_in_axes2_y +
-            tube_d_acc_3_in_axes2_yy*tube_h_3_in_spec2_x +
-            v.tube_q_3*(tube_d_acc_3_in_axes2_yy*tube_link3_mass +
-            tube_h_3_in_spec2_x*tube_w_2_in_axes2_y - tube_h_3_in_spec2_y*tube_w_1_in_axes1_x) -
-            tube_J_group_2_in_axes2_yz*tube_w_1_t_78;
-        const real tube_d_N_2_in_axes2_zz = tube_J_group_2_in_axes2_xz*tube_d_alpha_1_in_axes2_xz
-            + tube_J_group_2_in_axes2_zz*tube_w_2_in_axes2_z +
-            tube_d_acc_3_in_axes2_yz*tube_h_3_in_spec2_x +
-            v.tube_q_3*(tube_d_acc_3_in_axes2_yz*tube_link3_mass +
-            tube_h_3_in_spec2_x*tube_w_2_in_axes2_z -
-            tube_d_alpha_1_in_axes2_xz*tube_h_3_in_spec2_y) -
-            tube_J_group_2_in_axes2_yz*tube_d_alpha_1_t;
-        /* (tube-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
-           connection point left out */
-        const real tube_N_2_o_in_axes2_y = tube_mu_2_o_in_axes2_y -
-            tube_f_3_o_in_axes2_z*v.tube_q_3;
-        const real tube_N_2_o_in_axes2_z = tube_mu_2_o_in_axes2_z +
-            tube_f_3_o_in_axes2_y*v.tube_q_3;
-        /* (tube-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
-           links' inertia and weight */
-        const real tube_J_group_2_in_axes2_yy = m->tube_J_group_2_in_axes2_yy[i];
-        const real tube_dalpha_Gamma_1_t =
-            v.tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xx +
-            tube_J_group_2_in_axes2_yz*tube_o_2_in_axes2_x -
-            tube_J_group_2_in_axes2_yy*tube_dalpha_alpha_1_t -
-            tube_dalpha_acc_3_in_axes2_zx*tube_h_3_in_spec2_x -
-            v.tube_q_3*(tube_dalpha_acc_3_in_axes2_zx*tube_link3_mass +
-            tube_dalpha_alpha_1_t*tube_h_3_in_spec2_x -
-            tube_dalpha_alpha_1_in_axes2_xx*tube_h_3_in_spec2_z));
-        const real tube_J_group_2_in_axes2_xx = m->tube_J_group_2_in_axes2_xx[i];
-        const real tube_dalpha_Gamma_1_in_axes2_x =
-            v.tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xx +
-            tube_J_group_2_in_axes2_xz*tube_o_2_in_axes2_x -
-            tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_t -
-            tube_dalpha_acc_3_in_axes2_yx*tube_h_3_in_spec2_y -
-            tube_dalpha_acc_3_in_axes2_zx*tube_h_3_in_spec2_z) - tube_dalpha_Gamma_1_t;
-        const real tube_dalpha_Gamma_1_t_2 =
-            v.tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xy +
-            tube_J_group_2_in_axes2_yz*tube_o_2_in_axes2_y -
-            tube_J_group_2_in_axes2_yy*tube_dalpha_alpha_1_t_2 -
-            tube_dalpha_acc_3_in_axes2_zy*tube_h_3_in_spec2_x -
-            v.tube_q_3*(tube_dalpha_acc_3_in_axes2_zy*tube_link3_mass +
-            tube_dalpha_alpha_1_t_2*tube_h_3_in_spec2_x -
-            tube_dalpha_alpha_1_in_axes2_xy*tube_h_3_in_spec2_z));
-        const real tube_dalpha_Gamma_1_in_axes2_y =
-            v.tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xy +
-            tube_J_group_2_in_axes2_xz*tube_o_2_in_axes2_y -
-            tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_t_2 -
-            tube_dalpha_acc_3_in_axes2_yy*tube_h_3_in_spec2_y -
-            tube_dalpha_acc_3_in_axes2_zy*tube_h_3_in_spec2_z) - tube_dalpha_Gamma_1_t_2;
-        const real tube_dalpha_Gamma_1_t_3 =
-            v.tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xz +
-            tube_J_group_2_in_axes2_yz*tube_o_2_in_axes2_z -
-            tube_J_group_2_in_axes2_yy*tube_dalpha_alpha_1_t_3 -
-            tube_dalpha_acc_3_in_axes2_zz*tube_h_3_in_spec2_x -
-            v.tube_q_3*(tube_dalpha_acc_3_in_axes2_zz*tube_link3_mass +
-            tube_dalpha_alpha_1_t_3*tube_h_3_in_spec2_x -
-            tube_dalpha_alpha_1_in_axes2_xz*tube_h_3_in_spec2_z));
-        const real tube_dalpha_Gamma_1_in_axes2_z =
-            v.tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xz +
-            tube_J_group_2_in_axes2_xz*tube_o_2_in_axes2_z -
-            tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_t_3 -
-            tube_dalpha_acc_3_in_axes2_yz*tube_h_3_in_spec2_y -
-            tube_dalpha_acc_3_in_axes2_zz*tube_h_3_in_spec2_z) - tube_dalpha_Gamma_1_t_3;
-        /* (tube-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real tube_d_Gamma_1_t = v.tube_c_2*tube_h_3_in_spec2_y;
-        const real tube_d_Gamma_1_t_2 = v.tube_c_2*(tube_J_group_2_in_axes2_xy*tube_w_1_in_axes1_x
-            + tube_J_group_2_in_axes2_yz*tube_w_2_in_axes2_y -
-            tube_J_group_2_in_axes2_yy*tube_w_1_t_78 -
-            tube_d_acc_3_in_axes2_zy*tube_h_3_in_spec2_x -
-            v.tube_q_3*(tube_d_acc_3_in_axes2_zy*tube_link3_mass +
-            tube_h_3_in_spec2_x*tube_w_1_t_78 - tube_h_3_in_spec2_z*tube_w_1_in_axes1_x));
-        const real tube_d_Gamma_1_in_axes2_y =
-            v.tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_w_1_in_axes1_x +
-            tube_J_group_2_in_axes2_xz*tube_w_2_in_axes2_y -
-            tube_J_group_2_in_axes2_xy*tube_w_1_t_78 -
-            tube_d_acc_3_in_axes2_yy*tube_h_3_in_spec2_y -
-            tube_d_acc_3_in_axes2_zy*tube_h_3_in_spec2_z) - tube_d_Gamma_1_t_2;
-        const real tube_d_Gamma_1_t_3 =
-            v.tube_c_2*(tube_J_group_2_in_axes2_xy*tube_d_alpha_1_in_axes2_xz +
-            tube_J_group_2_in_axes2_yz*tube_w_2_in_axes2_z -
-            tube_J_group_2_in_axes2_yy*tube_d_alpha_1_t -
-            tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_x -
-            v.tube_q_3*(tube_d_acc_3_in_axes2_zz*tube_link3_mass +
-            tube_d_alpha_1_t*tube_h_3_in_spec2_x -
-            tube_d_alpha_1_in_axes2_xz*tube_h_3_in_spec2_z));
-        const real tube_d_Gamma_1_in_axes2_z =
-            v.tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_d_alpha_1_in_axes2_xz +
-            tube_J_group_2_in_axes2_xz*tube_w_2_in_axes2_z -
-            tube_J_group_2_in_axes2_xy*tube_d_alpha_1_t -
-            tube_d_acc_3_in_axes2_yz*tube_h_3_in_spec2_y -
-            tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_z) - tube_d_Gamma_1_t_3;
-        /* (tube-dalpha_G) coefficient of the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
-        const real tube_dalpha_G_in_axes2_yx = tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_y
-            + tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_y;
-        const real tube_dalpha_G_in_axes2_yy = tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y
-            + tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_y;
-        const real tube_dalpha_G_in_axes2_yz = tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y
-            + tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_y;
-        const real tube_dalpha_G_in_axes2_zx = tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_z
-            + tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_z;
-        const real tube_dalpha_G_in_axes2_zy = tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_z
-            + tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_z;
-        const real tube_dalpha_G_in_axes2_zz = tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z
-            + tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_z;
-        /* (tube-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all degrees of freedom */
-        const real tube_d_G_in_axes2_yz = tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y +
-            tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_y;
-        /* (tube-G_o) remainder of: force at the connection point that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real tube_G_o_t = v.inv_tube_w_1_t_13*tube_N_2_o_in_axes2_z;
-        const real tube_G_o_t_2 = v.inv_tube_w_1_t_33*tube_G_o_t*v.tube_w_1_t_17;
-        const real tube_G_o_t_3 = v.inv_tube_w_1_t_49*(tube_G_o_t*v.tube_w_1_t_21 -
-            tube_G_o_t_2*v.tube_w_1_t_37);
-        const real tube_G_o_t_4 = v.inv_tube_w_1_t_63*(tube_G_o_t_2*v.tube_w_1_t_41 +
-            tube_G_o_t_3*v.tube_w_1_t_53 - tube_G_o_t*v.tube_w_1_t_25);
-        const real tube_G_o_t_5 = v.inv_tube_w_1_t_75*(tube_G_o_t*v.tube_w_1_t_29 +
-            tube_G_o_t_4*v.tube_w_1_t_69 + tube_N_2_o_in_axes2_y*v.tube_c_2 -
-            tube_G_o_t_2*v.tube_w_1_t_45 - tube_G_o_t_3*v.tube_w_1_t_58 -
-            v.tube_e_1_in_axes2_x*tube_mu_2_o_in_axes2_x);
-        const real tube_G_o_in_axes2_y = tube_G_o_t*v.tube_w_1_t_14 + tube_G_o_t_2*v.tube_w_1_t_34
-            + tube_G_o_t_3*v.tube_w_1_t_50 + tube_G_o_t_4*v.tube_w_1_t_64 -
-            tube_G_o_t_5*tube_w_1_t_76;
-        const real tube_G_o_in_axes2_z = v.inv_tube_w_1_t_49*tube_G_o_t_3 +
-            tube_G_o_t_4*v.tube_w_1_t_65 - tube_G_o_t_5*tube_w_1_t_77;
-        /* (tube-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
-           balances the leg's inertia and weight along all degrees of freedom */
-        const real tube_dalpha_G_m1_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m1_w_1 +
-            tube_dalpha_N_2_in_axes2_zx*tube_m1_w_2;
-        const real tube_dalpha_G_m1_in_axes2_y = tube_dalpha_Gamma_1_in_axes2_y*tube_m1_w_1 +
-            tube_dalpha_N_2_in_axes2_zy*tube_m1_w_2;
-        const real tube_dalpha_G_m1_in_axes2_z = tube_dalpha_Gamma_1_in_axes2_z*tube_m1_w_1 +
-            tube_dalpha_N_2_in_axes2_zz*tube_m1_w_2;
-        /* (tube-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
-           the leg's inertia and weight along all degrees of freedom */
-        const real tube_d_G_m1_in_axes2_x = tube_h_3_in_spec2_z*tube_m1_w_2 -
-            tube_d_Gamma_1_t*tube_m1_w_1;
-        const real tube_d_G_m1_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m1_w_1 +
-            tube_d_N_2_in_axes2_zy*tube_m1_w_2;
-        const real tube_d_G_m1_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m1_w_1 +
-            tube_d_N_2_in_axes2_zz*tube_m1_w_2;
-        /* (tube-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real tube_G_m1_o_t = tube_G_o_t*v.tube_w_1_t_15 + tube_G_o_t_2*v.tube_w_1_t_35 +
-            tube_G_o_t_3*v.tube_w_1_t_51 + tube_G_o_t_4*v.tube_w_1_t_66 -
-            tube_G_o_t_5*tube_m1_w_1_t;
-        const real tube_G_m1_o = R(1.35)*tube_G_m1_o_t;
-        /* (tube-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
-           balances the leg's inertia and weight along all degrees of freedom */
-        const real tube_dalpha_G_m2_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m2_w_1 +
-            tube_dalpha_N_2_in_axes2_zx*tube_m2_w_2;
-        const real tube_dalpha_G_m2_in_axes2_y = tube_dalpha_Gamma_1_in_axes2_y*tube_m2_w_1 +
-            tube_dalpha_N_2_in_axes2_zy*tube_m2_w_2;
-        const real tube_dalpha_G_m2_in_axes2_z = tube_dalpha_Gamma_1_in_axes2_z*tube_m2_w_1 +
-            tube_dalpha_N_2_in_axes2_zz*tube_m2_w_2;
-        /* (tube-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances
-           the leg's inertia and weight along all degrees of freedom */
-        const real tube_d_G_m2_in_axes2_x = tube_h_3_in_spec2_z*tube_m2_w_2 -
-            tube_d_Gamma_1_t*tube_m2_w_1;
-        const real tube_d_G_m2_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m2_w_1 +
-            tube_d_N_2_in_axes2_zy*tube_m2_w_2;
-        const real tube_d_G_m2_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m2_w_1 +
-            tube_d_N_2_in_axes2_zz*tube_m2_w_2;
-        /* (tube-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real tube_G_m2_o_t = tube_G_o_t_4*v.tube_w_1_t_67 + tube_G_o_t_5*tube_m2_w_1_t;
-        const real tube_G_m2_o = R(1.35)*tube_G_m2_o_t;
-        /* (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that
-           balances the leg's inertia and weight along all degrees of freedom */
-        const real tube_dalpha_G_m3_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m3_w_1 +
-            tube_dalpha_N_2_in_axes2_zx*tube_m3_w_2;
-        const real tube_dalpha_G_m3_in_axes2_y = tube_dalpha_Gamma_1_in_axes2_y*tube_m3_w_1 +
-            tube_dalpha_N_2_in_axes2_zy*tube_m3_w_2;
-        const real tube_dalpha_G_m3_in_axes2_z = tube_dalpha_Gamma_1_in_axes2_z*tube_m3_w_1 +
-            tube_dalpha_N_2_in_axes2_zz*tube_m3_w_2;
-        /* (tube-d_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances
-           the leg's inertia and weight along all degrees of freedom */
-        const real tube_d_G_m3_in_axes2_x = tube_h_3_in_spec2_z*tube_m3_w_2 -
-            tube_d_Gamma_1_t*tube_m3_w_1;
-        const real tube_d_G_m3_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m3_w_1 +
-            tube_d_N_2_in_axes2_zy*tube_m3_w_2;
-        const real tube_d_G_m3_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m3_w_1 +
-            tube_d_N_2_in_axes2_zz*tube_m3_w_2;
-        /* (tube-G_m3_o) remainder of: moment along moment direction 3 that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real tube_G_m3_o_t = tube_G_o_t*v.tube_w_1_t_16 + tube_G_o_t_2*v.tube_w_1_t_36 +
-            tube_G_o_t_3*v.tube_w_1_t_52 + tube_G_o_t_4*v.tube_w_1_t_68 -
-            tube_G_o_t_5*tube_m3_w_1_t;
-        const real tube_G_m3_o = R(1.35)*tube_G_m3_o_t;
-        /* (tube-dalpha_G_m) coefficient of the acceleration in: moment at the connection point that
-           balances the leg's inertia and weight along all degrees of freedom */
-        const real tube_dalpha_G_m_in_axes2_xx =
-            -tube_dalpha_G_m2_in_axes2_x*v.tube_end_p2_in_axes2_y -
-            tube_dalpha_G_m3_in_axes2_x*v.tube_end_p3_in_axes2_z;
-        const real tube_dalpha_G_m_in_axes2_xy =
-            -tube_dalpha_G_m2_in_axes2_y*v.tube_end_p2_in_axes2_y -
-            tube_dalpha_G_m3_in_axes2_y*v.tube_end_p3_in_axes2_z;
-        const real tube_dalpha_G_m_in_axes2_xz =
-            -tube_dalpha_G_m2_in_axes2_z*v.tube_end_p2_in_axes2_y -
-            tube_dalpha_G_m3_in_axes2_z*v.tube_end_p3_in_axes2_z;
-        const real tube_dalpha_G_m_in_axes2_yx =
-            tube_dalpha_G_m2_in_axes2_x*v.tube_n_m2_in_axes2_y -
-            tube_dalpha_G_m1_in_axes2_x*v.tube_end_p1_in_axes2_z;
-        const real tube_dalpha_G_m_in_axes2_yy =
-            tube_dalpha_G_m2_in_axes2_y*v.tube_n_m2_in_axes2_y -
-            tube_dalpha_G_m1_in_axes2_y*v.tube_end_p1_in_axes2_z;
-        const real tube_dalpha_G_m_in_axes2_yz =
-            tube_dalpha_G_m2_in_axes2_z*v.tube_n_m2_in_axes2_y -
-            tube_dalpha_G_m1_in_axes2_z*v.tube_end_p1_in_axes2_z;
-        const real tube_dalpha_G_m_in_axes2_zx =
-            tube_dalpha_G_m1_in_axes2_x*v.tube_n_m1_in_axes2_z +
-            tube_dalpha_G_m3_in_axes2_x*v.tube_n_m3_in_axes2_z;
-        const real tube_dalpha_G_m_in_axes2_zy =
-            tube_dalpha_G_m1_in_axes2_y*v.tube_n_m1_in_axes2_z +
-            tube_dalpha_G_m3_in_axes2_y*v.tube_n_m3_in_axes2_z;
-        const real tube_dalpha_G_m_in_axes2_zz =
-            tube_dalpha_G_m1_in_axes2_z*v.tube_n_m1_in_axes2_z +
-            tube_dalpha_G_m3_in_axes2_z*v.tube_n_m3_in_axes2_z;
-        /* (tube-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
-        const real tube_d_G_m_in_axes2_xx = -tube_d_G_m2_in_axes2_x*v.tube_end_p2_in_axes2_y -
-            tube_d_G_m3_in_axes2_x*v.tube_end_p3_in_axes2_z;
-        const real tube_d_G_m_in_axes2_xy = -tube_d_G_m2_in_axes2_y*v.tube_end_p2_in_axes2_y -
-            tube_d_G_m3_in_axes2_y*v.tube_end_p3_in_axes2_z;
-        const real tube_d_G_m_in_axes2_xz = -tube_d_G_m2_in_axes2_z*v.tube_end_p2_in_axes2_y -
-            tube_d_G_m3_in_axes2_z*v.tube_end_p3_in_axes2_z;
-        const real tube_d_G_m_in_axes2_yx = tube_d_G_m2_in_axes2_x*v.tube_n_m2_in_axes2_y -
-            tube_d_G_m1_in_axes2_x*v.tube_end_p1_in_axes2_z;
-        const real tube_d_G_m_in_axes2_yy = tube_d_G_m2_in_axes2_y*v.tube_n_m2_in_axes2_y -
-            tube_d_G_m1_in_axes2_y*v.tube_end_p1_in_axes2_z;
-        const real tube_d_G_m_in_axes2_yz = tube_d_G_m2_in_axes2_z*v.tube_n_m2_in_axes2_y -
-            tube_d_G_m1_in_axes2_z*v.tube_end_p1_in_axes2_z;
-        const real tube_d_G_m_in_axes2_zx = tube_d_G_m1_in_axes2_x*v.tube_n_m1_in_axes2_z +
-            tube_d_G_m3_in_axes2_x*v.tube_n_m3_in_axes2_z;
-        const real tube_d_G_m_in_axes2_zy = tube_d_G_m1_in_axes2_y*v.tube_n_m1_in_axes2_z +
-            tube_d_G_m3_in_axes2_y*v.tube_n_m3_in_axes2_z;
-        const real tube_d_G_m_in_axes2_zz = tube_d_G_m1_in_axes2_z*v.tube_n_m1_in_axes2_z +
-            tube_d_G_m3_in_axes2_z*v.tube_n_m3_in_axes2_z;
-        /* (tube-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real tube_G_m_o_in_axes2_x = -tube_G_m2_o*v.tube_end_p2_in_axes2_y -
-            tube_G_m3_o*v.tube_end_p3_in_axes2_z;
-        const real tube_G_m_o_in_axes2_y = tube_G_m2_o*v.tube_n_m2_in_axes2_y -
-            tube_G_m1_o*v.tube_end_p1_in_axes2_z;
-        const real tube_G_m_o_in_axes2_z = tube_G_m1_o*v.tube_n_m1_in_axes2_z +
-            tube_G_m3_o*v.tube_n_m3_in_axes2_z;
-        /* (tube-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real tube_dalpha_c_in_axes2_xx = tube_dalpha_alpha_1_t*tube_h_3_in_spec2_y -
-            tube_h_3_in_spec2_z*tube_o_2_in_axes2_x;
-        const real tube_dalpha_c_in_axes2_xy = tube_dalpha_alpha_1_t_2*tube_h_3_in_spec2_y -
-            tube_h_3_in_spec2_z*tube_o_2_in_axes2_y;
-        const real tube_dalpha_c_in_axes2_xz = tube_dalpha_alpha_1_t_3*tube_h_3_in_spec2_y -
-            tube_h_3_in_spec2_z*tube_o_2_in_axes2_z;
-        /* (tube-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real tube_d_c_in_axes2_xy = tube_h_3_in_spec2_y*tube_w_1_t_78 -
-            tube_h_3_in_spec2_z*tube_w_2_in_axes2_y;
-        const real tube_d_c_in_axes2_xz = tube_d_alpha_1_t*tube_h_3_in_spec2_y -
-            tube_h_3_in_spec2_z*tube_w_2_in_axes2_z;
-        /* (tube-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real tube_Q_t = tube_d_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y +
-            tube_d_N_2_in_axes2_zy*tube_w_2_in_axes2_y - tube_link3_mass;
-        const real tube_Q_t_2 = R(0.5)*tube_Q_t;
-        const real tube_Q_t_3 = tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z +
-            tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_z - tube_link3_mass;
-        const real tube_Q_t_4 = R(0.5)*tube_Q_t_3;
-        const real tube_Q_t_5 = v.axis_y_tube_axes2_x*tube_Q_t_2 +
-            v.axis_z_tube_axes2_x*tube_d_G_in_axes2_yz -
-            v.axis_x_tube_axes2_x*tube_d_c_in_axes2_xy;
-        const real tube_Q_t_6 = v.axis_y_tube_axes2_y*tube_Q_t_2 +
-            v.axis_z_tube_axes2_y*tube_d_G_in_axes2_yz -
-            v.axis_x_tube_axes2_y*tube_d_c_in_axes2_xy;
-        const real tube_Q_t_7 = v.axis_y_tube_axes2_z*tube_Q_t_2 +
-            v.axis_z_tube_axes2_z*tube_d_G_in_axes2_yz -
-            v.axis_x_tube_axes2_z*tube_d_c_in_axes2_xy;
-        const real tube_Q_t_8 = v.axis_z_tube_axes2_x*tube_Q_t_4 -
-            v.axis_x_tube_axes2_x*tube_d_c_in_axes2_xz;
-        const real tube_Q_t_9 = v.axis_z_tube_axes2_y*tube_Q_t_4 -
-            v.axis_x_tube_axes2_y*tube_d_c_in_axes2_xz;
-        const real tube_Q_t_10 = v.axis_z_tube_axes2_z*tube_Q_t_4 -
-            v.axis_x_tube_axes2_z*tube_d_c_in_axes2_xz;
-        const real tube_Q_t_11 = v.axis_y_tube_axes2_x*tube_Q_t_5 +
-            v.axis_z_tube_axes2_x*tube_Q_t_8;
-        const real tube_Q_xx = 2*tube_Q_t_11 + tube_link3_mass;
-        const real tube_Q_xy = v.axis_y_tube_axes2_x*tube_Q_t_6 + v.axis_y_tube_axes2_y*tube_Q_t_5
-            + v.axis_z_tube_axes2_x*tube_Q_t_9 + v.axis_z_tube_axes2_y*tube_Q_t_8;
-        const real tube_Q_xz = v.axis_y_tube_axes2_x*tube_Q_t_7 + v.axis_y_tube_axes2_z*tube_Q_t_5
-            + v.axis_z_tube_axes2_x*tube_Q_t_10 + v.axis_z_tube_axes2_z*tube_Q_t_8;
-        const real tube_Q_t_12 = v.axis_y_tube_axes2_y*tube_Q_t_6 +
-            v.axis_z_tube_axes2_y*tube_Q_t_9;
-        const real tube_Q_yy = 2*tube_Q_t_12 + tube_link3_mass;
-        const real tube_Q_yz = v.axis_y_tube_axes2_y*tube_Q_t_7 + v.axis_y_tube_axes2_z*tube_Q_t_6
-            + v.axis_z_tube_axes2_y*tube_Q_t_10 + v.axis_z_tube_axes2_z*tube_Q_t_9;
-        const real tube_Q_t_13 = v.axis_y_tube_axes2_z*tube_Q_t_7 +
-            v.axis_z_tube_axes2_z*tube_Q_t_10;
-        const real tube_Q_zz = 2*tube_Q_t_13 + tube_link3_mass;
-        /* (tube-dalpha_c_m) coefficient of the acceleration in: moment of the leg on the platform without
-           actuation */
-        const real tube_dalpha_c_m_zz =
-            v.axis_x_tube_axes2_z*(-v.axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xx -
-            v.axis_y_tube_axes2_z*tube_dalpha_G_m_in_axes2_yx -
-            v.axis_z_tube_axes2_z*tube_dalpha_G_m_in_axes2_zx) +
-            v.axis_y_tube_axes2_z*(-v.axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xy -
-            v.axis_y_tube_axes2_z*tube_dalpha_G_m_in_axes2_yy -
-            v.axis_z_tube_axes2_z*tube_dalpha_G_m_in_axes2_zy) +
-            v.axis_z_tube_axes2_z*(-v.axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xz -
-            v.axis_y_tube_axes2_z*tube_dalpha_G_m_in_axes2_yz -
-            v.axis_z_tube_axes2_z*tube_dalpha_G_m_in_axes2_zz);
-        /* (tube-d_c_m) coefficient of the acceleration in: moment of the leg on the platform without
-           actuation */
-        const real tube_d_c_m_t = -v.axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xx -
-            v.axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yx -
-            v.axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zx;
-        const real tube_d_c_m_t_2 = -v.axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xx -
-            v.axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yx -
-            v.axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zx;
-        const real tube_d_c_m_t_3 = -v.axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xy -
-            v.axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yy -
-            v.axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zy;
-        const real tube_d_c_m_t_4 = -v.axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xy -
-            v.axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yy -
-            v.axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zy;
-        const real tube_d_c_m_t_5 = -v.axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xz -
-            v.axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yz -
-            v.axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zz;
-        const real tube_d_c_m_t_6 = -v.axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xz -
-            v.axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yz -
-            v.axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zz;
-        const real tube_d_c_m_xx = v.axis_x_tube_axes2_x*tube_d_c_m_t +
-            v.axis_y_tube_axes2_x*tube_d_c_m_t_3 + v.axis_z_tube_axes2_x*tube_d_c_m_t_5;
-        const real tube_d_c_m_xy = v.axis_x_tube_axes2_y*tube_d_c_m_t +
-            v.axis_y_tube_axes2_y*tube_d_c_m_t_3 + v.axis_z_tube_axes2_y*tube_d_c_m_t_5;
-        const real tube_d_c_m_xz = v.axis_x_tube_axes2_z*tube_d_c_m_t +
-            v.axis_y_tube_axes2_z*tube_d_c_m_t_3 + v.axis_z_tube_axes2_z*tube_d_c_m_t_5;
-        const real tube_d_c_m_yx = v.axis_x_tube_axes2_x*tube_d_c_m_t_2 +
-            v.axis_y_tube_axes2_x*tube_d_c_m_t_4 + v.axis_z_tube_axes2_x*tube_d_c_m_t_6;
-        /* (tube-U) velocity and gravity terms of the leg force */
-        const real tube_U_x = v.axis_x_tube_axes2_x*tube_f_3_o_in_axes2_x +
-            v.axis_y_tube_axes2_x*tube_G_o_in_axes2_y + v.axis_z_tube_axes2_x*tube_G_o_in_axes2_z;
-        const real tube_U_y = v.axis_x_tube_axes2_y*tube_f_3_o_in_axes2_x +
-            v.axis_y_tube_axes2_y*tube_G_o_in_axes2_y + v.axis_z_tube_axes2_y*tube_G_o_in_axes2_z;
-        const real tube_U_z = v.axis_x_tube_axes2_z*tube_f_3_o_in_axes2_x +
-            v.axis_y_tube_axes2_z*tube_G_o_in_axes2_y + v.axis_z_tube_axes2_z*tube_G_o_in_axes2_z;
-        /* (M_ta) coupling block of M */
-        const real tube_M_ta_t = v.axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xx -
-            v.axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yx -
-            v.axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zx;
-        const real tube_M_ta_t_2 = v.axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xx -
-            v.axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yx -
-            v.axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zx;
-        const real tube_M_ta_t_3 = v.axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xx -
-            v.axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yx -
-            v.axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zx;
-        const real tube_M_ta_t_4 = v.axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xy -
-            v.axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yy -
-            v.axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zy;
-        const real tube_M_ta_t_5 = v.axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xy -
-            v.axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yy -
-            v.axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zy;
-        const real tube_M_ta_t_6 = v.axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xy -
-            v.axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yy -
-            v.axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zy;
-        const real tube_M_ta_t_7 = v.axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xz -
-            v.axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yz -
-            v.axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zz;
-        const real tube_M_ta_t_8 = v.axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xz -
-            v.axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yz -
-            v.axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zz;
-        const real tube_M_ta_t_9 = v.axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xz -
-            v.axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yz -
-            v.axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zz;
-        const real tube_M_ta_t_10 = tube_Q_xy*v.tube_q_z;
-        const real tube_M_ta_t_11 = tube_Q_xz*v.tube_q_y;
-        const real tube_M_ta_t_12 = tube_Q_yz*v.tube_q_x;
-        const real tube_M_ta_t_13 = tube_M_ta_t_11 - tube_M_ta_t_10 -
-            v.axis_x_tube_axes2_x*tube_M_ta_t - v.axis_y_tube_axes2_x*tube_M_ta_t_4 -
-            v.axis_z_tube_axes2_x*tube_M_ta_t_7;
-        const real tube_M_ta_t_14 = tube_Q_xx*v.tube_q_z - v.axis_x_tube_axes2_y*tube_M_ta_t -
-            v.axis_y_tube_axes2_y*tube_M_ta_t_4 - v.axis_z_tube_axes2_y*tube_M_ta_t_7 -
-            tube_Q_xz*v.tube_q_x;
-        const real tube_M_ta_t_15 = tube_Q_xy*v.tube_q_x - v.axis_x_tube_axes2_z*tube_M_ta_t -
-            v.axis_y_tube_axes2_z*tube_M_ta_t_4 - v.axis_z_tube_axes2_z*tube_M_ta_t_7 -
-            tube_Q_xx*v.tube_q_y;
-        const real tube_M_ta_t_16 = tube_Q_yz*v.tube_q_y - v.axis_x_tube_axes2_x*tube_M_ta_t_2 -
-            v.axis_y_tube_axes2_x*tube_M_ta_t_5 - v.axis_z_tube_axes2_x*tube_M_ta_t_8 -
-            tube_Q_yy*v.tube_q_z;
-        const real tube_M_ta_t_17 = tube_M_ta_t_10 - tube_M_ta_t_12 -
-            v.axis_x_tube_axes2_y*tube_M_ta_t_2 - v.axis_y_tube_axes2_y*tube_M_ta_t_5 -
-            v.axis_z_tube_axes2_y*tube_M_ta_t_8;
-        const real tube_M_ta_t_18 = tube_Q_yy*v.tube_q_x - v.axis_x_tube_axes2_z*tube_M_ta_t_2 -
-            v.axis_y_tube_axes2_z*tube_M_ta_t_5 - v.axis_z_tube_axes2_z*tube_M_ta_t_8 -
-            tube_Q_xy*v.tube_q_y;
-        const real tube_M_ta_t_19 = tube_Q_zz*v.tube_q_y - v.axis_x_tube_axes2_x*tube_M_ta_t_3 -
-            v.axis_y_tube_axes2_x*tube_M_ta_t_6 - v.axis_z_tube_axes2_x*tube_M_ta_t_9 -
-            tube_Q_yz*v.tube_q_z;
-        const real tube_M_ta_t_20 = tube_Q_xz*v.tube_q_z - v.axis_x_tube_axes2_y*tube_M_ta_t_3 -
-            v.axis_y_tube_axes2_y*tube_M_ta_t_6 - v.axis_z_tube_axes2_y*tube_M_ta_t_9 -
-            tube_Q_zz*v.tube_q_x;
-        const real tube_M_ta_t_21 = tube_M_ta_t_12 - tube_M_ta_t_11 -
-            v.axis_x_tube_axes2_z*tube_M_ta_t_3 - v.axis_y_tube_axes2_z*tube_M_ta_t_6 -
-            v.axis_z_tube_axes2_z*tube_M_ta_t_9;
-        /* (M_aa) rotational block of M */
-        const real tube_M_aa_t = -v.axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xx -
-            v.axis_y_tube_axes2_x*tube_dalpha_G_m_in_axes2_yx -
-            v.axis_z_tube_axes2_x*tube_dalpha_G_m_in_axes2_zx;
-        const real tube_M_aa_t_2 = -v.axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xx -
-            v.axis_y_tube_axes2_y*tube_dalpha_G_m_in_axes2_yx -
-            v.axis_z_tube_axes2_y*tube_dalpha_G_m_in_axes2_zx;
-        const real tube_M_aa_t_3 = -v.axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xy -
-            v.axis_y_tube_axes2_x*tube_dalpha_G_m_in_axes2_yy -
-            v.axis_z_tube_axes2_x*tube_dalpha_G_m_in_axes2_zy;
-        const real tube_M_aa_t_4 = -v.axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xy -
-            v.axis_y_tube_axes2_y*tube_dalpha_G_m_in_axes2_yy -
-            v.axis_z_tube_axes2_y*tube_dalpha_G_m_in_axes2_zy;
-        const real tube_M_aa_t_5 = -v.axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xz -
-            v.axis_y_tube_axes2_x*tube_dalpha_G_m_in_axes2_yz -
-            v.axis_z_tube_axes2_x*tube_dalpha_G_m_in_axes2_zz;
-        const real tube_M_aa_t_6 = -v.axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xz -
-            v.axis_y_tube_axes2_y*tube_dalpha_G_m_in_axes2_yz -
-            v.axis_z_tube_axes2_y*tube_dalpha_G_m_in_axes2_zz;
-        const real tube_M_aa_t_7 = -v.axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xx -
-            v.axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yx -
-            v.axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zx;
-        const real tube_M_aa_t_8 = -v.axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xy -
-            v.axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yy -
-            v.axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zy;
-        const real tube_M_aa_t_9 = -v.axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xz -
-            v.axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yz -
-            v.axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zz;
-        const real tube_M_aa_t_10 = tube_M_ta_t_19*v.tube_q_y + tube_d_c_m_xy*v.tube_q_z -
-            v.axis_x_tube_axes2_x*tube_M_aa_t - v.axis_y_tube_axes2_x*tube_M_aa_t_3 -
-            v.axis_z_tube_axes2_x*tube_M_aa_t_5 - tube_M_ta_t_16*v.tube_q_z -
-            tube_d_c_m_xz*v.tube_q_y;
-        const real tube_M_aa_t_11 = tube_M_ta_t_20*v.tube_q_y + tube_d_c_m_xz*v.tube_q_x -
-            v.axis_x_tube_axes2_y*tube_M_aa_t - v.axis_y_tube_axes2_y*tube_M_aa_t_3 -
-            v.axis_z_tube_axes2_y*tube_M_aa_t_5 - tube_M_ta_t_17*v.tube_q_z -
-            tube_d_c_m_xx*v.tube_q_z;
-        const real tube_M_aa_t_12 = tube_M_ta_t_21*v.tube_q_y + tube_d_c_m_xx*v.tube_q_y -
-            v.axis_x_tube_axes2_z*tube_M_aa_t - v.axis_y_tube_axes2_z*tube_M_aa_t_3 -
-            v.axis_z_tube_axes2_z*tube_M_aa_t_5 - tube_M_ta_t_18*v.tube_q_z -
-            tube_d_c_m_xy*v.tube_q_x;
-        const real tube_M_aa_t_13 = tube_M_ta_t_14*v.tube_q_z +
-            v.tube_q_x*(v.axis_x_tube_axes2_z*tube_d_c_m_t_2 +
-            v.axis_y_tube_axes2_z*tube_d_c_m_t_4 + v.axis_z_tube_axes2_z*tube_d_c_m_t_6) -
-            v.axis_x_tube_axes2_y*tube_M_aa_t_2 - v.axis_y_tube_axes2_y*tube_M_aa_t_4 -
-            v.axis_z_tube_axes2_y*tube_M_aa_t_6 - tube_M_ta_t_20*v.tube_q_x -
-            tube_d_c_m_yx*v.tube_q_z;
-        const real tube_M_aa_t_14 = tube_M_ta_t_15*v.tube_q_z + tube_d_c_m_yx*v.tube_q_y -
-            v.axis_x_tube_axes2_z*tube_M_aa_t_2 - v.axis_y_tube_axes2_z*tube_M_aa_t_4 -
-            v.axis_z_tube_axes2_z*tube_M_aa_t_6 - tube_M_ta_t_21*v.tube_q_x -
-            v.tube_q_x*(v.axis_x_tube_axes2_y*tube_d_c_m_t_2 +
-            v.axis_y_tube_axes2_y*tube_d_c_m_t_4 + v.axis_z_tube_axes2_y*tube_d_c_m_t_6);
-        const real tube_M_aa_t_15 = tube_M_ta_t_18*v.tube_q_x +
-            v.tube_q_y*(v.axis_x_tube_axes2_x*tube_M_aa_t_7 + v.axis_y_tube_axes2_x*tube_M_aa_t_8
-            + v.axis_z_tube_axes2_x*tube_M_aa_t_9) - tube_dalpha_c_m_zz -
-            tube_M_ta_t_15*v.tube_q_y - v.tube_q_x*(v.axis_x_tube_axes2_y*tube_M_aa_t_7 +
-            v.axis_y_tube_axes2_y*tube_M_aa_t_8 + v.axis_z_tube_axes2_y*tube_M_aa_t_9);
-        /* (Z_a) rotational part of Z */
-        const real tube_Z_a_t = v.axis_x_tube_axes2_x*tube_G_m_o_in_axes2_x +
-            v.axis_y_tube_axes2_x*tube_G_m_o_in_axes2_y +
-            v.axis_z_tube_axes2_x*tube_G_m_o_in_axes2_z + tube_U_z*v.tube_q_y -
-            tube_U_y*v.tube_q_z;
-        const real tube_Z_a_t_2 = v.axis_x_tube_axes2_y*tube_G_m_o_in_axes2_x +
-            v.axis_y_tube_axes2_y*tube_G_m_o_in_axes2_y +
-            v.axis_z_tube_axes2_y*tube_G_m_o_in_axes2_z + tube_U_x*v.tube_q_z -
-            tube_U_z*v.tube_q_x;
-        const real tube_Z_a_t_3 = v.axis_x_tube_axes2_z*tube_G_m_o_in_axes2_x +
-            v.axis_y_tube_axes2_z*tube_G_m_o_in_axes2_y +
-            v.axis_z_tube_axes2_z*tube_G_m_o_in_axes2_z + tube_U_y*v.tube_q_x -
-            tube_U_x*v.tube_q_y;
-        /* (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-           */
-        const real tube_gamma_c1 = tube_rel_o_in_axes2_y - v.tube_m1_c1_t*tube_nu_1 -
-            v.tube_m3_c1_t*tube_nu_3;
-        /* (tube-gamma_c2) part of the constraint's second derivative that does not hold the acceleration
-           */
-        const real tube_gamma_c2 = tube_rel_o_in_axes2_z + v.tube_m3_c2*tube_nu_3 -
-            v.tube_m1_c2_t*tube_nu_1;
-        /* (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
-           */
-        const real tube_gamma_c3 = v.inv_tube_size_c3*tube_nu_2 + v.tube_mu1_c3*tube_nu_1 -
-            v.tube_mu3_c3_t*tube_nu_3;
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, tube_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, tube_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, tube_Q_xz);  /* M_tt_xz */
-        gather(&terms[3*count + k], add, tube_Q_yy);  /* M_tt_yy_of_legs */
-        gather(&terms[4*count + k], add, tube_Q_yz);  /* M_tt_yz */
-        gather(&terms[5*count + k], add, tube_Q_zz);  /* M_tt_zz_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[6*count + k], add, tube_M_ta_t_13);  /* M_ta_xx */
-        gather(&terms[7*count + k], add, tube_M_ta_t_14);  /* M_ta_xy_of_legs */
-        gather(&terms[8*count + k], add, tube_M_ta_t_15);  /* M_ta_xz_of_legs */
-        gather(&terms[9*count + k], add, tube_M_ta_t_16);  /* M_ta_yx_of_legs */
-        gather(&terms[10*count + k], add, tube_M_ta_t_17);  /* M_ta_yy */
-        gather(&terms[11*count + k], add, tube_M_ta_t_18);  /* M_ta_yz_of_legs */
-        gather(&terms[12*count + k], add, tube_M_ta_t_19);  /* M_ta_zx_of_legs */
-        gather(&terms[13*count + k], add, tube_M_ta_t_20);  /* M_ta_zy_of_legs */
-        gather(&terms[14*count + k], add, tube_M_ta_t_21);  /* M_ta_zz */
-        /* (M_aa) rotational block of M */
-        gather(&terms[15*count + k], add, tube_M_aa_t_10);  /* M_aa_xx_of_legs */
-        gather(&terms[16*count + k], add, tube_M_aa_t_11);  /* M_aa_xy_of_legs */
-        gather(&terms[17*count + k], add, tube_M_aa_t_12);  /* M_aa_xz_of_legs */
-        gather(&terms[18*count + k], add, tube_M_aa_t_13);  /* M_aa_yy_of_legs */
-        gather(&terms[19*count + k], add, tube_M_aa_t_14);  /* M_aa_yz_of_legs */
-        gather(&terms[20*count + k], add, tube_M_aa_t_15);  /* M_aa_zz_of_legs */
-        /* (Z_t) translational part of Z */
-        gather(&terms[21*count + k], add, tube_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[22*count + k], add, tube_U_y);  /* Z_t_y_of_legs */
-        gather(&terms[23*count + k], add, tube_U_z);  /* Z_t_z_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[24*count + k], add, tube_Z_a_t);  /* Z_a_x_of_legs */
-        gather(&terms[25*count + k], add, tube_Z_a_t_2);  /* Z_a_y_of_legs */
-        gather(&terms[26*count + k], add, tube_Z_a_t_3);  /* Z_a_z_of_legs */
-        /* (tube-n_c1) unit force of the constraint wrench */
-        o[0*count + k] = v.axis_y_tube_axes2_x;
-        o[1*count + k] = v.axis_y_tube_axes2_y;
-        o[2*count + k] = v.axis_y_tube_axes2_z;
-        /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = v.tube_Hk_a_1_x;
-        o[4*count + k] = v.tube_Hk_a_1_y;
-        o[5*count + k] = v.tube_Hk_a_1_z;
-        /* (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-           */
-        o[6*count + k] = tube_gamma_c1;
-        /* (tube-n_c2) unit force of the constraint wrench */
-        o[7*count + k] = v.axis_z_tube_axes2_x;
-        o[8*count + k] = v.axis_z_tube_axes2_y;
-        o[9*count + k] = v.axis_z_tube_axes2_z;
-        /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
-        o[10*count + k] = v.tube_Hk_a_2_x;
-        o[11*count + k] = v.tube_Hk_a_2_y;
-        o[12*count + k] = v.tube_Hk_a_2_z;
-        /* (tube-gamma_c2) part of the constraint's second derivative that does not hold the acceleration
-           */
-        o[13*count + k] = tube_gamma_c2;
-        /* (tube-Hk_a_3) moment of the column's unit force about the platform origin */
-        o[14*count + k] = v.tube_mu_c3_x;
-        o[15*count + k] = v.tube_mu_c3_y;
-        o[16*count + k] = v.tube_mu_c3_z;
-        /* (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
-           */
-        o[17*count + k] = tube_gamma_c3;
-        o[19*count + k] = (((v.axis_y_tube_axes2_x + v.axis_y_tube_axes2_y) +
-            (v.axis_y_tube_axes2_z + v.tube_Hk_a_1_x)) + ((v.tube_Hk_a_1_y + v.tube_Hk_a_1_z) +
-            (tube_gamma_c1 + (v.axis_z_tube_axes2_x + v.axis_z_tube_axes2_y)))) +
-            (((v.axis_z_tube_axes2_z + v.tube_Hk_a_2_x) + (v.tube_Hk_a_2_y + v.tube_Hk_a_2_z)) +
-            ((tube_gamma_c2 + v.tube_mu_c3_x) + (v.tube_mu_c3_y + (v.tube_mu_c3_z +
-            tube_gamma_c3))));
-        o[18*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
-            UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
-            + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
-            LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_33) > LEAST_4) +
-            UNLESS(magnitude(v.tube_w_1_t_49) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_63) >
-            LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_75) > LEAST_5);
-    }
+    values_tube v;
+    stage_tube_X(m, w, i, j, s, X, &v);
+    stage_tube_V_X(w, j, V, &v);
+    stage_tube_Z_dynamics(m, i, &v);
+    stage_tube_dynamics_required(&v);
+    /* (tube-w_1) force part of reciprocal wrench 1 */
+    const real tube_w_1_t_76 = v.inv_tube_w_1_t_75*v.tube_w_1_t_70;
+    const real tube_w_1_t_77 = v.inv_tube_w_1_t_75*v.tube_w_1_t_71;
+    const real tube_w_1_in_axes2_y = v.inv_tube_w_1_t_75*tube_w_1_t_76;
+    const real tube_w_1_in_axes2_z = v.inv_tube_w_1_t_75*tube_w_1_t_77;
+    const real tube_w_1_in_axes1_x = v.tube_e_1_in_axes2_x*tube_w_1_in_axes2_y;
+    const real tube_w_1_t_78 = v.tube_c_2*tube_w_1_in_axes2_y;
+    /* (tube-m1_w_1) moment part 1 of reciprocal wrench 1 */
+    const real tube_m1_w_1_t = v.inv_tube_w_1_t_75*v.tube_w_1_t_72;
+    const real tube_m1_w_1 = R(1.35)*v.inv_tube_w_1_t_75*tube_m1_w_1_t;
+    /* (tube-m2_w_1) moment part 2 of reciprocal wrench 1 */
+    const real tube_m2_w_1_t = v.inv_tube_w_1_t_75*v.tube_w_1_t_73;
+    const real tube_m2_w_1 = -R(1.35)*v.inv_tube_w_1_t_75*tube_m2_w_1_t;
+    /* (tube-m3_w_1) moment part 3 of reciprocal wrench 1 */
+    const real tube_m3_w_1_t = v.inv_tube_w_1_t_75*v.tube_w_1_t_74;
+    const real tube_m3_w_1 = R(1.35)*v.inv_tube_w_1_t_75*tube_m3_w_1_t;
+    /* (tube-w_2) force part of reciprocal wrench 2 */
+    const real tube_w_2_t = v.inv_tube_w_1_t_13*v.inv_tube_w_1_t_33*v.tube_w_1_t_17;
+    const real tube_w_2_t_2 = v.inv_tube_w_1_t_49*(v.inv_tube_w_1_t_13*v.tube_w_1_t_21 -
+        v.tube_w_1_t_37*tube_w_2_t);
+    const real tube_w_2_t_3 = v.inv_tube_w_1_t_63*(v.tube_w_1_t_41*tube_w_2_t +
+        v.tube_w_1_t_53*tube_w_2_t_2 - v.inv_tube_w_1_t_13*v.tube_w_1_t_25);
+    const real tube_w_2_t_4 = v.inv_tube_w_1_t_75*(v.inv_tube_w_1_t_13*v.tube_w_1_t_29 +
+        v.tube_w_1_t_69*tube_w_2_t_3 - v.tube_w_1_t_45*tube_w_2_t -
+        v.tube_w_1_t_58*tube_w_2_t_2);
+    const real tube_w_2_in_axes2_y = v.inv_tube_w_1_t_13*v.tube_w_1_t_14 +
+        v.tube_w_1_t_34*tube_w_2_t + v.tube_w_1_t_50*tube_w_2_t_2 +
+        v.tube_w_1_t_64*tube_w_2_t_3 - tube_w_1_t_76*tube_w_2_t_4;
+    const real tube_w_2_in_axes2_z = v.inv_tube_w_1_t_49*tube_w_2_t_2 +
+        v.tube_w_1_t_65*tube_w_2_t_3 - tube_w_1_t_77*tube_w_2_t_4;
+    /* (tube-m1_w_2) moment part 1 of reciprocal wrench 2 */
+    const real tube_m1_w_2_t = v.inv_tube_w_1_t_13*v.tube_w_1_t_15 +
+        v.tube_w_1_t_35*tube_w_2_t + v.tube_w_1_t_51*tube_w_2_t_2 +
+        v.tube_w_1_t_66*tube_w_2_t_3 - tube_m1_w_1_t*tube_w_2_t_4;
+    const real tube_m1_w_2 = R(1.35)*tube_m1_w_2_t;
+    /* (tube-m2_w_2) moment part 2 of reciprocal wrench 2 */
+    const real tube_m2_w_2_t = tube_m2_w_1_t*tube_w_2_t_4 + v.tube_w_1_t_67*tube_w_2_t_3;
+    const real tube_m2_w_2 = R(1.35)*tube_m2_w_2_t;
+    /* (tube-m3_w_2) moment part 3 of reciprocal wrench 2 */
+    const real tube_m3_w_2_t = v.inv_tube_w_1_t_13*v.tube_w_1_t_16 +
+        v.tube_w_1_t_36*tube_w_2_t + v.tube_w_1_t_52*tube_w_2_t_2 +
+        v.tube_w_1_t_68*tube_w_2_t_3 - tube_m3_w_1_t*tube_w_2_t_4;
+    const real tube_m3_w_2 = R(1.35)*tube_m3_w_2_t;
+    /* (tube-o_1) moment part of reciprocal wrench 1 */
+    const real tube_o_1_in_axes2_x = -v.tube_end_p2_in_axes2_y*tube_m2_w_1 -
+        v.tube_end_p3_in_axes2_z*tube_m3_w_1;
+    const real tube_o_1_in_axes2_y = tube_m2_w_1*v.tube_n_m2_in_axes2_y -
+        v.tube_end_p1_in_axes2_z*tube_m1_w_1;
+    const real tube_o_1_in_axes2_z = tube_m1_w_1*v.tube_n_m1_in_axes2_z +
+        tube_m3_w_1*v.tube_n_m3_in_axes2_z;
+    /* (tube-o_2) moment part of reciprocal wrench 2 */
+    const real tube_o_2_in_axes2_x = -v.tube_end_p2_in_axes2_y*tube_m2_w_2 -
+        v.tube_end_p3_in_axes2_z*tube_m3_w_2;
+    const real tube_o_2_in_axes2_y = tube_m2_w_2*v.tube_n_m2_in_axes2_y -
+        v.tube_end_p1_in_axes2_z*tube_m1_w_2;
+    const real tube_o_2_in_axes2_z = tube_m1_w_2*v.tube_n_m1_in_axes2_z +
+        tube_m3_w_2*v.tube_n_m3_in_axes2_z;
+    /* (tube-qd_1) rate of joint 1 */
+    const real tube_qd_1_t = R(1.35)*v.tube_eta_1;
+    const real tube_qd_1_t_2 = R(1.35)*v.tube_eta_2;
+    const real tube_qd_1_t_3 = R(1.35)*v.tube_eta_3;
+    const real tube_qd_1 = v.inv_tube_w_1_t_75*(v.tube_S_dot_in_axes2_y*tube_w_1_t_76 +
+        v.tube_S_dot_in_axes2_z*tube_w_1_t_77 + tube_m1_w_1_t*tube_qd_1_t +
+        tube_m3_w_1_t*tube_qd_1_t_3 - tube_m2_w_1_t*tube_qd_1_t_2);
+    /* (tube-qd_2) rate of joint 2 */
+    const real tube_qd_2_t = v.inv_tube_w_1_t_63*(v.tube_S_dot_in_axes2_y*v.tube_w_1_t_64 +
+        v.tube_S_dot_in_axes2_z*v.tube_w_1_t_65 + tube_qd_1_t*v.tube_w_1_t_66 +
+        tube_qd_1_t_2*v.tube_w_1_t_67 + tube_qd_1_t_3*v.tube_w_1_t_68 -
+        tube_qd_1*v.tube_w_1_t_69);
+    const real tube_qd_2_t_2 =
+        v.inv_tube_w_1_t_49*(v.inv_tube_w_1_t_49*v.tube_S_dot_in_axes2_z +
+        v.tube_S_dot_in_axes2_y*v.tube_w_1_t_50 + tube_qd_1*v.tube_w_1_t_58 +
+        tube_qd_1_t*v.tube_w_1_t_51 + tube_qd_1_t_3*v.tube_w_1_t_52 +
+        tube_qd_2_t*v.tube_w_1_t_53);
+    const real tube_qd_2_t_3 = v.tube_S_dot_in_axes2_y*v.tube_w_1_t_14 +
+        tube_qd_1_t*v.tube_w_1_t_15 + tube_qd_1_t_3*v.tube_w_1_t_16 +
+        tube_qd_2_t_2*v.tube_w_1_t_21 +
+        v.inv_tube_w_1_t_33*v.tube_w_1_t_17*(v.tube_S_dot_in_axes2_y*v.tube_w_1_t_34 +
+        tube_qd_1*v.tube_w_1_t_45 + tube_qd_1_t*v.tube_w_1_t_35 +
+        tube_qd_1_t_3*v.tube_w_1_t_36 + tube_qd_2_t*v.tube_w_1_t_41 -
+        tube_qd_2_t_2*v.tube_w_1_t_37) - tube_qd_1*v.tube_w_1_t_29 -
+        tube_qd_2_t*v.tube_w_1_t_25;
+    const real tube_qd_2 = v.inv_tube_w_1_t_13*tube_qd_2_t_3;
+    /* (tube-omega_1) angular velocity of link 1 */
+    const real tube_omega_1_in_axes2_x = v.tube_e_1_in_axes2_x*tube_qd_1;
+    const real tube_omega_1_in_axes2_y = -v.tube_c_2*tube_qd_1;
+    /* (tube-W_2) centripetal tensor of link 2 */
+    const real tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2;
+    const real tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2;
+    const real tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y;
+    /* (tube-bias) acceleration of the connection point at zero joint accelerations */
+    const real tube_bias_t = tube_W_2_in_axes2_xz*v.tube_q_3;
+    const real tube_bias_t_2 = -tube_W_2_in_axes2_xy*v.tube_q_3;
+    const real tube_bias_t_4 = v.tube_bias_t_3*tube_qd_2;
+    const real tube_bias_t_5 = v.tube_bias_t_3*tube_omega_1_in_axes2_y;
+    const real tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2;
+    const real tube_bias_in_axes2_z = 2*tube_bias_t - tube_bias_t_5;
+    /* (tube-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real tube_rel_o_in_axes2_y = v.axis_y_tube_axes2_x*v.tube_u_1_x +
+        v.axis_y_tube_axes2_y*v.tube_u_1_y + v.axis_y_tube_axes2_z*v.tube_u_1_z -
+        tube_bias_in_axes2_y;
+    const real tube_rel_o_in_axes2_z = v.axis_z_tube_axes2_x*v.tube_u_1_x +
+        v.axis_z_tube_axes2_y*v.tube_u_1_y + v.axis_z_tube_axes2_z*v.tube_u_1_z -
+        tube_bias_in_axes2_z;
+    /* (tube-nd_m1) rate of moment direction 1 */
+    const real tube_nd_m1_in_axes2_y = v.tube_end_p1_in_axes2_x*v.tube_omega_in_axes2_y -
+        v.tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
+        v.tube_n_m1_in_axes2_z*v.tube_omega_in_axes2_x;
+    const real tube_nd_m1_in_axes2_z = v.tube_end_p1_in_axes2_x*v.tube_omega_in_axes2_z -
+        v.tube_end_p1_in_axes2_x*tube_qd_2 - v.tube_end_p1_in_axes2_z*v.tube_omega_in_axes2_x;
+    /* (tube-nu_1) bias of the angular acceleration along moment direction 1 */
+    const real tube_nu_1_t = tube_omega_1_in_axes2_x - v.tube_omega_in_axes2_x;
+    const real tube_nu_1_t_2 = v.tube_omega_in_axes2_y - tube_omega_1_in_axes2_y;
+    const real tube_nu_1_t_3 = v.tube_omega_in_axes2_z - tube_qd_2;
+    const real tube_nu_1_t_4 = tube_nd_m1_in_axes2_y*tube_nu_1_t_2 +
+        tube_nd_m1_in_axes2_z*tube_nu_1_t_3 - tube_nu_1_t*(v.tube_end_p1_in_axes2_z*tube_qd_2
+        + v.tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y);
+    const real tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*v.tube_end_p1_in_axes2_z;
+    /* (tube-nd_m2) rate of moment direction 2 */
+    const real tube_nd_m2_in_axes2_x = v.tube_end_p2_in_axes2_z*v.tube_omega_in_axes2_x -
+        v.tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
+        v.tube_n_m2_in_axes2_y*v.tube_omega_in_axes2_z;
+    const real tube_nd_m2_in_axes2_y = v.tube_end_p2_in_axes2_z*v.tube_omega_in_axes2_y -
+        v.tube_end_p2_in_axes2_y*v.tube_omega_in_axes2_z -
+        v.tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y;
+    /* (tube-nu_2) bias of the angular acceleration along moment direction 2 */
+    const real tube_nu_2_t = -tube_W_2_in_axes2_xz*v.tube_n_m2_in_axes2_y -
+        tube_W_2_in_axes2_yz*v.tube_end_p2_in_axes2_y;
+    const real tube_nu_2_t_2 = tube_nd_m2_in_axes2_y*tube_nu_1_t_2 -
+        tube_nd_m2_in_axes2_x*tube_nu_1_t -
+        tube_nu_1_t_3*(-v.tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
+        v.tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x);
+    const real tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t;
+    /* (tube-nd_m3) rate of moment direction 3 */
+    const real tube_nd_m3_in_axes2_x = v.tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
+        v.tube_n_m3_in_axes2_z*v.tube_omega_in_axes2_y -
+        v.tube_end_p3_in_axes2_y*v.tube_omega_in_axes2_x;
+    const real tube_nd_m3_in_axes2_z = v.tube_end_p3_in_axes2_y*tube_qd_2 +
+        v.tube_end_p3_in_axes2_z*v.tube_omega_in_axes2_y -
+        v.tube_end_p3_in_axes2_y*v.tube_omega_in_axes2_z;
+    /* (tube-nu_3) bias of the angular acceleration along moment direction 3 */
+    const real tube_nu_3_t = tube_nd_m3_in_axes2_x*tube_nu_1_t +
+        tube_nu_1_t_2*(v.tube_end_p3_in_axes2_z*tube_qd_2 +
+        v.tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
+    const real tube_nu_3 = tube_W_2_in_axes2_yz*v.tube_end_p3_in_axes2_z - tube_nu_3_t;
+    /* (tube-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real tube_qdd_1_o_t = R(1.35)*tube_nu_1;
+    const real tube_qdd_1_o_t_2 = R(1.35)*tube_nu_2;
+    const real tube_qdd_1_o_t_3 = R(1.35)*tube_nu_3;
+    const real tube_qdd_1_o = v.inv_tube_w_1_t_75*(tube_m1_w_1_t*tube_qdd_1_o_t +
+        tube_m3_w_1_t*tube_qdd_1_o_t_3 + tube_rel_o_in_axes2_y*tube_w_1_t_76 +
+        tube_rel_o_in_axes2_z*tube_w_1_t_77 - tube_m2_w_1_t*tube_qdd_1_o_t_2);
+    /* (tube-qdd_2_o) remainder of: acceleration of joint 2 */
+    const real tube_qdd_2_o_t = v.inv_tube_w_1_t_63*(tube_qdd_1_o_t*v.tube_w_1_t_66 +
+        tube_qdd_1_o_t_2*v.tube_w_1_t_67 + tube_qdd_1_o_t_3*v.tube_w_1_t_68 +
+        tube_rel_o_in_axes2_y*v.tube_w_1_t_64 + tube_rel_o_in_axes2_z*v.tube_w_1_t_65 -
+        tube_qdd_1_o*v.tube_w_1_t_69);
+    const real tube_qdd_2_o_t_2 =
+        v.inv_tube_w_1_t_49*(v.inv_tube_w_1_t_49*tube_rel_o_in_axes2_z +
+        tube_qdd_1_o*v.tube_w_1_t_58 + tube_qdd_1_o_t*v.tube_w_1_t_51 +
+        tube_qdd_1_o_t_3*v.tube_w_1_t_52 + tube_qdd_2_o_t*v.tube_w_1_t_53 +
+        tube_rel_o_in_axes2_y*v.tube_w_1_t_50);
+    const real tube_qdd_2_o_t_3 = tube_qdd_1_o_t*v.tube_w_1_t_15 +
+        tube_qdd_1_o_t_3*v.tube_w_1_t_16 + tube_qdd_2_o_t_2*v.tube_w_1_t_21 +
+        tube_rel_o_in_axes2_y*v.tube_w_1_t_14 +
+        v.inv_tube_w_1_t_33*v.tube_w_1_t_17*(tube_qdd_1_o*v.tube_w_1_t_45 +
+        tube_qdd_1_o_t*v.tube_w_1_t_35 + tube_qdd_1_o_t_3*v.tube_w_1_t_36 +
+        tube_qdd_2_o_t*v.tube_w_1_t_41 + tube_rel_o_in_axes2_y*v.tube_w_1_t_34 -
+        tube_qdd_2_o_t_2*v.tube_w_1_t_37) - tube_qdd_1_o*v.tube_w_1_t_29 -
+        tube_qdd_2_o_t*v.tube_w_1_t_25;
+    const real tube_qdd_2_o = v.inv_tube_w_1_t_13*tube_qdd_2_o_t_3;
+    /* (tube-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+    const real tube_dalpha_alpha_1_t = v.tube_c_2*tube_o_1_in_axes2_x;
+    const real tube_dalpha_alpha_1_in_axes2_xy = v.tube_e_1_in_axes2_x*tube_o_1_in_axes2_y;
+    const real tube_dalpha_alpha_1_t_2 = v.tube_c_2*tube_o_1_in_axes2_y;
+    const real tube_dalpha_alpha_1_in_axes2_xx = v.tube_e_1_in_axes2_x*tube_o_1_in_axes2_x;
+    const real tube_dalpha_alpha_1_in_axes2_xz = v.tube_e_1_in_axes2_x*tube_o_1_in_axes2_z;
+    const real tube_dalpha_alpha_1_t_3 = v.tube_c_2*tube_o_1_in_axes2_z;
+    /* (tube-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+    const real tube_d_alpha_1_in_axes2_xz = v.tube_e_1_in_axes2_x*tube_w_1_in_axes2_z;
+    const real tube_d_alpha_1_t = v.tube_c_2*tube_w_1_in_axes2_z;
+    /* (tube-alpha_1_o) remainder of: angular acceleration of link 1 */
+    const real tube_alpha_1_o_in_axes2_x = v.tube_e_1_in_axes2_x*tube_qdd_1_o;
+    const real tube_alpha_1_o_in_axes2_y = -v.tube_c_2*tube_qdd_1_o;
+    /* (tube-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real tube_alpha_2_o_in_axes2_x = tube_W_2_in_axes2_yz + tube_alpha_1_o_in_axes2_x;
+    const real tube_alpha_2_o_in_axes2_y = tube_alpha_1_o_in_axes2_y - tube_W_2_in_axes2_xz;
+    /* (tube-B_2_o) remainder of the acceleration tensor of link 2 */
+    const real tube_B_2_o_in_axes2_xy = tube_W_2_in_axes2_xy - tube_qdd_2_o;
+    const real tube_B_2_o_in_axes2_yx = tube_W_2_in_axes2_xy + tube_qdd_2_o;
+    const real tube_B_2_o_in_axes2_zx = tube_W_2_in_axes2_xz - tube_alpha_2_o_in_axes2_y;
+    const real tube_B_2_o_in_axes2_zy = tube_W_2_in_axes2_yz + tube_alpha_2_o_in_axes2_x;
+    /* (tube-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of
+       link 3, less gravity */
+    const real tube_dalpha_acc_3_in_axes2_yx = tube_o_2_in_axes2_x*v.tube_q_3;
+    const real tube_dalpha_acc_3_in_axes2_yy = tube_o_2_in_axes2_y*v.tube_q_3;
+    const real tube_dalpha_acc_3_in_axes2_yz = tube_o_2_in_axes2_z*v.tube_q_3;
+    const real tube_dalpha_acc_3_in_axes2_zx = tube_dalpha_alpha_1_t*v.tube_q_3;
+    const real tube_dalpha_acc_3_in_axes2_zy = tube_dalpha_alpha_1_t_2*v.tube_q_3;
+    const real tube_dalpha_acc_3_in_axes2_zz = tube_dalpha_alpha_1_t_3*v.tube_q_3;
+    /* (tube-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link
+       3, less gravity */
+    const real tube_d_acc_3_in_axes2_yy = v.tube_q_3*tube_w_2_in_axes2_y;
+    const real tube_d_acc_3_in_axes2_yz = v.tube_q_3*tube_w_2_in_axes2_z;
+    const real tube_d_acc_3_in_axes2_zy = v.tube_q_3*tube_w_1_t_78;
+    const real tube_d_acc_3_in_axes2_zz = tube_d_alpha_1_t*v.tube_q_3;
+    /* (tube-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
+    const real tube_acc_3_o_in_axes2_y = tube_bias_t_4 + v.tube_q_3*tube_qdd_2_o -
+        tube_bias_t_2 - v.tube_g_in_axes2_y;
+    const real tube_acc_3_o_in_axes2_z = tube_bias_t - tube_bias_t_5 - v.tube_g_in_axes2_z -
+        tube_alpha_2_o_in_axes2_y*v.tube_q_3;
+    /* (tube-f_3_o) remainder of: inertia force of link 3 less its weight */
+    const real tube_f_3_o_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x;
+    const real tube_f_3_o_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y;
+    const real tube_f_3_o_t_3 = tube_qd_2*tube_qd_2;
+    const real tube_f_3_o_in_axes2_x = v.tube_acc_3_o_in_axes2_x*m->tube_link3_mass[i] +
+        tube_alpha_1_o_in_axes2_y*m->tube_h_3_in_spec2_y[i] -
+        tube_B_2_o_in_axes2_xy*m->tube_h_3_in_spec2_z[i] -
+        m->tube_h_3_in_spec2_x[i]*(tube_f_3_o_t_2 + tube_f_3_o_t_3);
+    const real tube_f_3_o_in_axes2_y = tube_B_2_o_in_axes2_yx*m->tube_h_3_in_spec2_x[i] +
+        tube_acc_3_o_in_axes2_y*m->tube_link3_mass[i] +
+        m->tube_h_3_in_spec2_z[i]*(tube_f_3_o_t + tube_f_3_o_t_3) -
+        tube_alpha_1_o_in_axes2_x*m->tube_h_3_in_spec2_y[i];
+    const real tube_f_3_o_in_axes2_z = tube_B_2_o_in_axes2_zx*m->tube_h_3_in_spec2_x[i] +
+        tube_acc_3_o_in_axes2_z*m->tube_link3_mass[i] -
+        tube_B_2_o_in_axes2_zy*m->tube_h_3_in_spec2_z[i] -
+        m->tube_h_3_in_spec2_y[i]*(tube_f_3_o_t + tube_f_3_o_t_2);
+    /* (tube-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real tube_mu_2_o_in_axes2_x =
+        tube_B_2_o_in_axes2_yx*m->tube_J_group_2_in_axes2_xz[i] +
+        tube_B_2_o_in_axes2_zy*m->tube_Sigma_2_in_axes2_yy[i] +
+        m->tube_J_group_2_in_axes2_yz[i]*(tube_f_3_o_t_2 - tube_f_3_o_t_3) +
+        m->tube_Sigma_2_in_axes2_zz[i]*tube_alpha_1_o_in_axes2_x +
+        v.tube_g_in_axes2_y*m->tube_h_2_in_spec2_y[i] +
+        v.tube_g_in_axes2_z*m->tube_h_2_in_spec2_z[i] -
+        tube_B_2_o_in_axes2_zx*m->tube_J_group_2_in_axes2_xy[i] -
+        tube_acc_3_o_in_axes2_y*m->tube_h_3_in_spec2_y[i] -
+        tube_acc_3_o_in_axes2_z*m->tube_h_3_in_spec2_z[i];
+    const real tube_mu_2_o_in_axes2_y =
+        tube_B_2_o_in_axes2_zy*m->tube_J_group_2_in_axes2_xy[i] +
+        m->tube_Sigma_2_in_axes2_zz[i]*tube_alpha_1_o_in_axes2_y +
+        v.tube_acc_3_o_in_axes2_x*m->tube_h_3_in_spec2_y[i] +
+        v.tube_g_in_axes2_z*m->tube_h_2_in_spec2_x[i] -
+        tube_B_2_o_in_axes2_xy*m->tube_J_group_2_in_axes2_yz[i] -
+        tube_B_2_o_in_axes2_zx*m->tube_Sigma_2_in_axes2_xx[i] -
+        m->tube_J_group_2_in_axes2_xz[i]*(tube_f_3_o_t - tube_f_3_o_t_3) -
+        tube_acc_3_o_in_axes2_z*m->tube_h_3_in_spec2_x[i] -
+        v.tube_g_in_axes2_x*m->tube_h_2_in_spec2_y[i];
+    const real tube_mu_2_o_in_axes2_z = tube_B_2_o_in_axes2_yx*m->tube_Sigma_2_in_axes2_xx[i]
+        + m->tube_J_group_2_in_axes2_xy[i]*(tube_f_3_o_t - tube_f_3_o_t_2) +
+        m->tube_J_group_2_in_axes2_xz[i]*tube_alpha_1_o_in_axes2_x +
+        m->tube_J_group_2_in_axes2_yz[i]*tube_alpha_1_o_in_axes2_y +
+        v.tube_acc_3_o_in_axes2_x*m->tube_h_3_in_spec2_z[i] +
+        tube_acc_3_o_in_axes2_y*m->tube_h_3_in_spec2_x[i] -
+        tube_B_2_o_in_axes2_xy*m->tube_Sigma_2_in_axes2_yy[i] -
+        v.tube_g_in_axes2_x*m->tube_h_2_in_spec2_z[i] -
+        v.tube_g_in_axes2_y*m->tube_h_2_in_spec2_x[i];
+    /* (tube-dalpha_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2
+       outwards, the force at the connection point left out */
+    const real tube_dalpha_N_2_in_axes2_zx =
+        m->tube_J_group_2_in_axes2_xz[i]*tube_dalpha_alpha_1_in_axes2_xx +
+        m->tube_J_group_2_in_axes2_zz[i]*tube_o_2_in_axes2_x +
+        tube_dalpha_acc_3_in_axes2_yx*m->tube_h_3_in_spec2_x[i] +
+        v.tube_q_3*(tube_dalpha_acc_3_in_axes2_yx*m->tube_link3_mass[i] +
+        m->tube_h_3_in_spec2_x[i]*tube_o_2_in_axes2_x -
+        tube_dalpha_alpha_1_in_axes2_xx*m->tube_h_3_in_spec2_y[i]) -
+        m->tube_J_group_2_in_axes2_yz[i]*tube_dalpha_alpha_1_t;
+    const real tube_dalpha_N_2_in_axes2_zy =
+        m->tube_J_group_2_in_axes2_xz[i]*tube_dalpha_alpha_1_in_axes2_xy +
+        m->tube_J_group_2_in_axes2_zz[i]*tube_o_2_in_axes2_y +
+        tube_dalpha_acc_3_in_axes2_yy*m->tube_h_3_in_spec2_x[i] +
+        v.tube_q_3*(tube_dalpha_acc_3_in_axes2_yy*m->tube_link3_mass[i] +
+        m->tube_h_3_in_spec2_x[i]*tube_o_2_in_axes2_y -
+        tube_dalpha_alpha_1_in_axes2_xy*m->tube_h_3_in_spec2_y[i]) -
+        m->tube_J_group_2_in_axes2_yz[i]*tube_dalpha_alpha_1_t_2;
+    const real tube_dalpha_N_2_in_axes2_zz =
+        m->tube_J_group_2_in_axes2_xz[i]*tube_dalpha_alpha_1_in_axes2_xz +
+        m->tube_J_group_2_in_axes2_zz[i]*tube_o_2_in_axes2_z +
+        tube_dalpha_acc_3_in_axes2_yz*m->tube_h_3_in_spec2_x[i] +
+        v.tube_q_3*(tube_dalpha_acc_3_in_axes2_yz*m->tube_link3_mass[i] +
+        m->tube_h_3_in_spec2_x[i]*tube_o_2_in_axes2_z -
+        tube_dalpha_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_y[i]) -
+        m->tube_J_group_2_in_axes2_yz[i]*tube_dalpha_alpha_1_t_3;
+    /* (tube-d_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2
+       outwards, the force at the connection point left out */
+    const real tube_d_N_2_in_axes2_zy = m->tube_J_group_2_in_axes2_xz[i]*tube_w_1_in_axes1_x +
+        m->tube_J_group_2_in_axes2_zz[i]*tube_w_2_in_axes2_y +
+        tube_d_acc_3_in_axes2_yy*m->tube_h_3_in_spec2_x[i] +
+        v.tube_q_3*(tube_d_acc_3_in_axes2_yy*m->tube_link3_mass[i] +
+        m->tube_h_3_in_spec2_x[i]*tube_w_2_in_axes2_y -
+        m->tube_h_3_in_spec2_y[i]*tube_w_1_in_axes1_x) -
+        m->tube_J_group_2_in_axes2_yz[i]*tube_w_1_t_78;
+    const real tube_d_N_2_in_axes2_zz =
+        m->tube_J_group_2_in_axes2_xz[i]*tube_d_alpha_1_in_axes2_xz +
+        m->tube_J_group_2_in_axes2_zz[i]*tube_w_2_in_axes2_z +
+        tube_d_acc_3_in_axes2_yz*m->tube_h_3_in_spec2_x[i] +
+        v.tube_q_3*(tube_d_acc_3_in_axes2_yz*m->tube_link3_mass[i] +
+        m->tube_h_3_in_spec2_x[i]*tube_w_2_in_axes2_z -
+        tube_d_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_y[i]) -
+        m->tube_J_group_2_in_axes2_yz[i]*tube_d_alpha_1_t;
+    /* (tube-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+       connection point left out */
+    const real tube_N_2_o_in_axes2_y = tube_mu_2_o_in_axes2_y -
+        tube_f_3_o_in_axes2_z*v.tube_q_3;
+    const real tube_N_2_o_in_axes2_z = tube_mu_2_o_in_axes2_z +
+        tube_f_3_o_in_axes2_y*v.tube_q_3;
+    /* (tube-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
+       links' inertia and weight */
+    const real tube_dalpha_Gamma_1_t =
+        v.tube_c_2*(m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_in_axes2_xx +
+        m->tube_J_group_2_in_axes2_yz[i]*tube_o_2_in_axes2_x -
+        m->tube_J_group_2_in_axes2_yy[i]*tube_dalpha_alpha_1_t -
+        tube_dalpha_acc_3_in_axes2_zx*m->tube_h_3_in_spec2_x[i] -
+        v.tube_q_3*(tube_dalpha_acc_3_in_axes2_zx*m->tube_link3_mass[i] +
+        tube_dalpha_alpha_1_t*m->tube_h_3_in_spec2_x[i] -
+        tube_dalpha_alpha_1_in_axes2_xx*m->tube_h_3_in_spec2_z[i]));
+    const real tube_dalpha_Gamma_1_in_axes2_x =
+        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xx[i]*tube_dalpha_alpha_1_in_axes2_xx
+        + m->tube_J_group_2_in_axes2_xz[i]*tube_o_2_in_axes2_x -
+        m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_t -
+        tube_dalpha_acc_3_in_axes2_yx*m->tube_h_3_in_spec2_y[i] -
+        tube_dalpha_acc_3_in_axes2_zx*m->tube_h_3_in_spec2_z[i]) - tube_dalpha_Gamma_1_t;
+    const real tube_dalpha_Gamma_1_t_2 =
+        v.tube_c_2*(m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_in_axes2_xy +
+        m->tube_J_group_2_in_axes2_yz[i]*tube_o_2_in_axes2_y -
+        m->tube_J_group_2_in_axes2_yy[i]*tube_dalpha_alpha_1_t_2 -
+        tube_dalpha_acc_3_in_axes2_zy*m->tube_h_3_in_spec2_x[i] -
+        v.tube_q_3*(tube_dalpha_acc_3_in_axes2_zy*m->tube_link3_mass[i] +
+        tube_dalpha_alpha_1_t_2*m->tube_h_3_in_spec2_x[i] -
+        tube_dalpha_alpha_1_in_axes2_xy*m->tube_h_3_in_spec2_z[i]));
+    const real tube_dalpha_Gamma_1_in_axes2_y =
+        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xx[i]*tube_dalpha_alpha_1_in_axes2_xy
+        + m->tube_J_group_2_in_axes2_xz[i]*tube_o_2_in_axes2_y -
+        m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_t_2 -
+        tube_dalpha_acc_3_in_axes2_yy*m->tube_h_3_in_spec2_y[i] -
+        tube_dalpha_acc_3_in_axes2_zy*m->tube_h_3_in_spec2_z[i]) - tube_dalpha_Gamma_1_t_2;
+    const real tube_dalpha_Gamma_1_t_3 =
+        v.tube_c_2*(m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_in_axes2_xz +
+        m->tube_J_group_2_in_axes2_yz[i]*tube_o_2_in_axes2_z -
+        m->tube_J_group_2_in_axes2_yy[i]*tube_dalpha_alpha_1_t_3 -
+        tube_dalpha_acc_3_in_axes2_zz*m->tube_h_3_in_spec2_x[i] -
+        v.tube_q_3*(tube_dalpha_acc_3_in_axes2_zz*m->tube_link3_mass[i] +
+        tube_dalpha_alpha_1_t_3*m->tube_h_3_in_spec2_x[i] -
+        tube_dalpha_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_z[i]));
+    const real tube_dalpha_Gamma_1_in_axes2_z =
+        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xx[i]*tube_dalpha_alpha_1_in_axes2_xz
+        + m->tube_J_group_2_in_axes2_xz[i]*tube_o_2_in_axes2_z -
+        m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_t_3 -
+        tube_dalpha_acc_3_in_axes2_yz*m->tube_h_3_in_spec2_y[i] -
+        tube_dalpha_acc_3_in_axes2_zz*m->tube_h_3_in_spec2_z[i]) - tube_dalpha_Gamma_1_t_3;
+    /* (tube-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+       inertia and weight */
+    const real tube_d_Gamma_1_t = v.tube_c_2*m->tube_h_3_in_spec2_y[i];
+    const real tube_d_Gamma_1_t_2 =
+        v.tube_c_2*(m->tube_J_group_2_in_axes2_xy[i]*tube_w_1_in_axes1_x +
+        m->tube_J_group_2_in_axes2_yz[i]*tube_w_2_in_axes2_y -
+        m->tube_J_group_2_in_axes2_yy[i]*tube_w_1_t_78 -
+        tube_d_acc_3_in_axes2_zy*m->tube_h_3_in_spec2_x[i] -
+        v.tube_q_3*(tube_d_acc_3_in_axes2_zy*m->tube_link3_mass[i] +
+        m->tube_h_3_in_spec2_x[i]*tube_w_1_t_78 -
+        m->tube_h_3_in_spec2_z[i]*tube_w_1_in_axes1_x));
+    const real tube_d_Gamma_1_in_axes2_y =
+        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xx[i]*tube_w_1_in_axes1_x +
+        m->tube_J_group_2_in_axes2_xz[i]*tube_w_2_in_axes2_y -
+        m->tube_J_group_2_in_axes2_xy[i]*tube_w_1_t_78 -
+        tube_d_acc_3_in_axes2_yy*m->tube_h_3_in_spec2_y[i] -
+        tube_d_acc_3_in_axes2_zy*m->tube_h_3_in_spec2_z[i]) - tube_d_Gamma_1_t_2;
+    const real tube_d_Gamma_1_t_3 =
+        v.tube_c_2*(m->tube_J_group_2_in_axes2_xy[i]*tube_d_alpha_1_in_axes2_xz +
+        m->tube_J_group_2_in_axes2_yz[i]*tube_w_2_in_axes2_z -
+        m->tube_J_group_2_in_axes2_yy[i]*tube_d_alpha_1_t -
+        tube_d_acc_3_in_axes2_zz*m->tube_h_3_in_spec2_x[i] -
+        v.tube_q_3*(tube_d_acc_3_in_axes2_zz*m->tube_link3_mass[i] +
+        tube_d_alpha_1_t*m->tube_h_3_in_spec2_x[i] -
+        tube_d_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_z[i]));
+    const real tube_d_Gamma_1_in_axes2_z =
+        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xx[i]*tube_d_alpha_1_in_axes2_xz +
+        m->tube_J_group_2_in_axes2_xz[i]*tube_w_2_in_axes2_z -
+        m->tube_J_group_2_in_axes2_xy[i]*tube_d_alpha_1_t -
+        tube_d_acc_3_in_axes2_yz*m->tube_h_3_in_spec2_y[i] -
+        tube_d_acc_3_in_axes2_zz*m->tube_h_3_in_spec2_z[i]) - tube_d_Gamma_1_t_3;
+    /* (tube-dalpha_G) coefficient of the acceleration in: force at the connection point that balances
+       the leg's inertia and weight along all degrees of freedom */
+    const real tube_dalpha_G_in_axes2_yx = tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_y
+        + tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_y;
+    const real tube_dalpha_G_in_axes2_yy = tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y
+        + tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_y;
+    const real tube_dalpha_G_in_axes2_yz = tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y
+        + tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_y;
+    const real tube_dalpha_G_in_axes2_zx = tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_z
+        + tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_z;
+    const real tube_dalpha_G_in_axes2_zy = tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_z
+        + tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_z;
+    const real tube_dalpha_G_in_axes2_zz = tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z
+        + tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_z;
+    /* (tube-d_G) coefficient of the acceleration in: force at the connection point that balances the
+       leg's inertia and weight along all degrees of freedom */
+    const real tube_d_G_in_axes2_yz = tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y +
+        tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_y;
+    /* (tube-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real tube_G_o_t = v.inv_tube_w_1_t_13*tube_N_2_o_in_axes2_z;
+    const real tube_G_o_t_2 = v.inv_tube_w_1_t_33*tube_G_o_t*v.tube_w_1_t_17;
+    const real tube_G_o_t_3 = v.inv_tube_w_1_t_49*(tube_G_o_t*v.tube_w_1_t_21 -
+        tube_G_o_t_2*v.tube_w_1_t_37);
+    const real tube_G_o_t_4 = v.inv_tube_w_1_t_63*(tube_G_o_t_2*v.tube_w_1_t_41 +
+        tube_G_o_t_3*v.tube_w_1_t_53 - tube_G_o_t*v.tube_w_1_t_25);
+    const real tube_G_o_t_5 = v.inv_tube_w_1_t_75*(tube_G_o_t*v.tube_w_1_t_29 +
+        tube_G_o_t_4*v.tube_w_1_t_69 + tube_N_2_o_in_axes2_y*v.tube_c_2 -
+        tube_G_o_t_2*v.tube_w_1_t_45 - tube_G_o_t_3*v.tube_w_1_t_58 -
+        v.tube_e_1_in_axes2_x*tube_mu_2_o_in_axes2_x);
+    const real tube_G_o_in_axes2_y = tube_G_o_t*v.tube_w_1_t_14 + tube_G_o_t_2*v.tube_w_1_t_34
+        + tube_G_o_t_3*v.tube_w_1_t_50 + tube_G_o_t_4*v.tube_w_1_t_64 -
+        tube_G_o_t_5*tube_w_1_t_76;
+    const real tube_G_o_in_axes2_z = v.inv_tube_w_1_t_49*tube_G_o_t_3 +
+        tube_G_o_t_4*v.tube_w_1_t_65 - tube_G_o_t_5*tube_w_1_t_77;
+    /* (tube-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
+       balances the leg's inertia and weight along all degrees of freedom */
+    const real tube_dalpha_G_m1_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m1_w_1 +
+        tube_dalpha_N_2_in_axes2_zx*tube_m1_w_2;
+    const real tube_dalpha_G_m1_in_axes2_y = tube_dalpha_Gamma_1_in_axes2_y*tube_m1_w_1 +
+        tube_dalpha_N_2_in_axes2_zy*tube_m1_w_2;
+    const real tube_dalpha_G_m1_in_axes2_z = tube_dalpha_Gamma_1_in_axes2_z*tube_m1_w_1 +
+        tube_dalpha_N_2_in_axes2_zz*tube_m1_w_2;
+    /* (tube-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
+       the leg's inertia and weight along all degrees of freedom */
+    const real tube_d_G_m1_in_axes2_x = m->tube_h_3_in_spec2_z[i]*tube_m1_w_2 -
+        tube_d_Gamma_1_t*tube_m1_w_1;
+    const real tube_d_G_m1_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m1_w_1 +
+        tube_d_N_2_in_axes2_zy*tube_m1_w_2;
+    const real tube_d_G_m1_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m1_w_1 +
+        tube_d_N_2_in_axes2_zz*tube_m1_w_2;
+    /* (tube-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real tube_G_m1_o_t = tube_G_o_t*v.tube_w_1_t_15 + tube_G_o_t_2*v.tube_w_1_t_35 +
+        tube_G_o_t_3*v.tube_w_1_t_51 + tube_G_o_t_4*v.tube_w_1_t_66 -
+        tube_G_o_t_5*tube_m1_w_1_t;
+    const real tube_G_m1_o = R(1.35)*tube_G_m1_o_t;
+    /* (tube-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
+       balances the leg's inertia and weight along all degrees of freedom */
+    const real tube_dalpha_G_m2_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m2_w_1 +
+        tube_dalpha_N_2_in_axes2_zx*tube_m2_w_2;
+    const real tube_dalpha_G_m2_in_axes2_y = tube_dalpha_Gamma_1_in_axes2_y*tube_m2_w_1 +
+        tube_dalpha_N_2_in_axes2_zy*tube_m2_w_2;
+    const real tube_dalpha_G_m2_in_axes2_z = tube_dalpha_Gamma_1_in_axes2_z*tube_m2_w_1 +
+        tube_dalpha_N_2_in_axes2_zz*tube_m2_w_2;
+    /* (tube-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances
+       the leg's inertia and weight along all degrees of freedom */
+    const real tube_d_G_m2_in_axes2_x = m->tube_h_3_in_spec2_z[i]*tube_m2_w_2 -
+        tube_d_Gamma_1_t*tube_m2_w_1;
+    const real tube_d_G_m2_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m2_w_1 +
+        tube_d_N_2_in_axes2_zy*tube_m2_w_2;
+    const real tube_d_G_m2_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m2_w_1 +
+        tube_d_N_2_in_axes2_zz*tube_m2_w_2;
+    /* (tube-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real tube_G_m2_o_t = tube_G_o_t_4*v.tube_w_1_t_67 + tube_G_o_t_5*tube_m2_w_1_t;
+    const real tube_G_m2_o = R(1.35)*tube_G_m2_o_t;
+    /* (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that
+       balances the leg's inertia and weight along all degrees of freedom */
+    const real tube_dalpha_G_m3_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m3_w_1 +
+        tube_dalpha_N_2_in_axes2_zx*tube_m3_w_2;
+    const real tube_dalpha_G_m3_in_axes2_y = tube_dalpha_Gamma_1_in_axes2_y*tube_m3_w_1 +
+        tube_dalpha_N_2_in_axes2_zy*tube_m3_w_2;
+    const real tube_dalpha_G_m3_in_axes2_z = tube_dalpha_Gamma_1_in_axes2_z*tube_m3_w_1 +
+        tube_dalpha_N_2_in_axes2_zz*tube_m3_w_2;
+    /* (tube-d_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances
+       the leg's inertia and weight along all degrees of freedom */
+    const real tube_d_G_m3_in_axes2_x = m->tube_h_3_in_spec2_z[i]*tube_m3_w_2 -
+        tube_d_Gamma_1_t*tube_m3_w_1;
+    const real tube_d_G_m3_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m3_w_1 +
+        tube_d_N_2_in_axes2_zy*tube_m3_w_2;
+    const real tube_d_G_m3_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m3_w_1 +
+        tube_d_N_2_in_axes2_zz*tube_m3_w_2;
+    /* (tube-G_m3_o) remainder of: moment along moment direction 3 that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real tube_G_m3_o_t = tube_G_o_t*v.tube_w_1_t_16 + tube_G_o_t_2*v.tube_w_1_t_36 +
+        tube_G_o_t_3*v.tube_w_1_t_52 + tube_G_o_t_4*v.tube_w_1_t_68 -
+        tube_G_o_t_5*tube_m3_w_1_t;
+    const real tube_G_m3_o = R(1.35)*tube_G_m3_o_t;
+    /* (tube-dalpha_G_m) coefficient of the acceleration in: moment at the connection point that
+       balances the leg's inertia and weight along all degrees of freedom */
+    const real tube_dalpha_G_m_in_axes2_xx =
+        -tube_dalpha_G_m2_in_axes2_x*v.tube_end_p2_in_axes2_y -
+        tube_dalpha_G_m3_in_axes2_x*v.tube_end_p3_in_axes2_z;
+    const real tube_dalpha_G_m_in_axes2_xy =
+        -tube_dalpha_G_m2_in_axes2_y*v.tube_end_p2_in_axes2_y -
+        tube_dalpha_G_m3_in_axes2_y*v.tube_end_p3_in_axes2_z;
+    const real tube_dalpha_G_m_in_axes2_xz =
+        -tube_dalpha_G_m2_in_axes2_z*v.tube_end_p2_in_axes2_y -
+        tube_dalpha_G_m3_in_axes2_z*v.tube_end_p3_in_axes2_z;
+    const real tube_dalpha_G_m_in_axes2_yx =
+        tube_dalpha_G_m2_in_axes2_x*v.tube_n_m2_in_axes2_y -
+        tube_dalpha_G_m1_in_axes2_x*v.tube_end_p1_in_axes2_z;
+    const real tube_dalpha_G_m_in_axes2_yy =
+        tube_dalpha_G_m2_in_axes2_y*v.tube_n_m2_in_axes2_y -
+        tube_dalpha_G_m1_in_axes2_y*v.tube_end_p1_in_axes2_z;
+    const real tube_dalpha_G_m_in_axes2_yz =
+        tube_dalpha_G_m2_in_axes2_z*v.tube_n_m2_in_axes2_y -
+        tube_dalpha_G_m1_in_axes2_z*v.tube_end_p1_in_axes2_z;
+    const real tube_dalpha_G_m_in_axes2_zx =
+        tube_dalpha_G_m1_in_axes2_x*v.tube_n_m1_in_axes2_z +
+        tube_dalpha_G_m3_in_axes2_x*v.tube_n_m3_in_axes2_z;
+    const real tube_dalpha_G_m_in_axes2_zy =
+        tube_dalpha_G_m1_in_axes2_y*v.tube_n_m1_in_axes2_z +
+        tube_dalpha_G_m3_in_axes2_y*v.tube_n_m3_in_axes2_z;
+    const real tube_dalpha_G_m_in_axes2_zz =
+        tube_dalpha_G_m1_in_axes2_z*v.tube_n_m1_in_axes2_z +
+        tube_dalpha_G_m3_in_axes2_z*v.tube_n_m3_in_axes2_z;
+    /* (tube-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
+       the leg's inertia and weight along all degrees of freedom */
+    const real tube_d_G_m_in_axes2_xx = -tube_d_G_m2_in_axes2_x*v.tube_end_p2_in_axes2_y -
+        tube_d_G_m3_in_axes2_x*v.tube_end_p3_in_axes2_z;
+    const real tube_d_G_m_in_axes2_xy = -tube_d_G_m2_in_axes2_y*v.tube_end_p2_in_axes2_y -
+        tube_d_G_m3_in_axes2_y*v.tube_end_p3_in_axes2_z;
+    const real tube_d_G_m_in_axes2_xz = -tube_d_G_m2_in_axes2_z*v.tube_end_p2_in_axes2_y -
+        tube_d_G_m3_in_axes2_z*v.tube_end_p3_in_axes2_z;
+    const real tube_d_G_m_in_axes2_yx = tube_d_G_m2_in_axes2_x*v.tube_n_m2_in_axes2_y -
+        tube_d_G_m1_in_axes2_x*v.tube_end_p1_in_axes2_z;
+    const real tube_d_G_m_in_axes2_yy = tube_d_G_m2_in_axes2_y*v.tube_n_m2_in_axes2_y -
+        tube_d_G_m1_in_axes2_y*v.tube_end_p1_in_axes2_z;
+    const real tube_d_G_m_in_axes2_yz = tube_d_G_m2_in_axes2_z*v.tube_n_m2_in_axes2_y -
+        tube_d_G_m1_in_axes2_z*v.tube_end_p1_in_axes2_z;
+    const real tube_d_G_m_in_axes2_zx = tube_d_G_m1_in_axes2_x*v.tube_n_m1_in_axes2_z +
+        tube_d_G_m3_in_axes2_x*v.tube_n_m3_in_axes2_z;
+    const real tube_d_G_m_in_axes2_zy = tube_d_G_m1_in_axes2_y*v.tube_n_m1_in_axes2_z +
+        tube_d_G_m3_in_axes2_y*v.tube_n_m3_in_axes2_z;
+    const real tube_d_G_m_in_axes2_zz = tube_d_G_m1_in_axes2_z*v.tube_n_m1_in_axes2_z +
+        tube_d_G_m3_in_axes2_z*v.tube_n_m3_in_axes2_z;
+    /* (tube-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real tube_G_m_o_in_axes2_x = -tube_G_m2_o*v.tube_end_p2_in_axes2_y -
+        tube_G_m3_o*v.tube_end_p3_in_axes2_z;
+    const real tube_G_m_o_in_axes2_y = tube_G_m2_o*v.tube_n_m2_in_axes2_y -
+        tube_G_m1_o*v.tube_end_p1_in_axes2_z;
+    const real tube_G_m_o_in_axes2_z = tube_G_m1_o*v.tube_n_m1_in_axes2_z +
+        tube_G_m3_o*v.tube_n_m3_in_axes2_z;
+    /* (tube-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
+       and without the mass at the connection point */
+    const real tube_dalpha_c_in_axes2_xx = tube_dalpha_alpha_1_t*m->tube_h_3_in_spec2_y[i] -
+        m->tube_h_3_in_spec2_z[i]*tube_o_2_in_axes2_x;
+    const real tube_dalpha_c_in_axes2_xy = tube_dalpha_alpha_1_t_2*m->tube_h_3_in_spec2_y[i] -
+        m->tube_h_3_in_spec2_z[i]*tube_o_2_in_axes2_y;
+    const real tube_dalpha_c_in_axes2_xz = tube_dalpha_alpha_1_t_3*m->tube_h_3_in_spec2_y[i] -
+        m->tube_h_3_in_spec2_z[i]*tube_o_2_in_axes2_z;
+    /* (tube-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real tube_d_c_in_axes2_xy = m->tube_h_3_in_spec2_y[i]*tube_w_1_t_78 -
+        m->tube_h_3_in_spec2_z[i]*tube_w_2_in_axes2_y;
+    const real tube_d_c_in_axes2_xz = tube_d_alpha_1_t*m->tube_h_3_in_spec2_y[i] -
+        m->tube_h_3_in_spec2_z[i]*tube_w_2_in_axes2_z;
+    /* (tube-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real tube_Q_t = tube_d_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y +
+        tube_d_N_2_in_axes2_zy*tube_w_2_in_axes2_y - m->tube_link3_mass[i];
+    const real tube_Q_t_2 = R(0.5)*tube_Q_t;
+    const real tube_Q_t_3 = tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z +
+        tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_z - m->tube_link3_mass[i];
+    const real tube_Q_t_4 = R(0.5)*tube_Q_t_3;
+    const real tube_Q_t_5 = v.axis_y_tube_axes2_x*tube_Q_t_2 +
+        v.axis_z_tube_axes2_x*tube_d_G_in_axes2_yz -
+        v.axis_x_tube_axes2_x*tube_d_c_in_axes2_xy;
+    const real tube_Q_t_6 = v.axis_y_tube_axes2_y*tube_Q_t_2 +
+        v.axis_z_tube_axes2_y*tube_d_G_in_axes2_yz -
+        v.axis_x_tube_axes2_y*tube_d_c_in_axes2_xy;
+    const real tube_Q_t_7 = v.axis_y_tube_axes2_z*tube_Q_t_2 +
+        v.axis_z_tube_axes2_z*tube_d_G_in_axes2_yz -
+        v.axis_x_tube_axes2_z*tube_d_c_in_axes2_xy;
+    const real tube_Q_t_8 = v.axis_z_tube_axes2_x*tube_Q_t_4 -
+        v.axis_x_tube_axes2_x*tube_d_c_in_axes2_xz;
+    const real tube_Q_t_9 = v.axis_z_tube_axes2_y*tube_Q_t_4 -
+        v.axis_x_tube_axes2_y*tube_d_c_in_axes2_xz;
+    const real tube_Q_t_10 = v.axis_z_tube_axes2_z*tube_Q_t_4 -
+        v.axis_x_tube_axes2_z*tube_d_c_in_axes2_xz;
+    const real tube_Q_t_11 = v.axis_y_tube_axes2_x*tube_Q_t_5 +
+        v.axis_z_tube_axes2_x*tube_Q_t_8;
+    const real tube_Q_xx = 2*tube_Q_t_11 + m->tube_link3_mass[i];
+    const real tube_Q_xy = v.axis_y_tube_axes2_x*tube_Q_t_6 + v.axis_y_tube_axes2_y*tube_Q_t_5
+        + v.axis_z_tube_axes2_x*tube_Q_t_9 + v.axis_z_tube_axes2_y*tube_Q_t_8;
+    const real tube_Q_xz = v.axis_y_tube_axes2_x*tube_Q_t_7 + v.axis_y_tube_axes2_z*tube_Q_t_5
+        + v.axis_z_tube_axes2_x*tube_Q_t_10 + v.axis_z_tube_axes2_z*tube_Q_t_8;
+    const real tube_Q_t_12 = v.axis_y_tube_axes2_y*tube_Q_t_6 +
+        v.axis_z_tube_axes2_y*tube_Q_t_9;
+    const real tube_Q_yy = 2*tube_Q_t_12 + m->tube_link3_mass[i];
+    const real tube_Q_yz = v.axis_y_tube_axes2_y*tube_Q_t_7 + v.axis_y_tube_axes2_z*tube_Q_t_6
+        + v.axis_z_tube_axes2_y*tube_Q_t_10 + v.axis_z_tube_axes2_z*tube_Q_t_9;
+    const real tube_Q_t_13 = v.axis_y_tube_axes2_z*tube_Q_t_7 +
+        v.axis_z_tube_axes2_z*tube_Q_t_10;
+    const real tube_Q_zz = 2*tube_Q_t_13 + m->tube_link3_mass[i];
+    /* (tube-dalpha_c_m) coefficient of the acceleration in: moment of the leg on the platform without
+       actuation */
+    const real tube_dalpha_c_m_zz =
+        v.axis_x_tube_axes2_z*(-v.axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xx -
+        v.axis_y_tube_axes2_z*tube_dalpha_G_m_in_axes2_yx -
+        v.axis_z_tube_axes2_z*tube_dalpha_G_m_in_axes2_zx) +
+        v.axis_y_tube_axes2_z*(-v.axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xy -
+        v.axis_y_tube_axes2_z*tube_dalpha_G_m_in_axes2_yy -
+        v.axis_z_tube_axes2_z*tube_dalpha_G_m_in_axes2_zy) +
+        v.axis_z_tube_axes2_z*(-v.axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xz -
+        v.axis_y_tube_axes2_z*tube_dalpha_G_m_in_axes2_yz -
+        v.axis_z_tube_axes2_z*tube_dalpha_G_m_in_axes2_zz);
+    /* (tube-d_c_m) coefficient of the acceleration in: moment of the leg on the platform without
+       actuation */
+    const real tube_d_c_m_t = -v.axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xx -
+        v.axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yx -
+        v.axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zx;
+    const real tube_d_c_m_t_2 = -v.axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xx -
+        v.axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yx -
+        v.axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zx;
+    const real tube_d_c_m_t_3 = -v.axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xy -
+        v.axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yy -
+        v.axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zy;
+    const real tube_d_c_m_t_4 = -v.axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xy -
+        v.axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yy -
+        v.axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zy;
+    const real tube_d_c_m_t_5 = -v.axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xz -
+        v.axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yz -
+        v.axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zz;
+    const real tube_d_c_m_t_6 = -v.axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xz -
+        v.axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yz -
+        v.axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zz;
+    const real tube_d_c_m_xx = v.axis_x_tube_axes2_x*tube_d_c_m_t +
+        v.axis_y_tube_axes2_x*tube_d_c_m_t_3 + v.axis_z_tube_axes2_x*tube_d_c_m_t_5;
+    const real tube_d_c_m_xy = v.axis_x_tube_axes2_y*tube_d_c_m_t +
+        v.axis_y_tube_axes2_y*tube_d_c_m_t_3 + v.axis_z_tube_axes2_y*tube_d_c_m_t_5;
+    const real tube_d_c_m_xz = v.axis_x_tube_axes2_z*tube_d_c_m_t +
+        v.axis_y_tube_axes2_z*tube_d_c_m_t_3 + v.axis_z_tube_axes2_z*tube_d_c_m_t_5;
+    const real tube_d_c_m_yx = v.axis_x_tube_axes2_x*tube_d_c_m_t_2 +
+        v.axis_y_tube_axes2_x*tube_d_c_m_t_4 + v.axis_z_tube_axes2_x*tube_d_c_m_t_6;
+    /* (tube-U) velocity and gravity terms of the leg force */
+    const real tube_U_x = v.axis_x_tube_axes2_x*tube_f_3_o_in_axes2_x +
+        v.axis_y_tube_axes2_x*tube_G_o_in_axes2_y + v.axis_z_tube_axes2_x*tube_G_o_in_axes2_z;
+    const real tube_U_y = v.axis_x_tube_axes2_y*tube_f_3_o_in_axes2_x +
+        v.axis_y_tube_axes2_y*tube_G_o_in_axes2_y + v.axis_z_tube_axes2_y*tube_G_o_in_axes2_z;
+    const real tube_U_z = v.axis_x_tube_axes2_z*tube_f_3_o_in_axes2_x +
+        v.axis_y_tube_axes2_z*tube_G_o_in_axes2_y + v.axis_z_tube_axes2_z*tube_G_o_in_axes2_z;
+    /* (M_ta) */
+    const real tube_M_ta_t = v.axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xx -
+        v.axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yx -
+        v.axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zx;
+    const real tube_M_ta_t_2 = v.axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xx -
+        v.axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yx -
+        v.axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zx;
+    const real tube_M_ta_t_3 = v.axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xx -
+        v.axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yx -
+        v.axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zx;
+    const real tube_M_ta_t_4 = v.axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xy -
+        v.axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yy -
+        v.axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zy;
+    const real tube_M_ta_t_5 = v.axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xy -
+        v.axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yy -
+        v.axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zy;
+    const real tube_M_ta_t_6 = v.axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xy -
+        v.axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yy -
+        v.axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zy;
+    const real tube_M_ta_t_7 = v.axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xz -
+        v.axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yz -
+        v.axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zz;
+    const real tube_M_ta_t_8 = v.axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xz -
+        v.axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yz -
+        v.axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zz;
+    const real tube_M_ta_t_9 = v.axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xz -
+        v.axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yz -
+        v.axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zz;
+    const real tube_M_ta_t_10 = tube_Q_xy*v.tube_q_z;
+    const real tube_M_ta_t_11 = tube_Q_xz*v.tube_q_y;
+    const real tube_M_ta_t_12 = tube_Q_yz*v.tube_q_x;
+    const real tube_M_ta_t_13 = tube_M_ta_t_11 - tube_M_ta_t_10 -
+        v.axis_x_tube_axes2_x*tube_M_ta_t - v.axis_y_tube_axes2_x*tube_M_ta_t_4 -
+        v.axis_z_tube_axes2_x*tube_M_ta_t_7;
+    const real tube_M_ta_t_14 = tube_Q_xx*v.tube_q_z - v.axis_x_tube_axes2_y*tube_M_ta_t -
+        v.axis_y_tube_axes2_y*tube_M_ta_t_4 - v.axis_z_tube_axes2_y*tube_M_ta_t_7 -
+        tube_Q_xz*v.tube_q_x;
+    const real tube_M_ta_t_15 = tube_Q_xy*v.tube_q_x - v.axis_x_tube_axes2_z*tube_M_ta_t -
+        v.axis_y_tube_axes2_z*tube_M_ta_t_4 - v.axis_z_tube_axes2_z*tube_M_ta_t_7 -
+        tube_Q_xx*v.tube_q_y;
+    const real tube_M_ta_t_16 = tube_Q_yz*v.tube_q_y - v.axis_x_tube_axes2_x*tube_M_ta_t_2 -
+        v.axis_y_tube_axes2_x*tube_M_ta_t_5 - v.axis_z_tube_axes2_x*tube_M_ta_t_8 -
+        tube_Q_yy*v.tube_q_z;
+    const real tube_M_ta_t_17 = tube_M_ta_t_10 - tube_M_ta_t_12 -
+        v.axis_x_tube_axes2_y*tube_M_ta_t_2 - v.axis_y_tube_axes2_y*tube_M_ta_t_5 -
+        v.axis_z_tube_axes2_y*tube_M_ta_t_8;
+    const real tube_M_ta_t_18 = tube_Q_yy*v.tube_q_x - v.axis_x_tube_axes2_z*tube_M_ta_t_2 -
+        v.axis_y_tube_axes2_z*tube_M_ta_t_5 - v.axis_z_tube_axes2_z*tube_M_ta_t_8 -
+        tube_Q_xy*v.tube_q_y;
+    const real tube_M_ta_t_19 = tube_Q_zz*v.tube_q_y - v.axis_x_tube_axes2_x*tube_M_ta_t_3 -
+        v.axis_y_tube_axes2_x*tube_M_ta_t_6 - v.axis_z_tube_axes2_x*tube_M_ta_t_9 -
+        tube_Q_yz*v.tube_q_z;
+    const real tube_M_ta_t_20 = tube_Q_xz*v.tube_q_z - v.axis_x_tube_axes2_y*tube_M_ta_t_3 -
+        v.axis_y_tube_axes2_y*tube_M_ta_t_6 - v.axis_z_tube_axes2_y*tube_M_ta_t_9 -
+        tube_Q_zz*v.tube_q_x;
+    const real tube_M_ta_t_21 = tube_M_ta_t_12 - tube_M_ta_t_11 -
+        v.axis_x_tube_axes2_z*tube_M_ta_t_3 - v.axis_y_tube_axes2_z*tube_M_ta_t_6 -
+        v.axis_z_tube_axes2_z*tube_M_ta_t_9;
+    /* (M_aa) */
+    const real tube_M_aa_t = -v.axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xx -
+        v.axis_y_tube_axes2_x*tube_dalpha_G_m_in_axes2_yx -
+        v.axis_z_tube_axes2_x*tube_dalpha_G_m_in_axes2_zx;
+    const real tube_M_aa_t_2 = -v.axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xx -
+        v.axis_y_tube_axes2_y*tube_dalpha_G_m_in_axes2_yx -
+        v.axis_z_tube_axes2_y*tube_dalpha_G_m_in_axes2_zx;
+    const real tube_M_aa_t_3 = -v.axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xy -
+        v.axis_y_tube_axes2_x*tube_dalpha_G_m_in_axes2_yy -
+        v.axis_z_tube_axes2_x*tube_dalpha_G_m_in_axes2_zy;
+    const real tube_M_aa_t_4 = -v.axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xy -
+        v.axis_y_tube_axes2_y*tube_dalpha_G_m_in_axes2_yy -
+        v.axis_z_tube_axes2_y*tube_dalpha_G_m_in_axes2_zy;
+    const real tube_M_aa_t_5 = -v.axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xz -
+        v.axis_y_tube_axes2_x*tube_dalpha_G_m_in_axes2_yz -
+        v.axis_z_tube_axes2_x*tube_dalpha_G_m_in_axes2_zz;
+    const real tube_M_aa_t_6 = -v.axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xz -
+        v.axis_y_tube_axes2_y*tube_dalpha_G_m_in_axes2_yz -
+        v.axis_z_tube_axes2_y*tube_dalpha_G_m_in_axes2_zz;
+    const real tube_M_aa_t_7 = -v.axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xx -
+        v.axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yx -
+        v.axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zx;
+    const real tube_M_aa_t_8 = -v.axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xy -
+        v.axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yy -
+        v.axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zy;
+    const real tube_M_aa_t_9 = -v.axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xz -
+        v.axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yz -
+        v.axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zz;
+    const real tube_M_aa_t_10 = tube_M_ta_t_19*v.tube_q_y + tube_d_c_m_xy*v.tube_q_z -
+        v.axis_x_tube_axes2_x*tube_M_aa_t - v.axis_y_tube_axes2_x*tube_M_aa_t_3 -
+        v.axis_z_tube_axes2_x*tube_M_aa_t_5 - tube_M_ta_t_16*v.tube_q_z -
+        tube_d_c_m_xz*v.tube_q_y;
+    const real tube_M_aa_t_11 = tube_M_ta_t_20*v.tube_q_y + tube_d_c_m_xz*v.tube_q_x -
+        v.axis_x_tube_axes2_y*tube_M_aa_t - v.axis_y_tube_axes2_y*tube_M_aa_t_3 -
+        v.axis_z_tube_axes2_y*tube_M_aa_t_5 - tube_M_ta_t_17*v.tube_q_z -
+        tube_d_c_m_xx*v.tube_q_z;
+    const real tube_M_aa_t_12 = tube_M_ta_t_21*v.tube_q_y + tube_d_c_m_xx*v.tube_q_y -
+        v.axis_x_tube_axes2_z*tube_M_aa_t - v.axis_y_tube_axes2_z*tube_M_aa_t_3 -
+        v.axis_z_tube_axes2_z*tube_M_aa_t_5 - tube_M_ta_t_18*v.tube_q_z -
+        tube_d_c_m_xy*v.tube_q_x;
+    const real tube_M_aa_t_13 = tube_M_ta_t_14*v.tube_q_z +
+        v.tube_q_x*(v.axis_x_tube_axes2_z*tube_d_c_m_t_2 +
+        v.axis_y_tube_axes2_z*tube_d_c_m_t_4 + v.axis_z_tube_axes2_z*tube_d_c_m_t_6) -
+        v.axis_x_tube_axes2_y*tube_M_aa_t_2 - v.axis_y_tube_axes2_y*tube_M_aa_t_4 -
+        v.axis_z_tube_axes2_y*tube_M_aa_t_6 - tube_M_ta_t_20*v.tube_q_x -
+        tube_d_c_m_yx*v.tube_q_z;
+    const real tube_M_aa_t_14 = tube_M_ta_t_15*v.tube_q_z + tube_d_c_m_yx*v.tube_q_y -
+        v.axis_x_tube_axes2_z*tube_M_aa_t_2 - v.axis_y_tube_axes2_z*tube_M_aa_t_4 -
+        v.axis_z_tube_axes2_z*tube_M_aa_t_6 - tube_M_ta_t_21*v.tube_q_x -
+        v.tube_q_x*(v.axis_x_tube_axes2_y*tube_d_c_m_t_2 +
+        v.axis_y_tube_axes2_y*tube_d_c_m_t_4 + v.axis_z_tube_axes2_y*tube_d_c_m_t_6);
+    const real tube_M_aa_t_15 = tube_M_ta_t_18*v.tube_q_x +
+        v.tube_q_y*(v.axis_x_tube_axes2_x*tube_M_aa_t_7 + v.axis_y_tube_axes2_x*tube_M_aa_t_8
+        + v.axis_z_tube_axes2_x*tube_M_aa_t_9) - tube_dalpha_c_m_zz -
+        tube_M_ta_t_15*v.tube_q_y - v.tube_q_x*(v.axis_x_tube_axes2_y*tube_M_aa_t_7 +
+        v.axis_y_tube_axes2_y*tube_M_aa_t_8 + v.axis_z_tube_axes2_y*tube_M_aa_t_9);
+    /* (Z_a) */
+    const real tube_Z_a_t = v.axis_x_tube_axes2_x*tube_G_m_o_in_axes2_x +
+        v.axis_y_tube_axes2_x*tube_G_m_o_in_axes2_y +
+        v.axis_z_tube_axes2_x*tube_G_m_o_in_axes2_z + tube_U_z*v.tube_q_y -
+        tube_U_y*v.tube_q_z;
+    const real tube_Z_a_t_2 = v.axis_x_tube_axes2_y*tube_G_m_o_in_axes2_x +
+        v.axis_y_tube_axes2_y*tube_G_m_o_in_axes2_y +
+        v.axis_z_tube_axes2_y*tube_G_m_o_in_axes2_z + tube_U_x*v.tube_q_z -
+        tube_U_z*v.tube_q_x;
+    const real tube_Z_a_t_3 = v.axis_x_tube_axes2_z*tube_G_m_o_in_axes2_x +
+        v.axis_y_tube_axes2_z*tube_G_m_o_in_axes2_y +
+        v.axis_z_tube_axes2_z*tube_G_m_o_in_axes2_z + tube_U_y*v.tube_q_x -
+        tube_U_x*v.tube_q_y;
+    /* (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+       */
+    const real tube_gamma_c1 = tube_rel_o_in_axes2_y - v.tube_m1_c1_t*tube_nu_1 -
+        v.tube_m3_c1_t*tube_nu_3;
+    /* (tube-gamma_c2) part of the constraint's second derivative that does not hold the acceleration
+       */
+    const real tube_gamma_c2 = tube_rel_o_in_axes2_z + v.tube_m3_c2*tube_nu_3 -
+        v.tube_m1_c2_t*tube_nu_1;
+    /* (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
+       */
+    const real tube_gamma_c3 = v.inv_tube_size_c3*tube_nu_2 + v.tube_mu1_c3*tube_nu_1 -
+        v.tube_mu3_c3_t*tube_nu_3;
+    /* (M_tt) */
+    gather(&terms[0*count + k], add, tube_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, tube_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, tube_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, tube_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, tube_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, tube_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) */
+    gather(&terms[6*count + k], add, tube_M_ta_t_13);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, tube_M_ta_t_14);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, tube_M_ta_t_15);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, tube_M_ta_t_16);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, tube_M_ta_t_17);  /* M_ta_yy */
+    gather(&terms[11*count + k], add, tube_M_ta_t_18);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, tube_M_ta_t_19);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, tube_M_ta_t_20);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, tube_M_ta_t_21);  /* M_ta_zz */
+    /* (M_aa) */
+    gather(&terms[15*count + k], add, tube_M_aa_t_10);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, tube_M_aa_t_11);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, tube_M_aa_t_12);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, tube_M_aa_t_13);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, tube_M_aa_t_14);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, tube_M_aa_t_15);  /* M_aa_zz_of_legs */
+    /* (Z_t) */
+    gather(&terms[21*count + k], add, tube_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[22*count + k], add, tube_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[23*count + k], add, tube_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) */
+    gather(&terms[24*count + k], add, tube_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[25*count + k], add, tube_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[26*count + k], add, tube_Z_a_t_3);  /* Z_a_z_of_legs */
+    /* (tube-n_c1) unit force of the constraint wrench */
+    o[0*count + k] = v.axis_y_tube_axes2_x;
+    o[1*count + k] = v.axis_y_tube_axes2_y;
+    o[2*count + k] = v.axis_y_tube_axes2_z;
+    /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.tube_Hk_a_1_x;
+    o[4*count + k] = v.tube_Hk_a_1_y;
+    o[5*count + k] = v.tube_Hk_a_1_z;
+    /* (tube-gamma_c1) */
+    o[6*count + k] = tube_gamma_c1;
+    /* (tube-n_c2) unit force of the constraint wrench */
+    o[7*count + k] = v.axis_z_tube_axes2_x;
+    o[8*count + k] = v.axis_z_tube_axes2_y;
+    o[9*count + k] = v.axis_z_tube_axes2_z;
+    /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
+    o[10*count + k] = v.tube_Hk_a_2_x;
+    o[11*count + k] = v.tube_Hk_a_2_y;
+    o[12*count + k] = v.tube_Hk_a_2_z;
+    /* (tube-gamma_c2) */
+    o[13*count + k] = tube_gamma_c2;
+    /* (tube-Hk_a_3) moment of the column's unit force about the platform origin */
+    o[14*count + k] = v.tube_mu_c3_x;
+    o[15*count + k] = v.tube_mu_c3_y;
+    o[16*count + k] = v.tube_mu_c3_z;
+    /* (tube-gamma_c3) */
+    o[17*count + k] = tube_gamma_c3;
+    o[19*count + k] = (((v.axis_y_tube_axes2_x + v.axis_y_tube_axes2_y) +
+        (v.axis_y_tube_axes2_z + v.tube_Hk_a_1_x)) + ((v.tube_Hk_a_1_y + v.tube_Hk_a_1_z) +
+        (tube_gamma_c1 + (v.axis_z_tube_axes2_x + v.axis_z_tube_axes2_y)))) +
+        (((v.axis_z_tube_axes2_z + v.tube_Hk_a_2_x) + (v.tube_Hk_a_2_y + v.tube_Hk_a_2_z)) +
+        ((tube_gamma_c2 + v.tube_mu_c3_x) + (v.tube_mu_c3_y + (v.tube_mu_c3_z +
+        tube_gamma_c3))));
+    o[18*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
+        UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
+        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
+        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_33) > LEAST_4) +
+        UNLESS(magnitude(v.tube_w_1_t_49) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_63) >
+        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_75) > LEAST_5);
 }
 
-INLINE void dynamics_place_tube(size_t w, size_t count, const real *o, size_t first, real *Hk,
-    real *constraint_bias, verdict *t)
+INLINE void dynamics_place_tube(size_t w, size_t k, size_t at, size_t count, const real *o, real
+    *Hk, real *constraint_bias, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        Hk[0*w + k] = o[0*count + first + k];
-        Hk[NC*w + k] = o[1*count + first + k];
-        Hk[2*NC*w + k] = o[2*count + first + k];
-        Hk[3*NC*w + k] = o[3*count + first + k];
-        Hk[4*NC*w + k] = o[4*count + first + k];
-        Hk[5*NC*w + k] = o[5*count + first + k];
-        constraint_bias[0*w + k] = o[6*count + first + k];
-        Hk[1*w + k] = o[7*count + first + k];
-        Hk[(NC + 1)*w + k] = o[8*count + first + k];
-        Hk[(2*NC + 1)*w + k] = o[9*count + first + k];
-        Hk[(3*NC + 1)*w + k] = o[10*count + first + k];
-        Hk[(4*NC + 1)*w + k] = o[11*count + first + k];
-        Hk[(5*NC + 1)*w + k] = o[12*count + first + k];
-        constraint_bias[1*w + k] = o[13*count + first + k];
-        Hk[(3*NC + 2)*w + k] = o[14*count + first + k];
-        Hk[(4*NC + 2)*w + k] = o[15*count + first + k];
-        Hk[(5*NC + 2)*w + k] = o[16*count + first + k];
-        constraint_bias[2*w + k] = o[17*count + first + k];
-        t->singular[k] += o[18*count + first + k];
-        t->total[k] += o[19*count + first + k];
-    }
+    Hk[0*w + k] = o[0*count + at];
+    Hk[NC*w + k] = o[1*count + at];
+    Hk[2*NC*w + k] = o[2*count + at];
+    Hk[3*NC*w + k] = o[3*count + at];
+    Hk[4*NC*w + k] = o[4*count + at];
+    Hk[5*NC*w + k] = o[5*count + at];
+    constraint_bias[0*w + k] = o[6*count + at];
+    Hk[1*w + k] = o[7*count + at];
+    Hk[(NC + 1)*w + k] = o[8*count + at];
+    Hk[(2*NC + 1)*w + k] = o[9*count + at];
+    Hk[(3*NC + 1)*w + k] = o[10*count + at];
+    Hk[(4*NC + 1)*w + k] = o[11*count + at];
+    Hk[(5*NC + 1)*w + k] = o[12*count + at];
+    constraint_bias[1*w + k] = o[13*count + at];
+    Hk[(3*NC + 2)*w + k] = o[14*count + at];
+    Hk[(4*NC + 2)*w + k] = o[15*count + at];
+    Hk[(5*NC + 2)*w + k] = o[16*count + at];
+    constraint_bias[2*w + k] = o[17*count + at];
+    t->singular[k] += o[18*count + at];
+    t->total[k] += o[19*count + at];
 }
 
-INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const real *sums, real *M,
-    real *Z, verdict *t)
+INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
+    real *M, real *Z, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (M_tt) translational block of M */
-        const real M_tt_xx_of_legs = sums[0*w + k];
-        const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_xx_of_legs + m_star;
-        const real M_tt_yy_of_legs = sums[3*w + k];
-        const real M_tt_yy = M_tt_yy_of_legs + m_star;
-        const real M_tt_zz_of_legs = sums[5*w + k];
-        const real M_tt_zz = M_tt_zz_of_legs + m_star;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[11*w + k];
-        const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
-        const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[10*w + k];
-        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-        const real M_ta_yx_of_legs = sums[9*w + k];
-        const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-        const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[9*w + k];
-        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
-        const real M_ta_zx_of_legs = sums[12*w + k];
-        const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
-        const real M_ta_zy_of_legs = sums[13*w + k];
-        const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-        /* (M_aa) rotational block of M */
-        const real J_star_xx = s[12*w + k];
-        const real M_aa_xx_of_legs = sums[15*w + k];
-        const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[13*w + k];
-        const real M_aa_xy_of_legs = sums[16*w + k];
-        const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[14*w + k];
-        const real M_aa_xz_of_legs = sums[17*w + k];
-        const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[15*w + k];
-        const real M_aa_yy_of_legs = sums[18*w + k];
-        const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-        const real J_star_yz = s[16*w + k];
-        const real M_aa_yz_of_legs = sums[19*w + k];
-        const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[17*w + k];
-        const real M_aa_zz_of_legs = sums[20*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-        /* (Z_t) translational part of Z */
-        const real Z_p_x = s[18*w + k];
-        const real Z_t_x_of_legs = sums[21*w + k];
-        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[19*w + k];
-        const real Z_t_y_of_legs = sums[22*w + k];
-        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[20*w + k];
-        const real Z_t_z_of_legs = sums[23*w + k];
-        const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-        /* (Z_a) rotational part of Z */
-        const real Z_a_x_of_legs = sums[24*w + k];
-        const real Z_q_x = s[21*w + k];
-        const real Z_a_x = Z_a_x_of_legs + Z_q_x;
-        const real Z_a_y_of_legs = sums[25*w + k];
-        const real Z_q_y = s[22*w + k];
-        const real Z_a_y = Z_a_y_of_legs + Z_q_y;
-        const real Z_a_z_of_legs = sums[26*w + k];
-        const real Z_q_z = s[23*w + k];
-        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
-        /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        const real M_tt_xy = sums[1*w + k];
-        M[1*w + k] = M_tt_xy;
-        M[NV*w + k] = M_tt_xy;
-        const real M_tt_xz = sums[2*w + k];
-        M[2*w + k] = M_tt_xz;
-        M[2*NV*w + k] = M_tt_xz;
-        M[(NV + 1)*w + k] = M_tt_yy;
-        const real M_tt_yz = sums[4*w + k];
-        M[(NV + 2)*w + k] = M_tt_yz;
-        M[(2*NV + 1)*w + k] = M_tt_yz;
-        M[(2*NV + 2)*w + k] = M_tt_zz;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xx = sums[6*w + k];
-        M[3*w + k] = M_ta_xx;
-        M[3*NV*w + k] = M_ta_xx;
-        M[4*w + k] = M_ta_xy;
-        M[4*NV*w + k] = M_ta_xy;
-        M[5*w + k] = M_ta_xz;
-        M[5*NV*w + k] = M_ta_xz;
-        M[(NV + 3)*w + k] = M_ta_yx;
-        M[(3*NV + 1)*w + k] = M_ta_yx;
-        const real M_ta_yy = sums[10*w + k];
-        M[(NV + 4)*w + k] = M_ta_yy;
-        M[(4*NV + 1)*w + k] = M_ta_yy;
-        M[(NV + 5)*w + k] = M_ta_yz;
-        M[(5*NV + 1)*w + k] = M_ta_yz;
-        M[(2*NV + 3)*w + k] = M_ta_zx;
-        M[(3*NV + 2)*w + k] = M_ta_zx;
-        M[(2*NV + 4)*w + k] = M_ta_zy;
-        M[(4*NV + 2)*w + k] = M_ta_zy;
-        const real M_ta_zz = sums[14*w + k];
-        M[(2*NV + 5)*w + k] = M_ta_zz;
-        M[(5*NV + 2)*w + k] = M_ta_zz;
-        /* (M_aa) rotational block of M */
-        M[(3*NV + 3)*w + k] = M_aa_xx;
-        M[(3*NV + 4)*w + k] = M_aa_xy;
-        M[(4*NV + 3)*w + k] = M_aa_xy;
-        M[(3*NV + 5)*w + k] = M_aa_xz;
-        M[(5*NV + 3)*w + k] = M_aa_xz;
-        M[(4*NV + 4)*w + k] = M_aa_yy;
-        M[(4*NV + 5)*w + k] = M_aa_yz;
-        M[(5*NV + 4)*w + k] = M_aa_yz;
-        M[(5*NV + 5)*w + k] = M_aa_zz;
-        /* (Z_t) translational part of Z */
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-        Z[2*w + k] = Z_t_z;
-        /* (Z_a) rotational part of Z */
-        Z[3*w + k] = Z_a_x;
-        Z[4*w + k] = Z_a_y;
-        Z[5*w + k] = Z_a_z;
-        t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
-            ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
-            (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
-            ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
-    }
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    /* (M_ta) */
+    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real h_star_z = s[11*w + k];
+    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real h_star_y = s[10*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yx_of_legs = sums[9*w + k];
+    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_yz_of_legs = sums[11*w + k];
+    const real h_star_x = s[9*w + k];
+    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_zx_of_legs = sums[12*w + k];
+    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zy_of_legs = sums[13*w + k];
+    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    /* (M_aa) */
+    const real J_star_xx = s[12*w + k];
+    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
+    const real J_star_xy = s[13*w + k];
+    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
+    const real J_star_xz = s[14*w + k];
+    const real M_aa_xz_of_legs = sums[17*w + k];
+    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
+    const real J_star_yy = s[15*w + k];
+    const real M_aa_yy_of_legs = sums[18*w + k];
+    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
+    const real J_star_yz = s[16*w + k];
+    const real M_aa_yz_of_legs = sums[19*w + k];
+    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
+    const real J_star_zz = s[17*w + k];
+    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
+    /* (Z_t) */
+    const real Z_p_x = s[18*w + k];
+    const real Z_t_x_of_legs = sums[21*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[19*w + k];
+    const real Z_t_y_of_legs = sums[22*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    const real Z_p_z = s[20*w + k];
+    const real Z_t_z_of_legs = sums[23*w + k];
+    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
+    /* (Z_a) */
+    const real Z_a_x_of_legs = sums[24*w + k];
+    const real Z_q_x = s[21*w + k];
+    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_y_of_legs = sums[25*w + k];
+    const real Z_q_y = s[22*w + k];
+    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_z_of_legs = sums[26*w + k];
+    const real Z_q_z = s[23*w + k];
+    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    const real M_tt_xz = sums[2*w + k];
+    M[2*w + k] = M_tt_xz;
+    M[2*NV*w + k] = M_tt_xz;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_yz = sums[4*w + k];
+    M[(NV + 2)*w + k] = M_tt_yz;
+    M[(2*NV + 1)*w + k] = M_tt_yz;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    /* (M_ta) */
+    const real M_ta_xx = sums[6*w + k];
+    M[3*w + k] = M_ta_xx;
+    M[3*NV*w + k] = M_ta_xx;
+    M[4*w + k] = M_ta_xy;
+    M[4*NV*w + k] = M_ta_xy;
+    M[5*w + k] = M_ta_xz;
+    M[5*NV*w + k] = M_ta_xz;
+    M[(NV + 3)*w + k] = M_ta_yx;
+    M[(3*NV + 1)*w + k] = M_ta_yx;
+    const real M_ta_yy = sums[10*w + k];
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
+    M[(NV + 5)*w + k] = M_ta_yz;
+    M[(5*NV + 1)*w + k] = M_ta_yz;
+    M[(2*NV + 3)*w + k] = M_ta_zx;
+    M[(3*NV + 2)*w + k] = M_ta_zx;
+    M[(2*NV + 4)*w + k] = M_ta_zy;
+    M[(4*NV + 2)*w + k] = M_ta_zy;
+    const real M_ta_zz = sums[14*w + k];
+    M[(2*NV + 5)*w + k] = M_ta_zz;
+    M[(5*NV + 2)*w + k] = M_ta_zz;
+    /* (M_aa) */
+    M[(3*NV + 3)*w + k] = M_aa_xx;
+    M[(3*NV + 4)*w + k] = M_aa_xy;
+    M[(4*NV + 3)*w + k] = M_aa_xy;
+    M[(3*NV + 5)*w + k] = M_aa_xz;
+    M[(5*NV + 3)*w + k] = M_aa_xz;
+    M[(4*NV + 4)*w + k] = M_aa_yy;
+    M[(4*NV + 5)*w + k] = M_aa_yz;
+    M[(5*NV + 4)*w + k] = M_aa_yz;
+    M[(5*NV + 5)*w + k] = M_aa_zz;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    /* (Z_a) */
+    Z[3*w + k] = Z_a_x;
+    Z[4*w + k] = Z_a_y;
+    Z[5*w + k] = Z_a_z;
+    t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
+        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
+        (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
+        ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
 }
 
-INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
+APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, real *Hk, real *constraint_bias, verdict *t)
 {
     real s[24] = {0}, sums[27] = {0};
     real terms_ups[27*LEGS(LEGS_OF_ups)] = {0}, o_ups[8*LEGS(LEGS_OF_ups)] = {0};
     real terms_tube[27*LEGS(LEGS_OF_tube)] = {0}, o_tube[20*LEGS(LEGS_OF_tube)] = {0};
     clear(Hk, NV*NC);
-    dynamics_before(m, 1, X, V, s, t);
-    dynamics_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, X, V, terms_ups, o_ups);
-    dynamics_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), 0, X, V, terms_tube, o_tube);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        dynamics_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, H, t);
+    dynamics_before(m, 1, 0, X, V, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
+        dynamics_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, V, terms_ups, o_ups);
+    }
+    for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
+        dynamics_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), 0, s, X, V, terms_tube, o_tube);
+    }
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        dynamics_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
     }
     for (size_t n = 0; n < 27; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
-    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
-        dynamics_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, Hk, constraint_bias, t);
+    for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        dynamics_place_tube(1, 0, i, LEGS(LEGS_OF_tube), o_tube, Hk, constraint_bias, t);
     }
     for (size_t n = 0; n < 27; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
             sums[n] += terms_tube[n*LEGS(LEGS_OF_tube) + leg];
         }
     }
-    dynamics_after(m, 1, s, sums, M, Z, t);
+    dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
-INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
-    real *H, real *Hk, real *constraint_bias, verdict *t)
+APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
+    real *restrict Z, real *restrict H, real *restrict Hk, real *restrict constraint_bias, verdict
+    *restrict t)
 {
     real s[24*LANES], sums[27*LANES];
     real o_ups[8*LANES];
     real o_tube[20*LANES];
     clear(Hk, NV*NC*LANES);
-    dynamics_before(m, LANES, X, V, s, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        dynamics_before(m, LANES, k, X, V, s, t);
+    }
     clear(sums, 27*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        dynamics_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_ups);
-        dynamics_place_ups(LANES, LANES, o_ups, leg, 0, H, t);
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_legs_ups(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_ups);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_place_ups(LANES, i, k, k, LANES, o_ups, H, t);
+        }
     }
-    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
-        dynamics_legs_tube(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_tube);
-        dynamics_place_tube(LANES, LANES, o_tube, 0, Hk, constraint_bias, t);
+    for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_legs_tube(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_tube);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_place_tube(LANES, k, k, LANES, o_tube, Hk, constraint_bias, t);
+        }
     }
-    dynamics_after(m, LANES, s, sums, M, Z, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        dynamics_after(m, LANES, k, s, sums, M, Z, t);
+    }
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        stage_M_dynamics(m, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = v.h_star_x;
-        s[10*w + k] = v.h_star_y;
-        s[11*w + k] = v.h_star_z;
-        s[12*w + k] = v.J_star_xx;
-        s[13*w + k] = v.J_star_xy;
-        s[14*w + k] = v.J_star_xz;
-        s[15*w + k] = v.J_star_yy;
-        s[16*w + k] = v.J_star_yz;
-        s[17*w + k] = v.J_star_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    stage_M_dynamics(m, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = v.h_star_x;
+    s[10*w + k] = v.h_star_y;
+    s[11*w + k] = v.h_star_z;
+    s[12*w + k] = v.J_star_xx;
+    s[13*w + k] = v.J_star_xy;
+    s[14*w + k] = v.J_star_xz;
+    s[15*w + k] = v.J_star_yy;
+    s[16*w + k] = v.J_star_yz;
+    s[17*w + k] = v.J_star_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void M_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void M_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_ups v;
-        stage_ups_X(m, w, i, j, s, X, &v);
-        /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real ups_e_1_in_axes2_x = v.ups_S_in_turn1_z*v.ups_w_2_in_axes2_y;
-        const real ups_d_alpha_1_in_axes2_xz = v.inv_ups_root_1*ups_e_1_in_axes2_x;
-        /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
-           about its reference point */
-        const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
-        const real ups_d_phi_3_in_axes2_xy = ups_h_3_in_spec2_z*v.ups_w_2_in_axes2_y;
-        const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
-        const real ups_d_phi_3_in_axes2_yy = ups_h_3_in_spec2_x*v.ups_w_2_in_axes2_y;
-        /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
-        const real ups_d_c_in_axes2_xz = ups_h_3_in_spec2_y*v.ups_w_2_in_axes2_y;
-        const real ups_J_group_2_in_axes2_zz = m->ups_J_group_2_in_axes2_zz[i];
-        const real ups_d_c_in_axes2_yy = -ups_d_phi_3_in_axes2_yy -
-            v.ups_w_2_in_axes2_y*(ups_h_3_in_spec2_x +
-            ups_J_group_2_in_axes2_zz*v.ups_w_2_in_axes2_y);
-        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
-        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
-        const real ups_d_c_in_axes2_yz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_y -
-            v.ups_w_2_in_axes2_y*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
-            ups_J_group_2_in_axes2_yz*v.ups_w_2_in_axes2_y);
-        const real ups_J_group_2_in_axes2_xx = m->ups_J_group_2_in_axes2_xx[i];
-        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
-        const real ups_J_group_2_in_axes2_yy = m->ups_J_group_2_in_axes2_yy[i];
-        const real ups_d_c_in_axes2_zz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_z -
-            ups_d_phi_3_in_axes2_yy -
-            v.inv_ups_root_1*(ups_e_1_in_axes2_x*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz
-            - ups_h_3_in_spec2_z - ups_J_group_2_in_axes2_xy*v.ups_w_2_in_axes2_y) -
-            v.ups_root_1*v.ups_w_2_in_axes2_y*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz
-            - ups_h_3_in_spec2_x - ups_J_group_2_in_axes2_yy*v.ups_w_2_in_axes2_y));
-        /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real axis_y_ups_axes2_x = v.axis_z_ups_axes2_y*v.ups_w_3_z -
-            v.axis_z_ups_axes2_z*v.ups_w_3_y;
-        const real axis_y_ups_axes2_y = v.axis_z_ups_axes2_z*v.ups_w_3_x -
-            v.axis_z_ups_axes2_x*v.ups_w_3_z;
-        const real axis_y_ups_axes2_z = v.axis_z_ups_axes2_x*v.ups_w_3_y -
-            v.axis_z_ups_axes2_y*v.ups_w_3_x;
-        const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
-        const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
-        const real ups_Q_t_3 = ups_d_phi_3_in_axes2_xy*v.ups_w_3_x - axis_y_ups_axes2_x*ups_Q_t -
-            v.axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
-        const real ups_Q_t_4 = ups_d_phi_3_in_axes2_xy*v.ups_w_3_y - axis_y_ups_axes2_y*ups_Q_t -
-            v.axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-        const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t +
-            v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz - ups_d_phi_3_in_axes2_xy*v.ups_w_3_z;
-        const real ups_Q_t_6 = v.axis_z_ups_axes2_x*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_x;
-        const real ups_Q_t_7 = v.axis_z_ups_axes2_y*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_y;
-        const real ups_Q_t_8 = v.axis_z_ups_axes2_z*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_z;
-        const real ups_Q_t_9 = v.axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3;
-        const real ups_Q_xx = -2*ups_Q_t_9;
-        const real ups_Q_xy = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 -
-            v.axis_z_ups_axes2_x*ups_Q_t_7 - v.axis_z_ups_axes2_y*ups_Q_t_6;
-        const real ups_Q_xz = axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 -
-            v.axis_z_ups_axes2_x*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_6;
-        const real ups_Q_t_10 = v.axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4;
-        const real ups_Q_yy = -2*ups_Q_t_10;
-        const real ups_Q_yz = axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 -
-            v.axis_z_ups_axes2_y*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_7;
-        const real ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + v.axis_z_ups_axes2_z*ups_Q_t_8;
-        const real ups_Q_zz = -2*ups_Q_t_11;
-        /* (M_ta) coupling block of M */
-        const real ups_M_ta_t = ups_Q_xy*v.ups_q_z;
-        const real ups_M_ta_t_2 = ups_Q_xz*v.ups_q_y;
-        const real ups_M_ta_t_3 = ups_M_ta_t_2 - ups_M_ta_t;
-        const real ups_M_ta_t_4 = ups_Q_xx*v.ups_q_z - ups_Q_xz*v.ups_q_x;
-        const real ups_M_ta_t_5 = ups_Q_xy*v.ups_q_x - ups_Q_xx*v.ups_q_y;
-        const real ups_M_ta_t_6 = ups_Q_yz*v.ups_q_y - ups_Q_yy*v.ups_q_z;
-        const real ups_M_ta_t_7 = ups_Q_yz*v.ups_q_x;
-        const real ups_M_ta_t_8 = ups_M_ta_t - ups_M_ta_t_7;
-        const real ups_M_ta_t_9 = ups_Q_yy*v.ups_q_x - ups_Q_xy*v.ups_q_y;
-        const real ups_M_ta_t_10 = ups_Q_zz*v.ups_q_y - ups_Q_yz*v.ups_q_z;
-        const real ups_M_ta_t_11 = ups_Q_xz*v.ups_q_z - ups_Q_zz*v.ups_q_x;
-        const real ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2;
-        /* (M_aa) rotational block of M */
-        const real ups_M_aa_t = ups_M_ta_t_10*v.ups_q_y - ups_M_ta_t_6*v.ups_q_z;
-        const real ups_M_aa_t_2 = ups_M_ta_t_11*v.ups_q_y - ups_M_ta_t_8*v.ups_q_z;
-        const real ups_M_aa_t_3 = ups_M_ta_t_12*v.ups_q_y - ups_M_ta_t_9*v.ups_q_z;
-        const real ups_M_aa_t_4 = ups_M_ta_t_4*v.ups_q_z - ups_M_ta_t_11*v.ups_q_x;
-        const real ups_M_aa_t_5 = ups_M_ta_t_5*v.ups_q_z - ups_M_ta_t_12*v.ups_q_x;
-        const real ups_M_aa_t_6 = ups_M_ta_t_9*v.ups_q_x - ups_M_ta_t_5*v.ups_q_y;
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, ups_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, ups_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, ups_Q_xz);  /* M_tt_xz */
-        gather(&terms[3*count + k], add, ups_Q_yy);  /* M_tt_yy_of_legs */
-        gather(&terms[4*count + k], add, ups_Q_yz);  /* M_tt_yz */
-        gather(&terms[5*count + k], add, ups_Q_zz);  /* M_tt_zz_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[6*count + k], add, ups_M_ta_t_3);  /* M_ta_xx */
-        gather(&terms[7*count + k], add, ups_M_ta_t_4);  /* M_ta_xy_of_legs */
-        gather(&terms[8*count + k], add, ups_M_ta_t_5);  /* M_ta_xz_of_legs */
-        gather(&terms[9*count + k], add, ups_M_ta_t_6);  /* M_ta_yx_of_legs */
-        gather(&terms[10*count + k], add, ups_M_ta_t_8);  /* M_ta_yy */
-        gather(&terms[11*count + k], add, ups_M_ta_t_9);  /* M_ta_yz_of_legs */
-        gather(&terms[12*count + k], add, ups_M_ta_t_10);  /* M_ta_zx_of_legs */
-        gather(&terms[13*count + k], add, ups_M_ta_t_11);  /* M_ta_zy_of_legs */
-        gather(&terms[14*count + k], add, ups_M_ta_t_12);  /* M_ta_zz */
-        /* (M_aa) rotational block of M */
-        gather(&terms[15*count + k], add, ups_M_aa_t);  /* M_aa_xx_of_legs */
-        gather(&terms[16*count + k], add, ups_M_aa_t_2);  /* M_aa_xy_of_legs */
-        gather(&terms[17*count + k], add, ups_M_aa_t_3);  /* M_aa_xz_of_legs */
-        gather(&terms[18*count + k], add, ups_M_aa_t_4);  /* M_aa_yy_of_legs */
-        gather(&terms[19*count + k], add, ups_M_aa_t_5);  /* M_aa_yz_of_legs */
-        gather(&terms[20*count + k], add, ups_M_aa_t_6);  /* M_aa_zz_of_legs */
-        o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
-    }
+    values_ups v;
+    stage_ups_X(m, w, i, j, s, X, &v);
+    /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+    const real ups_e_1_in_axes2_x = v.ups_S_in_turn1_z*v.ups_w_2_in_axes2_y;
+    const real ups_d_alpha_1_in_axes2_xz = v.inv_ups_root_1*ups_e_1_in_axes2_x;
+    /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
+       about its reference point */
+    const real ups_d_phi_3_in_axes2_xy = m->ups_h_3_in_spec2_z[i]*v.ups_w_2_in_axes2_y;
+    const real ups_d_phi_3_in_axes2_yy = m->ups_h_3_in_spec2_x[i]*v.ups_w_2_in_axes2_y;
+    /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real ups_d_c_in_axes2_xz = m->ups_h_3_in_spec2_y[i]*v.ups_w_2_in_axes2_y;
+    const real ups_d_c_in_axes2_yy = -ups_d_phi_3_in_axes2_yy -
+        v.ups_w_2_in_axes2_y*(m->ups_h_3_in_spec2_x[i] +
+        m->ups_J_group_2_in_axes2_zz[i]*v.ups_w_2_in_axes2_y);
+    const real ups_d_c_in_axes2_yz = ups_d_alpha_1_in_axes2_xz*m->ups_h_3_in_spec2_y[i] -
+        v.ups_w_2_in_axes2_y*(m->ups_J_group_2_in_axes2_xz[i]*ups_d_alpha_1_in_axes2_xz -
+        m->ups_J_group_2_in_axes2_yz[i]*v.ups_w_2_in_axes2_y);
+    const real ups_d_c_in_axes2_zz = ups_d_alpha_1_in_axes2_xz*m->ups_h_3_in_spec2_z[i] -
+        ups_d_phi_3_in_axes2_yy -
+        v.inv_ups_root_1*(ups_e_1_in_axes2_x*(m->ups_J_group_2_in_axes2_xx[i]*ups_d_alpha_1_in_axes2_xz
+        - m->ups_h_3_in_spec2_z[i] - m->ups_J_group_2_in_axes2_xy[i]*v.ups_w_2_in_axes2_y) -
+        v.ups_root_1*v.ups_w_2_in_axes2_y*(m->ups_J_group_2_in_axes2_xy[i]*ups_d_alpha_1_in_axes2_xz
+        - m->ups_h_3_in_spec2_x[i] - m->ups_J_group_2_in_axes2_yy[i]*v.ups_w_2_in_axes2_y));
+    /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real axis_y_ups_axes2_x = v.axis_z_ups_axes2_y*v.ups_w_3_z -
+        v.axis_z_ups_axes2_z*v.ups_w_3_y;
+    const real axis_y_ups_axes2_y = v.axis_z_ups_axes2_z*v.ups_w_3_x -
+        v.axis_z_ups_axes2_x*v.ups_w_3_z;
+    const real axis_y_ups_axes2_z = v.axis_z_ups_axes2_x*v.ups_w_3_y -
+        v.axis_z_ups_axes2_y*v.ups_w_3_x;
+    const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
+    const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
+    const real ups_Q_t_3 = ups_d_phi_3_in_axes2_xy*v.ups_w_3_x - axis_y_ups_axes2_x*ups_Q_t -
+        v.axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_4 = ups_d_phi_3_in_axes2_xy*v.ups_w_3_y - axis_y_ups_axes2_y*ups_Q_t -
+        v.axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t +
+        v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz - ups_d_phi_3_in_axes2_xy*v.ups_w_3_z;
+    const real ups_Q_t_6 = v.axis_z_ups_axes2_x*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_x;
+    const real ups_Q_t_7 = v.axis_z_ups_axes2_y*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_y;
+    const real ups_Q_t_8 = v.axis_z_ups_axes2_z*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_z;
+    const real ups_Q_t_9 = v.axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3;
+    const real ups_Q_xx = -2*ups_Q_t_9;
+    const real ups_Q_xy = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 -
+        v.axis_z_ups_axes2_x*ups_Q_t_7 - v.axis_z_ups_axes2_y*ups_Q_t_6;
+    const real ups_Q_xz = axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 -
+        v.axis_z_ups_axes2_x*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_6;
+    const real ups_Q_t_10 = v.axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4;
+    const real ups_Q_yy = -2*ups_Q_t_10;
+    const real ups_Q_yz = axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 -
+        v.axis_z_ups_axes2_y*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_7;
+    const real ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + v.axis_z_ups_axes2_z*ups_Q_t_8;
+    const real ups_Q_zz = -2*ups_Q_t_11;
+    /* (M_ta) coupling block of M */
+    const real ups_M_ta_t = ups_Q_xy*v.ups_q_z;
+    const real ups_M_ta_t_2 = ups_Q_xz*v.ups_q_y;
+    const real ups_M_ta_t_3 = ups_M_ta_t_2 - ups_M_ta_t;
+    const real ups_M_ta_t_4 = ups_Q_xx*v.ups_q_z - ups_Q_xz*v.ups_q_x;
+    const real ups_M_ta_t_5 = ups_Q_xy*v.ups_q_x - ups_Q_xx*v.ups_q_y;
+    const real ups_M_ta_t_6 = ups_Q_yz*v.ups_q_y - ups_Q_yy*v.ups_q_z;
+    const real ups_M_ta_t_7 = ups_Q_yz*v.ups_q_x;
+    const real ups_M_ta_t_8 = ups_M_ta_t - ups_M_ta_t_7;
+    const real ups_M_ta_t_9 = ups_Q_yy*v.ups_q_x - ups_Q_xy*v.ups_q_y;
+    const real ups_M_ta_t_10 = ups_Q_zz*v.ups_q_y - ups_Q_yz*v.ups_q_z;
+    const real ups_M_ta_t_11 = ups_Q_xz*v.ups_q_z - ups_Q_zz*v.ups_q_x;
+    const real ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2;
+    /* (M_aa) rotational block of M */
+    const real ups_M_aa_t = ups_M_ta_t_10*v.ups_q_y - ups_M_ta_t_6*v.ups_q_z;
+    const real ups_M_aa_t_2 = ups_M_ta_t_11*v.ups_q_y - ups_M_ta_t_8*v.ups_q_z;
+    const real ups_M_aa_t_3 = ups_M_ta_t_12*v.ups_q_y - ups_M_ta_t_9*v.ups_q_z;
+    const real ups_M_aa_t_4 = ups_M_ta_t_4*v.ups_q_z - ups_M_ta_t_11*v.ups_q_x;
+    const real ups_M_aa_t_5 = ups_M_ta_t_5*v.ups_q_z - ups_M_ta_t_12*v.ups_q_x;
+    const real ups_M_aa_t_6 = ups_M_ta_t_9*v.ups_q_x - ups_M_ta_t_5*v.ups_q_y;
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, ups_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, ups_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, ups_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, ups_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, ups_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, ups_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) */
+    gather(&terms[6*count + k], add, ups_M_ta_t_3);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, ups_M_ta_t_4);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, ups_M_ta_t_5);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, ups_M_ta_t_6);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, ups_M_ta_t_8);  /* M_ta_yy */
+    gather(&terms[11*count + k], add, ups_M_ta_t_9);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, ups_M_ta_t_10);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, ups_M_ta_t_11);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, ups_M_ta_t_12);  /* M_ta_zz */
+    /* (M_aa) */
+    gather(&terms[15*count + k], add, ups_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, ups_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, ups_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, ups_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, ups_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, ups_M_aa_t_6);  /* M_aa_zz_of_legs */
+    o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void M_place_ups(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void M_place_ups(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o[0*count + first + k];
-    }
+    t->singular[k] += o[0*count + at];
 }
 
-INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void M_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_tube v;
-        stage_tube_X(m, w, i, j, s, X, &v);
-        /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real tube_platform_joint_rotation_yx = m->tube_platform_joint_rotation_yx[i];
-        const real tube_platform_joint_rotation_yy = m->tube_platform_joint_rotation_yy[i];
-        const real tube_platform_joint_rotation_yz = m->tube_platform_joint_rotation_yz[i];
-        const real tube_n_m1_in_axes2_z = v.tube_e_1_in_axes2_x*(v.tube_c_1*v.tube_n_m1_t_10 +
-            v.tube_n_m1_t_11*v.tube_s_1) -
-            v.tube_c_2*(v.tube_n_m1_t_7*tube_platform_joint_rotation_yx +
-            v.tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            v.tube_n_m1_t_9*tube_platform_joint_rotation_yz);
-        /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real tube_platform_joint_rotation_zx = m->tube_platform_joint_rotation_zx[i];
-        const real tube_platform_joint_rotation_zy = m->tube_platform_joint_rotation_zy[i];
-        const real tube_platform_joint_rotation_zz = m->tube_platform_joint_rotation_zz[i];
-        const real tube_n_m2_t = v.tube_n_m1_t_7*tube_platform_joint_rotation_zx +
-            v.tube_n_m1_t_8*tube_platform_joint_rotation_zy +
-            v.tube_n_m1_t_9*tube_platform_joint_rotation_zz;
-        const real tube_n_m2_t_2 = v.tube_c_1*(v.tube_n_m1_t*tube_platform_joint_rotation_zx +
-            v.tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            v.tube_n_m1_t_3*tube_platform_joint_rotation_zz) +
-            v.tube_s_1*(v.tube_n_m1_t_4*tube_platform_joint_rotation_zx +
-            v.tube_n_m1_t_5*tube_platform_joint_rotation_zy +
-            v.tube_n_m1_t_6*tube_platform_joint_rotation_zz);
-        const real tube_n_m2_in_axes2_y = v.tube_c_2*tube_n_m2_t_2 +
-            v.tube_e_1_in_axes2_x*tube_n_m2_t;
-        const real tube_end_p2_in_axes2_y = v.tube_e_1_in_axes2_x*tube_n_m2_t_2 -
-            v.tube_c_2*tube_n_m2_t;
-        const real tube_n_m2_t_3 = v.tube_c_2*tube_n_m2_in_axes2_y +
-            v.tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y;
-        /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
-        const real tube_platform_joint_rotation_xx = m->tube_platform_joint_rotation_xx[i];
-        const real tube_platform_joint_rotation_xy = m->tube_platform_joint_rotation_xy[i];
-        const real tube_platform_joint_rotation_xz = m->tube_platform_joint_rotation_xz[i];
-        const real tube_n_m3_in_axes2_z = v.tube_c_2*(v.tube_c_1*v.tube_n_m3_t +
-            v.tube_n_m3_t_2*v.tube_s_1) +
-            v.tube_e_1_in_axes2_x*(v.tube_n_m1_t_7*tube_platform_joint_rotation_xx +
-            v.tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            v.tube_n_m1_t_9*tube_platform_joint_rotation_xz);
-        const real tube_n_m3_t_3 = v.tube_e_1_in_axes2_x*v.tube_end_p3_in_axes2_z;
-        /* (tube-f_c1) force part of constraint wrench 1 */
-        const real tube_f_c1_t = v.tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
-            tube_n_m1_in_axes2_z*tube_n_m3_t_3;
-        /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
-        const real inv_tube_f_c1_t = 1/tube_f_c1_t;
-        const real tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_3*tube_n_m3_in_axes2_z;
-        /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
-        const real tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_3;
-        /* (tube-size_c3) size of the moment */
-        const real tube_size_c3 = root(1 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t);
-        /* (tube-mu2_c3) moment along direction 2 that goes with it */
-        const real tube_mu2_c3 = 1/tube_size_c3;
-        /* (tube-w_1) force part of reciprocal wrench 1 */
-        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_t_3;
-        const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t_3;
-        const real tube_w_1_t_4 = R(1.35)*tube_n_m1_in_axes2_z;
-        const real tube_w_1_t_5 = R(1.35)*tube_n_m3_in_axes2_z;
-        const real tube_w_1_t_6 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_t_3*v.tube_q_3;
-        const real tube_w_1_t_7 = R(1.35)*inv_tube_f_c1_t*v.tube_n_m1_in_axes1_z*v.tube_q_3;
-        const real tube_w_1_t_8 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_in_axes2_z*v.tube_root_1;
-        const real tube_w_1_t_9 = R(1.35)*inv_tube_f_c1_t*tube_n_m1_in_axes2_z*v.tube_root_1;
-        const real tube_w_1_t_10 = R(1.35)*tube_m1_c3*tube_mu2_c3;
-        const real tube_w_1_t_11 = R(1.35)*tube_mu2_c3;
-        const real tube_w_1_t_12 = R(1.35)*tube_m3_c3_t*tube_mu2_c3;
-        const real tube_w_1_t_13 = root(v.tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 +
-            tube_w_1_t_5*tube_w_1_t_5);
-        const real inv_tube_w_1_t_13 = 1/tube_w_1_t_13;
-        const real tube_w_1_t_14 = inv_tube_w_1_t_13*v.tube_q_3;
-        const real tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4;
-        const real tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5;
-        const real tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 -
-            tube_w_1_t_14;
-        const real tube_w_1_t_18 = 1 + tube_w_1_t_14*tube_w_1_t_17;
-        const real tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6;
-        const real tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7;
-        const real tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9;
-        const real tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21;
-        const real tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8;
-        const real tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21;
-        const real tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16;
-        const real tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25;
-        const real tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25;
-        const real tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25;
-        const real tube_w_1_t_29 = v.tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3;
-        const real tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29;
-        const real tube_w_1_t_31 = v.tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29;
-        const real tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29;
-        const real tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19
-            + tube_w_1_t_20*tube_w_1_t_20);
-        const real inv_tube_w_1_t_33 = 1/tube_w_1_t_33;
-        const real tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18;
-        const real tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19;
-        const real tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20;
-        const real tube_w_1_t_37 = tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 +
-            tube_w_1_t_24*tube_w_1_t_36;
-        const real tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37;
-        const real tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37;
-        const real tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37;
-        const real tube_w_1_t_41 = tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 -
-            tube_w_1_t_27*tube_w_1_t_35;
-        const real tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41;
-        const real tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41;
-        const real tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41;
-        const real tube_w_1_t_45 = tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 -
-            tube_w_1_t_31*tube_w_1_t_35;
-        const real tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45;
-        const real tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45;
-        const real tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45;
-        const real tube_w_1_t_49 = root(1 + tube_w_1_t_38*tube_w_1_t_38 +
-            tube_w_1_t_39*tube_w_1_t_39 + tube_w_1_t_40*tube_w_1_t_40);
-        const real inv_tube_w_1_t_49 = 1/tube_w_1_t_49;
-        const real tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38;
-        const real tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39;
-        const real tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40;
-        const real tube_w_1_t_53 = tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 -
-            tube_w_1_t_43*tube_w_1_t_51;
-        const real tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42;
-        const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
-        const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
-        const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
-        const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 -
-            inv_tube_w_1_t_49*v.tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
-        const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
-        const real tube_w_1_t_60 = v.tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
-        const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
-        const real tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48;
-        const real tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54
-            + tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
-            tube_w_1_t_57*tube_w_1_t_57);
-        const real inv_tube_w_1_t_63 = 1/tube_w_1_t_63;
-        const real tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54;
-        const real tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55;
-        const real tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56;
-        const real tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11;
-        const real tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57;
-        const real tube_w_1_t_69 = tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 +
-            tube_w_1_t_61*tube_w_1_t_66 + tube_w_1_t_62*tube_w_1_t_68 -
-            tube_w_1_t_2*tube_w_1_t_67;
-        const real tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69;
-        const real tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69;
-        const real tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69;
-        const real tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69;
-        const real tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69;
-        const real tube_w_1_t_75 = root(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71
-            + tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
-            tube_w_1_t_74*tube_w_1_t_74);
-        const real inv_tube_w_1_t_75 = 1/tube_w_1_t_75;
-        const real tube_w_1_t_76 = inv_tube_w_1_t_75*tube_w_1_t_70;
-        const real tube_w_1_t_77 = inv_tube_w_1_t_75*tube_w_1_t_71;
-        const real tube_w_1_in_axes2_y = inv_tube_w_1_t_75*tube_w_1_t_76;
-        const real tube_w_1_in_axes2_z = inv_tube_w_1_t_75*tube_w_1_t_77;
-        const real tube_w_1_in_axes1_x = v.tube_e_1_in_axes2_x*tube_w_1_in_axes2_y;
-        const real tube_w_1_t_78 = v.tube_c_2*tube_w_1_in_axes2_y;
-        /* (tube-m1_w_1) moment part 1 of reciprocal wrench 1 */
-        const real tube_m1_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_72;
-        const real tube_m1_w_1 = R(1.35)*inv_tube_w_1_t_75*tube_m1_w_1_t;
-        /* (tube-m2_w_1) moment part 2 of reciprocal wrench 1 */
-        const real tube_m2_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_73;
-        const real tube_m2_w_1 = -R(1.35)*inv_tube_w_1_t_75*tube_m2_w_1_t;
-        /* (tube-m3_w_1) moment part 3 of reciprocal wrench 1 */
-        const real tube_m3_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_74;
-        const real tube_m3_w_1 = R(1.35)*inv_tube_w_1_t_75*tube_m3_w_1_t;
-        /* (tube-w_2) force part of reciprocal wrench 2 */
-        const real tube_w_2_t = inv_tube_w_1_t_13*inv_tube_w_1_t_33*tube_w_1_t_17;
-        const real tube_w_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_13*tube_w_1_t_21 -
-            tube_w_1_t_37*tube_w_2_t);
-        const real tube_w_2_t_3 = inv_tube_w_1_t_63*(tube_w_1_t_41*tube_w_2_t +
-            tube_w_1_t_53*tube_w_2_t_2 - inv_tube_w_1_t_13*tube_w_1_t_25);
-        const real tube_w_2_t_4 = inv_tube_w_1_t_75*(inv_tube_w_1_t_13*tube_w_1_t_29 +
-            tube_w_1_t_69*tube_w_2_t_3 - tube_w_1_t_45*tube_w_2_t - tube_w_1_t_58*tube_w_2_t_2);
-        const real tube_w_2_in_axes2_y = inv_tube_w_1_t_13*tube_w_1_t_14 +
-            tube_w_1_t_34*tube_w_2_t + tube_w_1_t_50*tube_w_2_t_2 + tube_w_1_t_64*tube_w_2_t_3 -
-            tube_w_1_t_76*tube_w_2_t_4;
-        const real tube_w_2_in_axes2_z = inv_tube_w_1_t_49*tube_w_2_t_2 +
-            tube_w_1_t_65*tube_w_2_t_3 - tube_w_1_t_77*tube_w_2_t_4;
-        /* (tube-m1_w_2) moment part 1 of reciprocal wrench 2 */
-        const real tube_m1_w_2_t = inv_tube_w_1_t_13*tube_w_1_t_15 + tube_w_1_t_35*tube_w_2_t +
-            tube_w_1_t_51*tube_w_2_t_2 + tube_w_1_t_66*tube_w_2_t_3 - tube_m1_w_1_t*tube_w_2_t_4;
-        const real tube_m1_w_2 = R(1.35)*tube_m1_w_2_t;
-        /* (tube-m2_w_2) moment part 2 of reciprocal wrench 2 */
-        const real tube_m2_w_2_t = tube_m2_w_1_t*tube_w_2_t_4 + tube_w_1_t_67*tube_w_2_t_3;
-        const real tube_m2_w_2 = R(1.35)*tube_m2_w_2_t;
-        /* (tube-m3_w_2) moment part 3 of reciprocal wrench 2 */
-        const real tube_m3_w_2_t = inv_tube_w_1_t_13*tube_w_1_t_16 + tube_w_1_t_36*tube_w_2_t +
-            tube_w_1_t_52*tube_w_2_t_2 + tube_w_1_t_68*tube_w_2_t_3 - tube_m3_w_1_t*tube_w_2_t_4;
-        const real tube_m3_w_2 = R(1.35)*tube_m3_w_2_t;
-        /* (tube-o_1) moment part of reciprocal wrench 1 */
-        const real tube_o_1_in_axes2_x = -tube_end_p2_in_axes2_y*tube_m2_w_1 -
-            v.tube_end_p3_in_axes2_z*tube_m3_w_1;
-        const real tube_o_1_in_axes2_y = tube_m2_w_1*tube_n_m2_in_axes2_y -
-            v.tube_end_p1_in_axes2_z*tube_m1_w_1;
-        const real tube_o_1_in_axes2_z = tube_m1_w_1*tube_n_m1_in_axes2_z +
-            tube_m3_w_1*tube_n_m3_in_axes2_z;
-        /* (tube-o_2) moment part of reciprocal wrench 2 */
-        const real tube_o_2_in_axes2_x = -tube_end_p2_in_axes2_y*tube_m2_w_2 -
-            v.tube_end_p3_in_axes2_z*tube_m3_w_2;
-        const real tube_o_2_in_axes2_y = tube_m2_w_2*tube_n_m2_in_axes2_y -
-            v.tube_end_p1_in_axes2_z*tube_m1_w_2;
-        const real tube_o_2_in_axes2_z = tube_m1_w_2*tube_n_m1_in_axes2_z +
-            tube_m3_w_2*tube_n_m3_in_axes2_z;
-        /* (tube-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real tube_dalpha_alpha_1_t = v.tube_c_2*tube_o_1_in_axes2_x;
-        const real tube_dalpha_alpha_1_in_axes2_xy = v.tube_e_1_in_axes2_x*tube_o_1_in_axes2_y;
-        const real tube_dalpha_alpha_1_t_2 = v.tube_c_2*tube_o_1_in_axes2_y;
-        const real tube_dalpha_alpha_1_in_axes2_xx = v.tube_e_1_in_axes2_x*tube_o_1_in_axes2_x;
-        const real tube_dalpha_alpha_1_in_axes2_xz = v.tube_e_1_in_axes2_x*tube_o_1_in_axes2_z;
-        const real tube_dalpha_alpha_1_t_3 = v.tube_c_2*tube_o_1_in_axes2_z;
-        /* (tube-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real tube_d_alpha_1_in_axes2_xz = v.tube_e_1_in_axes2_x*tube_w_1_in_axes2_z;
-        const real tube_d_alpha_1_t = v.tube_c_2*tube_w_1_in_axes2_z;
-        /* (tube-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
-        const real tube_dalpha_acc_3_in_axes2_yx = tube_o_2_in_axes2_x*v.tube_q_3;
-        const real tube_dalpha_acc_3_in_axes2_yy = tube_o_2_in_axes2_y*v.tube_q_3;
-        const real tube_dalpha_acc_3_in_axes2_yz = tube_o_2_in_axes2_z*v.tube_q_3;
-        const real tube_dalpha_acc_3_in_axes2_zx = tube_dalpha_alpha_1_t*v.tube_q_3;
-        const real tube_dalpha_acc_3_in_axes2_zy = tube_dalpha_alpha_1_t_2*v.tube_q_3;
-        const real tube_dalpha_acc_3_in_axes2_zz = tube_dalpha_alpha_1_t_3*v.tube_q_3;
-        /* (tube-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link
-           3, less gravity */
-        const real tube_d_acc_3_in_axes2_yy = v.tube_q_3*tube_w_2_in_axes2_y;
-        const real tube_d_acc_3_in_axes2_yz = v.tube_q_3*tube_w_2_in_axes2_z;
-        const real tube_d_acc_3_in_axes2_zy = v.tube_q_3*tube_w_1_t_78;
-        const real tube_d_acc_3_in_axes2_zz = tube_d_alpha_1_t*v.tube_q_3;
-        /* (tube-dalpha_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
-        const real tube_J_group_2_in_axes2_xz = m->tube_J_group_2_in_axes2_xz[i];
-        const real tube_J_group_2_in_axes2_yz = m->tube_J_group_2_in_axes2_yz[i];
-        const real tube_J_group_2_in_axes2_zz = m->tube_J_group_2_in_axes2_zz[i];
-        const real tube_h_3_in_spec2_x = m->tube_h_3_in_spec2_x[i];
-        const real tube_h_3_in_spec2_y = m->tube_h_3_in_spec2_y[i];
-        const real tube_link3_mass = m->tube_link3_mass[i];
-        const real tube_dalpha_N_2_in_axes2_zx =
-            tube_J_group_2_in_axes2_xz*tube_dalpha_alpha_1_in_axes2_xx +
-            tube_J_group_2_in_axes2_zz*tube_o_2_in_axes2_x +
-            tube_dalpha_acc_3_in_axes2_yx*tube_h_3_in_spec2_x +
-            v.tube_q_3*(tube_dalpha_acc_3_in_axes2_yx*tube_link3_mass +
-            tube_h_3_in_spec2_x*tube_o_2_in_axes2_x -
-            tube_dalpha_alpha_1_in_axes2_xx*tube_h_3_in_spec2_y) -
-            tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t;
-        const real tube_dalpha_N_2_in_axes2_zy =
-            tube_J_group_2_in_axes2_xz*tube_dalpha_alpha_1_in_axes2_xy +
-            tube_J_group_2_in_axes2_zz*tube_o_2_in_axes2_y +
-            tube_dalpha_acc_3_in_axes2_yy*tube_h_3_in_spec2_x +
-            v.tube_q_3*(tube_dalpha_acc_3_in_axes2_yy*tube_link3_mass +
-            tube_h_3_in_spec2_x*tube_o_2_in_axes2_y -
-            tube_dalpha_alpha_1_in_axes2_xy*tube_h_3_in_spec2_y) -
-            tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t_2;
-        const real tube_dalpha_N_2_in_axes2_zz =
-            tube_J_group_2_in_axes2_xz*tube_dalpha_alpha_1_in_axes2_xz +
-            tube_J_group_2_in_axes2_zz*tube_o_2_in_axes2_z +
-            tube_dalpha_acc_3_in_axes2_yz*tube_h_3_in_spec2_x +
-            v.tube_q_3*(tube_dalpha_acc_3_in_axes2_yz*tube_link3_mass +
-            tube_h_3_in_spec2_x*tube_o_2_in_axes2_z -
-            tube_dalpha_alpha_1_in_axes2_xz*tube_h_3_in_spec2_y) -
-            tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t_3;
-        /* (tube-d_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
-        const real tube_d_N_2_in_axes2_zy = tube_J_group_2_in_axes2_xz*tube_w_1_in_axes1_x +
-            tube_J_group_2_in_axes2_zz*tube_w_2_in_axes2_y +
-            tube_d_acc_3_in_axes2_yy*tube_h_3_in_spec2_x +
-            v.tube_q_3*(tube_d_acc_3_in_axes2_yy*tube_link3_mass +
-            tube_h_3_in_spec2_x*tube_w_2_in_axes2_y - tube_h_3_in_spec2_y*tube_w_1_in_axes1_x) -
-            tube_J_group_2_in_axes2_yz*tube_w_1_t_78;
-        const real tube_d_N_2_in_axes2_zz = tube_J_group_2_in_axes2_xz*tube_d_alpha_1_in_axes2_xz
-            + tube_J_group_2_in_axes2_zz*tube_w_2_in_axes2_z +
-            tube_d_acc_3_in_axes2_yz*tube_h_3_in_spec2_x +
-            v.tube_q_3*(tube_d_acc_3_in_axes2_yz*tube_link3_mass +
-            tube_h_3_in_spec2_x*tube_w_2_in_axes2_z -
-            tube_d_alpha_1_in_axes2_xz*tube_h_3_in_spec2_y) -
-            tube_J_group_2_in_axes2_yz*tube_d_alpha_1_t;
-        /* (tube-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
-           links' inertia and weight */
-        const real tube_J_group_2_in_axes2_xy = m->tube_J_group_2_in_axes2_xy[i];
-        const real tube_J_group_2_in_axes2_yy = m->tube_J_group_2_in_axes2_yy[i];
-        const real tube_h_3_in_spec2_z = m->tube_h_3_in_spec2_z[i];
-        const real tube_dalpha_Gamma_1_t =
-            v.tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xx +
-            tube_J_group_2_in_axes2_yz*tube_o_2_in_axes2_x -
-            tube_J_group_2_in_axes2_yy*tube_dalpha_alpha_1_t -
-            tube_dalpha_acc_3_in_axes2_zx*tube_h_3_in_spec2_x -
-            v.tube_q_3*(tube_dalpha_acc_3_in_axes2_zx*tube_link3_mass +
-            tube_dalpha_alpha_1_t*tube_h_3_in_spec2_x -
-            tube_dalpha_alpha_1_in_axes2_xx*tube_h_3_in_spec2_z));
-        const real tube_J_group_2_in_axes2_xx = m->tube_J_group_2_in_axes2_xx[i];
-        const real tube_dalpha_Gamma_1_in_axes2_x =
-            v.tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xx +
-            tube_J_group_2_in_axes2_xz*tube_o_2_in_axes2_x -
-            tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_t -
-            tube_dalpha_acc_3_in_axes2_yx*tube_h_3_in_spec2_y -
-            tube_dalpha_acc_3_in_axes2_zx*tube_h_3_in_spec2_z) - tube_dalpha_Gamma_1_t;
-        const real tube_dalpha_Gamma_1_t_2 =
-            v.tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xy +
-            tube_J_group_2_in_axes2_yz*tube_o_2_in_axes2_y -
-            tube_J_group_2_in_axes2_yy*tube_dalpha_alpha_1_t_2 -
-            tube_dalpha_acc_3_in_axes2_zy*tube_h_3_in_spec2_x -
-            v.tube_q_3*(tube_dalpha_acc_3_in_axes2_zy*tube_link3_mass +
-            tube_dalpha_alpha_1_t_2*tube_h_3_in_spec2_x -
-            tube_dalpha_alpha_1_in_axes2_xy*tube_h_3_in_spec2_z));
-        const real tube_dalpha_Gamma_1_in_axes2_y =
-            v.tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xy +
-            tube_J_group_2_in_axes2_xz*tube_o_2_in_axes2_y -
-            tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_t_2 -
-            tube_dalpha_acc_3_in_axes2_yy*tube_h_3_in_spec2_y -
-            tube_dalpha_acc_3_in_axes2_zy*tube_h_3_in_spec2_z) - tube_dalpha_Gamma_1_t_2;
-        const real tube_dalpha_Gamma_1_t_3 =
-            v.tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xz +
-            tube_J_group_2_in_axes2_yz*tube_o_2_in_axes2_z -
-            tube_J_group_2_in_axes2_yy*tube_dalpha_alpha_1_t_3 -
-            tube_dalpha_acc_3_in_axes2_zz*tube_h_3_in_spec2_x -
-            v.tube_q_3*(tube_dalpha_acc_3_in_axes2_zz*tube_link3_mass +
-            tube_dalpha_alpha_1_t_3*tube_h_3_in_spec2_x -
-            tube_dalpha_alpha_1_in_axes2_xz*tube_h_3_in_spec2_z));
-        const real tube_dalpha_Gamma_1_in_axes2_z =
-            v.tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xz +
-            tube_J_group_2_in_axes2_xz*tube_o_2_in_axes2_z -
-            tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_t_3 -
-            tube_dalpha_acc_3_in_axes2_yz*tube_h_3_in_spec2_y -
-            tube_dalpha_acc_3_in_axes2_zz*tube_h_3_in_spec2_z) - tube_dalpha_Gamma_1_t_3;
-        /* (tube-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real tube_d_Gamma_1_t = v.tube_c_2*tube_h_3_in_spec2_y;
-        const real tube_d_Gamma_1_t_2 = v.tube_c_2*(tube_J_group_2_in_axes2_xy*tube_w_1_in_axes1_x
-            + tube_J_group_2_in_axes2_yz*tube_w_2_in_axes2_y -
-            tube_J_group_2_in_axes2_yy*tube_w_1_t_78 -
-            tube_d_acc_3_in_axes2_zy*tube_h_3_in_spec2_x -
-            v.tube_q_3*(tube_d_acc_3_in_axes2_zy*tube_link3_mass +
-            tube_h_3_in_spec2_x*tube_w_1_t_78 - tube_h_3_in_spec2_z*tube_w_1_in_axes1_x));
-        const real tube_d_Gamma_1_in_axes2_y =
-            v.tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_w_1_in_axes1_x +
-            tube_J_group_2_in_axes2_xz*tube_w_2_in_axes2_y -
-            tube_J_group_2_in_axes2_xy*tube_w_1_t_78 -
-            tube_d_acc_3_in_axes2_yy*tube_h_3_in_spec2_y -
-            tube_d_acc_3_in_axes2_zy*tube_h_3_in_spec2_z) - tube_d_Gamma_1_t_2;
-        const real tube_d_Gamma_1_t_3 =
-            v.tube_c_2*(tube_J_group_2_in_axes2_xy*tube_d_alpha_1_in_axes2_xz +
-            tube_J_group_2_in_axes2_yz*tube_w_2_in_axes2_z -
-            tube_J_group_2_in_axes2_yy*tube_d_alpha_1_t -
-            tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_x -
-            v.tube_q_3*(tube_d_acc_3_in_axes2_zz*tube_link3_mass +
-            tube_d_alpha_1_t*tube_h_3_in_spec2_x -
-            tube_d_alpha_1_in_axes2_xz*tube_h_3_in_spec2_z));
-        const real tube_d_Gamma_1_in_axes2_z =
-            v.tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_d_alpha_1_in_axes2_xz +
-            tube_J_group_2_in_axes2_xz*tube_w_2_in_axes2_z -
-            tube_J_group_2_in_axes2_xy*tube_d_alpha_1_t -
-            tube_d_acc_3_in_axes2_yz*tube_h_3_in_spec2_y -
-            tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_z) - tube_d_Gamma_1_t_3;
-        /* (tube-dalpha_G) coefficient of the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
-        const real tube_dalpha_G_in_axes2_yx = tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_y
-            + tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_y;
-        const real tube_dalpha_G_in_axes2_yy = tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y
-            + tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_y;
-        const real tube_dalpha_G_in_axes2_yz = tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y
-            + tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_y;
-        const real tube_dalpha_G_in_axes2_zx = tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_z
-            + tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_z;
-        const real tube_dalpha_G_in_axes2_zy = tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_z
-            + tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_z;
-        const real tube_dalpha_G_in_axes2_zz = tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z
-            + tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_z;
-        /* (tube-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all degrees of freedom */
-        const real tube_d_G_in_axes2_yz = tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y +
-            tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_y;
-        /* (tube-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
-           balances the leg's inertia and weight along all degrees of freedom */
-        const real tube_dalpha_G_m1_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m1_w_1 +
-            tube_dalpha_N_2_in_axes2_zx*tube_m1_w_2;
-        const real tube_dalpha_G_m1_in_axes2_y = tube_dalpha_Gamma_1_in_axes2_y*tube_m1_w_1 +
-            tube_dalpha_N_2_in_axes2_zy*tube_m1_w_2;
-        const real tube_dalpha_G_m1_in_axes2_z = tube_dalpha_Gamma_1_in_axes2_z*tube_m1_w_1 +
-            tube_dalpha_N_2_in_axes2_zz*tube_m1_w_2;
-        /* (tube-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
-           the leg's inertia and weight along all degrees of freedom */
-        const real tube_d_G_m1_in_axes2_x = tube_h_3_in_spec2_z*tube_m1_w_2 -
-            tube_d_Gamma_1_t*tube_m1_w_1;
-        const real tube_d_G_m1_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m1_w_1 +
-            tube_d_N_2_in_axes2_zy*tube_m1_w_2;
-        const real tube_d_G_m1_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m1_w_1 +
-            tube_d_N_2_in_axes2_zz*tube_m1_w_2;
-        /* (tube-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
-           balances the leg's inertia and weight along all degrees of freedom */
-        const real tube_dalpha_G_m2_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m2_w_1 +
-            tube_dalpha_N_2_in_axes2_zx*tube_m2_w_2;
-        const real tube_dalpha_G_m2_in_axes2_y = tube_dalpha_Gamma_1_in_axes2_y*tube_m2_w_1 +
-            tube_dalpha_N_2_in_axes2_zy*tube_m2_w_2;
-        const real tube_dalpha_G_m2_in_axes2_z = tube_dalpha_Gamma_1_in_axes2_z*tube_m2_w_1 +
-            tube_dalpha_N_2_in_axes2_zz*tube_m2_w_2;
-        /* (tube-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances
-           the leg's inertia and weight along all degrees of freedom */
-        const real tube_d_G_m2_in_axes2_x = tube_h_3_in_spec2_z*tube_m2_w_2 -
-            tube_d_Gamma_1_t*tube_m2_w_1;
-        const real tube_d_G_m2_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m2_w_1 +
-            tube_d_N_2_in_axes2_zy*tube_m2_w_2;
-        const real tube_d_G_m2_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m2_w_1 +
-            tube_d_N_2_in_axes2_zz*tube_m2_w_2;
-        /* (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that
-           balances the leg's inertia and weight along all degrees of freedom */
-        const real tube_dalpha_G_m3_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m3_w_1 +
-            tube_dalpha_N_2_in_axes2_zx*tube_m3_w_2;
-        const real tube_dalpha_G_m3_in_axes2_y = tube_dalpha_Gamma_1_in_axes2_y*tube_m3_w_1 +
-            tube_dalpha_N_2_in_axes2_zy*tube_m3_w_2;
-        const real tube_dalpha_G_m3_in_axes2_z = tube_dalpha_Gamma_1_in_axes2_z*tube_m3_w_1 +
-            tube_dalpha_N_2_in_axes2_zz*tube_m3_w_2;
-        /* (tube-d_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances
-           the leg's inertia and weight along all degrees of freedom */
-        const real tube_d_G_m3_in_axes2_x = tube_h_3_in_spec2_z*tube_m3_w_2 -
-            tube_d_Gamma_1_t*tube_m3_w_1;
-        const real tube_d_G_m3_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m3_w_1 +
-            tube_d_N_2_in_axes2_zy*tube_m3_w_2;
-        const real tube_d_G_m3_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m3_w_1 +
-            tube_d_N_2_in_axes2_zz*tube_m3_w_2;
-        /* (tube-dalpha_G_m) coefficient of the acceleration in: moment at the connection point that
-           balances the leg's inertia and weight along all degrees of freedom */
-        const real tube_dalpha_G_m_in_axes2_xx =
-            -tube_dalpha_G_m2_in_axes2_x*tube_end_p2_in_axes2_y -
-            tube_dalpha_G_m3_in_axes2_x*v.tube_end_p3_in_axes2_z;
-        const real tube_dalpha_G_m_in_axes2_xy =
-            -tube_dalpha_G_m2_in_axes2_y*tube_end_p2_in_axes2_y -
-            tube_dalpha_G_m3_in_axes2_y*v.tube_end_p3_in_axes2_z;
-        const real tube_dalpha_G_m_in_axes2_xz =
-            -tube_dalpha_G_m2_in_axes2_z*tube_end_p2_in_axes2_y -
-            tube_dalpha_G_m3_in_axes2_z*v.tube_end_p3_in_axes2_z;
-        const real tube_dalpha_G_m_in_axes2_yx = tube_dalpha_G_m2_in_axes2_x*tube_n_m2_in_axes2_y
-            - tube_dalpha_G_m1_in_axes2_x*v.tube_end_p1_in_axes2_z;
-        const real tube_dalpha_G_m_in_axes2_yy = tube_dalpha_G_m2_in_axes2_y*tube_n_m2_in_axes2_y
-            - tube_dalpha_G_m1_in_axes2_y*v.tube_end_p1_in_axes2_z;
-        const real tube_dalpha_G_m_in_axes2_yz = tube_dalpha_G_m2_in_axes2_z*tube_n_m2_in_axes2_y
-            - tube_dalpha_G_m1_in_axes2_z*v.tube_end_p1_in_axes2_z;
-        const real tube_dalpha_G_m_in_axes2_zx = tube_dalpha_G_m1_in_axes2_x*tube_n_m1_in_axes2_z
-            + tube_dalpha_G_m3_in_axes2_x*tube_n_m3_in_axes2_z;
-        const real tube_dalpha_G_m_in_axes2_zy = tube_dalpha_G_m1_in_axes2_y*tube_n_m1_in_axes2_z
-            + tube_dalpha_G_m3_in_axes2_y*tube_n_m3_in_axes2_z;
-        const real tube_dalpha_G_m_in_axes2_zz = tube_dalpha_G_m1_in_axes2_z*tube_n_m1_in_axes2_z
-            + tube_dalpha_G_m3_in_axes2_z*tube_n_m3_in_axes2_z;
-        /* (tube-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
-        const real tube_d_G_m_in_axes2_xx = -tube_d_G_m2_in_axes2_x*tube_end_p2_in_axes2_y -
-            tube_d_G_m3_in_axes2_x*v.tube_end_p3_in_axes2_z;
-        const real tube_d_G_m_in_axes2_xy = -tube_d_G_m2_in_axes2_y*tube_end_p2_in_axes2_y -
-            tube_d_G_m3_in_axes2_y*v.tube_end_p3_in_axes2_z;
-        const real tube_d_G_m_in_axes2_xz = -tube_d_G_m2_in_axes2_z*tube_end_p2_in_axes2_y -
-            tube_d_G_m3_in_axes2_z*v.tube_end_p3_in_axes2_z;
-        const real tube_d_G_m_in_axes2_yx = tube_d_G_m2_in_axes2_x*tube_n_m2_in_axes2_y -
-            tube_d_G_m1_in_axes2_x*v.tube_end_p1_in_axes2_z;
-        const real tube_d_G_m_in_axes2_yy = tube_d_G_m2_in_axes2_y*tube_n_m2_in_axes2_y -
-            tube_d_G_m1_in_axes2_y*v.tube_end_p1_in_axes2_z;
-        const real tube_d_G_m_in_axes2_yz = tube_d_G_m2_in_axes2_z*tube_n_m2_in_axes2_y -
-            tube_d_G_m1_in_axes2_z*v.tube_end_p1_in_axes2_z;
-        const real tube_d_G_m_in_axes2_zx = tube_d_G_m1_in_axes2_x*tube_n_m1_in_axes2_z +
-            tube_d_G_m3_in_axes2_x*tube_n_m3_in_axes2_z;
-        const real tube_d_G_m_in_axes2_zy = tube_d_G_m1_in_axes2_y*tube_n_m1_in_axes2_z +
-            tube_d_G_m3_in_axes2_y*tube_n_m3_in_axes2_z;
-        const real tube_d_G_m_in_axes2_zz = tube_d_G_m1_in_axes2_z*tube_n_m1_in_axes2_z +
-            tube_d_G_m3_in_axes2_z*tube_n_m3_in_axes2_z;
-        /* (tube-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real tube_dalpha_c_in_axes2_xx = tube_dalpha_alpha_1_t*tube_h_3_in_spec2_y -
-            tube_h_3_in_spec2_z*tube_o_2_in_axes2_x;
-        const real tube_dalpha_c_in_axes2_xy = tube_dalpha_alpha_1_t_2*tube_h_3_in_spec2_y -
-            tube_h_3_in_spec2_z*tube_o_2_in_axes2_y;
-        const real tube_dalpha_c_in_axes2_xz = tube_dalpha_alpha_1_t_3*tube_h_3_in_spec2_y -
-            tube_h_3_in_spec2_z*tube_o_2_in_axes2_z;
-        /* (tube-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real tube_d_c_in_axes2_xy = tube_h_3_in_spec2_y*tube_w_1_t_78 -
-            tube_h_3_in_spec2_z*tube_w_2_in_axes2_y;
-        const real tube_d_c_in_axes2_xz = tube_d_alpha_1_t*tube_h_3_in_spec2_y -
-            tube_h_3_in_spec2_z*tube_w_2_in_axes2_z;
-        /* (tube-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real axis_x_tube_axes2_x = v.tube_n_c1_y*v.tube_n_c2_z -
-            v.tube_n_c1_z*v.tube_n_c2_y;
-        const real axis_x_tube_axes2_y = v.tube_n_c1_z*v.tube_n_c2_x -
-            v.tube_n_c1_x*v.tube_n_c2_z;
-        const real axis_x_tube_axes2_z = v.tube_n_c1_x*v.tube_n_c2_y -
-            v.tube_n_c1_y*v.tube_n_c2_x;
-        const real tube_Q_t = tube_d_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y +
-            tube_d_N_2_in_axes2_zy*tube_w_2_in_axes2_y - tube_link3_mass;
-        const real tube_Q_t_2 = R(0.5)*tube_Q_t;
-        const real tube_Q_t_3 = tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z +
-            tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_z - tube_link3_mass;
-        const real tube_Q_t_4 = R(0.5)*tube_Q_t_3;
-        const real tube_Q_t_5 = tube_Q_t_2*v.tube_n_c1_x + tube_d_G_in_axes2_yz*v.tube_n_c2_x -
-            axis_x_tube_axes2_x*tube_d_c_in_axes2_xy;
-        const real tube_Q_t_6 = tube_Q_t_2*v.tube_n_c1_y + tube_d_G_in_axes2_yz*v.tube_n_c2_y -
-            axis_x_tube_axes2_y*tube_d_c_in_axes2_xy;
-        const real tube_Q_t_7 = tube_Q_t_2*v.tube_n_c1_z + tube_d_G_in_axes2_yz*v.tube_n_c2_z -
-            axis_x_tube_axes2_z*tube_d_c_in_axes2_xy;
-        const real tube_Q_t_8 = tube_Q_t_4*v.tube_n_c2_x -
-            axis_x_tube_axes2_x*tube_d_c_in_axes2_xz;
-        const real tube_Q_t_9 = tube_Q_t_4*v.tube_n_c2_y -
-            axis_x_tube_axes2_y*tube_d_c_in_axes2_xz;
-        const real tube_Q_t_10 = tube_Q_t_4*v.tube_n_c2_z -
-            axis_x_tube_axes2_z*tube_d_c_in_axes2_xz;
-        const real tube_Q_t_11 = tube_Q_t_5*v.tube_n_c1_x + tube_Q_t_8*v.tube_n_c2_x;
-        const real tube_Q_xx = 2*tube_Q_t_11 + tube_link3_mass;
-        const real tube_Q_xy = tube_Q_t_5*v.tube_n_c1_y + tube_Q_t_6*v.tube_n_c1_x +
-            tube_Q_t_8*v.tube_n_c2_y + tube_Q_t_9*v.tube_n_c2_x;
-        const real tube_Q_xz = tube_Q_t_10*v.tube_n_c2_x + tube_Q_t_5*v.tube_n_c1_z +
-            tube_Q_t_7*v.tube_n_c1_x + tube_Q_t_8*v.tube_n_c2_z;
-        const real tube_Q_t_12 = tube_Q_t_6*v.tube_n_c1_y + tube_Q_t_9*v.tube_n_c2_y;
-        const real tube_Q_yy = 2*tube_Q_t_12 + tube_link3_mass;
-        const real tube_Q_yz = tube_Q_t_10*v.tube_n_c2_y + tube_Q_t_6*v.tube_n_c1_z +
-            tube_Q_t_7*v.tube_n_c1_y + tube_Q_t_9*v.tube_n_c2_z;
-        const real tube_Q_t_13 = tube_Q_t_10*v.tube_n_c2_z + tube_Q_t_7*v.tube_n_c1_z;
-        const real tube_Q_zz = 2*tube_Q_t_13 + tube_link3_mass;
-        /* (tube-dalpha_c_m) coefficient of the acceleration in: moment of the leg on the platform without
-           actuation */
-        const real tube_dalpha_c_m_zz =
-            axis_x_tube_axes2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xx -
-            tube_dalpha_G_m_in_axes2_yx*v.tube_n_c1_z - tube_dalpha_G_m_in_axes2_zx*v.tube_n_c2_z)
-            + v.tube_n_c1_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xy -
-            tube_dalpha_G_m_in_axes2_yy*v.tube_n_c1_z - tube_dalpha_G_m_in_axes2_zy*v.tube_n_c2_z)
-            + v.tube_n_c2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xz -
-            tube_dalpha_G_m_in_axes2_yz*v.tube_n_c1_z -
-            tube_dalpha_G_m_in_axes2_zz*v.tube_n_c2_z);
-        /* (tube-d_c_m) coefficient of the acceleration in: moment of the leg on the platform without
-           actuation */
-        const real tube_d_c_m_t = -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xx -
-            tube_d_G_m_in_axes2_yx*v.tube_n_c1_x - tube_d_G_m_in_axes2_zx*v.tube_n_c2_x;
-        const real tube_d_c_m_t_2 = -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xx -
-            tube_d_G_m_in_axes2_yx*v.tube_n_c1_y - tube_d_G_m_in_axes2_zx*v.tube_n_c2_y;
-        const real tube_d_c_m_t_3 = -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xy -
-            tube_d_G_m_in_axes2_yy*v.tube_n_c1_x - tube_d_G_m_in_axes2_zy*v.tube_n_c2_x;
-        const real tube_d_c_m_t_4 = -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xy -
-            tube_d_G_m_in_axes2_yy*v.tube_n_c1_y - tube_d_G_m_in_axes2_zy*v.tube_n_c2_y;
-        const real tube_d_c_m_t_5 = -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xz -
-            tube_d_G_m_in_axes2_yz*v.tube_n_c1_x - tube_d_G_m_in_axes2_zz*v.tube_n_c2_x;
-        const real tube_d_c_m_t_6 = -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xz -
-            tube_d_G_m_in_axes2_yz*v.tube_n_c1_y - tube_d_G_m_in_axes2_zz*v.tube_n_c2_y;
-        const real tube_d_c_m_xx = axis_x_tube_axes2_x*tube_d_c_m_t + tube_d_c_m_t_3*v.tube_n_c1_x
-            + tube_d_c_m_t_5*v.tube_n_c2_x;
-        const real tube_d_c_m_xy = axis_x_tube_axes2_y*tube_d_c_m_t + tube_d_c_m_t_3*v.tube_n_c1_y
-            + tube_d_c_m_t_5*v.tube_n_c2_y;
-        const real tube_d_c_m_xz = axis_x_tube_axes2_z*tube_d_c_m_t + tube_d_c_m_t_3*v.tube_n_c1_z
-            + tube_d_c_m_t_5*v.tube_n_c2_z;
-        const real tube_d_c_m_yx = axis_x_tube_axes2_x*tube_d_c_m_t_2 +
-            tube_d_c_m_t_4*v.tube_n_c1_x + tube_d_c_m_t_6*v.tube_n_c2_x;
-        /* (M_ta) coupling block of M */
-        const real tube_M_ta_t = axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xx -
-            tube_dalpha_G_in_axes2_yx*v.tube_n_c1_x - tube_dalpha_G_in_axes2_zx*v.tube_n_c2_x;
-        const real tube_M_ta_t_2 = axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xx -
-            tube_dalpha_G_in_axes2_yx*v.tube_n_c1_y - tube_dalpha_G_in_axes2_zx*v.tube_n_c2_y;
-        const real tube_M_ta_t_3 = axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xx -
-            tube_dalpha_G_in_axes2_yx*v.tube_n_c1_z - tube_dalpha_G_in_axes2_zx*v.tube_n_c2_z;
-        const real tube_M_ta_t_4 = axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xy -
-            tube_dalpha_G_in_axes2_yy*v.tube_n_c1_x - tube_dalpha_G_in_axes2_zy*v.tube_n_c2_x;
-        const real tube_M_ta_t_5 = axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xy -
-            tube_dalpha_G_in_axes2_yy*v.tube_n_c1_y - tube_dalpha_G_in_axes2_zy*v.tube_n_c2_y;
-        const real tube_M_ta_t_6 = axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xy -
-            tube_dalpha_G_in_axes2_yy*v.tube_n_c1_z - tube_dalpha_G_in_axes2_zy*v.tube_n_c2_z;
-        const real tube_M_ta_t_7 = axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xz -
-            tube_dalpha_G_in_axes2_yz*v.tube_n_c1_x - tube_dalpha_G_in_axes2_zz*v.tube_n_c2_x;
-        const real tube_M_ta_t_8 = axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xz -
-            tube_dalpha_G_in_axes2_yz*v.tube_n_c1_y - tube_dalpha_G_in_axes2_zz*v.tube_n_c2_y;
-        const real tube_M_ta_t_9 = axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xz -
-            tube_dalpha_G_in_axes2_yz*v.tube_n_c1_z - tube_dalpha_G_in_axes2_zz*v.tube_n_c2_z;
-        const real tube_M_ta_t_10 = tube_Q_xy*v.tube_q_z;
-        const real tube_M_ta_t_11 = tube_Q_xz*v.tube_q_y;
-        const real tube_M_ta_t_12 = tube_Q_yz*v.tube_q_x;
-        const real tube_M_ta_t_13 = tube_M_ta_t_11 - tube_M_ta_t_10 -
-            axis_x_tube_axes2_x*tube_M_ta_t - tube_M_ta_t_4*v.tube_n_c1_x -
-            tube_M_ta_t_7*v.tube_n_c2_x;
-        const real tube_M_ta_t_14 = tube_Q_xx*v.tube_q_z - axis_x_tube_axes2_y*tube_M_ta_t -
-            tube_M_ta_t_4*v.tube_n_c1_y - tube_M_ta_t_7*v.tube_n_c2_y - tube_Q_xz*v.tube_q_x;
-        const real tube_M_ta_t_15 = tube_Q_xy*v.tube_q_x - axis_x_tube_axes2_z*tube_M_ta_t -
-            tube_M_ta_t_4*v.tube_n_c1_z - tube_M_ta_t_7*v.tube_n_c2_z - tube_Q_xx*v.tube_q_y;
-        const real tube_M_ta_t_16 = tube_Q_yz*v.tube_q_y - axis_x_tube_axes2_x*tube_M_ta_t_2 -
-            tube_M_ta_t_5*v.tube_n_c1_x - tube_M_ta_t_8*v.tube_n_c2_x - tube_Q_yy*v.tube_q_z;
-        const real tube_M_ta_t_17 = tube_M_ta_t_10 - tube_M_ta_t_12 -
-            axis_x_tube_axes2_y*tube_M_ta_t_2 - tube_M_ta_t_5*v.tube_n_c1_y -
-            tube_M_ta_t_8*v.tube_n_c2_y;
-        const real tube_M_ta_t_18 = tube_Q_yy*v.tube_q_x - axis_x_tube_axes2_z*tube_M_ta_t_2 -
-            tube_M_ta_t_5*v.tube_n_c1_z - tube_M_ta_t_8*v.tube_n_c2_z - tube_Q_xy*v.tube_q_y;
-        const real tube_M_ta_t_19 = tube_Q_zz*v.tube_q_y - axis_x_tube_axes2_x*tube_M_ta_t_3 -
-            tube_M_ta_t_6*v.tube_n_c1_x - tube_M_ta_t_9*v.tube_n_c2_x - tube_Q_yz*v.tube_q_z;
-        const real tube_M_ta_t_20 = tube_Q_xz*v.tube_q_z - axis_x_tube_axes2_y*tube_M_ta_t_3 -
-            tube_M_ta_t_6*v.tube_n_c1_y - tube_M_ta_t_9*v.tube_n_c2_y - tube_Q_zz*v.tube_q_x;
-        const real tube_M_ta_t_21 = tube_M_ta_t_12 - tube_M_ta_t_11 -
-            axis_x_tube_axes2_z*tube_M_ta_t_3 - tube_M_ta_t_6*v.tube_n_c1_z -
-            tube_M_ta_t_9*v.tube_n_c2_z;
-        /* (M_aa) rotational block of M */
-        const real tube_M_aa_t = -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xx -
-            tube_dalpha_G_m_in_axes2_yx*v.tube_n_c1_x - tube_dalpha_G_m_in_axes2_zx*v.tube_n_c2_x;
-        const real tube_M_aa_t_2 = -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xx -
-            tube_dalpha_G_m_in_axes2_yx*v.tube_n_c1_y - tube_dalpha_G_m_in_axes2_zx*v.tube_n_c2_y;
-        const real tube_M_aa_t_3 = -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xy -
-            tube_dalpha_G_m_in_axes2_yy*v.tube_n_c1_x - tube_dalpha_G_m_in_axes2_zy*v.tube_n_c2_x;
-        const real tube_M_aa_t_4 = -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xy -
-            tube_dalpha_G_m_in_axes2_yy*v.tube_n_c1_y - tube_dalpha_G_m_in_axes2_zy*v.tube_n_c2_y;
-        const real tube_M_aa_t_5 = -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xz -
-            tube_dalpha_G_m_in_axes2_yz*v.tube_n_c1_x - tube_dalpha_G_m_in_axes2_zz*v.tube_n_c2_x;
-        const real tube_M_aa_t_6 = -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xz -
-            tube_dalpha_G_m_in_axes2_yz*v.tube_n_c1_y - tube_dalpha_G_m_in_axes2_zz*v.tube_n_c2_y;
-        const real tube_M_aa_t_7 = -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xx -
-            tube_d_G_m_in_axes2_yx*v.tube_n_c1_z - tube_d_G_m_in_axes2_zx*v.tube_n_c2_z;
-        const real tube_M_aa_t_8 = -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xy -
-            tube_d_G_m_in_axes2_yy*v.tube_n_c1_z - tube_d_G_m_in_axes2_zy*v.tube_n_c2_z;
-        const real tube_M_aa_t_9 = -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xz -
-            tube_d_G_m_in_axes2_yz*v.tube_n_c1_z - tube_d_G_m_in_axes2_zz*v.tube_n_c2_z;
-        const real tube_M_aa_t_10 = tube_M_ta_t_19*v.tube_q_y + tube_d_c_m_xy*v.tube_q_z -
-            axis_x_tube_axes2_x*tube_M_aa_t - tube_M_aa_t_3*v.tube_n_c1_x -
-            tube_M_aa_t_5*v.tube_n_c2_x - tube_M_ta_t_16*v.tube_q_z - tube_d_c_m_xz*v.tube_q_y;
-        const real tube_M_aa_t_11 = tube_M_ta_t_20*v.tube_q_y + tube_d_c_m_xz*v.tube_q_x -
-            axis_x_tube_axes2_y*tube_M_aa_t - tube_M_aa_t_3*v.tube_n_c1_y -
-            tube_M_aa_t_5*v.tube_n_c2_y - tube_M_ta_t_17*v.tube_q_z - tube_d_c_m_xx*v.tube_q_z;
-        const real tube_M_aa_t_12 = tube_M_ta_t_21*v.tube_q_y + tube_d_c_m_xx*v.tube_q_y -
-            axis_x_tube_axes2_z*tube_M_aa_t - tube_M_aa_t_3*v.tube_n_c1_z -
-            tube_M_aa_t_5*v.tube_n_c2_z - tube_M_ta_t_18*v.tube_q_z - tube_d_c_m_xy*v.tube_q_x;
-        const real tube_M_aa_t_13 = tube_M_ta_t_14*v.tube_q_z +
-            v.tube_q_x*(axis_x_tube_axes2_z*tube_d_c_m_t_2 + tube_d_c_m_t_4*v.tube_n_c1_z +
-            tube_d_c_m_t_6*v.tube_n_c2_z) - axis_x_tube_axes2_y*tube_M_aa_t_2 -
-            tube_M_aa_t_4*v.tube_n_c1_y - tube_M_aa_t_6*v.tube_n_c2_y - tube_M_ta_t_20*v.tube_q_x
-            - tube_d_c_m_yx*v.tube_q_z;
-        const real tube_M_aa_t_14 = tube_M_ta_t_15*v.tube_q_z + tube_d_c_m_yx*v.tube_q_y -
-            axis_x_tube_axes2_z*tube_M_aa_t_2 - tube_M_aa_t_4*v.tube_n_c1_z -
-            tube_M_aa_t_6*v.tube_n_c2_z - tube_M_ta_t_21*v.tube_q_x -
-            v.tube_q_x*(axis_x_tube_axes2_y*tube_d_c_m_t_2 + tube_d_c_m_t_4*v.tube_n_c1_y +
-            tube_d_c_m_t_6*v.tube_n_c2_y);
-        const real tube_M_aa_t_15 = tube_M_ta_t_18*v.tube_q_x +
-            v.tube_q_y*(axis_x_tube_axes2_x*tube_M_aa_t_7 + tube_M_aa_t_8*v.tube_n_c1_x +
-            tube_M_aa_t_9*v.tube_n_c2_x) - tube_dalpha_c_m_zz - tube_M_ta_t_15*v.tube_q_y -
-            v.tube_q_x*(axis_x_tube_axes2_y*tube_M_aa_t_7 + tube_M_aa_t_8*v.tube_n_c1_y +
-            tube_M_aa_t_9*v.tube_n_c2_y);
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, tube_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, tube_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, tube_Q_xz);  /* M_tt_xz */
-        gather(&terms[3*count + k], add, tube_Q_yy);  /* M_tt_yy_of_legs */
-        gather(&terms[4*count + k], add, tube_Q_yz);  /* M_tt_yz */
-        gather(&terms[5*count + k], add, tube_Q_zz);  /* M_tt_zz_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[6*count + k], add, tube_M_ta_t_13);  /* M_ta_xx */
-        gather(&terms[7*count + k], add, tube_M_ta_t_14);  /* M_ta_xy_of_legs */
-        gather(&terms[8*count + k], add, tube_M_ta_t_15);  /* M_ta_xz_of_legs */
-        gather(&terms[9*count + k], add, tube_M_ta_t_16);  /* M_ta_yx_of_legs */
-        gather(&terms[10*count + k], add, tube_M_ta_t_17);  /* M_ta_yy */
-        gather(&terms[11*count + k], add, tube_M_ta_t_18);  /* M_ta_yz_of_legs */
-        gather(&terms[12*count + k], add, tube_M_ta_t_19);  /* M_ta_zx_of_legs */
-        gather(&terms[13*count + k], add, tube_M_ta_t_20);  /* M_ta_zy_of_legs */
-        gather(&terms[14*count + k], add, tube_M_ta_t_21);  /* M_ta_zz */
-        /* (M_aa) rotational block of M */
-        gather(&terms[15*count + k], add, tube_M_aa_t_10);  /* M_aa_xx_of_legs */
-        gather(&terms[16*count + k], add, tube_M_aa_t_11);  /* M_aa_xy_of_legs */
-        gather(&terms[17*count + k], add, tube_M_aa_t_12);  /* M_aa_xz_of_legs */
-        gather(&terms[18*count + k], add, tube_M_aa_t_13);  /* M_aa_yy_of_legs */
-        gather(&terms[19*count + k], add, tube_M_aa_t_14);  /* M_aa_yz_of_legs */
-        gather(&terms[20*count + k], add, tube_M_aa_t_15);  /* M_aa_zz_of_legs */
-        o[0*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
-            UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) +
-            UNLESS(magnitude(tube_size_c3) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_13) > LEAST_5)
-            + UNLESS(magnitude(tube_w_1_t_33) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_49) >
-            LEAST_4) + UNLESS(magnitude(tube_w_1_t_63) > LEAST_5) +
-            UNLESS(magnitude(tube_w_1_t_75) > LEAST_5);
-    }
+    values_tube v;
+    stage_tube_X(m, w, i, j, s, X, &v);
+    /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
+    const real tube_n_m1_in_axes2_z = v.tube_e_1_in_axes2_x*(v.tube_c_1*v.tube_n_m1_t_10 +
+        v.tube_n_m1_t_11*v.tube_s_1) -
+        v.tube_c_2*(v.tube_n_m1_t_7*m->tube_platform_joint_rotation_yx[i] +
+        v.tube_n_m1_t_8*m->tube_platform_joint_rotation_yy[i] +
+        v.tube_n_m1_t_9*m->tube_platform_joint_rotation_yz[i]);
+    /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
+    const real tube_n_m2_t = v.tube_n_m1_t_7*m->tube_platform_joint_rotation_zx[i] +
+        v.tube_n_m1_t_8*m->tube_platform_joint_rotation_zy[i] +
+        v.tube_n_m1_t_9*m->tube_platform_joint_rotation_zz[i];
+    const real tube_n_m2_t_2 = v.tube_c_1*(v.tube_n_m1_t*m->tube_platform_joint_rotation_zx[i]
+        + v.tube_n_m1_t_2*m->tube_platform_joint_rotation_zy[i] +
+        v.tube_n_m1_t_3*m->tube_platform_joint_rotation_zz[i]) +
+        v.tube_s_1*(v.tube_n_m1_t_4*m->tube_platform_joint_rotation_zx[i] +
+        v.tube_n_m1_t_5*m->tube_platform_joint_rotation_zy[i] +
+        v.tube_n_m1_t_6*m->tube_platform_joint_rotation_zz[i]);
+    const real tube_n_m2_in_axes2_y = v.tube_c_2*tube_n_m2_t_2 +
+        v.tube_e_1_in_axes2_x*tube_n_m2_t;
+    const real tube_end_p2_in_axes2_y = v.tube_e_1_in_axes2_x*tube_n_m2_t_2 -
+        v.tube_c_2*tube_n_m2_t;
+    const real tube_n_m2_t_3 = v.tube_c_2*tube_n_m2_in_axes2_y +
+        v.tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y;
+    /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
+    const real tube_n_m3_in_axes2_z = v.tube_c_2*(v.tube_c_1*v.tube_n_m3_t +
+        v.tube_n_m3_t_2*v.tube_s_1) +
+        v.tube_e_1_in_axes2_x*(v.tube_n_m1_t_7*m->tube_platform_joint_rotation_xx[i] +
+        v.tube_n_m1_t_8*m->tube_platform_joint_rotation_xy[i] +
+        v.tube_n_m1_t_9*m->tube_platform_joint_rotation_xz[i]);
+    const real tube_n_m3_t_3 = v.tube_e_1_in_axes2_x*v.tube_end_p3_in_axes2_z;
+    /* (tube-f_c1) force part of constraint wrench 1 */
+    const real tube_f_c1_t = v.tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
+        tube_n_m1_in_axes2_z*tube_n_m3_t_3;
+    /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
+    const real inv_tube_f_c1_t = 1/tube_f_c1_t;
+    const real tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_3*tube_n_m3_in_axes2_z;
+    /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
+    const real tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_3;
+    /* (tube-size_c3) size of the moment */
+    const real tube_size_c3 = root(1 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t);
+    /* (tube-mu2_c3) moment along direction 2 that goes with it */
+    const real tube_mu2_c3 = 1/tube_size_c3;
+    /* (tube-w_1) force part of reciprocal wrench 1 */
+    const real tube_w_1_t_2 = R(1.35)*tube_n_m2_t_3;
+    const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t_3;
+    const real tube_w_1_t_4 = R(1.35)*tube_n_m1_in_axes2_z;
+    const real tube_w_1_t_5 = R(1.35)*tube_n_m3_in_axes2_z;
+    const real tube_w_1_t_6 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_t_3*v.tube_q_3;
+    const real tube_w_1_t_7 = R(1.35)*inv_tube_f_c1_t*v.tube_n_m1_in_axes1_z*v.tube_q_3;
+    const real tube_w_1_t_8 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_in_axes2_z*v.tube_root_1;
+    const real tube_w_1_t_9 = R(1.35)*inv_tube_f_c1_t*tube_n_m1_in_axes2_z*v.tube_root_1;
+    const real tube_w_1_t_10 = R(1.35)*tube_m1_c3*tube_mu2_c3;
+    const real tube_w_1_t_11 = R(1.35)*tube_mu2_c3;
+    const real tube_w_1_t_12 = R(1.35)*tube_m3_c3_t*tube_mu2_c3;
+    const real tube_w_1_t_13 = root(v.tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 +
+        tube_w_1_t_5*tube_w_1_t_5);
+    const real inv_tube_w_1_t_13 = 1/tube_w_1_t_13;
+    const real tube_w_1_t_14 = inv_tube_w_1_t_13*v.tube_q_3;
+    const real tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4;
+    const real tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5;
+    const real tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 -
+        tube_w_1_t_14;
+    const real tube_w_1_t_18 = 1 + tube_w_1_t_14*tube_w_1_t_17;
+    const real tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6;
+    const real tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7;
+    const real tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9;
+    const real tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21;
+    const real tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8;
+    const real tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21;
+    const real tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16;
+    const real tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25;
+    const real tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25;
+    const real tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25;
+    const real tube_w_1_t_29 = v.tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3;
+    const real tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29;
+    const real tube_w_1_t_31 = v.tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29;
+    const real tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29;
+    const real tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19
+        + tube_w_1_t_20*tube_w_1_t_20);
+    const real inv_tube_w_1_t_33 = 1/tube_w_1_t_33;
+    const real tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18;
+    const real tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19;
+    const real tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20;
+    const real tube_w_1_t_37 = tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 +
+        tube_w_1_t_24*tube_w_1_t_36;
+    const real tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37;
+    const real tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37;
+    const real tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37;
+    const real tube_w_1_t_41 = tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 -
+        tube_w_1_t_27*tube_w_1_t_35;
+    const real tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41;
+    const real tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41;
+    const real tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41;
+    const real tube_w_1_t_45 = tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 -
+        tube_w_1_t_31*tube_w_1_t_35;
+    const real tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45;
+    const real tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45;
+    const real tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45;
+    const real tube_w_1_t_49 = root(1 + tube_w_1_t_38*tube_w_1_t_38 +
+        tube_w_1_t_39*tube_w_1_t_39 + tube_w_1_t_40*tube_w_1_t_40);
+    const real inv_tube_w_1_t_49 = 1/tube_w_1_t_49;
+    const real tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38;
+    const real tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39;
+    const real tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40;
+    const real tube_w_1_t_53 = tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 -
+        tube_w_1_t_43*tube_w_1_t_51;
+    const real tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42;
+    const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
+    const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
+    const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
+    const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 -
+        inv_tube_w_1_t_49*v.tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
+    const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
+    const real tube_w_1_t_60 = v.tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
+    const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
+    const real tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48;
+    const real tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54
+        + tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
+        tube_w_1_t_57*tube_w_1_t_57);
+    const real inv_tube_w_1_t_63 = 1/tube_w_1_t_63;
+    const real tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54;
+    const real tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55;
+    const real tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56;
+    const real tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11;
+    const real tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57;
+    const real tube_w_1_t_69 = tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 +
+        tube_w_1_t_61*tube_w_1_t_66 + tube_w_1_t_62*tube_w_1_t_68 -
+        tube_w_1_t_2*tube_w_1_t_67;
+    const real tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69;
+    const real tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69;
+    const real tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69;
+    const real tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69;
+    const real tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69;
+    const real tube_w_1_t_75 = root(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71
+        + tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
+        tube_w_1_t_74*tube_w_1_t_74);
+    const real inv_tube_w_1_t_75 = 1/tube_w_1_t_75;
+    const real tube_w_1_t_76 = inv_tube_w_1_t_75*tube_w_1_t_70;
+    const real tube_w_1_t_77 = inv_tube_w_1_t_75*tube_w_1_t_71;
+    const real tube_w_1_in_axes2_y = inv_tube_w_1_t_75*tube_w_1_t_76;
+    const real tube_w_1_in_axes2_z = inv_tube_w_1_t_75*tube_w_1_t_77;
+    const real tube_w_1_in_axes1_x = v.tube_e_1_in_axes2_x*tube_w_1_in_axes2_y;
+    const real tube_w_1_t_78 = v.tube_c_2*tube_w_1_in_axes2_y;
+    /* (tube-m1_w_1) moment part 1 of reciprocal wrench 1 */
+    const real tube_m1_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_72;
+    const real tube_m1_w_1 = R(1.35)*inv_tube_w_1_t_75*tube_m1_w_1_t;
+    /* (tube-m2_w_1) moment part 2 of reciprocal wrench 1 */
+    const real tube_m2_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_73;
+    const real tube_m2_w_1 = -R(1.35)*inv_tube_w_1_t_75*tube_m2_w_1_t;
+    /* (tube-m3_w_1) moment part 3 of reciprocal wrench 1 */
+    const real tube_m3_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_74;
+    const real tube_m3_w_1 = R(1.35)*inv_tube_w_1_t_75*tube_m3_w_1_t;
+    /* (tube-w_2) force part of reciprocal wrench 2 */
+    const real tube_w_2_t = inv_tube_w_1_t_13*inv_tube_w_1_t_33*tube_w_1_t_17;
+    const real tube_w_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_13*tube_w_1_t_21 -
+        tube_w_1_t_37*tube_w_2_t);
+    const real tube_w_2_t_3 = inv_tube_w_1_t_63*(tube_w_1_t_41*tube_w_2_t +
+        tube_w_1_t_53*tube_w_2_t_2 - inv_tube_w_1_t_13*tube_w_1_t_25);
+    const real tube_w_2_t_4 = inv_tube_w_1_t_75*(inv_tube_w_1_t_13*tube_w_1_t_29 +
+        tube_w_1_t_69*tube_w_2_t_3 - tube_w_1_t_45*tube_w_2_t - tube_w_1_t_58*tube_w_2_t_2);
+    const real tube_w_2_in_axes2_y = inv_tube_w_1_t_13*tube_w_1_t_14 +
+        tube_w_1_t_34*tube_w_2_t + tube_w_1_t_50*tube_w_2_t_2 + tube_w_1_t_64*tube_w_2_t_3 -
+        tube_w_1_t_76*tube_w_2_t_4;
+    const real tube_w_2_in_axes2_z = inv_tube_w_1_t_49*tube_w_2_t_2 +
+        tube_w_1_t_65*tube_w_2_t_3 - tube_w_1_t_77*tube_w_2_t_4;
+    /* (tube-m1_w_2) moment part 1 of reciprocal wrench 2 */
+    const real tube_m1_w_2_t = inv_tube_w_1_t_13*tube_w_1_t_15 + tube_w_1_t_35*tube_w_2_t +
+        tube_w_1_t_51*tube_w_2_t_2 + tube_w_1_t_66*tube_w_2_t_3 - tube_m1_w_1_t*tube_w_2_t_4;
+    const real tube_m1_w_2 = R(1.35)*tube_m1_w_2_t;
+    /* (tube-m2_w_2) moment part 2 of reciprocal wrench 2 */
+    const real tube_m2_w_2_t = tube_m2_w_1_t*tube_w_2_t_4 + tube_w_1_t_67*tube_w_2_t_3;
+    const real tube_m2_w_2 = R(1.35)*tube_m2_w_2_t;
+    /* (tube-m3_w_2) moment part 3 of reciprocal wrench 2 */
+    const real tube_m3_w_2_t = inv_tube_w_1_t_13*tube_w_1_t_16 + tube_w_1_t_36*tube_w_2_t +
+        tube_w_1_t_52*tube_w_2_t_2 + tube_w_1_t_68*tube_w_2_t_3 - tube_m3_w_1_t*tube_w_2_t_4;
+    const real tube_m3_w_2 = R(1.35)*tube_m3_w_2_t;
+    /* (tube-o_1) moment part of reciprocal wrench 1 */
+    const real tube_o_1_in_axes2_x = -tube_end_p2_in_axes2_y*tube_m2_w_1 -
+        v.tube_end_p3_in_axes2_z*tube_m3_w_1;
+    const real tube_o_1_in_axes2_y = tube_m2_w_1*tube_n_m2_in_axes2_y -
+        v.tube_end_p1_in_axes2_z*tube_m1_w_1;
+    const real tube_o_1_in_axes2_z = tube_m1_w_1*tube_n_m1_in_axes2_z +
+        tube_m3_w_1*tube_n_m3_in_axes2_z;
+    /* (tube-o_2) moment part of reciprocal wrench 2 */
+    const real tube_o_2_in_axes2_x = -tube_end_p2_in_axes2_y*tube_m2_w_2 -
+        v.tube_end_p3_in_axes2_z*tube_m3_w_2;
+    const real tube_o_2_in_axes2_y = tube_m2_w_2*tube_n_m2_in_axes2_y -
+        v.tube_end_p1_in_axes2_z*tube_m1_w_2;
+    const real tube_o_2_in_axes2_z = tube_m1_w_2*tube_n_m1_in_axes2_z +
+        tube_m3_w_2*tube_n_m3_in_axes2_z;
+    /* (tube-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+    const real tube_dalpha_alpha_1_t = v.tube_c_2*tube_o_1_in_axes2_x;
+    const real tube_dalpha_alpha_1_in_axes2_xy = v.tube_e_1_in_axes2_x*tube_o_1_in_axes2_y;
+    const real tube_dalpha_alpha_1_t_2 = v.tube_c_2*tube_o_1_in_axes2_y;
+    const real tube_dalpha_alpha_1_in_axes2_xx = v.tube_e_1_in_axes2_x*tube_o_1_in_axes2_x;
+    const real tube_dalpha_alpha_1_in_axes2_xz = v.tube_e_1_in_axes2_x*tube_o_1_in_axes2_z;
+    const real tube_dalpha_alpha_1_t_3 = v.tube_c_2*tube_o_1_in_axes2_z;
+    /* (tube-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+    const real tube_d_alpha_1_in_axes2_xz = v.tube_e_1_in_axes2_x*tube_w_1_in_axes2_z;
+    const real tube_d_alpha_1_t = v.tube_c_2*tube_w_1_in_axes2_z;
+    /* (tube-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of
+       link 3, less gravity */
+    const real tube_dalpha_acc_3_in_axes2_yx = tube_o_2_in_axes2_x*v.tube_q_3;
+    const real tube_dalpha_acc_3_in_axes2_yy = tube_o_2_in_axes2_y*v.tube_q_3;
+    const real tube_dalpha_acc_3_in_axes2_yz = tube_o_2_in_axes2_z*v.tube_q_3;
+    const real tube_dalpha_acc_3_in_axes2_zx = tube_dalpha_alpha_1_t*v.tube_q_3;
+    const real tube_dalpha_acc_3_in_axes2_zy = tube_dalpha_alpha_1_t_2*v.tube_q_3;
+    const real tube_dalpha_acc_3_in_axes2_zz = tube_dalpha_alpha_1_t_3*v.tube_q_3;
+    /* (tube-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link
+       3, less gravity */
+    const real tube_d_acc_3_in_axes2_yy = v.tube_q_3*tube_w_2_in_axes2_y;
+    const real tube_d_acc_3_in_axes2_yz = v.tube_q_3*tube_w_2_in_axes2_z;
+    const real tube_d_acc_3_in_axes2_zy = v.tube_q_3*tube_w_1_t_78;
+    const real tube_d_acc_3_in_axes2_zz = tube_d_alpha_1_t*v.tube_q_3;
+    /* (tube-dalpha_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2
+       outwards, the force at the connection point left out */
+    const real tube_dalpha_N_2_in_axes2_zx =
+        m->tube_J_group_2_in_axes2_xz[i]*tube_dalpha_alpha_1_in_axes2_xx +
+        m->tube_J_group_2_in_axes2_zz[i]*tube_o_2_in_axes2_x +
+        tube_dalpha_acc_3_in_axes2_yx*m->tube_h_3_in_spec2_x[i] +
+        v.tube_q_3*(tube_dalpha_acc_3_in_axes2_yx*m->tube_link3_mass[i] +
+        m->tube_h_3_in_spec2_x[i]*tube_o_2_in_axes2_x -
+        tube_dalpha_alpha_1_in_axes2_xx*m->tube_h_3_in_spec2_y[i]) -
+        m->tube_J_group_2_in_axes2_yz[i]*tube_dalpha_alpha_1_t;
+    const real tube_dalpha_N_2_in_axes2_zy =
+        m->tube_J_group_2_in_axes2_xz[i]*tube_dalpha_alpha_1_in_axes2_xy +
+        m->tube_J_group_2_in_axes2_zz[i]*tube_o_2_in_axes2_y +
+        tube_dalpha_acc_3_in_axes2_yy*m->tube_h_3_in_spec2_x[i] +
+        v.tube_q_3*(tube_dalpha_acc_3_in_axes2_yy*m->tube_link3_mass[i] +
+        m->tube_h_3_in_spec2_x[i]*tube_o_2_in_axes2_y -
+        tube_dalpha_alpha_1_in_axes2_xy*m->tube_h_3_in_spec2_y[i]) -
+        m->tube_J_group_2_in_axes2_yz[i]*tube_dalpha_alpha_1_t_2;
+    const real tube_dalpha_N_2_in_axes2_zz =
+        m->tube_J_group_2_in_axes2_xz[i]*tube_dalpha_alpha_1_in_axes2_xz +
+        m->tube_J_group_2_in_axes2_zz[i]*tube_o_2_in_axes2_z +
+        tube_dalpha_acc_3_in_axes2_yz*m->tube_h_3_in_spec2_x[i] +
+        v.tube_q_3*(tube_dalpha_acc_3_in_axes2_yz*m->tube_link3_mass[i] +
+        m->tube_h_3_in_spec2_x[i]*tube_o_2_in_axes2_z -
+        tube_dalpha_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_y[i]) -
+        m->tube_J_group_2_in_axes2_yz[i]*tube_dalpha_alpha_1_t_3;
+    /* (tube-d_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2
+       outwards, the force at the connection point left out */
+    const real tube_d_N_2_in_axes2_zy = m->tube_J_group_2_in_axes2_xz[i]*tube_w_1_in_axes1_x +
+        m->tube_J_group_2_in_axes2_zz[i]*tube_w_2_in_axes2_y +
+        tube_d_acc_3_in_axes2_yy*m->tube_h_3_in_spec2_x[i] +
+        v.tube_q_3*(tube_d_acc_3_in_axes2_yy*m->tube_link3_mass[i] +
+        m->tube_h_3_in_spec2_x[i]*tube_w_2_in_axes2_y -
+        m->tube_h_3_in_spec2_y[i]*tube_w_1_in_axes1_x) -
+        m->tube_J_group_2_in_axes2_yz[i]*tube_w_1_t_78;
+    const real tube_d_N_2_in_axes2_zz =
+        m->tube_J_group_2_in_axes2_xz[i]*tube_d_alpha_1_in_axes2_xz +
+        m->tube_J_group_2_in_axes2_zz[i]*tube_w_2_in_axes2_z +
+        tube_d_acc_3_in_axes2_yz*m->tube_h_3_in_spec2_x[i] +
+        v.tube_q_3*(tube_d_acc_3_in_axes2_yz*m->tube_link3_mass[i] +
+        m->tube_h_3_in_spec2_x[i]*tube_w_2_in_axes2_z -
+        tube_d_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_y[i]) -
+        m->tube_J_group_2_in_axes2_yz[i]*tube_d_alpha_1_t;
+    /* (tube-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
+       links' inertia and weight */
+    const real tube_dalpha_Gamma_1_t =
+        v.tube_c_2*(m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_in_axes2_xx +
+        m->tube_J_group_2_in_axes2_yz[i]*tube_o_2_in_axes2_x -
+        m->tube_J_group_2_in_axes2_yy[i]*tube_dalpha_alpha_1_t -
+        tube_dalpha_acc_3_in_axes2_zx*m->tube_h_3_in_spec2_x[i] -
+        v.tube_q_3*(tube_dalpha_acc_3_in_axes2_zx*m->tube_link3_mass[i] +
+        tube_dalpha_alpha_1_t*m->tube_h_3_in_spec2_x[i] -
+        tube_dalpha_alpha_1_in_axes2_xx*m->tube_h_3_in_spec2_z[i]));
+    const real tube_dalpha_Gamma_1_in_axes2_x =
+        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xx[i]*tube_dalpha_alpha_1_in_axes2_xx
+        + m->tube_J_group_2_in_axes2_xz[i]*tube_o_2_in_axes2_x -
+        m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_t -
+        tube_dalpha_acc_3_in_axes2_yx*m->tube_h_3_in_spec2_y[i] -
+        tube_dalpha_acc_3_in_axes2_zx*m->tube_h_3_in_spec2_z[i]) - tube_dalpha_Gamma_1_t;
+    const real tube_dalpha_Gamma_1_t_2 =
+        v.tube_c_2*(m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_in_axes2_xy +
+        m->tube_J_group_2_in_axes2_yz[i]*tube_o_2_in_axes2_y -
+        m->tube_J_group_2_in_axes2_yy[i]*tube_dalpha_alpha_1_t_2 -
+        tube_dalpha_acc_3_in_axes2_zy*m->tube_h_3_in_spec2_x[i] -
+        v.tube_q_3*(tube_dalpha_acc_3_in_axes2_zy*m->tube_link3_mass[i] +
+        tube_dalpha_alpha_1_t_2*m->tube_h_3_in_spec2_x[i] -
+        tube_dalpha_alpha_1_in_axes2_xy*m->tube_h_3_in_spec2_z[i]));
+    const real tube_dalpha_Gamma_1_in_axes2_y =
+        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xx[i]*tube_dalpha_alpha_1_in_axes2_xy
+        + m->tube_J_group_2_in_axes2_xz[i]*tube_o_2_in_axes2_y -
+        m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_t_2 -
+        tube_dalpha_acc_3_in_axes2_yy*m->tube_h_3_in_spec2_y[i] -
+        tube_dalpha_acc_3_in_axes2_zy*m->tube_h_3_in_spec2_z[i]) - tube_dalpha_Gamma_1_t_2;
+    const real tube_dalpha_Gamma_1_t_3 =
+        v.tube_c_2*(m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_in_axes2_xz +
+        m->tube_J_group_2_in_axes2_yz[i]*tube_o_2_in_axes2_z -
+        m->tube_J_group_2_in_axes2_yy[i]*tube_dalpha_alpha_1_t_3 -
+        tube_dalpha_acc_3_in_axes2_zz*m->tube_h_3_in_spec2_x[i] -
+        v.tube_q_3*(tube_dalpha_acc_3_in_axes2_zz*m->tube_link3_mass[i] +
+        tube_dalpha_alpha_1_t_3*m->tube_h_3_in_spec2_x[i] -
+        tube_dalpha_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_z[i]));
+    const real tube_dalpha_Gamma_1_in_axes2_z =
+        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xx[i]*tube_dalpha_alpha_1_in_axes2_xz
+        + m->tube_J_group_2_in_axes2_xz[i]*tube_o_2_in_axes2_z -
+        m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_t_3 -
+        tube_dalpha_acc_3_in_axes2_yz*m->tube_h_3_in_spec2_y[i] -
+        tube_dalpha_acc_3_in_axes2_zz*m->tube_h_3_in_spec2_z[i]) - tube_dalpha_Gamma_1_t_3;
+    /* (tube-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+       inertia and weight */
+    const real tube_d_Gamma_1_t = v.tube_c_2*m->tube_h_3_in_spec2_y[i];
+    const real tube_d_Gamma_1_t_2 =
+        v.tube_c_2*(m->tube_J_group_2_in_axes2_xy[i]*tube_w_1_in_axes1_x +
+        m->tube_J_group_2_in_axes2_yz[i]*tube_w_2_in_axes2_y -
+        m->tube_J_group_2_in_axes2_yy[i]*tube_w_1_t_78 -
+        tube_d_acc_3_in_axes2_zy*m->tube_h_3_in_spec2_x[i] -
+        v.tube_q_3*(tube_d_acc_3_in_axes2_zy*m->tube_link3_mass[i] +
+        m->tube_h_3_in_spec2_x[i]*tube_w_1_t_78 -
+        m->tube_h_3_in_spec2_z[i]*tube_w_1_in_axes1_x));
+    const real tube_d_Gamma_1_in_axes2_y =
+        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xx[i]*tube_w_1_in_axes1_x +
+        m->tube_J_group_2_in_axes2_xz[i]*tube_w_2_in_axes2_y -
+        m->tube_J_group_2_in_axes2_xy[i]*tube_w_1_t_78 -
+        tube_d_acc_3_in_axes2_yy*m->tube_h_3_in_spec2_y[i] -
+        tube_d_acc_3_in_axes2_zy*m->tube_h_3_in_spec2_z[i]) - tube_d_Gamma_1_t_2;
+    const real tube_d_Gamma_1_t_3 =
+        v.tube_c_2*(m->tube_J_group_2_in_axes2_xy[i]*tube_d_alpha_1_in_axes2_xz +
+        m->tube_J_group_2_in_axes2_yz[i]*tube_w_2_in_axes2_z -
+        m->tube_J_group_2_in_axes2_yy[i]*tube_d_alpha_1_t -
+        tube_d_acc_3_in_axes2_zz*m->tube_h_3_in_spec2_x[i] -
+        v.tube_q_3*(tube_d_acc_3_in_axes2_zz*m->tube_link3_mass[i] +
+        tube_d_alpha_1_t*m->tube_h_3_in_spec2_x[i] -
+        tube_d_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_z[i]));
+    const real tube_d_Gamma_1_in_axes2_z =
+        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xx[i]*tube_d_alpha_1_in_axes2_xz +
+        m->tube_J_group_2_in_axes2_xz[i]*tube_w_2_in_axes2_z -
+        m->tube_J_group_2_in_axes2_xy[i]*tube_d_alpha_1_t -
+        tube_d_acc_3_in_axes2_yz*m->tube_h_3_in_spec2_y[i] -
+        tube_d_acc_3_in_axes2_zz*m->tube_h_3_in_spec2_z[i]) - tube_d_Gamma_1_t_3;
+    /* (tube-dalpha_G) coefficient of the acceleration in: force at the connection point that balances
+       the leg's inertia and weight along all degrees of freedom */
+    const real tube_dalpha_G_in_axes2_yx = tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_y
+        + tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_y;
+    const real tube_dalpha_G_in_axes2_yy = tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y
+        + tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_y;
+    const real tube_dalpha_G_in_axes2_yz = tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y
+        + tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_y;
+    const real tube_dalpha_G_in_axes2_zx = tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_z
+        + tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_z;
+    const real tube_dalpha_G_in_axes2_zy = tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_z
+        + tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_z;
+    const real tube_dalpha_G_in_axes2_zz = tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z
+        + tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_z;
+    /* (tube-d_G) coefficient of the acceleration in: force at the connection point that balances the
+       leg's inertia and weight along all degrees of freedom */
+    const real tube_d_G_in_axes2_yz = tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y +
+        tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_y;
+    /* (tube-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
+       balances the leg's inertia and weight along all degrees of freedom */
+    const real tube_dalpha_G_m1_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m1_w_1 +
+        tube_dalpha_N_2_in_axes2_zx*tube_m1_w_2;
+    const real tube_dalpha_G_m1_in_axes2_y = tube_dalpha_Gamma_1_in_axes2_y*tube_m1_w_1 +
+        tube_dalpha_N_2_in_axes2_zy*tube_m1_w_2;
+    const real tube_dalpha_G_m1_in_axes2_z = tube_dalpha_Gamma_1_in_axes2_z*tube_m1_w_1 +
+        tube_dalpha_N_2_in_axes2_zz*tube_m1_w_2;
+    /* (tube-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
+       the leg's inertia and weight along all degrees of freedom */
+    const real tube_d_G_m1_in_axes2_x = m->tube_h_3_in_spec2_z[i]*tube_m1_w_2 -
+        tube_d_Gamma_1_t*tube_m1_w_1;
+    const real tube_d_G_m1_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m1_w_1 +
+        tube_d_N_2_in_axes2_zy*tube_m1_w_2;
+    const real tube_d_G_m1_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m1_w_1 +
+        tube_d_N_2_in_axes2_zz*tube_m1_w_2;
+    /* (tube-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
+       balances the leg's inertia and weight along all degrees of freedom */
+    const real tube_dalpha_G_m2_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m2_w_1 +
+        tube_dalpha_N_2_in_axes2_zx*tube_m2_w_2;
+    const real tube_dalpha_G_m2_in_axes2_y = tube_dalpha_Gamma_1_in_axes2_y*tube_m2_w_1 +
+        tube_dalpha_N_2_in_axes2_zy*tube_m2_w_2;
+    const real tube_dalpha_G_m2_in_axes2_z = tube_dalpha_Gamma_1_in_axes2_z*tube_m2_w_1 +
+        tube_dalpha_N_2_in_axes2_zz*tube_m2_w_2;
+    /* (tube-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances
+       the leg's inertia and weight along all degrees of freedom */
+    const real tube_d_G_m2_in_axes2_x = m->tube_h_3_in_spec2_z[i]*tube_m2_w_2 -
+        tube_d_Gamma_1_t*tube_m2_w_1;
+    const real tube_d_G_m2_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m2_w_1 +
+        tube_d_N_2_in_axes2_zy*tube_m2_w_2;
+    const real tube_d_G_m2_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m2_w_1 +
+        tube_d_N_2_in_axes2_zz*tube_m2_w_2;
+    /* (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that
+       balances the leg's inertia and weight along all degrees of freedom */
+    const real tube_dalpha_G_m3_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m3_w_1 +
+        tube_dalpha_N_2_in_axes2_zx*tube_m3_w_2;
+    const real tube_dalpha_G_m3_in_axes2_y = tube_dalpha_Gamma_1_in_axes2_y*tube_m3_w_1 +
+        tube_dalpha_N_2_in_axes2_zy*tube_m3_w_2;
+    const real tube_dalpha_G_m3_in_axes2_z = tube_dalpha_Gamma_1_in_axes2_z*tube_m3_w_1 +
+        tube_dalpha_N_2_in_axes2_zz*tube_m3_w_2;
+    /* (tube-d_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances
+       the leg's inertia and weight along all degrees of freedom */
+    const real tube_d_G_m3_in_axes2_x = m->tube_h_3_in_spec2_z[i]*tube_m3_w_2 -
+        tube_d_Gamma_1_t*tube_m3_w_1;
+    const real tube_d_G_m3_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m3_w_1 +
+        tube_d_N_2_in_axes2_zy*tube_m3_w_2;
+    const real tube_d_G_m3_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m3_w_1 +
+        tube_d_N_2_in_axes2_zz*tube_m3_w_2;
+    /* (tube-dalpha_G_m) coefficient of the acceleration in: moment at the connection point that
+       balances the leg's inertia and weight along all degrees of freedom */
+    const real tube_dalpha_G_m_in_axes2_xx =
+        -tube_dalpha_G_m2_in_axes2_x*tube_end_p2_in_axes2_y -
+        tube_dalpha_G_m3_in_axes2_x*v.tube_end_p3_in_axes2_z;
+    const real tube_dalpha_G_m_in_axes2_xy =
+        -tube_dalpha_G_m2_in_axes2_y*tube_end_p2_in_axes2_y -
+        tube_dalpha_G_m3_in_axes2_y*v.tube_end_p3_in_axes2_z;
+    const real tube_dalpha_G_m_in_axes2_xz =
+        -tube_dalpha_G_m2_in_axes2_z*tube_end_p2_in_axes2_y -
+        tube_dalpha_G_m3_in_axes2_z*v.tube_end_p3_in_axes2_z;
+    const real tube_dalpha_G_m_in_axes2_yx = tube_dalpha_G_m2_in_axes2_x*tube_n_m2_in_axes2_y
+        - tube_dalpha_G_m1_in_axes2_x*v.tube_end_p1_in_axes2_z;
+    const real tube_dalpha_G_m_in_axes2_yy = tube_dalpha_G_m2_in_axes2_y*tube_n_m2_in_axes2_y
+        - tube_dalpha_G_m1_in_axes2_y*v.tube_end_p1_in_axes2_z;
+    const real tube_dalpha_G_m_in_axes2_yz = tube_dalpha_G_m2_in_axes2_z*tube_n_m2_in_axes2_y
+        - tube_dalpha_G_m1_in_axes2_z*v.tube_end_p1_in_axes2_z;
+    const real tube_dalpha_G_m_in_axes2_zx = tube_dalpha_G_m1_in_axes2_x*tube_n_m1_in_axes2_z
+        + tube_dalpha_G_m3_in_axes2_x*tube_n_m3_in_axes2_z;
+    const real tube_dalpha_G_m_in_axes2_zy = tube_dalpha_G_m1_in_axes2_y*tube_n_m1_in_axes2_z
+        + tube_dalpha_G_m3_in_axes2_y*tube_n_m3_in_axes2_z;
+    const real tube_dalpha_G_m_in_axes2_zz = tube_dalpha_G_m1_in_axes2_z*tube_n_m1_in_axes2_z
+        + tube_dalpha_G_m3_in_axes2_z*tube_n_m3_in_axes2_z;
+    /* (tube-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
+       the leg's inertia and weight along all degrees of freedom */
+    const real tube_d_G_m_in_axes2_xx = -tube_d_G_m2_in_axes2_x*tube_end_p2_in_axes2_y -
+        tube_d_G_m3_in_axes2_x*v.tube_end_p3_in_axes2_z;
+    const real tube_d_G_m_in_axes2_xy = -tube_d_G_m2_in_axes2_y*tube_end_p2_in_axes2_y -
+        tube_d_G_m3_in_axes2_y*v.tube_end_p3_in_axes2_z;
+    const real tube_d_G_m_in_axes2_xz = -tube_d_G_m2_in_axes2_z*tube_end_p2_in_axes2_y -
+        tube_d_G_m3_in_axes2_z*v.tube_end_p3_in_axes2_z;
+    const real tube_d_G_m_in_axes2_yx = tube_d_G_m2_in_axes2_x*tube_n_m2_in_axes2_y -
+        tube_d_G_m1_in_axes2_x*v.tube_end_p1_in_axes2_z;
+    const real tube_d_G_m_in_axes2_yy = tube_d_G_m2_in_axes2_y*tube_n_m2_in_axes2_y -
+        tube_d_G_m1_in_axes2_y*v.tube_end_p1_in_axes2_z;
+    const real tube_d_G_m_in_axes2_yz = tube_d_G_m2_in_axes2_z*tube_n_m2_in_axes2_y -
+        tube_d_G_m1_in_axes2_z*v.tube_end_p1_in_axes2_z;
+    const real tube_d_G_m_in_axes2_zx = tube_d_G_m1_in_axes2_x*tube_n_m1_in_axes2_z +
+        tube_d_G_m3_in_axes2_x*tube_n_m3_in_axes2_z;
+    const real tube_d_G_m_in_axes2_zy = tube_d_G_m1_in_axes2_y*tube_n_m1_in_axes2_z +
+        tube_d_G_m3_in_axes2_y*tube_n_m3_in_axes2_z;
+    const real tube_d_G_m_in_axes2_zz = tube_d_G_m1_in_axes2_z*tube_n_m1_in_axes2_z +
+        tube_d_G_m3_in_axes2_z*tube_n_m3_in_axes2_z;
+    /* (tube-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
+       and without the mass at the connection point */
+    const real tube_dalpha_c_in_axes2_xx = tube_dalpha_alpha_1_t*m->tube_h_3_in_spec2_y[i] -
+        m->tube_h_3_in_spec2_z[i]*tube_o_2_in_axes2_x;
+    const real tube_dalpha_c_in_axes2_xy = tube_dalpha_alpha_1_t_2*m->tube_h_3_in_spec2_y[i] -
+        m->tube_h_3_in_spec2_z[i]*tube_o_2_in_axes2_y;
+    const real tube_dalpha_c_in_axes2_xz = tube_dalpha_alpha_1_t_3*m->tube_h_3_in_spec2_y[i] -
+        m->tube_h_3_in_spec2_z[i]*tube_o_2_in_axes2_z;
+    /* (tube-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real tube_d_c_in_axes2_xy = m->tube_h_3_in_spec2_y[i]*tube_w_1_t_78 -
+        m->tube_h_3_in_spec2_z[i]*tube_w_2_in_axes2_y;
+    const real tube_d_c_in_axes2_xz = tube_d_alpha_1_t*m->tube_h_3_in_spec2_y[i] -
+        m->tube_h_3_in_spec2_z[i]*tube_w_2_in_axes2_z;
+    /* (tube-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real axis_x_tube_axes2_x = v.tube_n_c1_y*v.tube_n_c2_z -
+        v.tube_n_c1_z*v.tube_n_c2_y;
+    const real axis_x_tube_axes2_y = v.tube_n_c1_z*v.tube_n_c2_x -
+        v.tube_n_c1_x*v.tube_n_c2_z;
+    const real axis_x_tube_axes2_z = v.tube_n_c1_x*v.tube_n_c2_y -
+        v.tube_n_c1_y*v.tube_n_c2_x;
+    const real tube_Q_t = tube_d_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y +
+        tube_d_N_2_in_axes2_zy*tube_w_2_in_axes2_y - m->tube_link3_mass[i];
+    const real tube_Q_t_2 = R(0.5)*tube_Q_t;
+    const real tube_Q_t_3 = tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z +
+        tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_z - m->tube_link3_mass[i];
+    const real tube_Q_t_4 = R(0.5)*tube_Q_t_3;
+    const real tube_Q_t_5 = tube_Q_t_2*v.tube_n_c1_x + tube_d_G_in_axes2_yz*v.tube_n_c2_x -
+        axis_x_tube_axes2_x*tube_d_c_in_axes2_xy;
+    const real tube_Q_t_6 = tube_Q_t_2*v.tube_n_c1_y + tube_d_G_in_axes2_yz*v.tube_n_c2_y -
+        axis_x_tube_axes2_y*tube_d_c_in_axes2_xy;
+    const real tube_Q_t_7 = tube_Q_t_2*v.tube_n_c1_z + tube_d_G_in_axes2_yz*v.tube_n_c2_z -
+        axis_x_tube_axes2_z*tube_d_c_in_axes2_xy;
+    const real tube_Q_t_8 = tube_Q_t_4*v.tube_n_c2_x -
+        axis_x_tube_axes2_x*tube_d_c_in_axes2_xz;
+    const real tube_Q_t_9 = tube_Q_t_4*v.tube_n_c2_y -
+        axis_x_tube_axes2_y*tube_d_c_in_axes2_xz;
+    const real tube_Q_t_10 = tube_Q_t_4*v.tube_n_c2_z -
+        axis_x_tube_axes2_z*tube_d_c_in_axes2_xz;
+    const real tube_Q_t_11 = tube_Q_t_5*v.tube_n_c1_x + tube_Q_t_8*v.tube_n_c2_x;
+    const real tube_Q_xx = 2*tube_Q_t_11 + m->tube_link3_mass[i];
+    const real tube_Q_xy = tube_Q_t_5*v.tube_n_c1_y + tube_Q_t_6*v.tube_n_c1_x +
+        tube_Q_t_8*v.tube_n_c2_y + tube_Q_t_9*v.tube_n_c2_x;
+    const real tube_Q_xz = tube_Q_t_10*v.tube_n_c2_x + tube_Q_t_5*v.tube_n_c1_z +
+        tube_Q_t_7*v.tube_n_c1_x + tube_Q_t_8*v.tube_n_c2_z;
+    const real tube_Q_t_12 = tube_Q_t_6*v.tube_n_c1_y + tube_Q_t_9*v.tube_n_c2_y;
+    const real tube_Q_yy = 2*tube_Q_t_12 + m->tube_link3_mass[i];
+    const real tube_Q_yz = tube_Q_t_10*v.tube_n_c2_y + tube_Q_t_6*v.tube_n_c1_z +
+        tube_Q_t_7*v.tube_n_c1_y + tube_Q_t_9*v.tube_n_c2_z;
+    const real tube_Q_t_13 = tube_Q_t_10*v.tube_n_c2_z + tube_Q_t_7*v.tube_n_c1_z;
+    const real tube_Q_zz = 2*tube_Q_t_13 + m->tube_link3_mass[i];
+    /* (tube-dalpha_c_m) coefficient of the acceleration in: moment of the leg on the platform without
+       actuation */
+    const real tube_dalpha_c_m_zz =
+        axis_x_tube_axes2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xx -
+        tube_dalpha_G_m_in_axes2_yx*v.tube_n_c1_z - tube_dalpha_G_m_in_axes2_zx*v.tube_n_c2_z)
+        + v.tube_n_c1_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xy -
+        tube_dalpha_G_m_in_axes2_yy*v.tube_n_c1_z - tube_dalpha_G_m_in_axes2_zy*v.tube_n_c2_z)
+        + v.tube_n_c2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xz -
+        tube_dalpha_G_m_in_axes2_yz*v.tube_n_c1_z -
+        tube_dalpha_G_m_in_axes2_zz*v.tube_n_c2_z);
+    /* (tube-d_c_m) coefficient of the acceleration in: moment of the leg on the platform without
+       actuation */
+    const real tube_d_c_m_t = -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xx -
+        tube_d_G_m_in_axes2_yx*v.tube_n_c1_x - tube_d_G_m_in_axes2_zx*v.tube_n_c2_x;
+    const real tube_d_c_m_t_2 = -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xx -
+        tube_d_G_m_in_axes2_yx*v.tube_n_c1_y - tube_d_G_m_in_axes2_zx*v.tube_n_c2_y;
+    const real tube_d_c_m_t_3 = -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xy -
+        tube_d_G_m_in_axes2_yy*v.tube_n_c1_x - tube_d_G_m_in_axes2_zy*v.tube_n_c2_x;
+    const real tube_d_c_m_t_4 = -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xy -
+        tube_d_G_m_in_axes2_yy*v.tube_n_c1_y - tube_d_G_m_in_axes2_zy*v.tube_n_c2_y;
+    const real tube_d_c_m_t_5 = -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xz -
+        tube_d_G_m_in_axes2_yz*v.tube_n_c1_x - tube_d_G_m_in_axes2_zz*v.tube_n_c2_x;
+    const real tube_d_c_m_t_6 = -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xz -
+        tube_d_G_m_in_axes2_yz*v.tube_n_c1_y - tube_d_G_m_in_axes2_zz*v.tube_n_c2_y;
+    const real tube_d_c_m_xx = axis_x_tube_axes2_x*tube_d_c_m_t + tube_d_c_m_t_3*v.tube_n_c1_x
+        + tube_d_c_m_t_5*v.tube_n_c2_x;
+    const real tube_d_c_m_xy = axis_x_tube_axes2_y*tube_d_c_m_t + tube_d_c_m_t_3*v.tube_n_c1_y
+        + tube_d_c_m_t_5*v.tube_n_c2_y;
+    const real tube_d_c_m_xz = axis_x_tube_axes2_z*tube_d_c_m_t + tube_d_c_m_t_3*v.tube_n_c1_z
+        + tube_d_c_m_t_5*v.tube_n_c2_z;
+    const real tube_d_c_m_yx = axis_x_tube_axes2_x*tube_d_c_m_t_2 +
+        tube_d_c_m_t_4*v.tube_n_c1_x + tube_d_c_m_t_6*v.tube_n_c2_x;
+    /* (M_ta) */
+    const real tube_M_ta_t = axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xx -
+        tube_dalpha_G_in_axes2_yx*v.tube_n_c1_x - tube_dalpha_G_in_axes2_zx*v.tube_n_c2_x;
+    const real tube_M_ta_t_2 = axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xx -
+        tube_dalpha_G_in_axes2_yx*v.tube_n_c1_y - tube_dalpha_G_in_axes2_zx*v.tube_n_c2_y;
+    const real tube_M_ta_t_3 = axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xx -
+        tube_dalpha_G_in_axes2_yx*v.tube_n_c1_z - tube_dalpha_G_in_axes2_zx*v.tube_n_c2_z;
+    const real tube_M_ta_t_4 = axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xy -
+        tube_dalpha_G_in_axes2_yy*v.tube_n_c1_x - tube_dalpha_G_in_axes2_zy*v.tube_n_c2_x;
+    const real tube_M_ta_t_5 = axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xy -
+        tube_dalpha_G_in_axes2_yy*v.tube_n_c1_y - tube_dalpha_G_in_axes2_zy*v.tube_n_c2_y;
+    const real tube_M_ta_t_6 = axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xy -
+        tube_dalpha_G_in_axes2_yy*v.tube_n_c1_z - tube_dalpha_G_in_axes2_zy*v.tube_n_c2_z;
+    const real tube_M_ta_t_7 = axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xz -
+        tube_dalpha_G_in_axes2_yz*v.tube_n_c1_x - tube_dalpha_G_in_axes2_zz*v.tube_n_c2_x;
+    const real tube_M_ta_t_8 = axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xz -
+        tube_dalpha_G_in_axes2_yz*v.tube_n_c1_y - tube_dalpha_G_in_axes2_zz*v.tube_n_c2_y;
+    const real tube_M_ta_t_9 = axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xz -
+        tube_dalpha_G_in_axes2_yz*v.tube_n_c1_z - tube_dalpha_G_in_axes2_zz*v.tube_n_c2_z;
+    const real tube_M_ta_t_10 = tube_Q_xy*v.tube_q_z;
+    const real tube_M_ta_t_11 = tube_Q_xz*v.tube_q_y;
+    const real tube_M_ta_t_12 = tube_Q_yz*v.tube_q_x;
+    const real tube_M_ta_t_13 = tube_M_ta_t_11 - tube_M_ta_t_10 -
+        axis_x_tube_axes2_x*tube_M_ta_t - tube_M_ta_t_4*v.tube_n_c1_x -
+        tube_M_ta_t_7*v.tube_n_c2_x;
+    const real tube_M_ta_t_14 = tube_Q_xx*v.tube_q_z - axis_x_tube_axes2_y*tube_M_ta_t -
+        tube_M_ta_t_4*v.tube_n_c1_y - tube_M_ta_t_7*v.tube_n_c2_y - tube_Q_xz*v.tube_q_x;
+    const real tube_M_ta_t_15 = tube_Q_xy*v.tube_q_x - axis_x_tube_axes2_z*tube_M_ta_t -
+        tube_M_ta_t_4*v.tube_n_c1_z - tube_M_ta_t_7*v.tube_n_c2_z - tube_Q_xx*v.tube_q_y;
+    const real tube_M_ta_t_16 = tube_Q_yz*v.tube_q_y - axis_x_tube_axes2_x*tube_M_ta_t_2 -
+        tube_M_ta_t_5*v.tube_n_c1_x - tube_M_ta_t_8*v.tube_n_c2_x - tube_Q_yy*v.tube_q_z;
+    const real tube_M_ta_t_17 = tube_M_ta_t_10 - tube_M_ta_t_12 -
+        axis_x_tube_axes2_y*tube_M_ta_t_2 - tube_M_ta_t_5*v.tube_n_c1_y -
+        tube_M_ta_t_8*v.tube_n_c2_y;
+    const real tube_M_ta_t_18 = tube_Q_yy*v.tube_q_x - axis_x_tube_axes2_z*tube_M_ta_t_2 -
+        tube_M_ta_t_5*v.tube_n_c1_z - tube_M_ta_t_8*v.tube_n_c2_z - tube_Q_xy*v.tube_q_y;
+    const real tube_M_ta_t_19 = tube_Q_zz*v.tube_q_y - axis_x_tube_axes2_x*tube_M_ta_t_3 -
+        tube_M_ta_t_6*v.tube_n_c1_x - tube_M_ta_t_9*v.tube_n_c2_x - tube_Q_yz*v.tube_q_z;
+    const real tube_M_ta_t_20 = tube_Q_xz*v.tube_q_z - axis_x_tube_axes2_y*tube_M_ta_t_3 -
+        tube_M_ta_t_6*v.tube_n_c1_y - tube_M_ta_t_9*v.tube_n_c2_y - tube_Q_zz*v.tube_q_x;
+    const real tube_M_ta_t_21 = tube_M_ta_t_12 - tube_M_ta_t_11 -
+        axis_x_tube_axes2_z*tube_M_ta_t_3 - tube_M_ta_t_6*v.tube_n_c1_z -
+        tube_M_ta_t_9*v.tube_n_c2_z;
+    /* (M_aa) */
+    const real tube_M_aa_t = -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xx -
+        tube_dalpha_G_m_in_axes2_yx*v.tube_n_c1_x - tube_dalpha_G_m_in_axes2_zx*v.tube_n_c2_x;
+    const real tube_M_aa_t_2 = -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xx -
+        tube_dalpha_G_m_in_axes2_yx*v.tube_n_c1_y - tube_dalpha_G_m_in_axes2_zx*v.tube_n_c2_y;
+    const real tube_M_aa_t_3 = -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xy -
+        tube_dalpha_G_m_in_axes2_yy*v.tube_n_c1_x - tube_dalpha_G_m_in_axes2_zy*v.tube_n_c2_x;
+    const real tube_M_aa_t_4 = -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xy -
+        tube_dalpha_G_m_in_axes2_yy*v.tube_n_c1_y - tube_dalpha_G_m_in_axes2_zy*v.tube_n_c2_y;
+    const real tube_M_aa_t_5 = -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xz -
+        tube_dalpha_G_m_in_axes2_yz*v.tube_n_c1_x - tube_dalpha_G_m_in_axes2_zz*v.tube_n_c2_x;
+    const real tube_M_aa_t_6 = -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xz -
+        tube_dalpha_G_m_in_axes2_yz*v.tube_n_c1_y - tube_dalpha_G_m_in_axes2_zz*v.tube_n_c2_y;
+    const real tube_M_aa_t_7 = -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xx -
+        tube_d_G_m_in_axes2_yx*v.tube_n_c1_z - tube_d_G_m_in_axes2_zx*v.tube_n_c2_z;
+    const real tube_M_aa_t_8 = -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xy -
+        tube_d_G_m_in_axes2_yy*v.tube_n_c1_z - tube_d_G_m_in_axes2_zy*v.tube_n_c2_z;
+    const real tube_M_aa_t_9 = -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xz -
+        tube_d_G_m_in_axes2_yz*v.tube_n_c1_z - tube_d_G_m_in_axes2_zz*v.tube_n_c2_z;
+    const real tube_M_aa_t_10 = tube_M_ta_t_19*v.tube_q_y + tube_d_c_m_xy*v.tube_q_z -
+        axis_x_tube_axes2_x*tube_M_aa_t - tube_M_aa_t_3*v.tube_n_c1_x -
+        tube_M_aa_t_5*v.tube_n_c2_x - tube_M_ta_t_16*v.tube_q_z - tube_d_c_m_xz*v.tube_q_y;
+    const real tube_M_aa_t_11 = tube_M_ta_t_20*v.tube_q_y + tube_d_c_m_xz*v.tube_q_x -
+        axis_x_tube_axes2_y*tube_M_aa_t - tube_M_aa_t_3*v.tube_n_c1_y -
+        tube_M_aa_t_5*v.tube_n_c2_y - tube_M_ta_t_17*v.tube_q_z - tube_d_c_m_xx*v.tube_q_z;
+    const real tube_M_aa_t_12 = tube_M_ta_t_21*v.tube_q_y + tube_d_c_m_xx*v.tube_q_y -
+        axis_x_tube_axes2_z*tube_M_aa_t - tube_M_aa_t_3*v.tube_n_c1_z -
+        tube_M_aa_t_5*v.tube_n_c2_z - tube_M_ta_t_18*v.tube_q_z - tube_d_c_m_xy*v.tube_q_x;
+    const real tube_M_aa_t_13 = tube_M_ta_t_14*v.tube_q_z +
+        v.tube_q_x*(axis_x_tube_axes2_z*tube_d_c_m_t_2 + tube_d_c_m_t_4*v.tube_n_c1_z +
+        tube_d_c_m_t_6*v.tube_n_c2_z) - axis_x_tube_axes2_y*tube_M_aa_t_2 -
+        tube_M_aa_t_4*v.tube_n_c1_y - tube_M_aa_t_6*v.tube_n_c2_y - tube_M_ta_t_20*v.tube_q_x
+        - tube_d_c_m_yx*v.tube_q_z;
+    const real tube_M_aa_t_14 = tube_M_ta_t_15*v.tube_q_z + tube_d_c_m_yx*v.tube_q_y -
+        axis_x_tube_axes2_z*tube_M_aa_t_2 - tube_M_aa_t_4*v.tube_n_c1_z -
+        tube_M_aa_t_6*v.tube_n_c2_z - tube_M_ta_t_21*v.tube_q_x -
+        v.tube_q_x*(axis_x_tube_axes2_y*tube_d_c_m_t_2 + tube_d_c_m_t_4*v.tube_n_c1_y +
+        tube_d_c_m_t_6*v.tube_n_c2_y);
+    const real tube_M_aa_t_15 = tube_M_ta_t_18*v.tube_q_x +
+        v.tube_q_y*(axis_x_tube_axes2_x*tube_M_aa_t_7 + tube_M_aa_t_8*v.tube_n_c1_x +
+        tube_M_aa_t_9*v.tube_n_c2_x) - tube_dalpha_c_m_zz - tube_M_ta_t_15*v.tube_q_y -
+        v.tube_q_x*(axis_x_tube_axes2_y*tube_M_aa_t_7 + tube_M_aa_t_8*v.tube_n_c1_y +
+        tube_M_aa_t_9*v.tube_n_c2_y);
+    /* (M_tt) */
+    gather(&terms[0*count + k], add, tube_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, tube_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, tube_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, tube_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, tube_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, tube_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) */
+    gather(&terms[6*count + k], add, tube_M_ta_t_13);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, tube_M_ta_t_14);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, tube_M_ta_t_15);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, tube_M_ta_t_16);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, tube_M_ta_t_17);  /* M_ta_yy */
+    gather(&terms[11*count + k], add, tube_M_ta_t_18);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, tube_M_ta_t_19);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, tube_M_ta_t_20);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, tube_M_ta_t_21);  /* M_ta_zz */
+    /* (M_aa) */
+    gather(&terms[15*count + k], add, tube_M_aa_t_10);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, tube_M_aa_t_11);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, tube_M_aa_t_12);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, tube_M_aa_t_13);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, tube_M_aa_t_14);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, tube_M_aa_t_15);  /* M_aa_zz_of_legs */
+    o[0*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
+        UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) +
+        UNLESS(magnitude(tube_size_c3) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_13) > LEAST_5)
+        + UNLESS(magnitude(tube_w_1_t_33) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_49) >
+        LEAST_4) + UNLESS(magnitude(tube_w_1_t_63) > LEAST_5) +
+        UNLESS(magnitude(tube_w_1_t_75) > LEAST_5);
 }
 
-INLINE void M_place_tube(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void M_place_tube(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o[0*count + first + k];
-    }
+    t->singular[k] += o[0*count + at];
 }
 
-INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums, real *M, verdict
-    *t)
+INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
+    *M, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (M_tt) translational block of M */
-        const real M_tt_xx_of_legs = sums[0*w + k];
-        const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_xx_of_legs + m_star;
-        const real M_tt_yy_of_legs = sums[3*w + k];
-        const real M_tt_yy = M_tt_yy_of_legs + m_star;
-        const real M_tt_zz_of_legs = sums[5*w + k];
-        const real M_tt_zz = M_tt_zz_of_legs + m_star;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[11*w + k];
-        const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
-        const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[10*w + k];
-        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-        const real M_ta_yx_of_legs = sums[9*w + k];
-        const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-        const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[9*w + k];
-        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
-        const real M_ta_zx_of_legs = sums[12*w + k];
-        const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
-        const real M_ta_zy_of_legs = sums[13*w + k];
-        const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-        /* (M_aa) rotational block of M */
-        const real J_star_xx = s[12*w + k];
-        const real M_aa_xx_of_legs = sums[15*w + k];
-        const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[13*w + k];
-        const real M_aa_xy_of_legs = sums[16*w + k];
-        const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[14*w + k];
-        const real M_aa_xz_of_legs = sums[17*w + k];
-        const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[15*w + k];
-        const real M_aa_yy_of_legs = sums[18*w + k];
-        const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-        const real J_star_yz = s[16*w + k];
-        const real M_aa_yz_of_legs = sums[19*w + k];
-        const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[17*w + k];
-        const real M_aa_zz_of_legs = sums[20*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-        /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        const real M_tt_xy = sums[1*w + k];
-        M[1*w + k] = M_tt_xy;
-        M[NV*w + k] = M_tt_xy;
-        const real M_tt_xz = sums[2*w + k];
-        M[2*w + k] = M_tt_xz;
-        M[2*NV*w + k] = M_tt_xz;
-        M[(NV + 1)*w + k] = M_tt_yy;
-        const real M_tt_yz = sums[4*w + k];
-        M[(NV + 2)*w + k] = M_tt_yz;
-        M[(2*NV + 1)*w + k] = M_tt_yz;
-        M[(2*NV + 2)*w + k] = M_tt_zz;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xx = sums[6*w + k];
-        M[3*w + k] = M_ta_xx;
-        M[3*NV*w + k] = M_ta_xx;
-        M[4*w + k] = M_ta_xy;
-        M[4*NV*w + k] = M_ta_xy;
-        M[5*w + k] = M_ta_xz;
-        M[5*NV*w + k] = M_ta_xz;
-        M[(NV + 3)*w + k] = M_ta_yx;
-        M[(3*NV + 1)*w + k] = M_ta_yx;
-        const real M_ta_yy = sums[10*w + k];
-        M[(NV + 4)*w + k] = M_ta_yy;
-        M[(4*NV + 1)*w + k] = M_ta_yy;
-        M[(NV + 5)*w + k] = M_ta_yz;
-        M[(5*NV + 1)*w + k] = M_ta_yz;
-        M[(2*NV + 3)*w + k] = M_ta_zx;
-        M[(3*NV + 2)*w + k] = M_ta_zx;
-        M[(2*NV + 4)*w + k] = M_ta_zy;
-        M[(4*NV + 2)*w + k] = M_ta_zy;
-        const real M_ta_zz = sums[14*w + k];
-        M[(2*NV + 5)*w + k] = M_ta_zz;
-        M[(5*NV + 2)*w + k] = M_ta_zz;
-        /* (M_aa) rotational block of M */
-        M[(3*NV + 3)*w + k] = M_aa_xx;
-        M[(3*NV + 4)*w + k] = M_aa_xy;
-        M[(4*NV + 3)*w + k] = M_aa_xy;
-        M[(3*NV + 5)*w + k] = M_aa_xz;
-        M[(5*NV + 3)*w + k] = M_aa_xz;
-        M[(4*NV + 4)*w + k] = M_aa_yy;
-        M[(4*NV + 5)*w + k] = M_aa_yz;
-        M[(5*NV + 4)*w + k] = M_aa_yz;
-        M[(5*NV + 5)*w + k] = M_aa_zz;
-        t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
-            M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
-            (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
-            M_aa_zz))));
-    }
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    /* (M_ta) */
+    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real h_star_z = s[11*w + k];
+    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real h_star_y = s[10*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yx_of_legs = sums[9*w + k];
+    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_yz_of_legs = sums[11*w + k];
+    const real h_star_x = s[9*w + k];
+    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_zx_of_legs = sums[12*w + k];
+    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zy_of_legs = sums[13*w + k];
+    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    /* (M_aa) */
+    const real J_star_xx = s[12*w + k];
+    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
+    const real J_star_xy = s[13*w + k];
+    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
+    const real J_star_xz = s[14*w + k];
+    const real M_aa_xz_of_legs = sums[17*w + k];
+    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
+    const real J_star_yy = s[15*w + k];
+    const real M_aa_yy_of_legs = sums[18*w + k];
+    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
+    const real J_star_yz = s[16*w + k];
+    const real M_aa_yz_of_legs = sums[19*w + k];
+    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
+    const real J_star_zz = s[17*w + k];
+    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    const real M_tt_xz = sums[2*w + k];
+    M[2*w + k] = M_tt_xz;
+    M[2*NV*w + k] = M_tt_xz;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_yz = sums[4*w + k];
+    M[(NV + 2)*w + k] = M_tt_yz;
+    M[(2*NV + 1)*w + k] = M_tt_yz;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    /* (M_ta) */
+    const real M_ta_xx = sums[6*w + k];
+    M[3*w + k] = M_ta_xx;
+    M[3*NV*w + k] = M_ta_xx;
+    M[4*w + k] = M_ta_xy;
+    M[4*NV*w + k] = M_ta_xy;
+    M[5*w + k] = M_ta_xz;
+    M[5*NV*w + k] = M_ta_xz;
+    M[(NV + 3)*w + k] = M_ta_yx;
+    M[(3*NV + 1)*w + k] = M_ta_yx;
+    const real M_ta_yy = sums[10*w + k];
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
+    M[(NV + 5)*w + k] = M_ta_yz;
+    M[(5*NV + 1)*w + k] = M_ta_yz;
+    M[(2*NV + 3)*w + k] = M_ta_zx;
+    M[(3*NV + 2)*w + k] = M_ta_zx;
+    M[(2*NV + 4)*w + k] = M_ta_zy;
+    M[(4*NV + 2)*w + k] = M_ta_zy;
+    const real M_ta_zz = sums[14*w + k];
+    M[(2*NV + 5)*w + k] = M_ta_zz;
+    M[(5*NV + 2)*w + k] = M_ta_zz;
+    /* (M_aa) */
+    M[(3*NV + 3)*w + k] = M_aa_xx;
+    M[(3*NV + 4)*w + k] = M_aa_xy;
+    M[(4*NV + 3)*w + k] = M_aa_xy;
+    M[(3*NV + 5)*w + k] = M_aa_xz;
+    M[(5*NV + 3)*w + k] = M_aa_xz;
+    M[(4*NV + 4)*w + k] = M_aa_yy;
+    M[(4*NV + 5)*w + k] = M_aa_yz;
+    M[(5*NV + 4)*w + k] = M_aa_yz;
+    M[(5*NV + 5)*w + k] = M_aa_zz;
+    t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
+        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
+        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+        M_aa_zz))));
 }
 
-INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
+APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
     real s[18] = {0}, sums[21] = {0};
     real terms_ups[21*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
     real terms_tube[21*LEGS(LEGS_OF_tube)] = {0}, o_tube[LEGS(LEGS_OF_tube)] = {0};
-    M_before(m, 1, X, s, t);
-    M_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, X, terms_ups, o_ups);
-    M_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), 0, X, terms_tube, o_tube);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        M_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, t);
+    M_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
+        M_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, terms_ups, o_ups);
+    }
+    for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
+        M_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), 0, s, X, terms_tube, o_tube);
+    }
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        M_place_ups(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
     for (size_t n = 0; n < 21; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
-    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
-        M_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, t);
+    for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        M_place_tube(0, i, LEGS(LEGS_OF_tube), o_tube, t);
     }
     for (size_t n = 0; n < 21; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
             sums[n] += terms_tube[n*LEGS(LEGS_OF_tube) + leg];
         }
     }
-    M_after(m, 1, s, sums, M, t);
+    M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
+INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verdict *restrict t)
 {
     real s[18*LANES], sums[21*LANES];
     real o_ups[LANES];
     real o_tube[LANES];
-    M_before(m, LANES, X, s, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        M_before(m, LANES, k, X, s, t);
+    }
     clear(sums, 21*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        M_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_ups);
-        M_place_ups(LANES, LANES, o_ups, 0, t);
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            M_legs_ups(m, LANES, i, k, k, LANES, 1, s, X, sums, o_ups);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            M_place_ups(k, k, LANES, o_ups, t);
+        }
     }
-    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
-        M_legs_tube(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_tube);
-        M_place_tube(LANES, LANES, o_tube, 0, t);
+    for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            M_legs_tube(m, LANES, i, k, k, LANES, 1, s, X, sums, o_tube);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            M_place_tube(k, k, LANES, o_tube, t);
+        }
     }
-    M_after(m, LANES, s, sums, M, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        M_after(m, LANES, k, s, sums, M, t);
+    }
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s, verdict
-    *t)
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        stage_V_X(w, k, V, &v);
-        stage_Z_dynamics(m, w, k, V, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = v.Z_p_x;
-        s[10*w + k] = v.Z_p_y;
-        s[11*w + k] = v.Z_p_z;
-        s[12*w + k] = v.Z_q_x;
-        s[13*w + k] = v.Z_q_y;
-        s[14*w + k] = v.Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    stage_V_X(w, k, V, &v);
+    stage_Z_dynamics(m, w, k, V, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = v.Z_p_x;
+    s[10*w + k] = v.Z_p_y;
+    s[11*w + k] = v.Z_p_z;
+    s[12*w + k] = v.Z_q_x;
+    s[13*w + k] = v.Z_q_y;
+    s[14*w + k] = v.Z_q_z;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void Z_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
+INLINE void Z_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_ups v;
-        stage_ups_X(m, w, i, j, s, X, &v);
-        stage_ups_V_X(w, j, V, &v);
-        stage_ups_Z_dynamics(m, w, i, j, V, &v);
-        /* (Z_t) translational part of Z */
-        gather(&terms[0*count + k], add, v.ups_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[1*count + k], add, v.ups_U_y);  /* Z_t_y_of_legs */
-        gather(&terms[2*count + k], add, v.ups_U_z);  /* Z_t_z_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[3*count + k], add, v.ups_Z_a_t);  /* Z_a_x_of_legs */
-        gather(&terms[4*count + k], add, v.ups_Z_a_t_2);  /* Z_a_y_of_legs */
-        gather(&terms[5*count + k], add, v.ups_Z_a_t_3);  /* Z_a_z_of_legs */
-        o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
-    }
+    values_ups v;
+    stage_ups_X(m, w, i, j, s, X, &v);
+    stage_ups_V_X(w, j, V, &v);
+    stage_ups_Z_dynamics(m, w, i, j, V, &v);
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v.ups_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v.ups_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, v.ups_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[3*count + k], add, v.ups_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[4*count + k], add, v.ups_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[5*count + k], add, v.ups_Z_a_t_3);  /* Z_a_z_of_legs */
+    o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void Z_place_ups(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void Z_place_ups(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o[0*count + first + k];
-    }
+    t->singular[k] += o[0*count + at];
 }
 
-INLINE void Z_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
+INLINE void Z_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_tube v;
-        stage_tube_X(m, w, i, j, s, X, &v);
-        stage_tube_V_X(w, j, V, &v);
-        stage_tube_Z_dynamics(m, i, &v);
-        stage_tube_Z_joint_accelerations(&v);
-        /* (tube-W_2) centripetal tensor of link 2 */
-        const real tube_W_2_in_axes2_xy = v.tube_omega_1_in_axes2_x*v.tube_omega_1_in_axes2_y;
-        /* (tube-bias) acceleration of the connection point at zero joint accelerations */
-        const real tube_bias_t = v.tube_W_2_in_axes2_xz*v.tube_q_3;
-        const real tube_bias_t_2 = -tube_W_2_in_axes2_xy*v.tube_q_3;
-        const real tube_bias_t_4 = v.tube_bias_t_3*v.tube_qd_2;
-        const real tube_bias_t_5 = v.tube_bias_t_3*v.tube_omega_1_in_axes2_y;
-        const real tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2;
-        const real tube_bias_in_axes2_z = 2*tube_bias_t - tube_bias_t_5;
-        /* (tube-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-           */
-        const real tube_rel_o_in_axes2_y = v.axis_y_tube_axes2_x*v.tube_u_1_x +
-            v.axis_y_tube_axes2_y*v.tube_u_1_y + v.axis_y_tube_axes2_z*v.tube_u_1_z -
-            tube_bias_in_axes2_y;
-        const real tube_rel_o_in_axes2_z = v.axis_z_tube_axes2_x*v.tube_u_1_x +
-            v.axis_z_tube_axes2_y*v.tube_u_1_y + v.axis_z_tube_axes2_z*v.tube_u_1_z -
-            tube_bias_in_axes2_z;
-        /* (tube-qdd_1_o) remainder of: acceleration of joint 1 */
-        const real tube_qdd_1_o_t = R(1.35)*v.tube_nu_1;
-        const real tube_qdd_1_o_t_2 = R(1.35)*v.tube_nu_2;
-        const real tube_qdd_1_o_t_3 = R(1.35)*v.tube_nu_3;
-        const real tube_qdd_1_o = v.inv_tube_w_1_t_75*(v.tube_qd_1_t*tube_rel_o_in_axes2_y +
-            v.tube_qd_1_t_2*tube_rel_o_in_axes2_z + v.tube_qd_1_t_3*tube_qdd_1_o_t +
-            v.tube_qd_1_t_5*tube_qdd_1_o_t_3 - v.tube_qd_1_t_4*tube_qdd_1_o_t_2);
-        /* (tube-qdd_2_o) remainder of: acceleration of joint 2 */
-        const real tube_qdd_2_o_t = v.inv_tube_w_1_t_63*(tube_qdd_1_o_t*v.tube_w_1_t_66 +
-            tube_qdd_1_o_t_2*v.tube_w_1_t_67 + tube_qdd_1_o_t_3*v.tube_w_1_t_68 +
-            tube_rel_o_in_axes2_y*v.tube_w_1_t_64 + tube_rel_o_in_axes2_z*v.tube_w_1_t_65 -
-            tube_qdd_1_o*v.tube_w_1_t_69);
-        const real tube_qdd_2_o_t_2 =
-            v.inv_tube_w_1_t_49*(v.inv_tube_w_1_t_49*tube_rel_o_in_axes2_z +
-            tube_qdd_1_o*v.tube_w_1_t_58 + tube_qdd_1_o_t*v.tube_w_1_t_51 +
-            tube_qdd_1_o_t_3*v.tube_w_1_t_52 + tube_qdd_2_o_t*v.tube_w_1_t_53 +
-            tube_rel_o_in_axes2_y*v.tube_w_1_t_50);
-        const real tube_qdd_2_o_t_3 = tube_qdd_1_o_t*v.tube_w_1_t_15 +
-            tube_qdd_1_o_t_3*v.tube_w_1_t_16 + tube_qdd_2_o_t_2*v.tube_w_1_t_21 +
-            tube_rel_o_in_axes2_y*v.tube_w_1_t_14 +
-            v.inv_tube_w_1_t_33*v.tube_w_1_t_17*(tube_qdd_1_o*v.tube_w_1_t_45 +
-            tube_qdd_1_o_t*v.tube_w_1_t_35 + tube_qdd_1_o_t_3*v.tube_w_1_t_36 +
-            tube_qdd_2_o_t*v.tube_w_1_t_41 + tube_rel_o_in_axes2_y*v.tube_w_1_t_34 -
-            tube_qdd_2_o_t_2*v.tube_w_1_t_37) - tube_qdd_1_o*v.tube_w_1_t_29 -
-            tube_qdd_2_o_t*v.tube_w_1_t_25;
-        const real tube_qdd_2_o = v.inv_tube_w_1_t_13*tube_qdd_2_o_t_3;
-        /* (tube-alpha_1_o) remainder of: angular acceleration of link 1 */
-        const real tube_alpha_1_o_in_axes2_x = v.tube_e_1_in_axes2_x*tube_qdd_1_o;
-        const real tube_alpha_1_o_in_axes2_y = -v.tube_c_2*tube_qdd_1_o;
-        /* (tube-alpha_2_o) remainder of: angular acceleration of link 2 */
-        const real tube_alpha_2_o_in_axes2_x = v.tube_W_2_in_axes2_yz + tube_alpha_1_o_in_axes2_x;
-        const real tube_alpha_2_o_in_axes2_y = tube_alpha_1_o_in_axes2_y - v.tube_W_2_in_axes2_xz;
-        /* (tube-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real tube_B_2_o_in_axes2_xy = tube_W_2_in_axes2_xy - tube_qdd_2_o;
-        const real tube_B_2_o_in_axes2_yx = tube_W_2_in_axes2_xy + tube_qdd_2_o;
-        const real tube_B_2_o_in_axes2_zx = v.tube_W_2_in_axes2_xz - tube_alpha_2_o_in_axes2_y;
-        const real tube_B_2_o_in_axes2_zy = v.tube_W_2_in_axes2_yz + tube_alpha_2_o_in_axes2_x;
-        /* (tube-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-        const real tube_acc_3_o_in_axes2_y = tube_bias_t_4 + v.tube_q_3*tube_qdd_2_o -
-            tube_bias_t_2 - v.tube_g_in_axes2_y;
-        const real tube_acc_3_o_in_axes2_z = tube_bias_t - tube_bias_t_5 - v.tube_g_in_axes2_z -
-            tube_alpha_2_o_in_axes2_y*v.tube_q_3;
-        /* (tube-f_3_o) remainder of: inertia force of link 3 less its weight */
-        const real tube_f_3_o_t = v.tube_omega_1_in_axes2_x*v.tube_omega_1_in_axes2_x;
-        const real tube_f_3_o_t_2 = v.tube_omega_1_in_axes2_y*v.tube_omega_1_in_axes2_y;
-        const real tube_f_3_o_t_3 = v.tube_qd_2*v.tube_qd_2;
-        const real tube_h_3_in_spec2_x = m->tube_h_3_in_spec2_x[i];
-        const real tube_h_3_in_spec2_y = m->tube_h_3_in_spec2_y[i];
-        const real tube_h_3_in_spec2_z = m->tube_h_3_in_spec2_z[i];
-        const real tube_link3_mass = m->tube_link3_mass[i];
-        const real tube_f_3_o_in_axes2_x = v.tube_acc_3_o_in_axes2_x*tube_link3_mass +
-            tube_alpha_1_o_in_axes2_y*tube_h_3_in_spec2_y -
-            tube_B_2_o_in_axes2_xy*tube_h_3_in_spec2_z - tube_h_3_in_spec2_x*(tube_f_3_o_t_2 +
-            tube_f_3_o_t_3);
-        const real tube_f_3_o_in_axes2_y = tube_B_2_o_in_axes2_yx*tube_h_3_in_spec2_x +
-            tube_acc_3_o_in_axes2_y*tube_link3_mass + tube_h_3_in_spec2_z*(tube_f_3_o_t +
-            tube_f_3_o_t_3) - tube_alpha_1_o_in_axes2_x*tube_h_3_in_spec2_y;
-        const real tube_f_3_o_in_axes2_z = tube_B_2_o_in_axes2_zx*tube_h_3_in_spec2_x +
-            tube_acc_3_o_in_axes2_z*tube_link3_mass - tube_B_2_o_in_axes2_zy*tube_h_3_in_spec2_z -
-            tube_h_3_in_spec2_y*(tube_f_3_o_t + tube_f_3_o_t_2);
-        /* (tube-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-           reference points */
-        const real tube_J_group_2_in_axes2_xy = m->tube_J_group_2_in_axes2_xy[i];
-        const real tube_J_group_2_in_axes2_xz = m->tube_J_group_2_in_axes2_xz[i];
-        const real tube_J_group_2_in_axes2_yz = m->tube_J_group_2_in_axes2_yz[i];
-        const real tube_Sigma_2_in_axes2_yy = m->tube_Sigma_2_in_axes2_yy[i];
-        const real tube_Sigma_2_in_axes2_zz = m->tube_Sigma_2_in_axes2_zz[i];
-        const real tube_h_2_in_spec2_y = m->tube_h_2_in_spec2_y[i];
-        const real tube_h_2_in_spec2_z = m->tube_h_2_in_spec2_z[i];
-        const real tube_mu_2_o_in_axes2_x = tube_B_2_o_in_axes2_yx*tube_J_group_2_in_axes2_xz +
-            tube_B_2_o_in_axes2_zy*tube_Sigma_2_in_axes2_yy +
-            tube_J_group_2_in_axes2_yz*(tube_f_3_o_t_2 - tube_f_3_o_t_3) +
-            tube_Sigma_2_in_axes2_zz*tube_alpha_1_o_in_axes2_x +
-            v.tube_g_in_axes2_y*tube_h_2_in_spec2_y + v.tube_g_in_axes2_z*tube_h_2_in_spec2_z -
-            tube_B_2_o_in_axes2_zx*tube_J_group_2_in_axes2_xy -
-            tube_acc_3_o_in_axes2_y*tube_h_3_in_spec2_y -
-            tube_acc_3_o_in_axes2_z*tube_h_3_in_spec2_z;
-        const real tube_Sigma_2_in_axes2_xx = m->tube_Sigma_2_in_axes2_xx[i];
-        const real tube_h_2_in_spec2_x = m->tube_h_2_in_spec2_x[i];
-        const real tube_mu_2_o_in_axes2_y = tube_B_2_o_in_axes2_zy*tube_J_group_2_in_axes2_xy +
-            tube_Sigma_2_in_axes2_zz*tube_alpha_1_o_in_axes2_y +
-            v.tube_acc_3_o_in_axes2_x*tube_h_3_in_spec2_y +
-            v.tube_g_in_axes2_z*tube_h_2_in_spec2_x -
-            tube_B_2_o_in_axes2_xy*tube_J_group_2_in_axes2_yz -
-            tube_B_2_o_in_axes2_zx*tube_Sigma_2_in_axes2_xx -
-            tube_J_group_2_in_axes2_xz*(tube_f_3_o_t - tube_f_3_o_t_3) -
-            tube_acc_3_o_in_axes2_z*tube_h_3_in_spec2_x - v.tube_g_in_axes2_x*tube_h_2_in_spec2_y;
-        const real tube_mu_2_o_in_axes2_z = tube_B_2_o_in_axes2_yx*tube_Sigma_2_in_axes2_xx +
-            tube_J_group_2_in_axes2_xy*(tube_f_3_o_t - tube_f_3_o_t_2) +
-            tube_J_group_2_in_axes2_xz*tube_alpha_1_o_in_axes2_x +
-            tube_J_group_2_in_axes2_yz*tube_alpha_1_o_in_axes2_y +
-            v.tube_acc_3_o_in_axes2_x*tube_h_3_in_spec2_z +
-            tube_acc_3_o_in_axes2_y*tube_h_3_in_spec2_x -
-            tube_B_2_o_in_axes2_xy*tube_Sigma_2_in_axes2_yy -
-            v.tube_g_in_axes2_x*tube_h_2_in_spec2_z - v.tube_g_in_axes2_y*tube_h_2_in_spec2_x;
-        /* (tube-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
-           connection point left out */
-        const real tube_N_2_o_in_axes2_y = tube_mu_2_o_in_axes2_y -
-            tube_f_3_o_in_axes2_z*v.tube_q_3;
-        const real tube_N_2_o_in_axes2_z = tube_mu_2_o_in_axes2_z +
-            tube_f_3_o_in_axes2_y*v.tube_q_3;
-        /* (tube-G_o) remainder of: force at the connection point that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real tube_G_o_t = v.inv_tube_w_1_t_13*tube_N_2_o_in_axes2_z;
-        const real tube_G_o_t_2 = v.inv_tube_w_1_t_33*tube_G_o_t*v.tube_w_1_t_17;
-        const real tube_G_o_t_3 = v.inv_tube_w_1_t_49*(tube_G_o_t*v.tube_w_1_t_21 -
-            tube_G_o_t_2*v.tube_w_1_t_37);
-        const real tube_G_o_t_4 = v.inv_tube_w_1_t_63*(tube_G_o_t_2*v.tube_w_1_t_41 +
-            tube_G_o_t_3*v.tube_w_1_t_53 - tube_G_o_t*v.tube_w_1_t_25);
-        const real tube_G_o_t_5 = v.inv_tube_w_1_t_75*(tube_G_o_t*v.tube_w_1_t_29 +
-            tube_G_o_t_4*v.tube_w_1_t_69 + tube_N_2_o_in_axes2_y*v.tube_c_2 -
-            tube_G_o_t_2*v.tube_w_1_t_45 - tube_G_o_t_3*v.tube_w_1_t_58 -
-            v.tube_e_1_in_axes2_x*tube_mu_2_o_in_axes2_x);
-        const real tube_G_o_in_axes2_y = tube_G_o_t*v.tube_w_1_t_14 + tube_G_o_t_2*v.tube_w_1_t_34
-            + tube_G_o_t_3*v.tube_w_1_t_50 + tube_G_o_t_4*v.tube_w_1_t_64 -
-            tube_G_o_t_5*v.tube_qd_1_t;
-        const real tube_G_o_in_axes2_z = v.inv_tube_w_1_t_49*tube_G_o_t_3 +
-            tube_G_o_t_4*v.tube_w_1_t_65 - tube_G_o_t_5*v.tube_qd_1_t_2;
-        /* (tube-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real tube_G_m1_o_t = tube_G_o_t*v.tube_w_1_t_15 + tube_G_o_t_2*v.tube_w_1_t_35 +
-            tube_G_o_t_3*v.tube_w_1_t_51 + tube_G_o_t_4*v.tube_w_1_t_66 -
-            tube_G_o_t_5*v.tube_qd_1_t_3;
-        const real tube_G_m1_o = R(1.35)*tube_G_m1_o_t;
-        /* (tube-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real tube_G_m2_o_t = tube_G_o_t_4*v.tube_w_1_t_67 + tube_G_o_t_5*v.tube_qd_1_t_4;
-        const real tube_G_m2_o = R(1.35)*tube_G_m2_o_t;
-        /* (tube-G_m3_o) remainder of: moment along moment direction 3 that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real tube_G_m3_o_t = tube_G_o_t*v.tube_w_1_t_16 + tube_G_o_t_2*v.tube_w_1_t_36 +
-            tube_G_o_t_3*v.tube_w_1_t_52 + tube_G_o_t_4*v.tube_w_1_t_68 -
-            tube_G_o_t_5*v.tube_qd_1_t_5;
-        const real tube_G_m3_o = R(1.35)*tube_G_m3_o_t;
-        /* (tube-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real tube_G_m_o_in_axes2_x = -tube_G_m2_o*v.tube_end_p2_in_axes2_y -
-            tube_G_m3_o*v.tube_end_p3_in_axes2_z;
-        const real tube_G_m_o_in_axes2_y = tube_G_m2_o*v.tube_n_m2_in_axes2_y -
-            tube_G_m1_o*v.tube_end_p1_in_axes2_z;
-        const real tube_G_m_o_in_axes2_z = tube_G_m1_o*v.tube_n_m1_in_axes2_z +
-            tube_G_m3_o*v.tube_n_m3_in_axes2_z;
-        /* (tube-U) velocity and gravity terms of the leg force */
-        const real tube_U_x = v.axis_x_tube_axes2_x*tube_f_3_o_in_axes2_x +
-            v.axis_y_tube_axes2_x*tube_G_o_in_axes2_y + v.axis_z_tube_axes2_x*tube_G_o_in_axes2_z;
-        const real tube_U_y = v.axis_x_tube_axes2_y*tube_f_3_o_in_axes2_x +
-            v.axis_y_tube_axes2_y*tube_G_o_in_axes2_y + v.axis_z_tube_axes2_y*tube_G_o_in_axes2_z;
-        const real tube_U_z = v.axis_x_tube_axes2_z*tube_f_3_o_in_axes2_x +
-            v.axis_y_tube_axes2_z*tube_G_o_in_axes2_y + v.axis_z_tube_axes2_z*tube_G_o_in_axes2_z;
-        /* (Z_a) rotational part of Z */
-        const real tube_Z_a_t = v.axis_x_tube_axes2_x*tube_G_m_o_in_axes2_x +
-            v.axis_y_tube_axes2_x*tube_G_m_o_in_axes2_y +
-            v.axis_z_tube_axes2_x*tube_G_m_o_in_axes2_z + tube_U_z*v.tube_q_y -
-            tube_U_y*v.tube_q_z;
-        const real tube_Z_a_t_2 = v.axis_x_tube_axes2_y*tube_G_m_o_in_axes2_x +
-            v.axis_y_tube_axes2_y*tube_G_m_o_in_axes2_y +
-            v.axis_z_tube_axes2_y*tube_G_m_o_in_axes2_z + tube_U_x*v.tube_q_z -
-            tube_U_z*v.tube_q_x;
-        const real tube_Z_a_t_3 = v.axis_x_tube_axes2_z*tube_G_m_o_in_axes2_x +
-            v.axis_y_tube_axes2_z*tube_G_m_o_in_axes2_y +
-            v.axis_z_tube_axes2_z*tube_G_m_o_in_axes2_z + tube_U_y*v.tube_q_x -
-            tube_U_x*v.tube_q_y;
-        /* (Z_t) translational part of Z */
-        gather(&terms[0*count + k], add, tube_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[1*count + k], add, tube_U_y);  /* Z_t_y_of_legs */
-        gather(&terms[2*count + k], add, tube_U_z);  /* Z_t_z_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[3*count + k], add, tube_Z_a_t);  /* Z_a_x_of_legs */
-        gather(&terms[4*count + k], add, tube_Z_a_t_2);  /* Z_a_y_of_legs */
-        gather(&terms[5*count + k], add, tube_Z_a_t_3);  /* Z_a_z_of_legs */
-        o[0*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
-            UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
-            + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
-            LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_33) > LEAST_4) +
-            UNLESS(magnitude(v.tube_w_1_t_49) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_63) >
-            LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_75) > LEAST_5);
-    }
+    values_tube v;
+    stage_tube_X(m, w, i, j, s, X, &v);
+    stage_tube_V_X(w, j, V, &v);
+    stage_tube_Z_dynamics(m, i, &v);
+    stage_tube_Z_joint_accelerations(&v);
+    /* (tube-W_2) centripetal tensor of link 2 */
+    const real tube_W_2_in_axes2_xy = v.tube_omega_1_in_axes2_x*v.tube_omega_1_in_axes2_y;
+    /* (tube-bias) acceleration of the connection point at zero joint accelerations */
+    const real tube_bias_t = v.tube_W_2_in_axes2_xz*v.tube_q_3;
+    const real tube_bias_t_2 = -tube_W_2_in_axes2_xy*v.tube_q_3;
+    const real tube_bias_t_4 = v.tube_bias_t_3*v.tube_qd_2;
+    const real tube_bias_t_5 = v.tube_bias_t_3*v.tube_omega_1_in_axes2_y;
+    const real tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2;
+    const real tube_bias_in_axes2_z = 2*tube_bias_t - tube_bias_t_5;
+    /* (tube-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real tube_rel_o_in_axes2_y = v.axis_y_tube_axes2_x*v.tube_u_1_x +
+        v.axis_y_tube_axes2_y*v.tube_u_1_y + v.axis_y_tube_axes2_z*v.tube_u_1_z -
+        tube_bias_in_axes2_y;
+    const real tube_rel_o_in_axes2_z = v.axis_z_tube_axes2_x*v.tube_u_1_x +
+        v.axis_z_tube_axes2_y*v.tube_u_1_y + v.axis_z_tube_axes2_z*v.tube_u_1_z -
+        tube_bias_in_axes2_z;
+    /* (tube-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real tube_qdd_1_o_t = R(1.35)*v.tube_nu_1;
+    const real tube_qdd_1_o_t_2 = R(1.35)*v.tube_nu_2;
+    const real tube_qdd_1_o_t_3 = R(1.35)*v.tube_nu_3;
+    const real tube_qdd_1_o = v.inv_tube_w_1_t_75*(v.tube_qd_1_t*tube_rel_o_in_axes2_y +
+        v.tube_qd_1_t_2*tube_rel_o_in_axes2_z + v.tube_qd_1_t_3*tube_qdd_1_o_t +
+        v.tube_qd_1_t_5*tube_qdd_1_o_t_3 - v.tube_qd_1_t_4*tube_qdd_1_o_t_2);
+    /* (tube-qdd_2_o) remainder of: acceleration of joint 2 */
+    const real tube_qdd_2_o_t = v.inv_tube_w_1_t_63*(tube_qdd_1_o_t*v.tube_w_1_t_66 +
+        tube_qdd_1_o_t_2*v.tube_w_1_t_67 + tube_qdd_1_o_t_3*v.tube_w_1_t_68 +
+        tube_rel_o_in_axes2_y*v.tube_w_1_t_64 + tube_rel_o_in_axes2_z*v.tube_w_1_t_65 -
+        tube_qdd_1_o*v.tube_w_1_t_69);
+    const real tube_qdd_2_o_t_2 =
+        v.inv_tube_w_1_t_49*(v.inv_tube_w_1_t_49*tube_rel_o_in_axes2_z +
+        tube_qdd_1_o*v.tube_w_1_t_58 + tube_qdd_1_o_t*v.tube_w_1_t_51 +
+        tube_qdd_1_o_t_3*v.tube_w_1_t_52 + tube_qdd_2_o_t*v.tube_w_1_t_53 +
+        tube_rel_o_in_axes2_y*v.tube_w_1_t_50);
+    const real tube_qdd_2_o_t_3 = tube_qdd_1_o_t*v.tube_w_1_t_15 +
+        tube_qdd_1_o_t_3*v.tube_w_1_t_16 + tube_qdd_2_o_t_2*v.tube_w_1_t_21 +
+        tube_rel_o_in_axes2_y*v.tube_w_1_t_14 +
+        v.inv_tube_w_1_t_33*v.tube_w_1_t_17*(tube_qdd_1_o*v.tube_w_1_t_45 +
+        tube_qdd_1_o_t*v.tube_w_1_t_35 + tube_qdd_1_o_t_3*v.tube_w_1_t_36 +
+        tube_qdd_2_o_t*v.tube_w_1_t_41 + tube_rel_o_in_axes2_y*v.tube_w_1_t_34 -
+        tube_qdd_2_o_t_2*v.tube_w_1_t_37) - tube_qdd_1_o*v.tube_w_1_t_29 -
+        tube_qdd_2_o_t*v.tube_w_1_t_25;
+    const real tube_qdd_2_o = v.inv_tube_w_1_t_13*tube_qdd_2_o_t_3;
+    /* (tube-alpha_1_o) remainder of: angular acceleration of link 1 */
+    const real tube_alpha_1_o_in_axes2_x = v.tube_e_1_in_axes2_x*tube_qdd_1_o;
+    const real tube_alpha_1_o_in_axes2_y = -v.tube_c_2*tube_qdd_1_o;
+    /* (tube-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real tube_alpha_2_o_in_axes2_x = v.tube_W_2_in_axes2_yz + tube_alpha_1_o_in_axes2_x;
+    const real tube_alpha_2_o_in_axes2_y = tube_alpha_1_o_in_axes2_y - v.tube_W_2_in_axes2_xz;
+    /* (tube-B_2_o) remainder of the acceleration tensor of link 2 */
+    const real tube_B_2_o_in_axes2_xy = tube_W_2_in_axes2_xy - tube_qdd_2_o;
+    const real tube_B_2_o_in_axes2_yx = tube_W_2_in_axes2_xy + tube_qdd_2_o;
+    const real tube_B_2_o_in_axes2_zx = v.tube_W_2_in_axes2_xz - tube_alpha_2_o_in_axes2_y;
+    const real tube_B_2_o_in_axes2_zy = v.tube_W_2_in_axes2_yz + tube_alpha_2_o_in_axes2_x;
+    /* (tube-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
+    const real tube_acc_3_o_in_axes2_y = tube_bias_t_4 + v.tube_q_3*tube_qdd_2_o -
+        tube_bias_t_2 - v.tube_g_in_axes2_y;
+    const real tube_acc_3_o_in_axes2_z = tube_bias_t - tube_bias_t_5 - v.tube_g_in_axes2_z -
+        tube_alpha_2_o_in_axes2_y*v.tube_q_3;
+    /* (tube-f_3_o) remainder of: inertia force of link 3 less its weight */
+    const real tube_f_3_o_t = v.tube_omega_1_in_axes2_x*v.tube_omega_1_in_axes2_x;
+    const real tube_f_3_o_t_2 = v.tube_omega_1_in_axes2_y*v.tube_omega_1_in_axes2_y;
+    const real tube_f_3_o_t_3 = v.tube_qd_2*v.tube_qd_2;
+    const real tube_f_3_o_in_axes2_x = v.tube_acc_3_o_in_axes2_x*m->tube_link3_mass[i] +
+        tube_alpha_1_o_in_axes2_y*m->tube_h_3_in_spec2_y[i] -
+        tube_B_2_o_in_axes2_xy*m->tube_h_3_in_spec2_z[i] -
+        m->tube_h_3_in_spec2_x[i]*(tube_f_3_o_t_2 + tube_f_3_o_t_3);
+    const real tube_f_3_o_in_axes2_y = tube_B_2_o_in_axes2_yx*m->tube_h_3_in_spec2_x[i] +
+        tube_acc_3_o_in_axes2_y*m->tube_link3_mass[i] +
+        m->tube_h_3_in_spec2_z[i]*(tube_f_3_o_t + tube_f_3_o_t_3) -
+        tube_alpha_1_o_in_axes2_x*m->tube_h_3_in_spec2_y[i];
+    const real tube_f_3_o_in_axes2_z = tube_B_2_o_in_axes2_zx*m->tube_h_3_in_spec2_x[i] +
+        tube_acc_3_o_in_axes2_z*m->tube_link3_mass[i] -
+        tube_B_2_o_in_axes2_zy*m->tube_h_3_in_spec2_z[i] -
+        m->tube_h_3_in_spec2_y[i]*(tube_f_3_o_t + tube_f_3_o_t_2);
+    /* (tube-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real tube_mu_2_o_in_axes2_x =
+        tube_B_2_o_in_axes2_yx*m->tube_J_group_2_in_axes2_xz[i] +
+        tube_B_2_o_in_axes2_zy*m->tube_Sigma_2_in_axes2_yy[i] +
+        m->tube_J_group_2_in_axes2_yz[i]*(tube_f_3_o_t_2 - tube_f_3_o_t_3) +
+        m->tube_Sigma_2_in_axes2_zz[i]*tube_alpha_1_o_in_axes2_x +
+        v.tube_g_in_axes2_y*m->tube_h_2_in_spec2_y[i] +
+        v.tube_g_in_axes2_z*m->tube_h_2_in_spec2_z[i] -
+        tube_B_2_o_in_axes2_zx*m->tube_J_group_2_in_axes2_xy[i] -
+        tube_acc_3_o_in_axes2_y*m->tube_h_3_in_spec2_y[i] -
+        tube_acc_3_o_in_axes2_z*m->tube_h_3_in_spec2_z[i];
+    const real tube_mu_2_o_in_axes2_y =
+        tube_B_2_o_in_axes2_zy*m->tube_J_group_2_in_axes2_xy[i] +
+        m->tube_Sigma_2_in_axes2_zz[i]*tube_alpha_1_o_in_axes2_y +
+        v.tube_acc_3_o_in_axes2_x*m->tube_h_3_in_spec2_y[i] +
+        v.tube_g_in_axes2_z*m->tube_h_2_in_spec2_x[i] -
+        tube_B_2_o_in_axes2_xy*m->tube_J_group_2_in_axes2_yz[i] -
+        tube_B_2_o_in_axes2_zx*m->tube_Sigma_2_in_axes2_xx[i] -
+        m->tube_J_group_2_in_axes2_xz[i]*(tube_f_3_o_t - tube_f_3_o_t_3) -
+        tube_acc_3_o_in_axes2_z*m->tube_h_3_in_spec2_x[i] -
+        v.tube_g_in_axes2_x*m->tube_h_2_in_spec2_y[i];
+    const real tube_mu_2_o_in_axes2_z = tube_B_2_o_in_axes2_yx*m->tube_Sigma_2_in_axes2_xx[i]
+        + m->tube_J_group_2_in_axes2_xy[i]*(tube_f_3_o_t - tube_f_3_o_t_2) +
+        m->tube_J_group_2_in_axes2_xz[i]*tube_alpha_1_o_in_axes2_x +
+        m->tube_J_group_2_in_axes2_yz[i]*tube_alpha_1_o_in_axes2_y +
+        v.tube_acc_3_o_in_axes2_x*m->tube_h_3_in_spec2_z[i] +
+        tube_acc_3_o_in_axes2_y*m->tube_h_3_in_spec2_x[i] -
+        tube_B_2_o_in_axes2_xy*m->tube_Sigma_2_in_axes2_yy[i] -
+        v.tube_g_in_axes2_x*m->tube_h_2_in_spec2_z[i] -
+        v.tube_g_in_axes2_y*m->tube_h_2_in_spec2_x[i];
+    /* (tube-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+       connection point left out */
+    const real tube_N_2_o_in_axes2_y = tube_mu_2_o_in_axes2_y -
+        tube_f_3_o_in_axes2_z*v.tube_q_3;
+    const real tube_N_2_o_in_axes2_z = tube_mu_2_o_in_axes2_z +
+        tube_f_3_o_in_axes2_y*v.tube_q_3;
+    /* (tube-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real tube_G_o_t = v.inv_tube_w_1_t_13*tube_N_2_o_in_axes2_z;
+    const real tube_G_o_t_2 = v.inv_tube_w_1_t_33*tube_G_o_t*v.tube_w_1_t_17;
+    const real tube_G_o_t_3 = v.inv_tube_w_1_t_49*(tube_G_o_t*v.tube_w_1_t_21 -
+        tube_G_o_t_2*v.tube_w_1_t_37);
+    const real tube_G_o_t_4 = v.inv_tube_w_1_t_63*(tube_G_o_t_2*v.tube_w_1_t_41 +
+        tube_G_o_t_3*v.tube_w_1_t_53 - tube_G_o_t*v.tube_w_1_t_25);
+    const real tube_G_o_t_5 = v.inv_tube_w_1_t_75*(tube_G_o_t*v.tube_w_1_t_29 +
+        tube_G_o_t_4*v.tube_w_1_t_69 + tube_N_2_o_in_axes2_y*v.tube_c_2 -
+        tube_G_o_t_2*v.tube_w_1_t_45 - tube_G_o_t_3*v.tube_w_1_t_58 -
+        v.tube_e_1_in_axes2_x*tube_mu_2_o_in_axes2_x);
+    const real tube_G_o_in_axes2_y = tube_G_o_t*v.tube_w_1_t_14 + tube_G_o_t_2*v.tube_w_1_t_34
+        + tube_G_o_t_3*v.tube_w_1_t_50 + tube_G_o_t_4*v.tube_w_1_t_64 -
+        tube_G_o_t_5*v.tube_qd_1_t;
+    const real tube_G_o_in_axes2_z = v.inv_tube_w_1_t_49*tube_G_o_t_3 +
+        tube_G_o_t_4*v.tube_w_1_t_65 - tube_G_o_t_5*v.tube_qd_1_t_2;
+    /* (tube-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real tube_G_m1_o_t = tube_G_o_t*v.tube_w_1_t_15 + tube_G_o_t_2*v.tube_w_1_t_35 +
+        tube_G_o_t_3*v.tube_w_1_t_51 + tube_G_o_t_4*v.tube_w_1_t_66 -
+        tube_G_o_t_5*v.tube_qd_1_t_3;
+    const real tube_G_m1_o = R(1.35)*tube_G_m1_o_t;
+    /* (tube-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real tube_G_m2_o_t = tube_G_o_t_4*v.tube_w_1_t_67 + tube_G_o_t_5*v.tube_qd_1_t_4;
+    const real tube_G_m2_o = R(1.35)*tube_G_m2_o_t;
+    /* (tube-G_m3_o) remainder of: moment along moment direction 3 that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real tube_G_m3_o_t = tube_G_o_t*v.tube_w_1_t_16 + tube_G_o_t_2*v.tube_w_1_t_36 +
+        tube_G_o_t_3*v.tube_w_1_t_52 + tube_G_o_t_4*v.tube_w_1_t_68 -
+        tube_G_o_t_5*v.tube_qd_1_t_5;
+    const real tube_G_m3_o = R(1.35)*tube_G_m3_o_t;
+    /* (tube-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real tube_G_m_o_in_axes2_x = -tube_G_m2_o*v.tube_end_p2_in_axes2_y -
+        tube_G_m3_o*v.tube_end_p3_in_axes2_z;
+    const real tube_G_m_o_in_axes2_y = tube_G_m2_o*v.tube_n_m2_in_axes2_y -
+        tube_G_m1_o*v.tube_end_p1_in_axes2_z;
+    const real tube_G_m_o_in_axes2_z = tube_G_m1_o*v.tube_n_m1_in_axes2_z +
+        tube_G_m3_o*v.tube_n_m3_in_axes2_z;
+    /* (tube-U) velocity and gravity terms of the leg force */
+    const real tube_U_x = v.axis_x_tube_axes2_x*tube_f_3_o_in_axes2_x +
+        v.axis_y_tube_axes2_x*tube_G_o_in_axes2_y + v.axis_z_tube_axes2_x*tube_G_o_in_axes2_z;
+    const real tube_U_y = v.axis_x_tube_axes2_y*tube_f_3_o_in_axes2_x +
+        v.axis_y_tube_axes2_y*tube_G_o_in_axes2_y + v.axis_z_tube_axes2_y*tube_G_o_in_axes2_z;
+    const real tube_U_z = v.axis_x_tube_axes2_z*tube_f_3_o_in_axes2_x +
+        v.axis_y_tube_axes2_z*tube_G_o_in_axes2_y + v.axis_z_tube_axes2_z*tube_G_o_in_axes2_z;
+    /* (Z_a) */
+    const real tube_Z_a_t = v.axis_x_tube_axes2_x*tube_G_m_o_in_axes2_x +
+        v.axis_y_tube_axes2_x*tube_G_m_o_in_axes2_y +
+        v.axis_z_tube_axes2_x*tube_G_m_o_in_axes2_z + tube_U_z*v.tube_q_y -
+        tube_U_y*v.tube_q_z;
+    const real tube_Z_a_t_2 = v.axis_x_tube_axes2_y*tube_G_m_o_in_axes2_x +
+        v.axis_y_tube_axes2_y*tube_G_m_o_in_axes2_y +
+        v.axis_z_tube_axes2_y*tube_G_m_o_in_axes2_z + tube_U_x*v.tube_q_z -
+        tube_U_z*v.tube_q_x;
+    const real tube_Z_a_t_3 = v.axis_x_tube_axes2_z*tube_G_m_o_in_axes2_x +
+        v.axis_y_tube_axes2_z*tube_G_m_o_in_axes2_y +
+        v.axis_z_tube_axes2_z*tube_G_m_o_in_axes2_z + tube_U_y*v.tube_q_x -
+        tube_U_x*v.tube_q_y;
+    /* (Z_t) */
+    gather(&terms[0*count + k], add, tube_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, tube_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, tube_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) */
+    gather(&terms[3*count + k], add, tube_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[4*count + k], add, tube_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[5*count + k], add, tube_Z_a_t_3);  /* Z_a_z_of_legs */
+    o[0*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
+        UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
+        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
+        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_33) > LEAST_4) +
+        UNLESS(magnitude(v.tube_w_1_t_49) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_63) >
+        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_75) > LEAST_5);
 }
 
-INLINE void Z_place_tube(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void Z_place_tube(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o[0*count + first + k];
-    }
+    t->singular[k] += o[0*count + at];
 }
 
-INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict *t)
+INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (Z_t) translational part of Z */
-        const real Z_p_x = s[9*w + k];
-        const real Z_t_x_of_legs = sums[0*w + k];
-        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[10*w + k];
-        const real Z_t_y_of_legs = sums[1*w + k];
-        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[11*w + k];
-        const real Z_t_z_of_legs = sums[2*w + k];
-        const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-        /* (Z_a) rotational part of Z */
-        const real Z_a_x_of_legs = sums[3*w + k];
-        const real Z_q_x = s[12*w + k];
-        const real Z_a_x = Z_a_x_of_legs + Z_q_x;
-        const real Z_a_y_of_legs = sums[4*w + k];
-        const real Z_q_y = s[13*w + k];
-        const real Z_a_y = Z_a_y_of_legs + Z_q_y;
-        const real Z_a_z_of_legs = sums[5*w + k];
-        const real Z_q_z = s[14*w + k];
-        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
-        /* (Z_t) translational part of Z */
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-        Z[2*w + k] = Z_t_z;
-        /* (Z_a) rotational part of Z */
-        Z[3*w + k] = Z_a_x;
-        Z[4*w + k] = Z_a_y;
-        Z[5*w + k] = Z_a_z;
-        t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
-    }
+    /* (Z_t) */
+    const real Z_p_x = s[9*w + k];
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[10*w + k];
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    const real Z_p_z = s[11*w + k];
+    const real Z_t_z_of_legs = sums[2*w + k];
+    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
+    /* (Z_a) */
+    const real Z_a_x_of_legs = sums[3*w + k];
+    const real Z_q_x = s[12*w + k];
+    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_y_of_legs = sums[4*w + k];
+    const real Z_q_y = s[13*w + k];
+    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_z_of_legs = sums[5*w + k];
+    const real Z_q_z = s[14*w + k];
+    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    /* (Z_a) */
+    Z[3*w + k] = Z_a_x;
+    Z[4*w + k] = Z_a_y;
+    Z[5*w + k] = Z_a_z;
+    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
@@ -6169,502 +6049,499 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     real s[15] = {0}, sums[6] = {0};
     real terms_ups[6*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
     real terms_tube[6*LEGS(LEGS_OF_tube)] = {0}, o_tube[LEGS(LEGS_OF_tube)] = {0};
-    Z_before(m, 1, X, V, s, t);
-    Z_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, X, V, terms_ups, o_ups);
-    Z_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), 0, X, V, terms_tube, o_tube);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        Z_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, t);
+    Z_before(m, 1, 0, X, V, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
+        Z_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, V, terms_ups, o_ups);
+    }
+    for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
+        Z_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), 0, s, X, V, terms_tube, o_tube);
+    }
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        Z_place_ups(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
-    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
-        Z_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, t);
+    for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        Z_place_tube(0, i, LEGS(LEGS_OF_tube), o_tube, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
             sums[n] += terms_tube[n*LEGS(LEGS_OF_tube) + leg];
         }
     }
-    Z_after(1, s, sums, Z, t);
+    Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z, verdict
+    *restrict t)
 {
     real s[15*LANES], sums[6*LANES];
     real o_ups[LANES];
     real o_tube[LANES];
-    Z_before(m, LANES, X, V, s, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        Z_before(m, LANES, k, X, V, s, t);
+    }
     clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        Z_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_ups);
-        Z_place_ups(LANES, LANES, o_ups, 0, t);
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_legs_ups(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_ups);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_place_ups(k, k, LANES, o_ups, t);
+        }
     }
-    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
-        Z_legs_tube(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_tube);
-        Z_place_tube(LANES, LANES, o_tube, 0, t);
+    for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_legs_tube(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_tube);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_place_tube(k, k, LANES, o_tube, t);
+        }
     }
-    Z_after(LANES, s, sums, Z, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        Z_after(LANES, k, s, sums, Z, t);
+    }
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void H_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, const real *X, real *o)
+INLINE void H_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_ups v;
-        stage_ups_X(m, w, i, j, s, X, &v);
-        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        const real ups_H_a_3_x = v.ups_q_y*v.ups_w_3_z - v.ups_q_z*v.ups_w_3_y;
-        const real ups_H_a_3_y = v.ups_q_z*v.ups_w_3_x - v.ups_q_x*v.ups_w_3_z;
-        const real ups_H_a_3_z = v.ups_q_x*v.ups_w_3_y - v.ups_q_y*v.ups_w_3_x;
-        /* (ups-w_3) reciprocal vector 3 */
-        o[0*count + k] = v.ups_w_3_x;
-        o[1*count + k] = v.ups_w_3_y;
-        o[2*count + k] = v.ups_w_3_z;
-        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        o[3*count + k] = ups_H_a_3_x;
-        o[4*count + k] = ups_H_a_3_y;
-        o[5*count + k] = ups_H_a_3_z;
-        o[7*count + k] = (v.ups_w_3_x + (v.ups_w_3_y + v.ups_w_3_z)) + (ups_H_a_3_x + (ups_H_a_3_y
-            + ups_H_a_3_z));
-        o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_q_3) > LEAST_2);
-    }
+    values_ups v;
+    stage_ups_X(m, w, i, j, s, X, &v);
+    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
+    const real ups_H_a_3_x = v.ups_q_y*v.ups_w_3_z - v.ups_q_z*v.ups_w_3_y;
+    const real ups_H_a_3_y = v.ups_q_z*v.ups_w_3_x - v.ups_q_x*v.ups_w_3_z;
+    const real ups_H_a_3_z = v.ups_q_x*v.ups_w_3_y - v.ups_q_y*v.ups_w_3_x;
+    /* (ups-w_3) reciprocal vector 3 */
+    o[0*count + k] = v.ups_w_3_x;
+    o[1*count + k] = v.ups_w_3_y;
+    o[2*count + k] = v.ups_w_3_z;
+    /* (ups-H_a_3) */
+    o[3*count + k] = ups_H_a_3_x;
+    o[4*count + k] = ups_H_a_3_y;
+    o[5*count + k] = ups_H_a_3_z;
+    o[7*count + k] = (v.ups_w_3_x + (v.ups_w_3_y + v.ups_w_3_z)) + (ups_H_a_3_x + (ups_H_a_3_y
+        + ups_H_a_3_z));
+    o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void H_place_ups(size_t w, size_t count, const real *o, size_t leg, size_t first, real *H,
-    verdict *t)
+INLINE void H_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
+    *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        H[(3*NU + leg)*w + k] = o[3*count + first + k];
-        H[(4*NU + leg)*w + k] = o[4*count + first + k];
-        H[(5*NU + leg)*w + k] = o[5*count + first + k];
-        t->singular[k] += o[6*count + first + k];
-        t->total[k] += o[7*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    H[(3*NU + i)*w + k] = o[3*count + at];
+    H[(4*NU + i)*w + k] = o[4*count + at];
+    H[(5*NU + i)*w + k] = o[5*count + at];
+    t->singular[k] += o[6*count + at];
+    t->total[k] += o[7*count + at];
 }
 
-INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
+APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
     real s[9] = {0};
     real o_ups[8*LEGS(LEGS_OF_ups)] = {0};
-    H_before(m, 1, X, s, t);
-    H_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), X, o_ups);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        H_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, H, t);
+    H_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
+        H_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, o_ups);
+    }
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        H_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
     }
 }
 
-INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
+INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verdict *restrict t)
 {
     real s[9*LANES];
     real o_ups[8*LANES];
-    H_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        H_legs_ups(m, LANES, leg, 0, s, 1, LANES, X, o_ups);
-        H_place_ups(LANES, LANES, o_ups, leg, 0, H, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        H_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            H_legs_ups(m, LANES, i, k, k, LANES, s, X, o_ups);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            H_place_ups(LANES, i, k, k, LANES, o_ups, H, t);
+        }
     }
 }
 
 /* ---- Hk ---- */
-INLINE void Hk_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void Hk_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void Hk_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, const real *X, real *o)
+INLINE void Hk_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_tube v;
-        stage_tube_X(m, w, i, j, s, X, &v);
-        /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real tube_platform_joint_rotation_yx = m->tube_platform_joint_rotation_yx[i];
-        const real tube_platform_joint_rotation_yy = m->tube_platform_joint_rotation_yy[i];
-        const real tube_platform_joint_rotation_yz = m->tube_platform_joint_rotation_yz[i];
-        const real tube_n_m1_in_axes2_z = v.tube_e_1_in_axes2_x*(v.tube_c_1*v.tube_n_m1_t_10 +
-            v.tube_n_m1_t_11*v.tube_s_1) -
-            v.tube_c_2*(v.tube_n_m1_t_7*tube_platform_joint_rotation_yx +
-            v.tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            v.tube_n_m1_t_9*tube_platform_joint_rotation_yz);
-        /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real tube_platform_joint_rotation_zx = m->tube_platform_joint_rotation_zx[i];
-        const real tube_platform_joint_rotation_zy = m->tube_platform_joint_rotation_zy[i];
-        const real tube_platform_joint_rotation_zz = m->tube_platform_joint_rotation_zz[i];
-        const real tube_n_m2_t = v.tube_n_m1_t_7*tube_platform_joint_rotation_zx +
-            v.tube_n_m1_t_8*tube_platform_joint_rotation_zy +
-            v.tube_n_m1_t_9*tube_platform_joint_rotation_zz;
-        const real tube_n_m2_t_2 = v.tube_c_1*(v.tube_n_m1_t*tube_platform_joint_rotation_zx +
-            v.tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            v.tube_n_m1_t_3*tube_platform_joint_rotation_zz) +
-            v.tube_s_1*(v.tube_n_m1_t_4*tube_platform_joint_rotation_zx +
-            v.tube_n_m1_t_5*tube_platform_joint_rotation_zy +
-            v.tube_n_m1_t_6*tube_platform_joint_rotation_zz);
-        const real tube_n_m2_in_axes2_y = v.tube_c_2*tube_n_m2_t_2 +
-            v.tube_e_1_in_axes2_x*tube_n_m2_t;
-        const real tube_end_p2_in_axes2_y = v.tube_e_1_in_axes2_x*tube_n_m2_t_2 -
-            v.tube_c_2*tube_n_m2_t;
-        const real tube_n_m2_t_3 = v.tube_c_2*tube_n_m2_in_axes2_y +
-            v.tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y;
-        /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
-        const real tube_platform_joint_rotation_xx = m->tube_platform_joint_rotation_xx[i];
-        const real tube_platform_joint_rotation_xy = m->tube_platform_joint_rotation_xy[i];
-        const real tube_platform_joint_rotation_xz = m->tube_platform_joint_rotation_xz[i];
-        const real tube_n_m3_in_axes2_z = v.tube_c_2*(v.tube_c_1*v.tube_n_m3_t +
-            v.tube_n_m3_t_2*v.tube_s_1) +
-            v.tube_e_1_in_axes2_x*(v.tube_n_m1_t_7*tube_platform_joint_rotation_xx +
-            v.tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            v.tube_n_m1_t_9*tube_platform_joint_rotation_xz);
-        const real tube_n_m3_t_3 = v.tube_e_1_in_axes2_x*v.tube_end_p3_in_axes2_z;
-        /* (tube-f_c1) force part of constraint wrench 1 */
-        const real tube_f_c1_t = v.tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
-            tube_n_m1_in_axes2_z*tube_n_m3_t_3;
-        /* (tube-m1_c1) moment part 1 of constraint wrench 1 */
-        const real inv_tube_f_c1_t = 1/tube_f_c1_t;
-        const real tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_3*v.tube_q_3;
-        /* (tube-m3_c1) moment part 3 of constraint wrench 1 */
-        const real tube_m3_c1_t = inv_tube_f_c1_t*v.tube_n_m1_in_axes1_z*v.tube_q_3;
-        /* (tube-m1_c2) moment part 1 of constraint wrench 2 */
-        const real tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*v.tube_root_1;
-        /* (tube-m3_c2) moment part 3 of constraint wrench 2 */
-        const real tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*v.tube_root_1;
-        /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
-        const real tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_3*tube_n_m3_in_axes2_z;
-        /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
-        const real tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_3;
-        /* (tube-mu_c1) the moment that goes with it */
-        const real tube_mu_c1_in_axes2_y = v.tube_end_p1_in_axes2_z*tube_m1_c1_t;
-        const real tube_mu_c1_in_axes2_x = v.tube_end_p3_in_axes2_z*tube_m3_c1_t;
-        const real tube_mu_c1_in_axes2_z = -tube_m1_c1_t*tube_n_m1_in_axes2_z -
-            tube_m3_c1_t*tube_n_m3_in_axes2_z;
-        /* (tube-mu_c2) the moment that goes with it */
-        const real tube_mu_c2_in_axes2_y = v.tube_end_p1_in_axes2_z*tube_m1_c2_t;
-        const real tube_mu_c2_t = v.tube_end_p3_in_axes2_z*tube_m3_c2;
-        const real tube_mu_c2_in_axes2_z = tube_m3_c2*tube_n_m3_in_axes2_z -
-            tube_m1_c2_t*tube_n_m1_in_axes2_z;
-        /* (tube-size_c3) size of the moment */
-        const real tube_size_c3 = root(1 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t);
-        /* (tube-mu1_c3) moment along direction 1 that goes with it */
-        const real inv_tube_size_c3 = 1/tube_size_c3;
-        const real tube_mu1_c3 = inv_tube_size_c3*tube_m1_c3;
-        /* (tube-mu3_c3) moment along direction 3 that goes with it */
-        const real tube_mu3_c3_t = inv_tube_size_c3*tube_m3_c3_t;
-        /* (tube-mu_c3) the moment that goes with it */
-        const real axis_x_tube_axes2_x = v.tube_n_c1_y*v.tube_n_c2_z -
-            v.tube_n_c1_z*v.tube_n_c2_y;
-        const real axis_x_tube_axes2_y = v.tube_n_c1_z*v.tube_n_c2_x -
-            v.tube_n_c1_x*v.tube_n_c2_z;
-        const real axis_x_tube_axes2_z = v.tube_n_c1_x*v.tube_n_c2_y -
-            v.tube_n_c1_y*v.tube_n_c2_x;
-        const real tube_mu_c3_in_axes2_x = v.tube_end_p3_in_axes2_z*tube_mu3_c3_t -
-            inv_tube_size_c3*tube_end_p2_in_axes2_y;
-        const real tube_mu_c3_in_axes2_y = inv_tube_size_c3*tube_n_m2_in_axes2_y -
-            v.tube_end_p1_in_axes2_z*tube_mu1_c3;
-        const real tube_mu_c3_in_axes2_z = tube_mu1_c3*tube_n_m1_in_axes2_z -
-            tube_mu3_c3_t*tube_n_m3_in_axes2_z;
-        const real tube_mu_c3_x = axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x +
-            tube_mu_c3_in_axes2_y*v.tube_n_c1_x + tube_mu_c3_in_axes2_z*v.tube_n_c2_x;
-        const real tube_mu_c3_y = axis_x_tube_axes2_y*tube_mu_c3_in_axes2_x +
-            tube_mu_c3_in_axes2_y*v.tube_n_c1_y + tube_mu_c3_in_axes2_z*v.tube_n_c2_y;
-        const real tube_mu_c3_z = axis_x_tube_axes2_z*tube_mu_c3_in_axes2_x +
-            tube_mu_c3_in_axes2_y*v.tube_n_c1_z + tube_mu_c3_in_axes2_z*v.tube_n_c2_z;
-        /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real tube_Hk_a_1_x = axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x +
-            tube_mu_c1_in_axes2_y*v.tube_n_c1_x + tube_mu_c1_in_axes2_z*v.tube_n_c2_x +
-            v.tube_n_c1_z*v.tube_q_y - v.tube_n_c1_y*v.tube_q_z;
-        const real tube_Hk_a_1_y = axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x +
-            tube_mu_c1_in_axes2_y*v.tube_n_c1_y + tube_mu_c1_in_axes2_z*v.tube_n_c2_y +
-            v.tube_n_c1_x*v.tube_q_z - v.tube_n_c1_z*v.tube_q_x;
-        const real tube_Hk_a_1_z = axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x +
-            tube_mu_c1_in_axes2_y*v.tube_n_c1_z + tube_mu_c1_in_axes2_z*v.tube_n_c2_z +
-            v.tube_n_c1_y*v.tube_q_x - v.tube_n_c1_x*v.tube_q_y;
-        /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
-        const real tube_Hk_a_2_x = tube_mu_c2_in_axes2_y*v.tube_n_c1_x +
-            tube_mu_c2_in_axes2_z*v.tube_n_c2_x + v.tube_n_c2_z*v.tube_q_y -
-            axis_x_tube_axes2_x*tube_mu_c2_t - v.tube_n_c2_y*v.tube_q_z;
-        const real tube_Hk_a_2_y = tube_mu_c2_in_axes2_y*v.tube_n_c1_y +
-            tube_mu_c2_in_axes2_z*v.tube_n_c2_y + v.tube_n_c2_x*v.tube_q_z -
-            axis_x_tube_axes2_y*tube_mu_c2_t - v.tube_n_c2_z*v.tube_q_x;
-        const real tube_Hk_a_2_z = tube_mu_c2_in_axes2_y*v.tube_n_c1_z +
-            tube_mu_c2_in_axes2_z*v.tube_n_c2_z + v.tube_n_c2_y*v.tube_q_x -
-            axis_x_tube_axes2_z*tube_mu_c2_t - v.tube_n_c2_x*v.tube_q_y;
-        /* (tube-n_c1) unit force of the constraint wrench */
-        o[0*count + k] = v.tube_n_c1_x;
-        o[1*count + k] = v.tube_n_c1_y;
-        o[2*count + k] = v.tube_n_c1_z;
-        /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = tube_Hk_a_1_x;
-        o[4*count + k] = tube_Hk_a_1_y;
-        o[5*count + k] = tube_Hk_a_1_z;
-        /* (tube-n_c2) unit force of the constraint wrench */
-        o[6*count + k] = v.tube_n_c2_x;
-        o[7*count + k] = v.tube_n_c2_y;
-        o[8*count + k] = v.tube_n_c2_z;
-        /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
-        o[9*count + k] = tube_Hk_a_2_x;
-        o[10*count + k] = tube_Hk_a_2_y;
-        o[11*count + k] = tube_Hk_a_2_z;
-        /* (tube-Hk_a_3) moment of the column's unit force about the platform origin */
-        o[12*count + k] = tube_mu_c3_x;
-        o[13*count + k] = tube_mu_c3_y;
-        o[14*count + k] = tube_mu_c3_z;
-        o[16*count + k] = ((v.tube_n_c1_x + (v.tube_n_c1_y + v.tube_n_c1_z)) + ((tube_Hk_a_1_x +
-            tube_Hk_a_1_y) + (tube_Hk_a_1_z + v.tube_n_c2_x))) + (((v.tube_n_c2_y + v.tube_n_c2_z)
-            + (tube_Hk_a_2_x + tube_Hk_a_2_y)) + ((tube_Hk_a_2_z + tube_mu_c3_x) + (tube_mu_c3_y +
-            tube_mu_c3_z)));
-        o[15*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
-            UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) +
-            UNLESS(magnitude(tube_size_c3) > LEAST_4);
-    }
+    values_tube v;
+    stage_tube_X(m, w, i, j, s, X, &v);
+    /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
+    const real tube_n_m1_in_axes2_z = v.tube_e_1_in_axes2_x*(v.tube_c_1*v.tube_n_m1_t_10 +
+        v.tube_n_m1_t_11*v.tube_s_1) -
+        v.tube_c_2*(v.tube_n_m1_t_7*m->tube_platform_joint_rotation_yx[i] +
+        v.tube_n_m1_t_8*m->tube_platform_joint_rotation_yy[i] +
+        v.tube_n_m1_t_9*m->tube_platform_joint_rotation_yz[i]);
+    /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
+    const real tube_n_m2_t = v.tube_n_m1_t_7*m->tube_platform_joint_rotation_zx[i] +
+        v.tube_n_m1_t_8*m->tube_platform_joint_rotation_zy[i] +
+        v.tube_n_m1_t_9*m->tube_platform_joint_rotation_zz[i];
+    const real tube_n_m2_t_2 = v.tube_c_1*(v.tube_n_m1_t*m->tube_platform_joint_rotation_zx[i]
+        + v.tube_n_m1_t_2*m->tube_platform_joint_rotation_zy[i] +
+        v.tube_n_m1_t_3*m->tube_platform_joint_rotation_zz[i]) +
+        v.tube_s_1*(v.tube_n_m1_t_4*m->tube_platform_joint_rotation_zx[i] +
+        v.tube_n_m1_t_5*m->tube_platform_joint_rotation_zy[i] +
+        v.tube_n_m1_t_6*m->tube_platform_joint_rotation_zz[i]);
+    const real tube_n_m2_in_axes2_y = v.tube_c_2*tube_n_m2_t_2 +
+        v.tube_e_1_in_axes2_x*tube_n_m2_t;
+    const real tube_end_p2_in_axes2_y = v.tube_e_1_in_axes2_x*tube_n_m2_t_2 -
+        v.tube_c_2*tube_n_m2_t;
+    const real tube_n_m2_t_3 = v.tube_c_2*tube_n_m2_in_axes2_y +
+        v.tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y;
+    /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
+    const real tube_n_m3_in_axes2_z = v.tube_c_2*(v.tube_c_1*v.tube_n_m3_t +
+        v.tube_n_m3_t_2*v.tube_s_1) +
+        v.tube_e_1_in_axes2_x*(v.tube_n_m1_t_7*m->tube_platform_joint_rotation_xx[i] +
+        v.tube_n_m1_t_8*m->tube_platform_joint_rotation_xy[i] +
+        v.tube_n_m1_t_9*m->tube_platform_joint_rotation_xz[i]);
+    const real tube_n_m3_t_3 = v.tube_e_1_in_axes2_x*v.tube_end_p3_in_axes2_z;
+    /* (tube-f_c1) force part of constraint wrench 1 */
+    const real tube_f_c1_t = v.tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
+        tube_n_m1_in_axes2_z*tube_n_m3_t_3;
+    /* (tube-m1_c1) moment part 1 of constraint wrench 1 */
+    const real inv_tube_f_c1_t = 1/tube_f_c1_t;
+    const real tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_3*v.tube_q_3;
+    /* (tube-m3_c1) moment part 3 of constraint wrench 1 */
+    const real tube_m3_c1_t = inv_tube_f_c1_t*v.tube_n_m1_in_axes1_z*v.tube_q_3;
+    /* (tube-m1_c2) moment part 1 of constraint wrench 2 */
+    const real tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*v.tube_root_1;
+    /* (tube-m3_c2) moment part 3 of constraint wrench 2 */
+    const real tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*v.tube_root_1;
+    /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
+    const real tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_3*tube_n_m3_in_axes2_z;
+    /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
+    const real tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_3;
+    /* (tube-mu_c1) the moment that goes with it */
+    const real tube_mu_c1_in_axes2_y = v.tube_end_p1_in_axes2_z*tube_m1_c1_t;
+    const real tube_mu_c1_in_axes2_x = v.tube_end_p3_in_axes2_z*tube_m3_c1_t;
+    const real tube_mu_c1_in_axes2_z = -tube_m1_c1_t*tube_n_m1_in_axes2_z -
+        tube_m3_c1_t*tube_n_m3_in_axes2_z;
+    /* (tube-mu_c2) the moment that goes with it */
+    const real tube_mu_c2_in_axes2_y = v.tube_end_p1_in_axes2_z*tube_m1_c2_t;
+    const real tube_mu_c2_t = v.tube_end_p3_in_axes2_z*tube_m3_c2;
+    const real tube_mu_c2_in_axes2_z = tube_m3_c2*tube_n_m3_in_axes2_z -
+        tube_m1_c2_t*tube_n_m1_in_axes2_z;
+    /* (tube-size_c3) size of the moment */
+    const real tube_size_c3 = root(1 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t);
+    /* (tube-mu1_c3) moment along direction 1 that goes with it */
+    const real inv_tube_size_c3 = 1/tube_size_c3;
+    const real tube_mu1_c3 = inv_tube_size_c3*tube_m1_c3;
+    /* (tube-mu3_c3) moment along direction 3 that goes with it */
+    const real tube_mu3_c3_t = inv_tube_size_c3*tube_m3_c3_t;
+    /* (tube-mu_c3) the moment that goes with it */
+    const real axis_x_tube_axes2_x = v.tube_n_c1_y*v.tube_n_c2_z -
+        v.tube_n_c1_z*v.tube_n_c2_y;
+    const real axis_x_tube_axes2_y = v.tube_n_c1_z*v.tube_n_c2_x -
+        v.tube_n_c1_x*v.tube_n_c2_z;
+    const real axis_x_tube_axes2_z = v.tube_n_c1_x*v.tube_n_c2_y -
+        v.tube_n_c1_y*v.tube_n_c2_x;
+    const real tube_mu_c3_in_axes2_x = v.tube_end_p3_in_axes2_z*tube_mu3_c3_t -
+        inv_tube_size_c3*tube_end_p2_in_axes2_y;
+    const real tube_mu_c3_in_axes2_y = inv_tube_size_c3*tube_n_m2_in_axes2_y -
+        v.tube_end_p1_in_axes2_z*tube_mu1_c3;
+    const real tube_mu_c3_in_axes2_z = tube_mu1_c3*tube_n_m1_in_axes2_z -
+        tube_mu3_c3_t*tube_n_m3_in_axes2_z;
+    const real tube_mu_c3_x = axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x +
+        tube_mu_c3_in_axes2_y*v.tube_n_c1_x + tube_mu_c3_in_axes2_z*v.tube_n_c2_x;
+    const real tube_mu_c3_y = axis_x_tube_axes2_y*tube_mu_c3_in_axes2_x +
+        tube_mu_c3_in_axes2_y*v.tube_n_c1_y + tube_mu_c3_in_axes2_z*v.tube_n_c2_y;
+    const real tube_mu_c3_z = axis_x_tube_axes2_z*tube_mu_c3_in_axes2_x +
+        tube_mu_c3_in_axes2_y*v.tube_n_c1_z + tube_mu_c3_in_axes2_z*v.tube_n_c2_z;
+    /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
+    const real tube_Hk_a_1_x = axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x +
+        tube_mu_c1_in_axes2_y*v.tube_n_c1_x + tube_mu_c1_in_axes2_z*v.tube_n_c2_x +
+        v.tube_n_c1_z*v.tube_q_y - v.tube_n_c1_y*v.tube_q_z;
+    const real tube_Hk_a_1_y = axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x +
+        tube_mu_c1_in_axes2_y*v.tube_n_c1_y + tube_mu_c1_in_axes2_z*v.tube_n_c2_y +
+        v.tube_n_c1_x*v.tube_q_z - v.tube_n_c1_z*v.tube_q_x;
+    const real tube_Hk_a_1_z = axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x +
+        tube_mu_c1_in_axes2_y*v.tube_n_c1_z + tube_mu_c1_in_axes2_z*v.tube_n_c2_z +
+        v.tube_n_c1_y*v.tube_q_x - v.tube_n_c1_x*v.tube_q_y;
+    /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
+    const real tube_Hk_a_2_x = tube_mu_c2_in_axes2_y*v.tube_n_c1_x +
+        tube_mu_c2_in_axes2_z*v.tube_n_c2_x + v.tube_n_c2_z*v.tube_q_y -
+        axis_x_tube_axes2_x*tube_mu_c2_t - v.tube_n_c2_y*v.tube_q_z;
+    const real tube_Hk_a_2_y = tube_mu_c2_in_axes2_y*v.tube_n_c1_y +
+        tube_mu_c2_in_axes2_z*v.tube_n_c2_y + v.tube_n_c2_x*v.tube_q_z -
+        axis_x_tube_axes2_y*tube_mu_c2_t - v.tube_n_c2_z*v.tube_q_x;
+    const real tube_Hk_a_2_z = tube_mu_c2_in_axes2_y*v.tube_n_c1_z +
+        tube_mu_c2_in_axes2_z*v.tube_n_c2_z + v.tube_n_c2_y*v.tube_q_x -
+        axis_x_tube_axes2_z*tube_mu_c2_t - v.tube_n_c2_x*v.tube_q_y;
+    /* (tube-n_c1) unit force of the constraint wrench */
+    o[0*count + k] = v.tube_n_c1_x;
+    o[1*count + k] = v.tube_n_c1_y;
+    o[2*count + k] = v.tube_n_c1_z;
+    /* (tube-Hk_a_1) */
+    o[3*count + k] = tube_Hk_a_1_x;
+    o[4*count + k] = tube_Hk_a_1_y;
+    o[5*count + k] = tube_Hk_a_1_z;
+    /* (tube-n_c2) unit force of the constraint wrench */
+    o[6*count + k] = v.tube_n_c2_x;
+    o[7*count + k] = v.tube_n_c2_y;
+    o[8*count + k] = v.tube_n_c2_z;
+    /* (tube-Hk_a_2) */
+    o[9*count + k] = tube_Hk_a_2_x;
+    o[10*count + k] = tube_Hk_a_2_y;
+    o[11*count + k] = tube_Hk_a_2_z;
+    /* (tube-Hk_a_3) moment of the column's unit force about the platform origin */
+    o[12*count + k] = tube_mu_c3_x;
+    o[13*count + k] = tube_mu_c3_y;
+    o[14*count + k] = tube_mu_c3_z;
+    o[16*count + k] = ((v.tube_n_c1_x + (v.tube_n_c1_y + v.tube_n_c1_z)) + ((tube_Hk_a_1_x +
+        tube_Hk_a_1_y) + (tube_Hk_a_1_z + v.tube_n_c2_x))) + (((v.tube_n_c2_y + v.tube_n_c2_z)
+        + (tube_Hk_a_2_x + tube_Hk_a_2_y)) + ((tube_Hk_a_2_z + tube_mu_c3_x) + (tube_mu_c3_y +
+        tube_mu_c3_z)));
+    o[15*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
+        UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) +
+        UNLESS(magnitude(tube_size_c3) > LEAST_4);
 }
 
-INLINE void Hk_place_tube(size_t w, size_t count, const real *o, size_t first, real *Hk, verdict
-    *t)
+INLINE void Hk_place_tube(size_t w, size_t k, size_t at, size_t count, const real *o, real *Hk,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        Hk[0*w + k] = o[0*count + first + k];
-        Hk[NC*w + k] = o[1*count + first + k];
-        Hk[2*NC*w + k] = o[2*count + first + k];
-        Hk[3*NC*w + k] = o[3*count + first + k];
-        Hk[4*NC*w + k] = o[4*count + first + k];
-        Hk[5*NC*w + k] = o[5*count + first + k];
-        Hk[1*w + k] = o[6*count + first + k];
-        Hk[(NC + 1)*w + k] = o[7*count + first + k];
-        Hk[(2*NC + 1)*w + k] = o[8*count + first + k];
-        Hk[(3*NC + 1)*w + k] = o[9*count + first + k];
-        Hk[(4*NC + 1)*w + k] = o[10*count + first + k];
-        Hk[(5*NC + 1)*w + k] = o[11*count + first + k];
-        Hk[(3*NC + 2)*w + k] = o[12*count + first + k];
-        Hk[(4*NC + 2)*w + k] = o[13*count + first + k];
-        Hk[(5*NC + 2)*w + k] = o[14*count + first + k];
-        t->singular[k] += o[15*count + first + k];
-        t->total[k] += o[16*count + first + k];
-    }
+    Hk[0*w + k] = o[0*count + at];
+    Hk[NC*w + k] = o[1*count + at];
+    Hk[2*NC*w + k] = o[2*count + at];
+    Hk[3*NC*w + k] = o[3*count + at];
+    Hk[4*NC*w + k] = o[4*count + at];
+    Hk[5*NC*w + k] = o[5*count + at];
+    Hk[1*w + k] = o[6*count + at];
+    Hk[(NC + 1)*w + k] = o[7*count + at];
+    Hk[(2*NC + 1)*w + k] = o[8*count + at];
+    Hk[(3*NC + 1)*w + k] = o[9*count + at];
+    Hk[(4*NC + 1)*w + k] = o[10*count + at];
+    Hk[(5*NC + 1)*w + k] = o[11*count + at];
+    Hk[(3*NC + 2)*w + k] = o[12*count + at];
+    Hk[(4*NC + 2)*w + k] = o[13*count + at];
+    Hk[(5*NC + 2)*w + k] = o[14*count + at];
+    t->singular[k] += o[15*count + at];
+    t->total[k] += o[16*count + at];
 }
 
-INLINE void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
+APART void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
 {
     real s[9] = {0};
     real o_tube[17*LEGS(LEGS_OF_tube)] = {0};
     clear(Hk, NV*NC);
-    Hk_before(m, 1, X, s, t);
-    Hk_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), X, o_tube);
-    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
-        Hk_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, Hk, t);
+    Hk_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
+        Hk_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), s, X, o_tube);
+    }
+    for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        Hk_place_tube(1, 0, i, LEGS(LEGS_OF_tube), o_tube, Hk, t);
     }
 }
 
-INLINE void Hk_run_lanes(const prepared *m, const real *X, real *Hk, verdict *t)
+INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, verdict *restrict t)
 {
     real s[9*LANES];
     real o_tube[17*LANES];
     clear(Hk, NV*NC*LANES);
-    Hk_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
-        Hk_legs_tube(m, LANES, leg, 0, s, 1, LANES, X, o_tube);
-        Hk_place_tube(LANES, LANES, o_tube, 0, Hk, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        Hk_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            Hk_legs_tube(m, LANES, i, k, k, LANES, s, X, o_tube);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            Hk_place_tube(LANES, k, k, LANES, o_tube, Hk, t);
+        }
     }
 }
 
 /* ---- constraint_bias ---- */
-INLINE void constraint_bias_before(const prepared *m, size_t w, const real *X, real *s, verdict
-    *t)
+INLINE void constraint_bias_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void constraint_bias_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, const
-    real *s, size_t states, size_t count, const real *X, const real *V, real *o)
+INLINE void constraint_bias_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t k,
+    size_t count, const real *s, const real *X, const real *V, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_tube v;
-        stage_tube_X(m, w, i, j, s, X, &v);
-        stage_tube_V_X(w, j, V, &v);
-        /* (tube-qd_1) rate of joint 1 */
-        const real tube_qd_1_t = R(1.35)*v.tube_eta_1;
-        const real tube_qd_1_t_2 = R(1.35)*v.tube_eta_2;
-        const real tube_qd_1_t_3 = R(1.35)*v.tube_eta_3;
-        const real tube_qd_1 =
-            v.inv_tube_w_1_t_75*(v.inv_tube_w_1_t_75*v.tube_S_dot_in_axes2_y*v.tube_w_1_t_70 +
-            v.inv_tube_w_1_t_75*v.tube_S_dot_in_axes2_z*v.tube_w_1_t_71 +
-            v.inv_tube_w_1_t_75*tube_qd_1_t*v.tube_w_1_t_72 +
-            v.inv_tube_w_1_t_75*tube_qd_1_t_3*v.tube_w_1_t_74 -
-            v.inv_tube_w_1_t_75*tube_qd_1_t_2*v.tube_w_1_t_73);
-        /* (tube-qd_2) rate of joint 2 */
-        const real tube_qd_2_t = v.inv_tube_w_1_t_63*(v.tube_S_dot_in_axes2_y*v.tube_w_1_t_64 +
-            v.tube_S_dot_in_axes2_z*v.tube_w_1_t_65 + tube_qd_1_t*v.tube_w_1_t_66 +
-            tube_qd_1_t_2*v.tube_w_1_t_67 + tube_qd_1_t_3*v.tube_w_1_t_68 -
-            tube_qd_1*v.tube_w_1_t_69);
-        const real tube_qd_2_t_2 =
-            v.inv_tube_w_1_t_49*(v.inv_tube_w_1_t_49*v.tube_S_dot_in_axes2_z +
-            v.tube_S_dot_in_axes2_y*v.tube_w_1_t_50 + tube_qd_1*v.tube_w_1_t_58 +
-            tube_qd_1_t*v.tube_w_1_t_51 + tube_qd_1_t_3*v.tube_w_1_t_52 +
-            tube_qd_2_t*v.tube_w_1_t_53);
-        const real tube_qd_2_t_3 = v.tube_S_dot_in_axes2_y*v.tube_w_1_t_14 +
-            tube_qd_1_t*v.tube_w_1_t_15 + tube_qd_1_t_3*v.tube_w_1_t_16 +
-            tube_qd_2_t_2*v.tube_w_1_t_21 +
-            v.inv_tube_w_1_t_33*v.tube_w_1_t_17*(v.tube_S_dot_in_axes2_y*v.tube_w_1_t_34 +
-            tube_qd_1*v.tube_w_1_t_45 + tube_qd_1_t*v.tube_w_1_t_35 +
-            tube_qd_1_t_3*v.tube_w_1_t_36 + tube_qd_2_t*v.tube_w_1_t_41 -
-            tube_qd_2_t_2*v.tube_w_1_t_37) - tube_qd_1*v.tube_w_1_t_29 -
-            tube_qd_2_t*v.tube_w_1_t_25;
-        const real tube_qd_2 = v.inv_tube_w_1_t_13*tube_qd_2_t_3;
-        /* (tube-omega_1) angular velocity of link 1 */
-        const real tube_omega_1_in_axes2_x = v.tube_e_1_in_axes2_x*tube_qd_1;
-        const real tube_omega_1_in_axes2_y = -v.tube_c_2*tube_qd_1;
-        /* (tube-W_2) centripetal tensor of link 2 */
-        const real tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2;
-        const real tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2;
-        /* (tube-bias) acceleration of the connection point at zero joint accelerations */
-        const real tube_bias_t = 2*v.tube_S_dot_in_axes2_x;
-        const real tube_bias_in_axes2_y = tube_bias_t*tube_qd_2 +
-            tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y*v.tube_q_3;
-        const real tube_bias_in_axes2_z = 2*tube_W_2_in_axes2_xz*v.tube_q_3 -
-            tube_bias_t*tube_omega_1_in_axes2_y;
-        /* (tube-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-           */
-        const real tube_rel_o_in_axes2_y = v.axis_y_tube_axes2_x*v.tube_u_1_x +
-            v.axis_y_tube_axes2_y*v.tube_u_1_y + v.axis_y_tube_axes2_z*v.tube_u_1_z -
-            tube_bias_in_axes2_y;
-        const real tube_rel_o_in_axes2_z = v.axis_z_tube_axes2_x*v.tube_u_1_x +
-            v.axis_z_tube_axes2_y*v.tube_u_1_y + v.axis_z_tube_axes2_z*v.tube_u_1_z -
-            tube_bias_in_axes2_z;
-        /* (tube-nd_m1) rate of moment direction 1 */
-        const real tube_nd_m1_in_axes2_y = v.tube_end_p1_in_axes2_x*v.tube_omega_in_axes2_y -
-            v.tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
-            v.tube_n_m1_in_axes2_z*v.tube_omega_in_axes2_x;
-        const real tube_nd_m1_in_axes2_z = v.tube_end_p1_in_axes2_x*v.tube_omega_in_axes2_z -
-            v.tube_end_p1_in_axes2_x*tube_qd_2 - v.tube_end_p1_in_axes2_z*v.tube_omega_in_axes2_x;
-        /* (tube-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real tube_nu_1_t = tube_omega_1_in_axes2_x - v.tube_omega_in_axes2_x;
-        const real tube_nu_1_t_2 = v.tube_omega_in_axes2_y - tube_omega_1_in_axes2_y;
-        const real tube_nu_1_t_3 = v.tube_omega_in_axes2_z - tube_qd_2;
-        const real tube_nu_1_t_4 = tube_nd_m1_in_axes2_y*tube_nu_1_t_2 +
-            tube_nd_m1_in_axes2_z*tube_nu_1_t_3 - tube_nu_1_t*(v.tube_end_p1_in_axes2_z*tube_qd_2
-            + v.tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y);
-        const real tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*v.tube_end_p1_in_axes2_z;
-        /* (tube-nd_m2) rate of moment direction 2 */
-        const real tube_nd_m2_in_axes2_x = v.tube_end_p2_in_axes2_z*v.tube_omega_in_axes2_x -
-            v.tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
-            v.tube_n_m2_in_axes2_y*v.tube_omega_in_axes2_z;
-        const real tube_nd_m2_in_axes2_y = v.tube_end_p2_in_axes2_z*v.tube_omega_in_axes2_y -
-            v.tube_end_p2_in_axes2_y*v.tube_omega_in_axes2_z -
-            v.tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y;
-        /* (tube-nu_2) bias of the angular acceleration along moment direction 2 */
-        const real tube_nu_2_t = -tube_W_2_in_axes2_xz*v.tube_n_m2_in_axes2_y -
-            tube_W_2_in_axes2_yz*v.tube_end_p2_in_axes2_y;
-        const real tube_nu_2_t_2 = tube_nd_m2_in_axes2_y*tube_nu_1_t_2 -
-            tube_nd_m2_in_axes2_x*tube_nu_1_t -
-            tube_nu_1_t_3*(-v.tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
-            v.tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x);
-        const real tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t;
-        /* (tube-nd_m3) rate of moment direction 3 */
-        const real tube_nd_m3_in_axes2_x = v.tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
-            v.tube_n_m3_in_axes2_z*v.tube_omega_in_axes2_y -
-            v.tube_end_p3_in_axes2_y*v.tube_omega_in_axes2_x;
-        const real tube_nd_m3_in_axes2_z = v.tube_end_p3_in_axes2_y*tube_qd_2 +
-            v.tube_end_p3_in_axes2_z*v.tube_omega_in_axes2_y -
-            v.tube_end_p3_in_axes2_y*v.tube_omega_in_axes2_z;
-        /* (tube-nu_3) bias of the angular acceleration along moment direction 3 */
-        const real tube_nu_3_t = tube_nd_m3_in_axes2_x*tube_nu_1_t +
-            tube_nu_1_t_2*(v.tube_end_p3_in_axes2_z*tube_qd_2 +
-            v.tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
-        const real tube_nu_3 = tube_W_2_in_axes2_yz*v.tube_end_p3_in_axes2_z - tube_nu_3_t;
-        /* (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-           */
-        const real tube_gamma_c1 = tube_rel_o_in_axes2_y - v.tube_m1_c1_t*tube_nu_1 -
-            v.tube_m3_c1_t*tube_nu_3;
-        /* (tube-gamma_c2) part of the constraint's second derivative that does not hold the acceleration
-           */
-        const real tube_gamma_c2 = tube_rel_o_in_axes2_z + v.tube_m3_c2*tube_nu_3 -
-            v.tube_m1_c2_t*tube_nu_1;
-        /* (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
-           */
-        const real tube_gamma_c3 = v.inv_tube_size_c3*tube_nu_2 + v.tube_mu1_c3*tube_nu_1 -
-            v.tube_mu3_c3_t*tube_nu_3;
-        /* (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-           */
-        o[0*count + k] = tube_gamma_c1;
-        /* (tube-gamma_c2) part of the constraint's second derivative that does not hold the acceleration
-           */
-        o[1*count + k] = tube_gamma_c2;
-        /* (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
-           */
-        o[2*count + k] = tube_gamma_c3;
-        o[4*count + k] = tube_gamma_c1 + (tube_gamma_c2 + tube_gamma_c3);
-        o[3*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
-            UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
-            + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
-            LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_33) > LEAST_4) +
-            UNLESS(magnitude(v.tube_w_1_t_49) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_63) >
-            LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_75) > LEAST_5);
-    }
+    values_tube v;
+    stage_tube_X(m, w, i, j, s, X, &v);
+    stage_tube_V_X(w, j, V, &v);
+    /* (tube-qd_1) rate of joint 1 */
+    const real tube_qd_1_t = R(1.35)*v.tube_eta_1;
+    const real tube_qd_1_t_2 = R(1.35)*v.tube_eta_2;
+    const real tube_qd_1_t_3 = R(1.35)*v.tube_eta_3;
+    const real tube_qd_1 =
+        v.inv_tube_w_1_t_75*(v.inv_tube_w_1_t_75*v.tube_S_dot_in_axes2_y*v.tube_w_1_t_70 +
+        v.inv_tube_w_1_t_75*v.tube_S_dot_in_axes2_z*v.tube_w_1_t_71 +
+        v.inv_tube_w_1_t_75*tube_qd_1_t*v.tube_w_1_t_72 +
+        v.inv_tube_w_1_t_75*tube_qd_1_t_3*v.tube_w_1_t_74 -
+        v.inv_tube_w_1_t_75*tube_qd_1_t_2*v.tube_w_1_t_73);
+    /* (tube-qd_2) rate of joint 2 */
+    const real tube_qd_2_t = v.inv_tube_w_1_t_63*(v.tube_S_dot_in_axes2_y*v.tube_w_1_t_64 +
+        v.tube_S_dot_in_axes2_z*v.tube_w_1_t_65 + tube_qd_1_t*v.tube_w_1_t_66 +
+        tube_qd_1_t_2*v.tube_w_1_t_67 + tube_qd_1_t_3*v.tube_w_1_t_68 -
+        tube_qd_1*v.tube_w_1_t_69);
+    const real tube_qd_2_t_2 =
+        v.inv_tube_w_1_t_49*(v.inv_tube_w_1_t_49*v.tube_S_dot_in_axes2_z +
+        v.tube_S_dot_in_axes2_y*v.tube_w_1_t_50 + tube_qd_1*v.tube_w_1_t_58 +
+        tube_qd_1_t*v.tube_w_1_t_51 + tube_qd_1_t_3*v.tube_w_1_t_52 +
+        tube_qd_2_t*v.tube_w_1_t_53);
+    const real tube_qd_2_t_3 = v.tube_S_dot_in_axes2_y*v.tube_w_1_t_14 +
+        tube_qd_1_t*v.tube_w_1_t_15 + tube_qd_1_t_3*v.tube_w_1_t_16 +
+        tube_qd_2_t_2*v.tube_w_1_t_21 +
+        v.inv_tube_w_1_t_33*v.tube_w_1_t_17*(v.tube_S_dot_in_axes2_y*v.tube_w_1_t_34 +
+        tube_qd_1*v.tube_w_1_t_45 + tube_qd_1_t*v.tube_w_1_t_35 +
+        tube_qd_1_t_3*v.tube_w_1_t_36 + tube_qd_2_t*v.tube_w_1_t_41 -
+        tube_qd_2_t_2*v.tube_w_1_t_37) - tube_qd_1*v.tube_w_1_t_29 -
+        tube_qd_2_t*v.tube_w_1_t_25;
+    const real tube_qd_2 = v.inv_tube_w_1_t_13*tube_qd_2_t_3;
+    /* (tube-omega_1) angular velocity of link 1 */
+    const real tube_omega_1_in_axes2_x = v.tube_e_1_in_axes2_x*tube_qd_1;
+    const real tube_omega_1_in_axes2_y = -v.tube_c_2*tube_qd_1;
+    /* (tube-W_2) centripetal tensor of link 2 */
+    const real tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2;
+    const real tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2;
+    /* (tube-bias) acceleration of the connection point at zero joint accelerations */
+    const real tube_bias_t = 2*v.tube_S_dot_in_axes2_x;
+    const real tube_bias_in_axes2_y = tube_bias_t*tube_qd_2 +
+        tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y*v.tube_q_3;
+    const real tube_bias_in_axes2_z = 2*tube_W_2_in_axes2_xz*v.tube_q_3 -
+        tube_bias_t*tube_omega_1_in_axes2_y;
+    /* (tube-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real tube_rel_o_in_axes2_y = v.axis_y_tube_axes2_x*v.tube_u_1_x +
+        v.axis_y_tube_axes2_y*v.tube_u_1_y + v.axis_y_tube_axes2_z*v.tube_u_1_z -
+        tube_bias_in_axes2_y;
+    const real tube_rel_o_in_axes2_z = v.axis_z_tube_axes2_x*v.tube_u_1_x +
+        v.axis_z_tube_axes2_y*v.tube_u_1_y + v.axis_z_tube_axes2_z*v.tube_u_1_z -
+        tube_bias_in_axes2_z;
+    /* (tube-nd_m1) rate of moment direction 1 */
+    const real tube_nd_m1_in_axes2_y = v.tube_end_p1_in_axes2_x*v.tube_omega_in_axes2_y -
+        v.tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
+        v.tube_n_m1_in_axes2_z*v.tube_omega_in_axes2_x;
+    const real tube_nd_m1_in_axes2_z = v.tube_end_p1_in_axes2_x*v.tube_omega_in_axes2_z -
+        v.tube_end_p1_in_axes2_x*tube_qd_2 - v.tube_end_p1_in_axes2_z*v.tube_omega_in_axes2_x;
+    /* (tube-nu_1) bias of the angular acceleration along moment direction 1 */
+    const real tube_nu_1_t = tube_omega_1_in_axes2_x - v.tube_omega_in_axes2_x;
+    const real tube_nu_1_t_2 = v.tube_omega_in_axes2_y - tube_omega_1_in_axes2_y;
+    const real tube_nu_1_t_3 = v.tube_omega_in_axes2_z - tube_qd_2;
+    const real tube_nu_1_t_4 = tube_nd_m1_in_axes2_y*tube_nu_1_t_2 +
+        tube_nd_m1_in_axes2_z*tube_nu_1_t_3 - tube_nu_1_t*(v.tube_end_p1_in_axes2_z*tube_qd_2
+        + v.tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y);
+    const real tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*v.tube_end_p1_in_axes2_z;
+    /* (tube-nd_m2) rate of moment direction 2 */
+    const real tube_nd_m2_in_axes2_x = v.tube_end_p2_in_axes2_z*v.tube_omega_in_axes2_x -
+        v.tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
+        v.tube_n_m2_in_axes2_y*v.tube_omega_in_axes2_z;
+    const real tube_nd_m2_in_axes2_y = v.tube_end_p2_in_axes2_z*v.tube_omega_in_axes2_y -
+        v.tube_end_p2_in_axes2_y*v.tube_omega_in_axes2_z -
+        v.tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y;
+    /* (tube-nu_2) bias of the angular acceleration along moment direction 2 */
+    const real tube_nu_2_t = -tube_W_2_in_axes2_xz*v.tube_n_m2_in_axes2_y -
+        tube_W_2_in_axes2_yz*v.tube_end_p2_in_axes2_y;
+    const real tube_nu_2_t_2 = tube_nd_m2_in_axes2_y*tube_nu_1_t_2 -
+        tube_nd_m2_in_axes2_x*tube_nu_1_t -
+        tube_nu_1_t_3*(-v.tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
+        v.tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x);
+    const real tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t;
+    /* (tube-nd_m3) rate of moment direction 3 */
+    const real tube_nd_m3_in_axes2_x = v.tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
+        v.tube_n_m3_in_axes2_z*v.tube_omega_in_axes2_y -
+        v.tube_end_p3_in_axes2_y*v.tube_omega_in_axes2_x;
+    const real tube_nd_m3_in_axes2_z = v.tube_end_p3_in_axes2_y*tube_qd_2 +
+        v.tube_end_p3_in_axes2_z*v.tube_omega_in_axes2_y -
+        v.tube_end_p3_in_axes2_y*v.tube_omega_in_axes2_z;
+    /* (tube-nu_3) bias of the angular acceleration along moment direction 3 */
+    const real tube_nu_3_t = tube_nd_m3_in_axes2_x*tube_nu_1_t +
+        tube_nu_1_t_2*(v.tube_end_p3_in_axes2_z*tube_qd_2 +
+        v.tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
+    const real tube_nu_3 = tube_W_2_in_axes2_yz*v.tube_end_p3_in_axes2_z - tube_nu_3_t;
+    /* (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+       */
+    const real tube_gamma_c1 = tube_rel_o_in_axes2_y - v.tube_m1_c1_t*tube_nu_1 -
+        v.tube_m3_c1_t*tube_nu_3;
+    /* (tube-gamma_c2) part of the constraint's second derivative that does not hold the acceleration
+       */
+    const real tube_gamma_c2 = tube_rel_o_in_axes2_z + v.tube_m3_c2*tube_nu_3 -
+        v.tube_m1_c2_t*tube_nu_1;
+    /* (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
+       */
+    const real tube_gamma_c3 = v.inv_tube_size_c3*tube_nu_2 + v.tube_mu1_c3*tube_nu_1 -
+        v.tube_mu3_c3_t*tube_nu_3;
+    /* (tube-gamma_c1) */
+    o[0*count + k] = tube_gamma_c1;
+    /* (tube-gamma_c2) */
+    o[1*count + k] = tube_gamma_c2;
+    /* (tube-gamma_c3) */
+    o[2*count + k] = tube_gamma_c3;
+    o[4*count + k] = tube_gamma_c1 + (tube_gamma_c2 + tube_gamma_c3);
+    o[3*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
+        UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
+        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
+        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_33) > LEAST_4) +
+        UNLESS(magnitude(v.tube_w_1_t_49) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_63) >
+        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_75) > LEAST_5);
 }
 
-INLINE void constraint_bias_place_tube(size_t w, size_t count, const real *o, size_t first, real
-    *constraint_bias, verdict *t)
+INLINE void constraint_bias_place_tube(size_t w, size_t k, size_t at, size_t count, const real *o,
+    real *constraint_bias, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        constraint_bias[0*w + k] = o[0*count + first + k];
-        constraint_bias[1*w + k] = o[1*count + first + k];
-        constraint_bias[2*w + k] = o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
+    constraint_bias[0*w + k] = o[0*count + at];
+    constraint_bias[1*w + k] = o[1*count + at];
+    constraint_bias[2*w + k] = o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
 }
 
 INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V, real
@@ -6672,1499 +6549,1427 @@ INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V,
 {
     real s[9] = {0};
     real o_tube[5*LEGS(LEGS_OF_tube)] = {0};
-    constraint_bias_before(m, 1, X, s, t);
-    constraint_bias_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), X, V, o_tube);
-    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
-        constraint_bias_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, constraint_bias, t);
+    constraint_bias_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
+        constraint_bias_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), s, X, V, o_tube);
+    }
+    for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        constraint_bias_place_tube(1, 0, i, LEGS(LEGS_OF_tube), o_tube, constraint_bias, t);
     }
 }
 
 INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const real *V, real
-    *constraint_bias, verdict *t)
+    *restrict constraint_bias, verdict *restrict t)
 {
     real s[9*LANES];
     real o_tube[5*LANES];
-    constraint_bias_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
-        constraint_bias_legs_tube(m, LANES, leg, 0, s, 1, LANES, X, V, o_tube);
-        constraint_bias_place_tube(LANES, LANES, o_tube, 0, constraint_bias, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        constraint_bias_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            constraint_bias_legs_tube(m, LANES, i, k, k, LANES, s, X, V, o_tube);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            constraint_bias_place_tube(LANES, k, k, LANES, o_tube, constraint_bias, t);
+        }
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, real *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        stage_V_X(w, k, V, &v);
-        /* (W_p) centripetal tensor of the platform */
-        const real omega_x = V[3*w + k];
-        const real omega_y = V[4*w + k];
-        const real W_p_xy = omega_x*omega_y;
-        const real omega_z = V[5*w + k];
-        const real W_p_xz = omega_x*omega_z;
-        const real W_p_yz = omega_y*omega_z;
-        /* (a_t) acceleration of the platform origin, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real t_ddot_x = A[0*w + k];
-        const real a_t_x = t_ddot_x - gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real t_ddot_y = A[1*w + k];
-        const real a_t_y = t_ddot_y - gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real t_ddot_z = A[2*w + k];
-        const real a_t_z = t_ddot_z - gravity_z;
-        const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
-        const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
-        const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
-        /* (f_p) inertia force of the platform less its weight */
-        const real f_p_t = omega_x*omega_x;
-        const real f_p_t_2 = omega_y*omega_y;
-        const real f_p_t_3 = omega_z*omega_z;
-        const real alpha_y = A[4*w + k];
-        const real alpha_z = A[5*w + k];
-        const real m_star = m->m_star;
-        const real f_p_x = a_t_x*m_star + v.h_star_y*(W_p_xy - alpha_z) + v.h_star_z*(W_p_xz +
-            alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
-        const real alpha_x = A[3*w + k];
-        const real f_p_y = a_t_y*m_star + v.h_star_x*(W_p_xy + alpha_z) + v.h_star_z*(W_p_yz -
-            alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
-        const real f_p_z = a_t_z*m_star + v.h_star_x*(W_p_xz - alpha_y) + v.h_star_y*(W_p_yz +
-            alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
-        /* (mu_p) inertia moment of the platform less that of its weight */
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real mu_p_t = J_star_in_platform_xx*v.omega_in_platform_x +
-            J_star_in_platform_xy*v.omega_in_platform_y +
-            J_star_in_platform_xz*v.omega_in_platform_z;
-        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real mu_p_t_2 = J_star_in_platform_xy*v.omega_in_platform_x +
-            J_star_in_platform_yy*v.omega_in_platform_y +
-            J_star_in_platform_yz*v.omega_in_platform_z;
-        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real mu_p_t_3 = J_star_in_platform_xz*v.omega_in_platform_x +
-            J_star_in_platform_yz*v.omega_in_platform_y +
-            J_star_in_platform_zz*v.omega_in_platform_z;
-        const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
-        const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
-        const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real mu_p_in_platform_x = J_star_in_platform_xx*alpha_in_platform_x +
-            J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z
-            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
-            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real mu_p_in_platform_y = J_star_in_platform_xy*alpha_in_platform_x +
-            J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z
-            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
-            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
-        const real mu_p_in_platform_z = J_star_in_platform_xz*alpha_in_platform_x +
-            J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z
-            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
-            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
-        const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
-            v.R_xz*mu_p_in_platform_z;
-        const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
-            v.R_yz*mu_p_in_platform_z;
-        const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
-            v.R_zz*mu_p_in_platform_z;
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = f_p_x;
-        s[10*w + k] = f_p_y;
-        s[11*w + k] = f_p_z;
-        s[12*w + k] = mu_p_x;
-        s[13*w + k] = mu_p_y;
-        s[14*w + k] = mu_p_z;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    stage_V_X(w, k, V, &v);
+    /* (W_p) centripetal tensor of the platform */
+    const real omega_x = V[3*w + k];
+    const real omega_y = V[4*w + k];
+    const real W_p_xy = omega_x*omega_y;
+    const real omega_z = V[5*w + k];
+    const real W_p_xz = omega_x*omega_z;
+    const real W_p_yz = omega_y*omega_z;
+    /* (a_t) acceleration of the platform origin, less gravity */
+    const real t_ddot_x = A[0*w + k];
+    const real a_t_x = t_ddot_x - m->gravity_x;
+    const real t_ddot_y = A[1*w + k];
+    const real a_t_y = t_ddot_y - m->gravity_y;
+    const real t_ddot_z = A[2*w + k];
+    const real a_t_z = t_ddot_z - m->gravity_z;
+    const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
+    const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
+    const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
+    /* (f_p) inertia force of the platform less its weight */
+    const real f_p_t = omega_x*omega_x;
+    const real f_p_t_2 = omega_y*omega_y;
+    const real f_p_t_3 = omega_z*omega_z;
+    const real alpha_y = A[4*w + k];
+    const real alpha_z = A[5*w + k];
+    const real f_p_x = a_t_x*m->m_star + v.h_star_y*(W_p_xy - alpha_z) + v.h_star_z*(W_p_xz +
+        alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+    const real alpha_x = A[3*w + k];
+    const real f_p_y = a_t_y*m->m_star + v.h_star_x*(W_p_xy + alpha_z) + v.h_star_z*(W_p_yz -
+        alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
+    const real f_p_z = a_t_z*m->m_star + v.h_star_x*(W_p_xz - alpha_y) + v.h_star_y*(W_p_yz +
+        alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
+    /* (mu_p) inertia moment of the platform less that of its weight */
+    const real mu_p_t = m->J_star_in_platform_xx*v.omega_in_platform_x +
+        m->J_star_in_platform_xy*v.omega_in_platform_y +
+        m->J_star_in_platform_xz*v.omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*v.omega_in_platform_x +
+        m->J_star_in_platform_yy*v.omega_in_platform_y +
+        m->J_star_in_platform_yz*v.omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*v.omega_in_platform_x +
+        m->J_star_in_platform_yz*v.omega_in_platform_y +
+        m->J_star_in_platform_zz*v.omega_in_platform_z;
+    const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
+    const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
+    const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+    const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
+        m->J_star_in_platform_xy*alpha_in_platform_y +
+        m->J_star_in_platform_xz*alpha_in_platform_z +
+        a_t_in_platform_z*m->h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
+        a_t_in_platform_y*m->h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+    const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
+        m->J_star_in_platform_yy*alpha_in_platform_y +
+        m->J_star_in_platform_yz*alpha_in_platform_z +
+        a_t_in_platform_x*m->h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
+        a_t_in_platform_z*m->h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
+    const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
+        m->J_star_in_platform_yz*alpha_in_platform_y +
+        m->J_star_in_platform_zz*alpha_in_platform_z +
+        a_t_in_platform_y*m->h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
+        a_t_in_platform_x*m->h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
+    const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
+        v.R_xz*mu_p_in_platform_z;
+    const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
+        v.R_yz*mu_p_in_platform_z;
+    const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
+        v.R_zz*mu_p_in_platform_z;
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = f_p_x;
+    s[10*w + k] = f_p_y;
+    s[11*w + k] = f_p_z;
+    s[12*w + k] = mu_p_x;
+    s[13*w + k] = mu_p_y;
+    s[14*w + k] = mu_p_z;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void required_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
-    *terms, real *o)
+INLINE void required_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, const real *V, const real *A, real *terms, real
+    *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_ups v;
-        stage_ups_X(m, w, i, j, s, X, &v);
-        stage_ups_A_X(w, j, A, &v);
-        stage_ups_V_X(w, j, V, &v);
-        stage_ups_A_V_X(w, j, V, &v);
-        stage_ups_legs_required(m, i, &v);
-        /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
-        const real ups_phi_3_t = v.ups_omega_1_in_axes2_y*v.ups_omega_1_in_axes2_y;
-        const real ups_phi_3_t_2 = v.ups_qd_2*v.ups_qd_2;
-        const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
-        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
-        const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
-        const real ups_phi_3_in_axes2_x = v.ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y +
-            ups_h_3_in_spec2_x*(-ups_phi_3_t - ups_phi_3_t_2) -
-            v.ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z;
-        /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
-        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
-        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
-        const real ups_Sigma_2_in_axes2_yy = m->ups_Sigma_2_in_axes2_yy[i];
-        const real ups_Sigma_2_in_axes2_zz = m->ups_Sigma_2_in_axes2_zz[i];
-        const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
-        const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
-        const real ups_mu_2_in_axes2_x = v.ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
-            v.ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_phi_3_t
-            - ups_phi_3_t_2) + ups_Sigma_2_in_axes2_zz*v.ups_alpha_1_in_axes2_x +
-            v.ups_g_in_axes2_y*ups_h_2_in_spec2_y + v.ups_g_in_axes2_z*ups_h_2_in_spec2_z -
-            v.ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
-            v.ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - v.ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z;
-        const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
-        const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
-        const real ups_mu_2_in_axes2_y = v.ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
-            ups_Sigma_2_in_axes2_zz*v.ups_alpha_1_in_axes2_y +
-            v.ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + v.ups_g_in_axes2_z*ups_h_2_in_spec2_x -
-            v.ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
-            v.ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
-            ups_J_group_2_in_axes2_xz*(v.ups_mu_2_t - ups_phi_3_t_2) -
-            v.ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x - v.ups_g_in_axes2_x*ups_h_2_in_spec2_y;
-        const real ups_mu_2_in_axes2_z = v.ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
-            ups_J_group_2_in_axes2_xy*(v.ups_mu_2_t - ups_phi_3_t) +
-            ups_J_group_2_in_axes2_xz*v.ups_alpha_1_in_axes2_x +
-            ups_J_group_2_in_axes2_yz*v.ups_alpha_1_in_axes2_y +
-            v.ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + v.ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x
-            - v.ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy -
-            v.ups_g_in_axes2_x*ups_h_2_in_spec2_z - v.ups_g_in_axes2_y*ups_h_2_in_spec2_x;
-        /* (ups-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real ups_c_in_axes2_y = v.ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y -
-            v.inv_ups_q_3*ups_mu_2_in_axes2_z - v.ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x -
-            ups_h_3_in_spec2_z*(v.ups_mu_2_t + ups_phi_3_t_2);
-        const real ups_c_in_axes2_z = v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
-            v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) + v.ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z +
-            ups_h_3_in_spec2_y*(v.ups_mu_2_t + ups_phi_3_t) -
-            v.ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x;
-        const real ups_c_x = v.axis_y_ups_axes2_x*ups_c_in_axes2_y +
-            v.axis_z_ups_axes2_x*ups_c_in_axes2_z - v.axis_x_ups_axes2_x*ups_phi_3_in_axes2_x;
-        const real ups_c_y = v.axis_y_ups_axes2_y*ups_c_in_axes2_y +
-            v.axis_z_ups_axes2_y*ups_c_in_axes2_z - v.axis_x_ups_axes2_y*ups_phi_3_in_axes2_x;
-        const real ups_c_z = v.axis_y_ups_axes2_z*ups_c_in_axes2_y +
-            v.axis_z_ups_axes2_z*ups_c_in_axes2_z - v.axis_x_ups_axes2_z*ups_phi_3_in_axes2_x;
-        /* (R_a) moment that actuators and external wrench must give */
-        const real ups_R_a_t = ups_c_y*v.ups_q_z - ups_c_z*v.ups_q_y;
-        const real ups_R_a_t_2 = ups_c_z*v.ups_q_x - ups_c_x*v.ups_q_z;
-        const real ups_R_a_t_3 = ups_c_x*v.ups_q_y - ups_c_y*v.ups_q_x;
-        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        const real ups_H_a_3_x = v.axis_x_ups_axes2_z*v.ups_q_y - v.axis_x_ups_axes2_y*v.ups_q_z;
-        const real ups_H_a_3_y = v.axis_x_ups_axes2_x*v.ups_q_z - v.axis_x_ups_axes2_z*v.ups_q_x;
-        const real ups_H_a_3_z = v.axis_x_ups_axes2_y*v.ups_q_x - v.axis_x_ups_axes2_x*v.ups_q_y;
-        /* (R_t) force that actuators and external wrench must give */
-        gather(&terms[0*count + k], add, ups_c_x);  /* R_t_x_of_legs */
-        gather(&terms[1*count + k], add, ups_c_y);  /* R_t_y_of_legs */
-        gather(&terms[2*count + k], add, ups_c_z);  /* R_t_z_of_legs */
-        /* (R_a) moment that actuators and external wrench must give */
-        gather(&terms[3*count + k], add, ups_R_a_t);  /* R_a_x_of_legs */
-        gather(&terms[4*count + k], add, ups_R_a_t_2);  /* R_a_y_of_legs */
-        gather(&terms[5*count + k], add, ups_R_a_t_3);  /* R_a_z_of_legs */
-        /* (ups-w_3) reciprocal vector 3 */
-        o[0*count + k] = v.axis_x_ups_axes2_x;
-        o[1*count + k] = v.axis_x_ups_axes2_y;
-        o[2*count + k] = v.axis_x_ups_axes2_z;
-        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        o[3*count + k] = ups_H_a_3_x;
-        o[4*count + k] = ups_H_a_3_y;
-        o[5*count + k] = ups_H_a_3_z;
-        o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
-    }
+    values_ups v;
+    stage_ups_X(m, w, i, j, s, X, &v);
+    stage_ups_A_X(w, j, A, &v);
+    stage_ups_V_X(w, j, V, &v);
+    stage_ups_A_V_X(w, j, V, &v);
+    stage_ups_legs_required(m, i, &v);
+    /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
+    const real ups_phi_3_t = v.ups_omega_1_in_axes2_y*v.ups_omega_1_in_axes2_y;
+    const real ups_phi_3_t_2 = v.ups_qd_2*v.ups_qd_2;
+    const real ups_phi_3_in_axes2_x = v.ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
+        m->ups_h_3_in_spec2_x[i]*(-ups_phi_3_t - ups_phi_3_t_2) -
+        v.ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i];
+    /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    const real ups_mu_2_in_axes2_x = v.ups_B_2_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
+        v.ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] +
+        m->ups_J_group_2_in_axes2_yz[i]*(ups_phi_3_t - ups_phi_3_t_2) +
+        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_x +
+        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] +
+        v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i] -
+        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_y[i] -
+        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_z[i];
+    const real ups_mu_2_in_axes2_y = v.ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] +
+        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_y +
+        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_y[i] +
+        v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
+        v.ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i] -
+        m->ups_J_group_2_in_axes2_xz[i]*(v.ups_mu_2_t - ups_phi_3_t_2) -
+        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_x[i] -
+        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i];
+    const real ups_mu_2_in_axes2_z = v.ups_B_2_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
+        m->ups_J_group_2_in_axes2_xy[i]*(v.ups_mu_2_t - ups_phi_3_t) +
+        m->ups_J_group_2_in_axes2_xz[i]*v.ups_alpha_1_in_axes2_x +
+        m->ups_J_group_2_in_axes2_yz[i]*v.ups_alpha_1_in_axes2_y +
+        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_z[i] +
+        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_x[i] -
+        v.ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] -
+        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] -
+        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i];
+    /* (ups-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real ups_c_in_axes2_y = v.ups_alpha_1_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
+        v.inv_ups_q_3*ups_mu_2_in_axes2_z - v.ups_B_2_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
+        m->ups_h_3_in_spec2_z[i]*(v.ups_mu_2_t + ups_phi_3_t_2);
+    const real ups_c_in_axes2_z = v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
+        v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) +
+        v.ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] +
+        m->ups_h_3_in_spec2_y[i]*(v.ups_mu_2_t + ups_phi_3_t) -
+        v.ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i];
+    const real ups_c_x = v.axis_y_ups_axes2_x*ups_c_in_axes2_y +
+        v.axis_z_ups_axes2_x*ups_c_in_axes2_z - v.axis_x_ups_axes2_x*ups_phi_3_in_axes2_x;
+    const real ups_c_y = v.axis_y_ups_axes2_y*ups_c_in_axes2_y +
+        v.axis_z_ups_axes2_y*ups_c_in_axes2_z - v.axis_x_ups_axes2_y*ups_phi_3_in_axes2_x;
+    const real ups_c_z = v.axis_y_ups_axes2_z*ups_c_in_axes2_y +
+        v.axis_z_ups_axes2_z*ups_c_in_axes2_z - v.axis_x_ups_axes2_z*ups_phi_3_in_axes2_x;
+    /* (R_a) moment that actuators and external wrench must give */
+    const real ups_R_a_t = ups_c_y*v.ups_q_z - ups_c_z*v.ups_q_y;
+    const real ups_R_a_t_2 = ups_c_z*v.ups_q_x - ups_c_x*v.ups_q_z;
+    const real ups_R_a_t_3 = ups_c_x*v.ups_q_y - ups_c_y*v.ups_q_x;
+    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
+    const real ups_H_a_3_x = v.axis_x_ups_axes2_z*v.ups_q_y - v.axis_x_ups_axes2_y*v.ups_q_z;
+    const real ups_H_a_3_y = v.axis_x_ups_axes2_x*v.ups_q_z - v.axis_x_ups_axes2_z*v.ups_q_x;
+    const real ups_H_a_3_z = v.axis_x_ups_axes2_y*v.ups_q_x - v.axis_x_ups_axes2_x*v.ups_q_y;
+    /* (R_t) force that actuators and external wrench must give */
+    gather(&terms[0*count + k], add, ups_c_x);  /* R_t_x_of_legs */
+    gather(&terms[1*count + k], add, ups_c_y);  /* R_t_y_of_legs */
+    gather(&terms[2*count + k], add, ups_c_z);  /* R_t_z_of_legs */
+    /* (R_a) */
+    gather(&terms[3*count + k], add, ups_R_a_t);  /* R_a_x_of_legs */
+    gather(&terms[4*count + k], add, ups_R_a_t_2);  /* R_a_y_of_legs */
+    gather(&terms[5*count + k], add, ups_R_a_t_3);  /* R_a_z_of_legs */
+    /* (ups-w_3) reciprocal vector 3 */
+    o[0*count + k] = v.axis_x_ups_axes2_x;
+    o[1*count + k] = v.axis_x_ups_axes2_y;
+    o[2*count + k] = v.axis_x_ups_axes2_z;
+    /* (ups-H_a_3) */
+    o[3*count + k] = ups_H_a_3_x;
+    o[4*count + k] = ups_H_a_3_y;
+    o[5*count + k] = ups_H_a_3_z;
+    o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void required_place_ups(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *H, verdict *t)
+INLINE void required_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real
+    *o, real *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        H[(3*NU + leg)*w + k] = o[3*count + first + k];
-        H[(4*NU + leg)*w + k] = o[4*count + first + k];
-        H[(5*NU + leg)*w + k] = o[5*count + first + k];
-        t->singular[k] += o[6*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    H[(3*NU + i)*w + k] = o[3*count + at];
+    H[(4*NU + i)*w + k] = o[4*count + at];
+    H[(5*NU + i)*w + k] = o[5*count + at];
+    t->singular[k] += o[6*count + at];
 }
 
-INLINE void required_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
-    *terms, real *o)
+INLINE void required_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, const real *V, const real *A, real *terms, real
+    *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_tube v;
-        stage_tube_X(m, w, i, j, s, X, &v);
-        stage_tube_A_X(w, j, A, &v);
-        stage_tube_V_X(w, j, V, &v);
-        stage_tube_A_V_X(w, j, V, &v);
-        stage_tube_dynamics_required(&v);
-        stage_tube_legs_required(m, i, &v);
-        /* (R_a) moment that actuators and external wrench must give */
-        const real tube_R_a_t = v.axis_x_tube_axes2_x*v.tube_G_m_in_axes2_x +
-            v.axis_y_tube_axes2_x*v.tube_G_m_in_axes2_y +
-            v.axis_z_tube_axes2_x*v.tube_G_m_in_axes2_z + v.tube_c_y*v.tube_q_z -
-            v.tube_c_z*v.tube_q_y;
-        const real tube_R_a_t_2 = v.axis_x_tube_axes2_y*v.tube_G_m_in_axes2_x +
-            v.axis_y_tube_axes2_y*v.tube_G_m_in_axes2_y +
-            v.axis_z_tube_axes2_y*v.tube_G_m_in_axes2_z + v.tube_c_z*v.tube_q_x -
-            v.tube_c_x*v.tube_q_z;
-        const real tube_R_a_t_3 = v.axis_x_tube_axes2_z*v.tube_G_m_in_axes2_x +
-            v.axis_y_tube_axes2_z*v.tube_G_m_in_axes2_y +
-            v.axis_z_tube_axes2_z*v.tube_G_m_in_axes2_z + v.tube_c_x*v.tube_q_y -
-            v.tube_c_y*v.tube_q_x;
-        /* (R_t) force that actuators and external wrench must give */
-        gather(&terms[0*count + k], add, v.tube_c_x);  /* R_t_x_of_legs */
-        gather(&terms[1*count + k], add, v.tube_c_y);  /* R_t_y_of_legs */
-        gather(&terms[2*count + k], add, v.tube_c_z);  /* R_t_z_of_legs */
-        /* (R_a) moment that actuators and external wrench must give */
-        gather(&terms[3*count + k], add, tube_R_a_t);  /* R_a_x_of_legs */
-        gather(&terms[4*count + k], add, tube_R_a_t_2);  /* R_a_y_of_legs */
-        gather(&terms[5*count + k], add, tube_R_a_t_3);  /* R_a_z_of_legs */
-        /* (tube-n_c1) unit force of the constraint wrench */
-        o[0*count + k] = v.axis_y_tube_axes2_x;
-        o[1*count + k] = v.axis_y_tube_axes2_y;
-        o[2*count + k] = v.axis_y_tube_axes2_z;
-        /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = v.tube_Hk_a_1_x;
-        o[4*count + k] = v.tube_Hk_a_1_y;
-        o[5*count + k] = v.tube_Hk_a_1_z;
-        /* (tube-n_c2) unit force of the constraint wrench */
-        o[6*count + k] = v.axis_z_tube_axes2_x;
-        o[7*count + k] = v.axis_z_tube_axes2_y;
-        o[8*count + k] = v.axis_z_tube_axes2_z;
-        /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
-        o[9*count + k] = v.tube_Hk_a_2_x;
-        o[10*count + k] = v.tube_Hk_a_2_y;
-        o[11*count + k] = v.tube_Hk_a_2_z;
-        /* (tube-Hk_a_3) moment of the column's unit force about the platform origin */
-        o[12*count + k] = v.tube_mu_c3_x;
-        o[13*count + k] = v.tube_mu_c3_y;
-        o[14*count + k] = v.tube_mu_c3_z;
-        o[15*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
-            UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
-            + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
-            LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_33) > LEAST_4) +
-            UNLESS(magnitude(v.tube_w_1_t_49) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_63) >
-            LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_75) > LEAST_5);
-    }
+    values_tube v;
+    stage_tube_X(m, w, i, j, s, X, &v);
+    stage_tube_A_X(w, j, A, &v);
+    stage_tube_V_X(w, j, V, &v);
+    stage_tube_A_V_X(w, j, V, &v);
+    stage_tube_dynamics_required(&v);
+    stage_tube_legs_required(m, i, &v);
+    /* (R_a) */
+    const real tube_R_a_t = v.axis_x_tube_axes2_x*v.tube_G_m_in_axes2_x +
+        v.axis_y_tube_axes2_x*v.tube_G_m_in_axes2_y +
+        v.axis_z_tube_axes2_x*v.tube_G_m_in_axes2_z + v.tube_c_y*v.tube_q_z -
+        v.tube_c_z*v.tube_q_y;
+    const real tube_R_a_t_2 = v.axis_x_tube_axes2_y*v.tube_G_m_in_axes2_x +
+        v.axis_y_tube_axes2_y*v.tube_G_m_in_axes2_y +
+        v.axis_z_tube_axes2_y*v.tube_G_m_in_axes2_z + v.tube_c_z*v.tube_q_x -
+        v.tube_c_x*v.tube_q_z;
+    const real tube_R_a_t_3 = v.axis_x_tube_axes2_z*v.tube_G_m_in_axes2_x +
+        v.axis_y_tube_axes2_z*v.tube_G_m_in_axes2_y +
+        v.axis_z_tube_axes2_z*v.tube_G_m_in_axes2_z + v.tube_c_x*v.tube_q_y -
+        v.tube_c_y*v.tube_q_x;
+    /* (R_t) */
+    gather(&terms[0*count + k], add, v.tube_c_x);  /* R_t_x_of_legs */
+    gather(&terms[1*count + k], add, v.tube_c_y);  /* R_t_y_of_legs */
+    gather(&terms[2*count + k], add, v.tube_c_z);  /* R_t_z_of_legs */
+    /* (R_a) */
+    gather(&terms[3*count + k], add, tube_R_a_t);  /* R_a_x_of_legs */
+    gather(&terms[4*count + k], add, tube_R_a_t_2);  /* R_a_y_of_legs */
+    gather(&terms[5*count + k], add, tube_R_a_t_3);  /* R_a_z_of_legs */
+    /* (tube-n_c1) unit force of the constraint wrench */
+    o[0*count + k] = v.axis_y_tube_axes2_x;
+    o[1*count + k] = v.axis_y_tube_axes2_y;
+    o[2*count + k] = v.axis_y_tube_axes2_z;
+    /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.tube_Hk_a_1_x;
+    o[4*count + k] = v.tube_Hk_a_1_y;
+    o[5*count + k] = v.tube_Hk_a_1_z;
+    /* (tube-n_c2) unit force of the constraint wrench */
+    o[6*count + k] = v.axis_z_tube_axes2_x;
+    o[7*count + k] = v.axis_z_tube_axes2_y;
+    o[8*count + k] = v.axis_z_tube_axes2_z;
+    /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
+    o[9*count + k] = v.tube_Hk_a_2_x;
+    o[10*count + k] = v.tube_Hk_a_2_y;
+    o[11*count + k] = v.tube_Hk_a_2_z;
+    /* (tube-Hk_a_3) moment of the column's unit force about the platform origin */
+    o[12*count + k] = v.tube_mu_c3_x;
+    o[13*count + k] = v.tube_mu_c3_y;
+    o[14*count + k] = v.tube_mu_c3_z;
+    o[15*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
+        UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
+        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
+        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_33) > LEAST_4) +
+        UNLESS(magnitude(v.tube_w_1_t_49) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_63) >
+        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_75) > LEAST_5);
 }
 
-INLINE void required_place_tube(size_t w, size_t count, const real *o, size_t first, real *Hk,
-    verdict *t)
+INLINE void required_place_tube(size_t w, size_t k, size_t at, size_t count, const real *o, real
+    *Hk, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        Hk[0*w + k] = o[0*count + first + k];
-        Hk[NC*w + k] = o[1*count + first + k];
-        Hk[2*NC*w + k] = o[2*count + first + k];
-        Hk[3*NC*w + k] = o[3*count + first + k];
-        Hk[4*NC*w + k] = o[4*count + first + k];
-        Hk[5*NC*w + k] = o[5*count + first + k];
-        Hk[1*w + k] = o[6*count + first + k];
-        Hk[(NC + 1)*w + k] = o[7*count + first + k];
-        Hk[(2*NC + 1)*w + k] = o[8*count + first + k];
-        Hk[(3*NC + 1)*w + k] = o[9*count + first + k];
-        Hk[(4*NC + 1)*w + k] = o[10*count + first + k];
-        Hk[(5*NC + 1)*w + k] = o[11*count + first + k];
-        Hk[(3*NC + 2)*w + k] = o[12*count + first + k];
-        Hk[(4*NC + 2)*w + k] = o[13*count + first + k];
-        Hk[(5*NC + 2)*w + k] = o[14*count + first + k];
-        t->singular[k] += o[15*count + first + k];
-    }
+    Hk[0*w + k] = o[0*count + at];
+    Hk[NC*w + k] = o[1*count + at];
+    Hk[2*NC*w + k] = o[2*count + at];
+    Hk[3*NC*w + k] = o[3*count + at];
+    Hk[4*NC*w + k] = o[4*count + at];
+    Hk[5*NC*w + k] = o[5*count + at];
+    Hk[1*w + k] = o[6*count + at];
+    Hk[(NC + 1)*w + k] = o[7*count + at];
+    Hk[(2*NC + 1)*w + k] = o[8*count + at];
+    Hk[(3*NC + 1)*w + k] = o[9*count + at];
+    Hk[(4*NC + 1)*w + k] = o[10*count + at];
+    Hk[(5*NC + 1)*w + k] = o[11*count + at];
+    Hk[(3*NC + 2)*w + k] = o[12*count + at];
+    Hk[(4*NC + 2)*w + k] = o[13*count + at];
+    Hk[(5*NC + 2)*w + k] = o[14*count + at];
+    t->singular[k] += o[15*count + at];
 }
 
-INLINE void required_after(size_t w, const real *s, const real *sums, real *required)
+INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (R_t) force that actuators and external wrench must give */
-        const real R_t_x_of_legs = sums[0*w + k];
-        const real f_p_x = s[9*w + k];
-        const real R_t_x = f_p_x - R_t_x_of_legs;
-        const real R_t_y_of_legs = sums[1*w + k];
-        const real f_p_y = s[10*w + k];
-        const real R_t_y = f_p_y - R_t_y_of_legs;
-        const real R_t_z_of_legs = sums[2*w + k];
-        const real f_p_z = s[11*w + k];
-        const real R_t_z = f_p_z - R_t_z_of_legs;
-        /* (R_a) moment that actuators and external wrench must give */
-        const real R_a_x_of_legs = sums[3*w + k];
-        const real mu_p_x = s[12*w + k];
-        const real R_a_x = R_a_x_of_legs + mu_p_x;
-        const real R_a_y_of_legs = sums[4*w + k];
-        const real mu_p_y = s[13*w + k];
-        const real R_a_y = R_a_y_of_legs + mu_p_y;
-        const real R_a_z_of_legs = sums[5*w + k];
-        const real mu_p_z = s[14*w + k];
-        const real R_a_z = R_a_z_of_legs + mu_p_z;
-        /* (R_t) force that actuators and external wrench must give */
-        required[0*w + k] = R_t_x;
-        required[1*w + k] = R_t_y;
-        required[2*w + k] = R_t_z;
-        /* (R_a) moment that actuators and external wrench must give */
-        required[3*w + k] = R_a_x;
-        required[4*w + k] = R_a_y;
-        required[5*w + k] = R_a_z;
-    }
+    /* (R_t) */
+    const real R_t_x_of_legs = sums[0*w + k];
+    const real f_p_x = s[9*w + k];
+    const real R_t_x = f_p_x - R_t_x_of_legs;
+    const real R_t_y_of_legs = sums[1*w + k];
+    const real f_p_y = s[10*w + k];
+    const real R_t_y = f_p_y - R_t_y_of_legs;
+    const real R_t_z_of_legs = sums[2*w + k];
+    const real f_p_z = s[11*w + k];
+    const real R_t_z = f_p_z - R_t_z_of_legs;
+    /* (R_a) */
+    const real R_a_x_of_legs = sums[3*w + k];
+    const real mu_p_x = s[12*w + k];
+    const real R_a_x = R_a_x_of_legs + mu_p_x;
+    const real R_a_y_of_legs = sums[4*w + k];
+    const real mu_p_y = s[13*w + k];
+    const real R_a_y = R_a_y_of_legs + mu_p_y;
+    const real R_a_z_of_legs = sums[5*w + k];
+    const real mu_p_z = s[14*w + k];
+    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    /* (R_t) */
+    required[0*w + k] = R_t_x;
+    required[1*w + k] = R_t_y;
+    required[2*w + k] = R_t_z;
+    /* (R_a) */
+    required[3*w + k] = R_a_x;
+    required[4*w + k] = R_a_y;
+    required[5*w + k] = R_a_z;
 }
 
-INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, real *Hk, verdict *t)
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_ups[6*LEGS(LEGS_OF_ups)] = {0}, o_ups[7*LEGS(LEGS_OF_ups)] = {0};
     real terms_tube[6*LEGS(LEGS_OF_tube)] = {0}, o_tube[16*LEGS(LEGS_OF_tube)] = {0};
     clear(Hk, NV*NC);
-    required_before(m, 1, X, V, A, s, t);
-    required_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, X, V, A, terms_ups, o_ups);
-    required_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), 0, X, V, A, terms_tube, o_tube);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        required_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, H, t);
+    required_before(m, 1, 0, X, V, A, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
+        required_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, V, A, terms_ups, o_ups);
+    }
+    for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
+        required_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), 0, s, X, V, A, terms_tube, o_tube);
+    }
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        required_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
-    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
-        required_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, Hk, t);
+    for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        required_place_tube(1, 0, i, LEGS(LEGS_OF_tube), o_tube, Hk, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
             sums[n] += terms_tube[n*LEGS(LEGS_OF_tube) + leg];
         }
     }
-    required_after(1, s, sums, required);
+    required_after(1, 0, s, sums, required);
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, const real *X, real *s, verdict
-    *t)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, real
+    *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, const real *X, real *o)
+INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k,
+    size_t count, const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_ups v;
-        stage_ups_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-        /* (ups-q_1) displacement of joint 1 */
-        const real ups_q_1 = angle(v.inv_ups_root_1*v.ups_S_in_turn1_y,
-            v.inv_ups_root_1*v.ups_S_in_turn1_x);
-        /* (ups-q_2) displacement of joint 2 */
-        const real ups_q_2 = angle(-v.inv_ups_q_3*v.ups_S_in_turn1_z, v.inv_ups_q_3*v.ups_root_1);
-        /* (ups-q_1) displacement of joint 1 */
-        o[0*count + k] = ups_q_1;
-        /* (ups-q_2) displacement of joint 2 */
-        o[1*count + k] = ups_q_2;
-        /* (ups-q_3) displacement of joint 3 */
-        o[2*count + k] = v.ups_q_3;
-        o[4*count + k] = ups_q_1 + (ups_q_2 + v.ups_q_3);
-        o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1);
-    }
+    values_ups v;
+    stage_ups_inverse_kinematics_potential(m, w, i, j, s, X, &v);
+    /* (ups-q_1) displacement of joint 1 */
+    const real ups_q_1 = angle(v.inv_ups_root_1*v.ups_S_in_turn1_y,
+        v.inv_ups_root_1*v.ups_S_in_turn1_x);
+    /* (ups-q_2) displacement of joint 2 */
+    const real ups_q_2 = angle(-v.inv_ups_q_3*v.ups_S_in_turn1_z, v.inv_ups_q_3*v.ups_root_1);
+    /* (ups-q_1) */
+    o[0*count + k] = ups_q_1;
+    /* (ups-q_2) */
+    o[1*count + k] = ups_q_2;
+    /* (ups-q_3) displacement of joint 3 */
+    o[2*count + k] = v.ups_q_3;
+    o[4*count + k] = ups_q_1 + (ups_q_2 + v.ups_q_3);
+    o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1);
 }
 
-INLINE void inverse_kinematics_place_ups(size_t w, size_t count, const real *o, size_t leg, size_t
-    first, real *q, verdict *t)
+INLINE void inverse_kinematics_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count,
+    const real *o, real *q, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        q[3*leg*w + k] = o[0*count + first + k];
-        q[(1 + 3*leg)*w + k] = o[1*count + first + k];
-        q[(2 + 3*leg)*w + k] = o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
+    q[3*i*w + k] = o[0*count + at];
+    q[(1 + 3*i)*w + k] = o[1*count + at];
+    q[(2 + 3*i)*w + k] = o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
 }
 
-INLINE void inverse_kinematics_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, const real *X, real *o)
+INLINE void inverse_kinematics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t
+    k, size_t count, const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        /* (tube-S) from the base point to the connection point */
-        const real R_xx = s[0*w + j];
-        const real R_xy = s[1*w + j];
-        const real R_xz = s[2*w + j];
-        const real t_x = X[0*w + j];
-        const real tube_base_point_x = m->tube_base_point_x[i];
-        const real tube_platform_point_x = m->tube_platform_point_x[i];
-        const real tube_platform_point_y = m->tube_platform_point_y[i];
-        const real tube_platform_point_z = m->tube_platform_point_z[i];
-        const real tube_S_x = t_x + R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
-            R_xz*tube_platform_point_z - tube_base_point_x;
-        const real R_yx = s[3*w + j];
-        const real R_yy = s[4*w + j];
-        const real R_yz = s[5*w + j];
-        const real t_y = X[1*w + j];
-        const real tube_base_point_y = m->tube_base_point_y[i];
-        const real tube_S_y = t_y + R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
-            R_yz*tube_platform_point_z - tube_base_point_y;
-        const real R_zx = s[6*w + j];
-        const real R_zy = s[7*w + j];
-        const real R_zz = s[8*w + j];
-        const real t_z = X[2*w + j];
-        const real tube_base_point_z = m->tube_base_point_z[i];
-        const real tube_S_z = t_z + R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
-            R_zz*tube_platform_point_z - tube_base_point_z;
-        const real tube_base_frame_xx = m->tube_base_frame_xx[i];
-        const real tube_base_frame_yx = m->tube_base_frame_yx[i];
-        const real tube_base_frame_zx = m->tube_base_frame_zx[i];
-        const real tube_S_in_turn1_x = tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx +
-            tube_S_z*tube_base_frame_zx;
-        const real tube_base_frame_xy = m->tube_base_frame_xy[i];
-        const real tube_base_frame_yy = m->tube_base_frame_yy[i];
-        const real tube_base_frame_zy = m->tube_base_frame_zy[i];
-        const real tube_S_in_turn1_y = tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy +
-            tube_S_z*tube_base_frame_zy;
-        const real tube_base_frame_xz = m->tube_base_frame_xz[i];
-        const real tube_base_frame_yz = m->tube_base_frame_yz[i];
-        const real tube_base_frame_zz = m->tube_base_frame_zz[i];
-        const real tube_S_in_turn1_z = tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz +
-            tube_S_z*tube_base_frame_zz;
-        /* (tube-root_1) amplitude, the length across axis 1, with the sign of the branch */
-        const real tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x +
-            tube_S_in_turn1_y*tube_S_in_turn1_y;
-        const real tube_branch_1 = m->tube_branch_1[i];
-        const real tube_root_1 = tube_branch_1*root(tube_root_1_t);
-        /* (tube-q_1) displacement of joint 1 */
-        const real inv_tube_root_1 = 1/tube_root_1;
-        const real tube_q_1 = angle(inv_tube_root_1*tube_S_in_turn1_y,
-            inv_tube_root_1*tube_S_in_turn1_x);
-        /* (tube-q_3) displacement of joint 3 */
-        const real tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t;
-        const real tube_branch_2 = m->tube_branch_2[i];
-        const real tube_q_3 = tube_branch_2*root(tube_q_3_t);
-        /* (tube-q_2) displacement of joint 2 */
-        const real inv_tube_q_3 = 1/tube_q_3;
-        const real tube_q_2 = angle(-inv_tube_q_3*tube_S_in_turn1_z, inv_tube_q_3*tube_root_1);
-        /* (tube-q_1) displacement of joint 1 */
-        o[0*count + k] = tube_q_1;
-        /* (tube-q_2) displacement of joint 2 */
-        o[1*count + k] = tube_q_2;
-        /* (tube-q_3) displacement of joint 3 */
-        o[2*count + k] = tube_q_3;
-        o[4*count + k] = tube_q_1 + (tube_q_2 + tube_q_3);
-        o[3*count + k] = UNLESS(magnitude(tube_root_1_t) > LEAST_3) + UNLESS(magnitude(tube_q_3_t)
-            > LEAST_3);
-    }
+    /* (tube-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real t_x = X[0*w + j];
+    const real tube_S_x = t_x + R_xx*m->tube_platform_point_x[i] +
+        R_xy*m->tube_platform_point_y[i] + R_xz*m->tube_platform_point_z[i] -
+        m->tube_base_point_x[i];
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real t_y = X[1*w + j];
+    const real tube_S_y = t_y + R_yx*m->tube_platform_point_x[i] +
+        R_yy*m->tube_platform_point_y[i] + R_yz*m->tube_platform_point_z[i] -
+        m->tube_base_point_y[i];
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real t_z = X[2*w + j];
+    const real tube_S_z = t_z + R_zx*m->tube_platform_point_x[i] +
+        R_zy*m->tube_platform_point_y[i] + R_zz*m->tube_platform_point_z[i] -
+        m->tube_base_point_z[i];
+    const real tube_S_in_turn1_x = tube_S_x*m->tube_base_frame_xx[i] +
+        tube_S_y*m->tube_base_frame_yx[i] + tube_S_z*m->tube_base_frame_zx[i];
+    const real tube_S_in_turn1_y = tube_S_x*m->tube_base_frame_xy[i] +
+        tube_S_y*m->tube_base_frame_yy[i] + tube_S_z*m->tube_base_frame_zy[i];
+    const real tube_S_in_turn1_z = tube_S_x*m->tube_base_frame_xz[i] +
+        tube_S_y*m->tube_base_frame_yz[i] + tube_S_z*m->tube_base_frame_zz[i];
+    /* (tube-root_1) amplitude, the length across axis 1, with the sign of the branch */
+    const real tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x +
+        tube_S_in_turn1_y*tube_S_in_turn1_y;
+    const real tube_root_1 = m->tube_branch_1[i]*root(tube_root_1_t);
+    /* (tube-q_1) displacement of joint 1 */
+    const real inv_tube_root_1 = 1/tube_root_1;
+    const real tube_q_1 = angle(inv_tube_root_1*tube_S_in_turn1_y,
+        inv_tube_root_1*tube_S_in_turn1_x);
+    /* (tube-q_3) displacement of joint 3 */
+    const real tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t;
+    const real tube_q_3 = m->tube_branch_2[i]*root(tube_q_3_t);
+    /* (tube-q_2) displacement of joint 2 */
+    const real inv_tube_q_3 = 1/tube_q_3;
+    const real tube_q_2 = angle(-inv_tube_q_3*tube_S_in_turn1_z, inv_tube_q_3*tube_root_1);
+    /* (tube-q_1) */
+    o[0*count + k] = tube_q_1;
+    /* (tube-q_2) */
+    o[1*count + k] = tube_q_2;
+    /* (tube-q_3) */
+    o[2*count + k] = tube_q_3;
+    o[4*count + k] = tube_q_1 + (tube_q_2 + tube_q_3);
+    o[3*count + k] = UNLESS(magnitude(tube_root_1_t) > LEAST_3) + UNLESS(magnitude(tube_q_3_t)
+        > LEAST_3);
 }
 
-INLINE void inverse_kinematics_place_tube(size_t w, size_t count, const real *o, size_t first,
-    real *q, verdict *t)
+INLINE void inverse_kinematics_place_tube(size_t w, size_t k, size_t at, size_t count, const real
+    *o, real *q, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        q[12*w + k] = o[0*count + first + k];
-        q[13*w + k] = o[1*count + first + k];
-        q[14*w + k] = o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
+    q[12*w + k] = o[0*count + at];
+    q[13*w + k] = o[1*count + at];
+    q[14*w + k] = o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
 }
 
-INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
+APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
     real s[9] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
     real o_tube[5*LEGS(LEGS_OF_tube)] = {0};
-    inverse_kinematics_before(m, 1, X, s, t);
-    inverse_kinematics_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), X, o_ups);
-    inverse_kinematics_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), X, o_tube);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        inverse_kinematics_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, q, t);
+    inverse_kinematics_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
+        inverse_kinematics_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, o_ups);
     }
-    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
-        inverse_kinematics_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, q, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
+        inverse_kinematics_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), s, X, o_tube);
+    }
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        inverse_kinematics_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, q, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        inverse_kinematics_place_tube(1, 0, i, LEGS(LEGS_OF_tube), o_tube, q, t);
     }
 }
 
-INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
+INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
+    verdict *restrict t)
 {
     real s[9*LANES];
     real o_ups[5*LANES];
     real o_tube[5*LANES];
-    inverse_kinematics_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        inverse_kinematics_legs_ups(m, LANES, leg, 0, s, 1, LANES, X, o_ups);
-        inverse_kinematics_place_ups(LANES, LANES, o_ups, leg, 0, q, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        inverse_kinematics_before(m, LANES, k, X, s, t);
     }
-    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
-        inverse_kinematics_legs_tube(m, LANES, leg, 0, s, 1, LANES, X, o_tube);
-        inverse_kinematics_place_tube(LANES, LANES, o_tube, 0, q, t);
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_legs_ups(m, LANES, i, k, k, LANES, s, X, o_ups);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_place_ups(LANES, i, k, k, LANES, o_ups, q, t);
+        }
+    }
+    for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_legs_tube(m, LANES, i, k, k, LANES, s, X, o_tube);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_place_tube(LANES, k, k, LANES, o_tube, q, t);
+        }
     }
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
-}
-
-INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, const real *X, const real *V, real *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_ups v;
-        stage_ups_X(m, w, i, j, s, X, &v);
-        /* (ups-S_dot) velocity of the connection point */
-        const real omega_y = V[4*w + j];
-        const real omega_z = V[5*w + j];
-        const real t_dot_x = V[0*w + j];
-        const real ups_S_dot_x = t_dot_x + omega_y*v.ups_q_z - omega_z*v.ups_q_y;
-        const real omega_x = V[3*w + j];
-        const real t_dot_y = V[1*w + j];
-        const real ups_S_dot_y = t_dot_y + omega_z*v.ups_q_x - omega_x*v.ups_q_z;
-        const real t_dot_z = V[2*w + j];
-        const real ups_S_dot_z = t_dot_z + omega_x*v.ups_q_y - omega_y*v.ups_q_x;
-        const real ups_S_dot_in_axes2_x = v.axis_x_ups_axes2_x*ups_S_dot_x +
-            v.axis_x_ups_axes2_y*ups_S_dot_y + v.axis_x_ups_axes2_z*ups_S_dot_z;
-        /* (ups-qd_1) rate of joint 1 */
-        const real ups_qd_1 = v.inv_ups_root_1*(v.axis_z_ups_axes2_x*ups_S_dot_x +
-            v.axis_z_ups_axes2_y*ups_S_dot_y + v.axis_z_ups_axes2_z*ups_S_dot_z);
-        /* (ups-qd_2) rate of joint 2 */
-        const real ups_qd_2 =
-            v.inv_ups_q_3*(ups_S_dot_x*(v.axis_x_ups_axes2_z*v.axis_z_ups_axes2_y -
-            v.axis_x_ups_axes2_y*v.axis_z_ups_axes2_z) +
-            ups_S_dot_y*(v.axis_x_ups_axes2_x*v.axis_z_ups_axes2_z -
-            v.axis_x_ups_axes2_z*v.axis_z_ups_axes2_x) +
-            ups_S_dot_z*(v.axis_x_ups_axes2_y*v.axis_z_ups_axes2_x -
-            v.axis_x_ups_axes2_x*v.axis_z_ups_axes2_y));
-        /* (ups-qd_1) rate of joint 1 */
-        o[0*count + k] = ups_qd_1;
-        /* (ups-qd_2) rate of joint 2 */
-        o[1*count + k] = ups_qd_2;
-        /* (ups-qd_3) rate of joint 3 */
-        o[2*count + k] = ups_S_dot_in_axes2_x;
-        o[4*count + k] = ups_qd_1 + (ups_qd_2 + ups_S_dot_in_axes2_x);
-        o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
-    }
-}
-
-INLINE void joint_rates_place_ups(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *qd, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        qd[3*leg*w + k] = o[0*count + first + k];
-        qd[(1 + 3*leg)*w + k] = o[1*count + first + k];
-        qd[(2 + 3*leg)*w + k] = o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
-}
-
-INLINE void joint_rates_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, const real *X, const real *V, real *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_tube v;
-        stage_tube_X(m, w, i, j, s, X, &v);
-        stage_tube_V_X(w, j, V, &v);
-        /* (tube-S_dot) velocity of the connection point */
-        const real omega_y = V[4*w + j];
-        const real omega_z = V[5*w + j];
-        const real t_dot_x = V[0*w + j];
-        const real tube_S_dot_x = t_dot_x + omega_y*v.tube_q_z - omega_z*v.tube_q_y;
-        const real omega_x = V[3*w + j];
-        const real t_dot_y = V[1*w + j];
-        const real tube_S_dot_y = t_dot_y + omega_z*v.tube_q_x - omega_x*v.tube_q_z;
-        const real t_dot_z = V[2*w + j];
-        const real tube_S_dot_z = t_dot_z + omega_x*v.tube_q_y - omega_y*v.tube_q_x;
-        const real tube_S_dot_in_axes2_x = v.axis_x_tube_axes2_x*tube_S_dot_x +
-            v.axis_x_tube_axes2_y*tube_S_dot_y + v.axis_x_tube_axes2_z*tube_S_dot_z;
-        const real tube_S_dot_in_axes2_y = v.axis_y_tube_axes2_x*tube_S_dot_x +
-            v.axis_y_tube_axes2_y*tube_S_dot_y + v.axis_y_tube_axes2_z*tube_S_dot_z;
-        const real tube_S_dot_in_axes2_z = v.axis_z_tube_axes2_x*tube_S_dot_x +
-            v.axis_z_tube_axes2_y*tube_S_dot_y + v.axis_z_tube_axes2_z*tube_S_dot_z;
-        /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real tube_platform_joint_rotation_yx = m->tube_platform_joint_rotation_yx[i];
-        const real tube_platform_joint_rotation_yy = m->tube_platform_joint_rotation_yy[i];
-        const real tube_platform_joint_rotation_yz = m->tube_platform_joint_rotation_yz[i];
-        const real tube_n_m1_in_axes2_z = v.tube_e_1_in_axes2_x*(v.tube_c_1*v.tube_n_m1_t_10 +
-            v.tube_n_m1_t_11*v.tube_s_1) -
-            v.tube_c_2*(v.tube_n_m1_t_7*tube_platform_joint_rotation_yx +
-            v.tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            v.tube_n_m1_t_9*tube_platform_joint_rotation_yz);
-        /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real tube_platform_joint_rotation_zx = m->tube_platform_joint_rotation_zx[i];
-        const real tube_platform_joint_rotation_zy = m->tube_platform_joint_rotation_zy[i];
-        const real tube_platform_joint_rotation_zz = m->tube_platform_joint_rotation_zz[i];
-        const real tube_n_m2_t = v.tube_n_m1_t_7*tube_platform_joint_rotation_zx +
-            v.tube_n_m1_t_8*tube_platform_joint_rotation_zy +
-            v.tube_n_m1_t_9*tube_platform_joint_rotation_zz;
-        const real tube_n_m2_t_2 = v.tube_c_1*(v.tube_n_m1_t*tube_platform_joint_rotation_zx +
-            v.tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            v.tube_n_m1_t_3*tube_platform_joint_rotation_zz) +
-            v.tube_s_1*(v.tube_n_m1_t_4*tube_platform_joint_rotation_zx +
-            v.tube_n_m1_t_5*tube_platform_joint_rotation_zy +
-            v.tube_n_m1_t_6*tube_platform_joint_rotation_zz);
-        const real tube_n_m2_in_axes2_y = v.tube_c_2*tube_n_m2_t_2 +
-            v.tube_e_1_in_axes2_x*tube_n_m2_t;
-        const real tube_end_p2_in_axes2_y = v.tube_e_1_in_axes2_x*tube_n_m2_t_2 -
-            v.tube_c_2*tube_n_m2_t;
-        const real tube_n_m2_t_3 = v.tube_c_2*tube_n_m2_in_axes2_y +
-            v.tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y;
-        /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
-        const real tube_platform_joint_rotation_xx = m->tube_platform_joint_rotation_xx[i];
-        const real tube_platform_joint_rotation_xy = m->tube_platform_joint_rotation_xy[i];
-        const real tube_platform_joint_rotation_xz = m->tube_platform_joint_rotation_xz[i];
-        const real tube_n_m3_in_axes2_z = v.tube_c_2*(v.tube_c_1*v.tube_n_m3_t +
-            v.tube_n_m3_t_2*v.tube_s_1) +
-            v.tube_e_1_in_axes2_x*(v.tube_n_m1_t_7*tube_platform_joint_rotation_xx +
-            v.tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            v.tube_n_m1_t_9*tube_platform_joint_rotation_xz);
-        const real tube_n_m3_t_3 = v.tube_e_1_in_axes2_x*v.tube_end_p3_in_axes2_z;
-        /* (tube-f_c1) force part of constraint wrench 1 */
-        const real tube_f_c1_t = v.tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
-            tube_n_m1_in_axes2_z*tube_n_m3_t_3;
-        /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
-        const real inv_tube_f_c1_t = 1/tube_f_c1_t;
-        const real tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_3*tube_n_m3_in_axes2_z;
-        /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
-        const real tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_3;
-        /* (tube-size_c3) size of the moment */
-        const real tube_size_c3 = root(1 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t);
-        /* (tube-mu2_c3) moment along direction 2 that goes with it */
-        const real tube_mu2_c3 = 1/tube_size_c3;
-        /* (tube-w_1) force part of reciprocal wrench 1 */
-        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_t_3;
-        const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t_3;
-        const real tube_w_1_t_4 = R(1.35)*tube_n_m1_in_axes2_z;
-        const real tube_w_1_t_5 = R(1.35)*tube_n_m3_in_axes2_z;
-        const real tube_w_1_t_6 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_t_3*v.tube_q_3;
-        const real tube_w_1_t_7 = R(1.35)*inv_tube_f_c1_t*v.tube_n_m1_in_axes1_z*v.tube_q_3;
-        const real tube_w_1_t_8 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_in_axes2_z*v.tube_root_1;
-        const real tube_w_1_t_9 = R(1.35)*inv_tube_f_c1_t*tube_n_m1_in_axes2_z*v.tube_root_1;
-        const real tube_w_1_t_10 = R(1.35)*tube_m1_c3*tube_mu2_c3;
-        const real tube_w_1_t_11 = R(1.35)*tube_mu2_c3;
-        const real tube_w_1_t_12 = R(1.35)*tube_m3_c3_t*tube_mu2_c3;
-        const real tube_w_1_t_13 = root(v.tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 +
-            tube_w_1_t_5*tube_w_1_t_5);
-        const real inv_tube_w_1_t_13 = 1/tube_w_1_t_13;
-        const real tube_w_1_t_14 = inv_tube_w_1_t_13*v.tube_q_3;
-        const real tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4;
-        const real tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5;
-        const real tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 -
-            tube_w_1_t_14;
-        const real tube_w_1_t_18 = 1 + tube_w_1_t_14*tube_w_1_t_17;
-        const real tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6;
-        const real tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7;
-        const real tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9;
-        const real tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21;
-        const real tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8;
-        const real tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21;
-        const real tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16;
-        const real tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25;
-        const real tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25;
-        const real tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25;
-        const real tube_w_1_t_29 = v.tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3;
-        const real tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29;
-        const real tube_w_1_t_31 = v.tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29;
-        const real tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29;
-        const real tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19
-            + tube_w_1_t_20*tube_w_1_t_20);
-        const real inv_tube_w_1_t_33 = 1/tube_w_1_t_33;
-        const real tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18;
-        const real tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19;
-        const real tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20;
-        const real tube_w_1_t_37 = tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 +
-            tube_w_1_t_24*tube_w_1_t_36;
-        const real tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37;
-        const real tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37;
-        const real tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37;
-        const real tube_w_1_t_41 = tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 -
-            tube_w_1_t_27*tube_w_1_t_35;
-        const real tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41;
-        const real tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41;
-        const real tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41;
-        const real tube_w_1_t_45 = tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 -
-            tube_w_1_t_31*tube_w_1_t_35;
-        const real tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45;
-        const real tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45;
-        const real tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45;
-        const real tube_w_1_t_49 = root(1 + tube_w_1_t_38*tube_w_1_t_38 +
-            tube_w_1_t_39*tube_w_1_t_39 + tube_w_1_t_40*tube_w_1_t_40);
-        const real inv_tube_w_1_t_49 = 1/tube_w_1_t_49;
-        const real tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38;
-        const real tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39;
-        const real tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40;
-        const real tube_w_1_t_53 = tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 -
-            tube_w_1_t_43*tube_w_1_t_51;
-        const real tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42;
-        const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
-        const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
-        const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
-        const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 -
-            inv_tube_w_1_t_49*v.tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
-        const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
-        const real tube_w_1_t_60 = v.tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
-        const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
-        const real tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48;
-        const real tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54
-            + tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
-            tube_w_1_t_57*tube_w_1_t_57);
-        const real inv_tube_w_1_t_63 = 1/tube_w_1_t_63;
-        const real tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54;
-        const real tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55;
-        const real tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56;
-        const real tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11;
-        const real tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57;
-        const real tube_w_1_t_69 = tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 +
-            tube_w_1_t_61*tube_w_1_t_66 + tube_w_1_t_62*tube_w_1_t_68 -
-            tube_w_1_t_2*tube_w_1_t_67;
-        const real tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69;
-        const real tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69;
-        const real tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69;
-        const real tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69;
-        const real tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69;
-        const real tube_w_1_t_75 = root(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71
-            + tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
-            tube_w_1_t_74*tube_w_1_t_74);
-        /* (tube-eta_1) rate at which the joints turn along moment direction 1 */
-        const real tube_eta_1 = tube_n_m1_in_axes2_z*v.tube_omega_in_axes2_z -
-            v.tube_end_p1_in_axes2_z*v.tube_omega_in_axes2_y;
-        /* (tube-eta_2) rate at which the joints turn along moment direction 2 */
-        const real tube_eta_2 = tube_n_m2_in_axes2_y*v.tube_omega_in_axes2_y -
-            tube_end_p2_in_axes2_y*v.tube_omega_in_axes2_x;
-        /* (tube-eta_3) rate at which the joints turn along moment direction 3 */
-        const real tube_eta_3 = tube_n_m3_in_axes2_z*v.tube_omega_in_axes2_z -
-            v.tube_end_p3_in_axes2_z*v.tube_omega_in_axes2_x;
-        /* (tube-qd_1) rate of joint 1 */
-        const real inv_tube_w_1_t_75 = 1/tube_w_1_t_75;
-        const real tube_qd_1_t = R(1.35)*tube_eta_1;
-        const real tube_qd_1_t_2 = R(1.35)*tube_eta_2;
-        const real tube_qd_1_t_3 = R(1.35)*tube_eta_3;
-        const real tube_qd_1 =
-            inv_tube_w_1_t_75*(inv_tube_w_1_t_75*tube_S_dot_in_axes2_y*tube_w_1_t_70 +
-            inv_tube_w_1_t_75*tube_S_dot_in_axes2_z*tube_w_1_t_71 +
-            inv_tube_w_1_t_75*tube_qd_1_t*tube_w_1_t_72 +
-            inv_tube_w_1_t_75*tube_qd_1_t_3*tube_w_1_t_74 -
-            inv_tube_w_1_t_75*tube_qd_1_t_2*tube_w_1_t_73);
-        /* (tube-qd_2) rate of joint 2 */
-        const real tube_qd_2_t = inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
-            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t*tube_w_1_t_66 +
-            tube_qd_1_t_2*tube_w_1_t_67 + tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69);
-        const real tube_qd_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
-            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
-            tube_qd_1_t*tube_w_1_t_51 + tube_qd_1_t_3*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53);
-        const real tube_qd_2_t_3 = tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t*tube_w_1_t_15
-            + tube_qd_1_t_3*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
-            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
-            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t*tube_w_1_t_35 + tube_qd_1_t_3*tube_w_1_t_36 +
-            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
-            tube_qd_2_t*tube_w_1_t_25;
-        const real tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3;
-        /* (tube-qd_1) rate of joint 1 */
-        o[0*count + k] = tube_qd_1;
-        /* (tube-qd_2) rate of joint 2 */
-        o[1*count + k] = tube_qd_2;
-        /* (tube-qd_3) rate of joint 3 */
-        o[2*count + k] = tube_S_dot_in_axes2_x;
-        o[4*count + k] = tube_qd_1 + (tube_qd_2 + tube_S_dot_in_axes2_x);
-        o[3*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
-            UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) +
-            UNLESS(magnitude(tube_size_c3) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_13) > LEAST_5)
-            + UNLESS(magnitude(tube_w_1_t_33) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_49) >
-            LEAST_4) + UNLESS(magnitude(tube_w_1_t_63) > LEAST_5) +
-            UNLESS(magnitude(tube_w_1_t_75) > LEAST_5);
-    }
-}
-
-INLINE void joint_rates_place_tube(size_t w, size_t count, const real *o, size_t first, real *qd,
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
     verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        qd[12*w + k] = o[0*count + first + k];
-        qd[13*w + k] = o[1*count + first + k];
-        qd[14*w + k] = o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, const real *s, const real *X, const real *V, real *o)
+{
+    values_ups v;
+    stage_ups_X(m, w, i, j, s, X, &v);
+    /* (ups-S_dot) velocity of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real t_dot_x = V[0*w + j];
+    const real ups_S_dot_x = t_dot_x + omega_y*v.ups_q_z - omega_z*v.ups_q_y;
+    const real omega_x = V[3*w + j];
+    const real t_dot_y = V[1*w + j];
+    const real ups_S_dot_y = t_dot_y + omega_z*v.ups_q_x - omega_x*v.ups_q_z;
+    const real t_dot_z = V[2*w + j];
+    const real ups_S_dot_z = t_dot_z + omega_x*v.ups_q_y - omega_y*v.ups_q_x;
+    const real ups_S_dot_in_axes2_x = v.axis_x_ups_axes2_x*ups_S_dot_x +
+        v.axis_x_ups_axes2_y*ups_S_dot_y + v.axis_x_ups_axes2_z*ups_S_dot_z;
+    /* (ups-qd_1) rate of joint 1 */
+    const real ups_qd_1 = v.inv_ups_root_1*(v.axis_z_ups_axes2_x*ups_S_dot_x +
+        v.axis_z_ups_axes2_y*ups_S_dot_y + v.axis_z_ups_axes2_z*ups_S_dot_z);
+    /* (ups-qd_2) rate of joint 2 */
+    const real ups_qd_2 =
+        v.inv_ups_q_3*(ups_S_dot_x*(v.axis_x_ups_axes2_z*v.axis_z_ups_axes2_y -
+        v.axis_x_ups_axes2_y*v.axis_z_ups_axes2_z) +
+        ups_S_dot_y*(v.axis_x_ups_axes2_x*v.axis_z_ups_axes2_z -
+        v.axis_x_ups_axes2_z*v.axis_z_ups_axes2_x) +
+        ups_S_dot_z*(v.axis_x_ups_axes2_y*v.axis_z_ups_axes2_x -
+        v.axis_x_ups_axes2_x*v.axis_z_ups_axes2_y));
+    /* (ups-qd_1) */
+    o[0*count + k] = ups_qd_1;
+    /* (ups-qd_2) */
+    o[1*count + k] = ups_qd_2;
+    /* (ups-qd_3) rate of joint 3 */
+    o[2*count + k] = ups_S_dot_in_axes2_x;
+    o[4*count + k] = ups_qd_1 + (ups_qd_2 + ups_S_dot_in_axes2_x);
+    o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
+}
+
+INLINE void joint_rates_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const
+    real *o, real *qd, verdict *t)
+{
+    qd[3*i*w + k] = o[0*count + at];
+    qd[(1 + 3*i)*w + k] = o[1*count + at];
+    qd[(2 + 3*i)*w + k] = o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
+}
+
+INLINE void joint_rates_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t k,
+    size_t count, const real *s, const real *X, const real *V, real *o)
+{
+    values_tube v;
+    stage_tube_X(m, w, i, j, s, X, &v);
+    stage_tube_V_X(w, j, V, &v);
+    /* (tube-S_dot) velocity of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real t_dot_x = V[0*w + j];
+    const real tube_S_dot_x = t_dot_x + omega_y*v.tube_q_z - omega_z*v.tube_q_y;
+    const real omega_x = V[3*w + j];
+    const real t_dot_y = V[1*w + j];
+    const real tube_S_dot_y = t_dot_y + omega_z*v.tube_q_x - omega_x*v.tube_q_z;
+    const real t_dot_z = V[2*w + j];
+    const real tube_S_dot_z = t_dot_z + omega_x*v.tube_q_y - omega_y*v.tube_q_x;
+    const real tube_S_dot_in_axes2_x = v.axis_x_tube_axes2_x*tube_S_dot_x +
+        v.axis_x_tube_axes2_y*tube_S_dot_y + v.axis_x_tube_axes2_z*tube_S_dot_z;
+    const real tube_S_dot_in_axes2_y = v.axis_y_tube_axes2_x*tube_S_dot_x +
+        v.axis_y_tube_axes2_y*tube_S_dot_y + v.axis_y_tube_axes2_z*tube_S_dot_z;
+    const real tube_S_dot_in_axes2_z = v.axis_z_tube_axes2_x*tube_S_dot_x +
+        v.axis_z_tube_axes2_y*tube_S_dot_y + v.axis_z_tube_axes2_z*tube_S_dot_z;
+    /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
+    const real tube_n_m1_in_axes2_z = v.tube_e_1_in_axes2_x*(v.tube_c_1*v.tube_n_m1_t_10 +
+        v.tube_n_m1_t_11*v.tube_s_1) -
+        v.tube_c_2*(v.tube_n_m1_t_7*m->tube_platform_joint_rotation_yx[i] +
+        v.tube_n_m1_t_8*m->tube_platform_joint_rotation_yy[i] +
+        v.tube_n_m1_t_9*m->tube_platform_joint_rotation_yz[i]);
+    /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
+    const real tube_n_m2_t = v.tube_n_m1_t_7*m->tube_platform_joint_rotation_zx[i] +
+        v.tube_n_m1_t_8*m->tube_platform_joint_rotation_zy[i] +
+        v.tube_n_m1_t_9*m->tube_platform_joint_rotation_zz[i];
+    const real tube_n_m2_t_2 = v.tube_c_1*(v.tube_n_m1_t*m->tube_platform_joint_rotation_zx[i]
+        + v.tube_n_m1_t_2*m->tube_platform_joint_rotation_zy[i] +
+        v.tube_n_m1_t_3*m->tube_platform_joint_rotation_zz[i]) +
+        v.tube_s_1*(v.tube_n_m1_t_4*m->tube_platform_joint_rotation_zx[i] +
+        v.tube_n_m1_t_5*m->tube_platform_joint_rotation_zy[i] +
+        v.tube_n_m1_t_6*m->tube_platform_joint_rotation_zz[i]);
+    const real tube_n_m2_in_axes2_y = v.tube_c_2*tube_n_m2_t_2 +
+        v.tube_e_1_in_axes2_x*tube_n_m2_t;
+    const real tube_end_p2_in_axes2_y = v.tube_e_1_in_axes2_x*tube_n_m2_t_2 -
+        v.tube_c_2*tube_n_m2_t;
+    const real tube_n_m2_t_3 = v.tube_c_2*tube_n_m2_in_axes2_y +
+        v.tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y;
+    /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
+    const real tube_n_m3_in_axes2_z = v.tube_c_2*(v.tube_c_1*v.tube_n_m3_t +
+        v.tube_n_m3_t_2*v.tube_s_1) +
+        v.tube_e_1_in_axes2_x*(v.tube_n_m1_t_7*m->tube_platform_joint_rotation_xx[i] +
+        v.tube_n_m1_t_8*m->tube_platform_joint_rotation_xy[i] +
+        v.tube_n_m1_t_9*m->tube_platform_joint_rotation_xz[i]);
+    const real tube_n_m3_t_3 = v.tube_e_1_in_axes2_x*v.tube_end_p3_in_axes2_z;
+    /* (tube-f_c1) force part of constraint wrench 1 */
+    const real tube_f_c1_t = v.tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
+        tube_n_m1_in_axes2_z*tube_n_m3_t_3;
+    /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
+    const real inv_tube_f_c1_t = 1/tube_f_c1_t;
+    const real tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_3*tube_n_m3_in_axes2_z;
+    /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
+    const real tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_3;
+    /* (tube-size_c3) size of the moment */
+    const real tube_size_c3 = root(1 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t);
+    /* (tube-mu2_c3) moment along direction 2 that goes with it */
+    const real tube_mu2_c3 = 1/tube_size_c3;
+    /* (tube-w_1) force part of reciprocal wrench 1 */
+    const real tube_w_1_t_2 = R(1.35)*tube_n_m2_t_3;
+    const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t_3;
+    const real tube_w_1_t_4 = R(1.35)*tube_n_m1_in_axes2_z;
+    const real tube_w_1_t_5 = R(1.35)*tube_n_m3_in_axes2_z;
+    const real tube_w_1_t_6 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_t_3*v.tube_q_3;
+    const real tube_w_1_t_7 = R(1.35)*inv_tube_f_c1_t*v.tube_n_m1_in_axes1_z*v.tube_q_3;
+    const real tube_w_1_t_8 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_in_axes2_z*v.tube_root_1;
+    const real tube_w_1_t_9 = R(1.35)*inv_tube_f_c1_t*tube_n_m1_in_axes2_z*v.tube_root_1;
+    const real tube_w_1_t_10 = R(1.35)*tube_m1_c3*tube_mu2_c3;
+    const real tube_w_1_t_11 = R(1.35)*tube_mu2_c3;
+    const real tube_w_1_t_12 = R(1.35)*tube_m3_c3_t*tube_mu2_c3;
+    const real tube_w_1_t_13 = root(v.tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 +
+        tube_w_1_t_5*tube_w_1_t_5);
+    const real inv_tube_w_1_t_13 = 1/tube_w_1_t_13;
+    const real tube_w_1_t_14 = inv_tube_w_1_t_13*v.tube_q_3;
+    const real tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4;
+    const real tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5;
+    const real tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 -
+        tube_w_1_t_14;
+    const real tube_w_1_t_18 = 1 + tube_w_1_t_14*tube_w_1_t_17;
+    const real tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6;
+    const real tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7;
+    const real tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9;
+    const real tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21;
+    const real tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8;
+    const real tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21;
+    const real tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16;
+    const real tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25;
+    const real tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25;
+    const real tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25;
+    const real tube_w_1_t_29 = v.tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3;
+    const real tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29;
+    const real tube_w_1_t_31 = v.tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29;
+    const real tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29;
+    const real tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19
+        + tube_w_1_t_20*tube_w_1_t_20);
+    const real inv_tube_w_1_t_33 = 1/tube_w_1_t_33;
+    const real tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18;
+    const real tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19;
+    const real tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20;
+    const real tube_w_1_t_37 = tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 +
+        tube_w_1_t_24*tube_w_1_t_36;
+    const real tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37;
+    const real tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37;
+    const real tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37;
+    const real tube_w_1_t_41 = tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 -
+        tube_w_1_t_27*tube_w_1_t_35;
+    const real tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41;
+    const real tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41;
+    const real tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41;
+    const real tube_w_1_t_45 = tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 -
+        tube_w_1_t_31*tube_w_1_t_35;
+    const real tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45;
+    const real tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45;
+    const real tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45;
+    const real tube_w_1_t_49 = root(1 + tube_w_1_t_38*tube_w_1_t_38 +
+        tube_w_1_t_39*tube_w_1_t_39 + tube_w_1_t_40*tube_w_1_t_40);
+    const real inv_tube_w_1_t_49 = 1/tube_w_1_t_49;
+    const real tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38;
+    const real tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39;
+    const real tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40;
+    const real tube_w_1_t_53 = tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 -
+        tube_w_1_t_43*tube_w_1_t_51;
+    const real tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42;
+    const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
+    const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
+    const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
+    const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 -
+        inv_tube_w_1_t_49*v.tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
+    const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
+    const real tube_w_1_t_60 = v.tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
+    const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
+    const real tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48;
+    const real tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54
+        + tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
+        tube_w_1_t_57*tube_w_1_t_57);
+    const real inv_tube_w_1_t_63 = 1/tube_w_1_t_63;
+    const real tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54;
+    const real tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55;
+    const real tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56;
+    const real tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11;
+    const real tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57;
+    const real tube_w_1_t_69 = tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 +
+        tube_w_1_t_61*tube_w_1_t_66 + tube_w_1_t_62*tube_w_1_t_68 -
+        tube_w_1_t_2*tube_w_1_t_67;
+    const real tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69;
+    const real tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69;
+    const real tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69;
+    const real tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69;
+    const real tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69;
+    const real tube_w_1_t_75 = root(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71
+        + tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
+        tube_w_1_t_74*tube_w_1_t_74);
+    /* (tube-eta_1) rate at which the joints turn along moment direction 1 */
+    const real tube_eta_1 = tube_n_m1_in_axes2_z*v.tube_omega_in_axes2_z -
+        v.tube_end_p1_in_axes2_z*v.tube_omega_in_axes2_y;
+    /* (tube-eta_2) rate at which the joints turn along moment direction 2 */
+    const real tube_eta_2 = tube_n_m2_in_axes2_y*v.tube_omega_in_axes2_y -
+        tube_end_p2_in_axes2_y*v.tube_omega_in_axes2_x;
+    /* (tube-eta_3) rate at which the joints turn along moment direction 3 */
+    const real tube_eta_3 = tube_n_m3_in_axes2_z*v.tube_omega_in_axes2_z -
+        v.tube_end_p3_in_axes2_z*v.tube_omega_in_axes2_x;
+    /* (tube-qd_1) rate of joint 1 */
+    const real inv_tube_w_1_t_75 = 1/tube_w_1_t_75;
+    const real tube_qd_1_t = R(1.35)*tube_eta_1;
+    const real tube_qd_1_t_2 = R(1.35)*tube_eta_2;
+    const real tube_qd_1_t_3 = R(1.35)*tube_eta_3;
+    const real tube_qd_1 =
+        inv_tube_w_1_t_75*(inv_tube_w_1_t_75*tube_S_dot_in_axes2_y*tube_w_1_t_70 +
+        inv_tube_w_1_t_75*tube_S_dot_in_axes2_z*tube_w_1_t_71 +
+        inv_tube_w_1_t_75*tube_qd_1_t*tube_w_1_t_72 +
+        inv_tube_w_1_t_75*tube_qd_1_t_3*tube_w_1_t_74 -
+        inv_tube_w_1_t_75*tube_qd_1_t_2*tube_w_1_t_73);
+    /* (tube-qd_2) rate of joint 2 */
+    const real tube_qd_2_t = inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
+        tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t*tube_w_1_t_66 +
+        tube_qd_1_t_2*tube_w_1_t_67 + tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69);
+    const real tube_qd_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
+        tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
+        tube_qd_1_t*tube_w_1_t_51 + tube_qd_1_t_3*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53);
+    const real tube_qd_2_t_3 = tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t*tube_w_1_t_15
+        + tube_qd_1_t_3*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
+        inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
+        tube_qd_1*tube_w_1_t_45 + tube_qd_1_t*tube_w_1_t_35 + tube_qd_1_t_3*tube_w_1_t_36 +
+        tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
+        tube_qd_2_t*tube_w_1_t_25;
+    const real tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3;
+    /* (tube-qd_1) */
+    o[0*count + k] = tube_qd_1;
+    /* (tube-qd_2) */
+    o[1*count + k] = tube_qd_2;
+    /* (tube-qd_3) rate of joint 3 */
+    o[2*count + k] = tube_S_dot_in_axes2_x;
+    o[4*count + k] = tube_qd_1 + (tube_qd_2 + tube_S_dot_in_axes2_x);
+    o[3*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
+        UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) +
+        UNLESS(magnitude(tube_size_c3) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_13) > LEAST_5)
+        + UNLESS(magnitude(tube_w_1_t_33) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_49) >
+        LEAST_4) + UNLESS(magnitude(tube_w_1_t_63) > LEAST_5) +
+        UNLESS(magnitude(tube_w_1_t_75) > LEAST_5);
+}
+
+INLINE void joint_rates_place_tube(size_t w, size_t k, size_t at, size_t count, const real *o,
+    real *qd, verdict *t)
+{
+    qd[12*w + k] = o[0*count + at];
+    qd[13*w + k] = o[1*count + at];
+    qd[14*w + k] = o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
+}
+
+APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
     real s[9] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
     real o_tube[5*LEGS(LEGS_OF_tube)] = {0};
-    joint_rates_before(m, 1, X, s, t);
-    joint_rates_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), X, V, o_ups);
-    joint_rates_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), X, V, o_tube);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        joint_rates_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, qd, t);
+    joint_rates_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
+        joint_rates_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, V, o_ups);
     }
-    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
-        joint_rates_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, qd, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
+        joint_rates_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), s, X, V, o_tube);
+    }
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        joint_rates_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, qd, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        joint_rates_place_tube(1, 0, i, LEGS(LEGS_OF_tube), o_tube, qd, t);
     }
 }
 
-INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
-    verdict *t)
+INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
+    qd, verdict *restrict t)
 {
     real s[9*LANES];
     real o_ups[5*LANES];
     real o_tube[5*LANES];
-    joint_rates_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        joint_rates_legs_ups(m, LANES, leg, 0, s, 1, LANES, X, V, o_ups);
-        joint_rates_place_ups(LANES, LANES, o_ups, leg, 0, qd, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        joint_rates_before(m, LANES, k, X, s, t);
     }
-    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
-        joint_rates_legs_tube(m, LANES, leg, 0, s, 1, LANES, X, V, o_tube);
-        joint_rates_place_tube(LANES, LANES, o_tube, 0, qd, t);
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_legs_ups(m, LANES, i, k, k, LANES, s, X, V, o_ups);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_place_ups(LANES, i, k, k, LANES, o_ups, qd, t);
+        }
+    }
+    for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_legs_tube(m, LANES, i, k, k, LANES, s, X, V, o_tube);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_place_tube(LANES, k, k, LANES, o_tube, qd, t);
+        }
     }
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, const real *X, real *s,
-    verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
+    *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
-    *o)
+INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t
+    k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_ups v;
-        stage_ups_X(m, w, i, j, s, X, &v);
-        stage_ups_A_X(w, j, A, &v);
-        stage_ups_V_X(w, j, V, &v);
-        stage_ups_A_V_X(w, j, V, &v);
-        /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_in_axes2_x = v.inv_ups_q_3*v.ups_S_in_turn1_z*v.ups_qd_1;
-        const real ups_omega_1_in_axes2_y = -v.inv_ups_q_3*v.ups_qd_1*v.ups_root_1;
-        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_in_axes2_z = 2*ups_omega_1_in_axes2_x*v.ups_q_3*v.ups_qd_2 -
-            v.ups_bias_t*ups_omega_1_in_axes2_y;
-        /* (ups-rel) acceleration of the connection point left to the joint accelerations */
-        const real ups_rel_in_axes2_x = v.axis_x_ups_axes2_x*v.ups_S_ddot_x +
-            v.axis_x_ups_axes2_y*v.ups_S_ddot_y + v.axis_x_ups_axes2_z*v.ups_S_ddot_z -
-            v.ups_q_3*(-ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y - v.ups_qd_2*v.ups_qd_2);
-        const real ups_rel_in_axes2_z = v.axis_z_ups_axes2_x*v.ups_S_ddot_x +
-            v.axis_z_ups_axes2_y*v.ups_S_ddot_y + v.axis_z_ups_axes2_z*v.ups_S_ddot_z -
-            ups_bias_in_axes2_z;
-        /* (ups-qdd_1) acceleration of joint 1 */
-        const real ups_qdd_1 = v.inv_ups_root_1*ups_rel_in_axes2_z;
-        /* (ups-qdd_2) acceleration of joint 2 */
-        const real ups_qdd_2 = v.inv_ups_q_3*(v.axis_y_ups_axes2_x*v.ups_S_ddot_x +
-            v.axis_y_ups_axes2_y*v.ups_S_ddot_y + v.axis_y_ups_axes2_z*v.ups_S_ddot_z -
-            v.ups_bias_t*v.ups_qd_2) - ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
-        /* (ups-qdd_1) acceleration of joint 1 */
-        o[0*count + k] = ups_qdd_1;
-        /* (ups-qdd_2) acceleration of joint 2 */
-        o[1*count + k] = ups_qdd_2;
-        /* (ups-qdd_3) acceleration of joint 3 */
-        o[2*count + k] = ups_rel_in_axes2_x;
-        o[4*count + k] = ups_qdd_1 + (ups_qdd_2 + ups_rel_in_axes2_x);
-        o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
-    }
+    values_ups v;
+    stage_ups_X(m, w, i, j, s, X, &v);
+    stage_ups_A_X(w, j, A, &v);
+    stage_ups_V_X(w, j, V, &v);
+    stage_ups_A_V_X(w, j, V, &v);
+    /* (ups-omega_1) angular velocity of link 1 */
+    const real ups_omega_1_in_axes2_x = v.inv_ups_q_3*v.ups_S_in_turn1_z*v.ups_qd_1;
+    const real ups_omega_1_in_axes2_y = -v.inv_ups_q_3*v.ups_qd_1*v.ups_root_1;
+    /* (ups-bias) acceleration of the connection point at zero joint accelerations */
+    const real ups_bias_in_axes2_z = 2*ups_omega_1_in_axes2_x*v.ups_q_3*v.ups_qd_2 -
+        v.ups_bias_t*ups_omega_1_in_axes2_y;
+    /* (ups-rel) acceleration of the connection point left to the joint accelerations */
+    const real ups_rel_in_axes2_x = v.axis_x_ups_axes2_x*v.ups_S_ddot_x +
+        v.axis_x_ups_axes2_y*v.ups_S_ddot_y + v.axis_x_ups_axes2_z*v.ups_S_ddot_z -
+        v.ups_q_3*(-ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y - v.ups_qd_2*v.ups_qd_2);
+    const real ups_rel_in_axes2_z = v.axis_z_ups_axes2_x*v.ups_S_ddot_x +
+        v.axis_z_ups_axes2_y*v.ups_S_ddot_y + v.axis_z_ups_axes2_z*v.ups_S_ddot_z -
+        ups_bias_in_axes2_z;
+    /* (ups-qdd_1) acceleration of joint 1 */
+    const real ups_qdd_1 = v.inv_ups_root_1*ups_rel_in_axes2_z;
+    /* (ups-qdd_2) acceleration of joint 2 */
+    const real ups_qdd_2 = v.inv_ups_q_3*(v.axis_y_ups_axes2_x*v.ups_S_ddot_x +
+        v.axis_y_ups_axes2_y*v.ups_S_ddot_y + v.axis_y_ups_axes2_z*v.ups_S_ddot_z -
+        v.ups_bias_t*v.ups_qd_2) - ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
+    /* (ups-qdd_1) */
+    o[0*count + k] = ups_qdd_1;
+    /* (ups-qdd_2) */
+    o[1*count + k] = ups_qdd_2;
+    /* (ups-qdd_3) acceleration of joint 3 */
+    o[2*count + k] = ups_rel_in_axes2_x;
+    o[4*count + k] = ups_qdd_1 + (ups_qdd_2 + ups_rel_in_axes2_x);
+    o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void joint_accelerations_place_ups(size_t w, size_t count, const real *o, size_t leg,
-    size_t first, real *qdd, verdict *t)
+INLINE void joint_accelerations_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count,
+    const real *o, real *qdd, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        qdd[3*leg*w + k] = o[0*count + first + k];
-        qdd[(1 + 3*leg)*w + k] = o[1*count + first + k];
-        qdd[(2 + 3*leg)*w + k] = o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
+    qdd[3*i*w + k] = o[0*count + at];
+    qdd[(1 + 3*i)*w + k] = o[1*count + at];
+    qdd[(2 + 3*i)*w + k] = o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
 }
 
-INLINE void joint_accelerations_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
-    *o)
+INLINE void joint_accelerations_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t
+    k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_tube v;
-        stage_tube_X(m, w, i, j, s, X, &v);
-        stage_tube_A_X(w, j, A, &v);
-        stage_tube_V_X(w, j, V, &v);
-        stage_tube_A_V_X(w, j, V, &v);
-        stage_tube_Z_joint_accelerations(&v);
-        /* (tube-bias) acceleration of the connection point at zero joint accelerations */
-        const real tube_bias_t = 2*v.tube_S_dot_in_axes2_x;
-        const real tube_bias_in_axes2_y = tube_bias_t*v.tube_qd_2 +
-            v.tube_omega_1_in_axes2_x*v.tube_omega_1_in_axes2_y*v.tube_q_3;
-        const real tube_bias_in_axes2_z = 2*v.tube_W_2_in_axes2_xz*v.tube_q_3 -
-            tube_bias_t*v.tube_omega_1_in_axes2_y;
-        /* (tube-rel) acceleration of the connection point left to the joint accelerations */
-        const real tube_rel_in_axes2_x = v.axis_x_tube_axes2_x*v.tube_S_ddot_x +
-            v.axis_x_tube_axes2_y*v.tube_S_ddot_y + v.axis_x_tube_axes2_z*v.tube_S_ddot_z +
-            v.tube_q_3*(v.tube_omega_1_in_axes2_y*v.tube_omega_1_in_axes2_y +
-            v.tube_qd_2*v.tube_qd_2);
-        const real tube_rel_in_axes2_y = v.axis_y_tube_axes2_x*v.tube_S_ddot_x +
-            v.axis_y_tube_axes2_y*v.tube_S_ddot_y + v.axis_y_tube_axes2_z*v.tube_S_ddot_z -
-            tube_bias_in_axes2_y;
-        const real tube_rel_in_axes2_z = v.axis_z_tube_axes2_x*v.tube_S_ddot_x +
-            v.axis_z_tube_axes2_y*v.tube_S_ddot_y + v.axis_z_tube_axes2_z*v.tube_S_ddot_z -
-            tube_bias_in_axes2_z;
-        /* (tube-etad_1) acceleration with which the joints turn along moment direction 1 */
-        const real tube_etad_1 = v.tube_nu_1 - v.tube_etad_1_t;
-        /* (tube-etad_2) acceleration with which the joints turn along moment direction 2 */
-        const real tube_etad_2 = v.tube_nu_2 - v.tube_etad_2_t;
-        /* (tube-etad_3) acceleration with which the joints turn along moment direction 3 */
-        const real tube_etad_3 = v.tube_nu_3 - v.tube_etad_3_t;
-        /* (tube-qdd_1) acceleration of joint 1 */
-        const real tube_qdd_1_t = R(1.35)*tube_etad_1;
-        const real tube_qdd_1_t_2 = R(1.35)*tube_etad_2;
-        const real tube_qdd_1_t_3 = R(1.35)*tube_etad_3;
-        const real tube_qdd_1 = v.inv_tube_w_1_t_75*(v.tube_qd_1_t*tube_rel_in_axes2_y +
-            v.tube_qd_1_t_2*tube_rel_in_axes2_z + v.tube_qd_1_t_3*tube_qdd_1_t +
-            v.tube_qd_1_t_5*tube_qdd_1_t_3 - v.tube_qd_1_t_4*tube_qdd_1_t_2);
-        /* (tube-qdd_2) acceleration of joint 2 */
-        const real tube_qdd_2_t = v.inv_tube_w_1_t_63*(tube_qdd_1_t*v.tube_w_1_t_66 +
-            tube_qdd_1_t_2*v.tube_w_1_t_67 + tube_qdd_1_t_3*v.tube_w_1_t_68 +
-            tube_rel_in_axes2_y*v.tube_w_1_t_64 + tube_rel_in_axes2_z*v.tube_w_1_t_65 -
-            tube_qdd_1*v.tube_w_1_t_69);
-        const real tube_qdd_2_t_2 = v.inv_tube_w_1_t_49*(v.inv_tube_w_1_t_49*tube_rel_in_axes2_z +
-            tube_qdd_1*v.tube_w_1_t_58 + tube_qdd_1_t*v.tube_w_1_t_51 +
-            tube_qdd_1_t_3*v.tube_w_1_t_52 + tube_qdd_2_t*v.tube_w_1_t_53 +
-            tube_rel_in_axes2_y*v.tube_w_1_t_50);
-        const real tube_qdd_2_t_3 = tube_qdd_1_t*v.tube_w_1_t_15 + tube_qdd_1_t_3*v.tube_w_1_t_16
-            + tube_qdd_2_t_2*v.tube_w_1_t_21 + tube_rel_in_axes2_y*v.tube_w_1_t_14 +
-            v.inv_tube_w_1_t_33*v.tube_w_1_t_17*(tube_qdd_1*v.tube_w_1_t_45 +
-            tube_qdd_1_t*v.tube_w_1_t_35 + tube_qdd_1_t_3*v.tube_w_1_t_36 +
-            tube_qdd_2_t*v.tube_w_1_t_41 + tube_rel_in_axes2_y*v.tube_w_1_t_34 -
-            tube_qdd_2_t_2*v.tube_w_1_t_37) - tube_qdd_1*v.tube_w_1_t_29 -
-            tube_qdd_2_t*v.tube_w_1_t_25;
-        const real tube_qdd_2 = v.inv_tube_w_1_t_13*tube_qdd_2_t_3;
-        /* (tube-qdd_1) acceleration of joint 1 */
-        o[0*count + k] = tube_qdd_1;
-        /* (tube-qdd_2) acceleration of joint 2 */
-        o[1*count + k] = tube_qdd_2;
-        /* (tube-qdd_3) acceleration of joint 3 */
-        o[2*count + k] = tube_rel_in_axes2_x;
-        o[4*count + k] = tube_qdd_1 + (tube_qdd_2 + tube_rel_in_axes2_x);
-        o[3*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
-            UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
-            + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
-            LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_33) > LEAST_4) +
-            UNLESS(magnitude(v.tube_w_1_t_49) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_63) >
-            LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_75) > LEAST_5);
-    }
+    values_tube v;
+    stage_tube_X(m, w, i, j, s, X, &v);
+    stage_tube_A_X(w, j, A, &v);
+    stage_tube_V_X(w, j, V, &v);
+    stage_tube_A_V_X(w, j, V, &v);
+    stage_tube_Z_joint_accelerations(&v);
+    /* (tube-bias) acceleration of the connection point at zero joint accelerations */
+    const real tube_bias_t = 2*v.tube_S_dot_in_axes2_x;
+    const real tube_bias_in_axes2_y = tube_bias_t*v.tube_qd_2 +
+        v.tube_omega_1_in_axes2_x*v.tube_omega_1_in_axes2_y*v.tube_q_3;
+    const real tube_bias_in_axes2_z = 2*v.tube_W_2_in_axes2_xz*v.tube_q_3 -
+        tube_bias_t*v.tube_omega_1_in_axes2_y;
+    /* (tube-rel) acceleration of the connection point left to the joint accelerations */
+    const real tube_rel_in_axes2_x = v.axis_x_tube_axes2_x*v.tube_S_ddot_x +
+        v.axis_x_tube_axes2_y*v.tube_S_ddot_y + v.axis_x_tube_axes2_z*v.tube_S_ddot_z +
+        v.tube_q_3*(v.tube_omega_1_in_axes2_y*v.tube_omega_1_in_axes2_y +
+        v.tube_qd_2*v.tube_qd_2);
+    const real tube_rel_in_axes2_y = v.axis_y_tube_axes2_x*v.tube_S_ddot_x +
+        v.axis_y_tube_axes2_y*v.tube_S_ddot_y + v.axis_y_tube_axes2_z*v.tube_S_ddot_z -
+        tube_bias_in_axes2_y;
+    const real tube_rel_in_axes2_z = v.axis_z_tube_axes2_x*v.tube_S_ddot_x +
+        v.axis_z_tube_axes2_y*v.tube_S_ddot_y + v.axis_z_tube_axes2_z*v.tube_S_ddot_z -
+        tube_bias_in_axes2_z;
+    /* (tube-etad_1) acceleration with which the joints turn along moment direction 1 */
+    const real tube_etad_1 = v.tube_nu_1 - v.tube_etad_1_t;
+    /* (tube-etad_2) acceleration with which the joints turn along moment direction 2 */
+    const real tube_etad_2 = v.tube_nu_2 - v.tube_etad_2_t;
+    /* (tube-etad_3) acceleration with which the joints turn along moment direction 3 */
+    const real tube_etad_3 = v.tube_nu_3 - v.tube_etad_3_t;
+    /* (tube-qdd_1) acceleration of joint 1 */
+    const real tube_qdd_1_t = R(1.35)*tube_etad_1;
+    const real tube_qdd_1_t_2 = R(1.35)*tube_etad_2;
+    const real tube_qdd_1_t_3 = R(1.35)*tube_etad_3;
+    const real tube_qdd_1 = v.inv_tube_w_1_t_75*(v.tube_qd_1_t*tube_rel_in_axes2_y +
+        v.tube_qd_1_t_2*tube_rel_in_axes2_z + v.tube_qd_1_t_3*tube_qdd_1_t +
+        v.tube_qd_1_t_5*tube_qdd_1_t_3 - v.tube_qd_1_t_4*tube_qdd_1_t_2);
+    /* (tube-qdd_2) acceleration of joint 2 */
+    const real tube_qdd_2_t = v.inv_tube_w_1_t_63*(tube_qdd_1_t*v.tube_w_1_t_66 +
+        tube_qdd_1_t_2*v.tube_w_1_t_67 + tube_qdd_1_t_3*v.tube_w_1_t_68 +
+        tube_rel_in_axes2_y*v.tube_w_1_t_64 + tube_rel_in_axes2_z*v.tube_w_1_t_65 -
+        tube_qdd_1*v.tube_w_1_t_69);
+    const real tube_qdd_2_t_2 = v.inv_tube_w_1_t_49*(v.inv_tube_w_1_t_49*tube_rel_in_axes2_z +
+        tube_qdd_1*v.tube_w_1_t_58 + tube_qdd_1_t*v.tube_w_1_t_51 +
+        tube_qdd_1_t_3*v.tube_w_1_t_52 + tube_qdd_2_t*v.tube_w_1_t_53 +
+        tube_rel_in_axes2_y*v.tube_w_1_t_50);
+    const real tube_qdd_2_t_3 = tube_qdd_1_t*v.tube_w_1_t_15 + tube_qdd_1_t_3*v.tube_w_1_t_16
+        + tube_qdd_2_t_2*v.tube_w_1_t_21 + tube_rel_in_axes2_y*v.tube_w_1_t_14 +
+        v.inv_tube_w_1_t_33*v.tube_w_1_t_17*(tube_qdd_1*v.tube_w_1_t_45 +
+        tube_qdd_1_t*v.tube_w_1_t_35 + tube_qdd_1_t_3*v.tube_w_1_t_36 +
+        tube_qdd_2_t*v.tube_w_1_t_41 + tube_rel_in_axes2_y*v.tube_w_1_t_34 -
+        tube_qdd_2_t_2*v.tube_w_1_t_37) - tube_qdd_1*v.tube_w_1_t_29 -
+        tube_qdd_2_t*v.tube_w_1_t_25;
+    const real tube_qdd_2 = v.inv_tube_w_1_t_13*tube_qdd_2_t_3;
+    /* (tube-qdd_1) */
+    o[0*count + k] = tube_qdd_1;
+    /* (tube-qdd_2) */
+    o[1*count + k] = tube_qdd_2;
+    /* (tube-qdd_3) acceleration of joint 3 */
+    o[2*count + k] = tube_rel_in_axes2_x;
+    o[4*count + k] = tube_qdd_1 + (tube_qdd_2 + tube_rel_in_axes2_x);
+    o[3*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
+        UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
+        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
+        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_33) > LEAST_4) +
+        UNLESS(magnitude(v.tube_w_1_t_49) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_63) >
+        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_75) > LEAST_5);
 }
 
-INLINE void joint_accelerations_place_tube(size_t w, size_t count, const real *o, size_t first,
+INLINE void joint_accelerations_place_tube(size_t w, size_t k, size_t at, size_t count, const real
+    *o, real *qdd, verdict *t)
+{
+    qdd[12*w + k] = o[0*count + at];
+    qdd[13*w + k] = o[1*count + at];
+    qdd[14*w + k] = o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
+}
+
+APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        qdd[12*w + k] = o[0*count + first + k];
-        qdd[13*w + k] = o[1*count + first + k];
-        qdd[14*w + k] = o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
-}
-
-INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd, verdict *t)
 {
     real s[9] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
     real o_tube[5*LEGS(LEGS_OF_tube)] = {0};
-    joint_accelerations_before(m, 1, X, s, t);
-    joint_accelerations_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), X, V, A, o_ups);
-    joint_accelerations_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), X, V, A, o_tube);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        joint_accelerations_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, qdd, t);
+    joint_accelerations_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
+        joint_accelerations_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, V, A, o_ups);
     }
-    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
-        joint_accelerations_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, qdd, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
+        joint_accelerations_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), s, X, V, A, o_tube);
+    }
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        joint_accelerations_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, qdd, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        joint_accelerations_place_tube(1, 0, i, LEGS(LEGS_OF_tube), o_tube, qdd, t);
     }
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *qdd, verdict *t)
+    real *A, real *restrict qdd, verdict *restrict t)
 {
     real s[9*LANES];
     real o_ups[5*LANES];
     real o_tube[5*LANES];
-    joint_accelerations_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        joint_accelerations_legs_ups(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_ups);
-        joint_accelerations_place_ups(LANES, LANES, o_ups, leg, 0, qdd, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        joint_accelerations_before(m, LANES, k, X, s, t);
     }
-    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
-        joint_accelerations_legs_tube(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_tube);
-        joint_accelerations_place_tube(LANES, LANES, o_tube, 0, qdd, t);
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_legs_ups(m, LANES, i, k, k, LANES, s, X, V, A, o_ups);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_place_ups(LANES, i, k, k, LANES, o_ups, qdd, t);
+        }
+    }
+    for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_legs_tube(m, LANES, i, k, k, LANES, s, X, V, A, o_tube);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_place_tube(LANES, k, k, LANES, o_tube, qdd, t);
+        }
     }
 }
 
 /* ---- constraints ---- */
-INLINE void constraints_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void constraints_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void constraints_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, const real *X, real *o)
+INLINE void constraints_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t k,
+    size_t count, const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_tube v;
-        stage_tube_X(m, w, i, j, s, X, &v);
-        /* (tube-S) from the base point to the connection point */
-        const real R_xx = s[0*w + j];
-        const real R_xy = s[1*w + j];
-        const real R_xz = s[2*w + j];
-        const real t_x = X[0*w + j];
-        const real tube_base_point_x = m->tube_base_point_x[i];
-        const real tube_platform_point_x = m->tube_platform_point_x[i];
-        const real tube_platform_point_y = m->tube_platform_point_y[i];
-        const real tube_platform_point_z = m->tube_platform_point_z[i];
-        const real tube_S_x = t_x + R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
-            R_xz*tube_platform_point_z - tube_base_point_x;
-        const real R_yx = s[3*w + j];
-        const real R_yy = s[4*w + j];
-        const real R_yz = s[5*w + j];
-        const real t_y = X[1*w + j];
-        const real tube_base_point_y = m->tube_base_point_y[i];
-        const real tube_S_y = t_y + R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
-            R_yz*tube_platform_point_z - tube_base_point_y;
-        const real R_zx = s[6*w + j];
-        const real R_zy = s[7*w + j];
-        const real R_zz = s[8*w + j];
-        const real t_z = X[2*w + j];
-        const real tube_base_point_z = m->tube_base_point_z[i];
-        const real tube_S_z = t_z + R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
-            R_zz*tube_platform_point_z - tube_base_point_z;
-        const real tube_base_frame_xx = m->tube_base_frame_xx[i];
-        const real tube_base_frame_yx = m->tube_base_frame_yx[i];
-        const real tube_base_frame_zx = m->tube_base_frame_zx[i];
-        const real tube_S_in_turn1_x = tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx +
-            tube_S_z*tube_base_frame_zx;
-        const real tube_base_frame_xy = m->tube_base_frame_xy[i];
-        const real tube_base_frame_yy = m->tube_base_frame_yy[i];
-        const real tube_base_frame_zy = m->tube_base_frame_zy[i];
-        const real tube_S_in_turn1_y = tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy +
-            tube_S_z*tube_base_frame_zy;
-        const real tube_base_frame_xz = m->tube_base_frame_xz[i];
-        const real tube_base_frame_yz = m->tube_base_frame_yz[i];
-        const real tube_base_frame_zz = m->tube_base_frame_zz[i];
-        const real tube_S_in_turn1_z = tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz +
-            tube_S_z*tube_base_frame_zz;
-        /* (tube-root_1) amplitude, the length across axis 1, with the sign of the branch */
-        const real tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x +
-            tube_S_in_turn1_y*tube_S_in_turn1_y;
-        const real tube_branch_1 = m->tube_branch_1[i];
-        const real tube_root_1 = tube_branch_1*root(tube_root_1_t);
-        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_tube_root_1 = 1/tube_root_1;
-        const real tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x;
-        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
-        const real tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y;
-        /* (tube-q_3) displacement of joint 3 */
-        const real tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t;
-        const real tube_branch_2 = m->tube_branch_2[i];
-        const real tube_q_3 = tube_branch_2*root(tube_q_3_t);
-        /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_tube_q_3 = 1/tube_q_3;
-        const real tube_c_2 = inv_tube_q_3*tube_root_1;
-        /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z;
-        const real tube_n_m1_t_13 = tube_c_1*v.tube_n_m1_t_10 + v.tube_n_m1_t_11*tube_s_1;
-        const real tube_n_m1_in_axes2_z = tube_e_1_in_axes2_x*tube_n_m1_t_13 -
-            tube_c_2*v.tube_n_m1_t_12;
-        const real tube_n_m1_in_axes1_z = tube_c_2*(tube_c_1*v.tube_n_m1_t_11 -
-            v.tube_n_m1_t_10*tube_s_1);
-        /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real tube_n_m2_t_4 = tube_c_1*v.tube_n_m2_t + v.tube_n_m2_t_2*tube_s_1;
-        const real tube_n_m2_t_5 = tube_c_2*(tube_c_2*tube_n_m2_t_4 +
-            tube_e_1_in_axes2_x*v.tube_n_m2_t_3) +
-            tube_e_1_in_axes2_x*(tube_e_1_in_axes2_x*tube_n_m2_t_4 - tube_c_2*v.tube_n_m2_t_3);
-        /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
-        const real tube_n_m3_t_4 = tube_c_1*v.tube_n_m3_t + v.tube_n_m3_t_2*tube_s_1;
-        const real tube_n_m3_in_axes2_z = tube_c_2*tube_n_m3_t_4 +
-            tube_e_1_in_axes2_x*v.tube_n_m3_t_3;
-        const real tube_n_m3_t_5 = tube_e_1_in_axes2_x*(tube_c_1*v.tube_n_m3_t_2 -
-            v.tube_n_m3_t*tube_s_1);
-        /* (tube-f_c1) force part of constraint wrench 1 */
-        const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
-            tube_n_m1_in_axes2_z*tube_n_m3_t_5;
-        /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
-        const real inv_tube_f_c1_t = 1/tube_f_c1_t;
-        const real tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_5*tube_n_m3_in_axes2_z;
-        /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
-        const real tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_5;
-        /* (tube-size_c3) size of the moment */
-        const real tube_size_c3 = root(1 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t);
-        /* (tube-mu2_c3) moment along direction 2 that goes with it */
-        const real tube_mu2_c3 = 1/tube_size_c3;
-        /* (tube-phi_c1) loop-closure residual along the constraint force */
-        const real tube_end_p1_in_axes2_x = tube_c_2*tube_n_m1_t_13 +
-            tube_e_1_in_axes2_x*v.tube_n_m1_t_12;
-        const real tube_end_p3_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m3_t_4 -
-            tube_c_2*v.tube_n_m3_t_3;
-        const real tube_phi_c1 = inv_tube_f_c1_t*tube_end_p1_in_axes2_x*tube_n_m3_t_5*tube_q_3 -
-            inv_tube_f_c1_t*tube_end_p3_in_axes2_y*tube_n_m1_in_axes1_z*tube_q_3;
-        /* (tube-phi_c2) loop-closure residual along the constraint force */
-        const real tube_phi_c2 =
-            inv_tube_f_c1_t*tube_end_p1_in_axes2_x*tube_n_m3_in_axes2_z*tube_root_1 +
-            inv_tube_f_c1_t*tube_end_p3_in_axes2_y*tube_n_m1_in_axes2_z*tube_root_1;
-        /* (tube-phi_c3) loop-closure residual about the constraint moment */
-        const real tube_phi_c3 = -tube_mu2_c3*(tube_c_1*v.tube_n_m2_t_2 - v.tube_n_m2_t*tube_s_1)
-            - tube_end_p1_in_axes2_x*tube_m1_c3*tube_mu2_c3 -
-            tube_end_p3_in_axes2_y*tube_m3_c3_t*tube_mu2_c3;
-        /* (tube-phi_c1) loop-closure residual along the constraint force */
-        o[0*count + k] = tube_phi_c1;
-        /* (tube-phi_c2) loop-closure residual along the constraint force */
-        o[1*count + k] = tube_phi_c2;
-        /* (tube-phi_c3) loop-closure residual about the constraint moment */
-        o[2*count + k] = tube_phi_c3;
-        o[4*count + k] = tube_phi_c1 + (tube_phi_c2 + tube_phi_c3);
-        o[3*count + k] = UNLESS(magnitude(tube_root_1_t) > LEAST_3) + UNLESS(magnitude(tube_q_3_t)
-            > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) + UNLESS(magnitude(tube_size_c3)
-            > LEAST_4);
-    }
+    values_tube v;
+    stage_tube_X(m, w, i, j, s, X, &v);
+    /* (tube-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real t_x = X[0*w + j];
+    const real tube_S_x = t_x + R_xx*m->tube_platform_point_x[i] +
+        R_xy*m->tube_platform_point_y[i] + R_xz*m->tube_platform_point_z[i] -
+        m->tube_base_point_x[i];
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real t_y = X[1*w + j];
+    const real tube_S_y = t_y + R_yx*m->tube_platform_point_x[i] +
+        R_yy*m->tube_platform_point_y[i] + R_yz*m->tube_platform_point_z[i] -
+        m->tube_base_point_y[i];
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real t_z = X[2*w + j];
+    const real tube_S_z = t_z + R_zx*m->tube_platform_point_x[i] +
+        R_zy*m->tube_platform_point_y[i] + R_zz*m->tube_platform_point_z[i] -
+        m->tube_base_point_z[i];
+    const real tube_S_in_turn1_x = tube_S_x*m->tube_base_frame_xx[i] +
+        tube_S_y*m->tube_base_frame_yx[i] + tube_S_z*m->tube_base_frame_zx[i];
+    const real tube_S_in_turn1_y = tube_S_x*m->tube_base_frame_xy[i] +
+        tube_S_y*m->tube_base_frame_yy[i] + tube_S_z*m->tube_base_frame_zy[i];
+    const real tube_S_in_turn1_z = tube_S_x*m->tube_base_frame_xz[i] +
+        tube_S_y*m->tube_base_frame_yz[i] + tube_S_z*m->tube_base_frame_zz[i];
+    /* (tube-root_1) amplitude, the length across axis 1, with the sign of the branch */
+    const real tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x +
+        tube_S_in_turn1_y*tube_S_in_turn1_y;
+    const real tube_root_1 = m->tube_branch_1[i]*root(tube_root_1_t);
+    /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real inv_tube_root_1 = 1/tube_root_1;
+    const real tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x;
+    /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
+    const real tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y;
+    /* (tube-q_3) displacement of joint 3 */
+    const real tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t;
+    const real tube_q_3 = m->tube_branch_2[i]*root(tube_q_3_t);
+    /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real inv_tube_q_3 = 1/tube_q_3;
+    const real tube_c_2 = inv_tube_q_3*tube_root_1;
+    /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
+    const real tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z;
+    const real tube_n_m1_t_13 = tube_c_1*v.tube_n_m1_t_10 + v.tube_n_m1_t_11*tube_s_1;
+    const real tube_n_m1_in_axes2_z = tube_e_1_in_axes2_x*tube_n_m1_t_13 -
+        tube_c_2*v.tube_n_m1_t_12;
+    const real tube_n_m1_in_axes1_z = tube_c_2*(tube_c_1*v.tube_n_m1_t_11 -
+        v.tube_n_m1_t_10*tube_s_1);
+    /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
+    const real tube_n_m2_t_4 = tube_c_1*v.tube_n_m2_t + v.tube_n_m2_t_2*tube_s_1;
+    const real tube_n_m2_t_5 = tube_c_2*(tube_c_2*tube_n_m2_t_4 +
+        tube_e_1_in_axes2_x*v.tube_n_m2_t_3) +
+        tube_e_1_in_axes2_x*(tube_e_1_in_axes2_x*tube_n_m2_t_4 - tube_c_2*v.tube_n_m2_t_3);
+    /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
+    const real tube_n_m3_t_4 = tube_c_1*v.tube_n_m3_t + v.tube_n_m3_t_2*tube_s_1;
+    const real tube_n_m3_in_axes2_z = tube_c_2*tube_n_m3_t_4 +
+        tube_e_1_in_axes2_x*v.tube_n_m3_t_3;
+    const real tube_n_m3_t_5 = tube_e_1_in_axes2_x*(tube_c_1*v.tube_n_m3_t_2 -
+        v.tube_n_m3_t*tube_s_1);
+    /* (tube-f_c1) force part of constraint wrench 1 */
+    const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
+        tube_n_m1_in_axes2_z*tube_n_m3_t_5;
+    /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
+    const real inv_tube_f_c1_t = 1/tube_f_c1_t;
+    const real tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_5*tube_n_m3_in_axes2_z;
+    /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
+    const real tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_5;
+    /* (tube-size_c3) size of the moment */
+    const real tube_size_c3 = root(1 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t);
+    /* (tube-mu2_c3) moment along direction 2 that goes with it */
+    const real tube_mu2_c3 = 1/tube_size_c3;
+    /* (tube-phi_c1) loop-closure residual along the constraint force */
+    const real tube_end_p1_in_axes2_x = tube_c_2*tube_n_m1_t_13 +
+        tube_e_1_in_axes2_x*v.tube_n_m1_t_12;
+    const real tube_end_p3_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m3_t_4 -
+        tube_c_2*v.tube_n_m3_t_3;
+    const real tube_phi_c1 = inv_tube_f_c1_t*tube_end_p1_in_axes2_x*tube_n_m3_t_5*tube_q_3 -
+        inv_tube_f_c1_t*tube_end_p3_in_axes2_y*tube_n_m1_in_axes1_z*tube_q_3;
+    /* (tube-phi_c2) loop-closure residual along the constraint force */
+    const real tube_phi_c2 =
+        inv_tube_f_c1_t*tube_end_p1_in_axes2_x*tube_n_m3_in_axes2_z*tube_root_1 +
+        inv_tube_f_c1_t*tube_end_p3_in_axes2_y*tube_n_m1_in_axes2_z*tube_root_1;
+    /* (tube-phi_c3) loop-closure residual about the constraint moment */
+    const real tube_phi_c3 = -tube_mu2_c3*(tube_c_1*v.tube_n_m2_t_2 - v.tube_n_m2_t*tube_s_1)
+        - tube_end_p1_in_axes2_x*tube_m1_c3*tube_mu2_c3 -
+        tube_end_p3_in_axes2_y*tube_m3_c3_t*tube_mu2_c3;
+    /* (tube-phi_c1) */
+    o[0*count + k] = tube_phi_c1;
+    /* (tube-phi_c2) */
+    o[1*count + k] = tube_phi_c2;
+    /* (tube-phi_c3) */
+    o[2*count + k] = tube_phi_c3;
+    o[4*count + k] = tube_phi_c1 + (tube_phi_c2 + tube_phi_c3);
+    o[3*count + k] = UNLESS(magnitude(tube_root_1_t) > LEAST_3) + UNLESS(magnitude(tube_q_3_t)
+        > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) + UNLESS(magnitude(tube_size_c3)
+        > LEAST_4);
 }
 
-INLINE void constraints_place_tube(size_t w, size_t count, const real *o, size_t first, real
-    *constraints, verdict *t)
+INLINE void constraints_place_tube(size_t w, size_t k, size_t at, size_t count, const real *o,
+    real *constraints, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        constraints[0*w + k] = o[0*count + first + k];
-        constraints[1*w + k] = o[1*count + first + k];
-        constraints[2*w + k] = o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
+    constraints[0*w + k] = o[0*count + at];
+    constraints[1*w + k] = o[1*count + at];
+    constraints[2*w + k] = o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
 }
 
-INLINE void constraints_run(const prepared *m, const real *X, real *constraints, verdict *t)
+APART void constraints_run(const prepared *m, const real *X, real *constraints, verdict *t)
 {
     real s[9] = {0};
     real o_tube[5*LEGS(LEGS_OF_tube)] = {0};
-    constraints_before(m, 1, X, s, t);
-    constraints_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), X, o_tube);
-    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
-        constraints_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, constraints, t);
+    constraints_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
+        constraints_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), s, X, o_tube);
+    }
+    for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        constraints_place_tube(1, 0, i, LEGS(LEGS_OF_tube), o_tube, constraints, t);
     }
 }
 
-INLINE void constraints_run_lanes(const prepared *m, const real *X, real *constraints, verdict *t)
+INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restrict constraints,
+    verdict *restrict t)
 {
     real s[9*LANES];
     real o_tube[5*LANES];
-    constraints_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
-        constraints_legs_tube(m, LANES, leg, 0, s, 1, LANES, X, o_tube);
-        constraints_place_tube(LANES, LANES, o_tube, 0, constraints, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        constraints_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            constraints_legs_tube(m, LANES, i, k, k, LANES, s, X, o_tube);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            constraints_place_tube(LANES, k, k, LANES, o_tube, constraints, t);
+        }
     }
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void legs_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
+INLINE void legs_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    const real *s, const real *X, const real *V, const real *A, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_ups v;
-        stage_ups_X(m, w, i, j, s, X, &v);
-        stage_ups_A_X(w, j, A, &v);
-        stage_ups_V_X(w, j, V, &v);
-        stage_ups_A_V_X(w, j, V, &v);
-        stage_ups_legs_required(m, i, &v);
-        /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real ups_mu_2_t_2 = v.ups_omega_1_in_axes2_y*v.ups_omega_1_in_axes2_y;
-        const real ups_mu_2_t_3 = v.ups_qd_2*v.ups_qd_2;
-        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
-        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
-        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
-        const real ups_Sigma_2_in_axes2_yy = m->ups_Sigma_2_in_axes2_yy[i];
-        const real ups_Sigma_2_in_axes2_zz = m->ups_Sigma_2_in_axes2_zz[i];
-        const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
-        const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
-        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
-        const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
-        const real ups_mu_2_in_axes2_x = v.ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
-            v.ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
-            ups_J_group_2_in_axes2_yz*(ups_mu_2_t_2 - ups_mu_2_t_3) +
-            ups_Sigma_2_in_axes2_zz*v.ups_alpha_1_in_axes2_x +
-            v.ups_g_in_axes2_y*ups_h_2_in_spec2_y + v.ups_g_in_axes2_z*ups_h_2_in_spec2_z -
-            v.ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
-            v.ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - v.ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z;
-        const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
-        const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
-        const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
-        const real ups_mu_2_in_axes2_y = v.ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
-            ups_Sigma_2_in_axes2_zz*v.ups_alpha_1_in_axes2_y +
-            v.ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + v.ups_g_in_axes2_z*ups_h_2_in_spec2_x -
-            v.ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
-            v.ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
-            ups_J_group_2_in_axes2_xz*(v.ups_mu_2_t - ups_mu_2_t_3) -
-            v.ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x - v.ups_g_in_axes2_x*ups_h_2_in_spec2_y;
-        const real ups_mu_2_in_axes2_z = v.ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
-            ups_J_group_2_in_axes2_xy*(v.ups_mu_2_t - ups_mu_2_t_2) +
-            ups_J_group_2_in_axes2_xz*v.ups_alpha_1_in_axes2_x +
-            ups_J_group_2_in_axes2_yz*v.ups_alpha_1_in_axes2_y +
-            v.ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + v.ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x
-            - v.ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy -
-            v.ups_g_in_axes2_x*ups_h_2_in_spec2_z - v.ups_g_in_axes2_y*ups_h_2_in_spec2_x;
-        /* (ups-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real ups_c_in_axes2_y = v.ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y -
-            v.inv_ups_q_3*ups_mu_2_in_axes2_z - v.ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x -
-            ups_h_3_in_spec2_z*(v.ups_mu_2_t + ups_mu_2_t_3);
-        const real ups_c_in_axes2_z = v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
-            v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) + v.ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z +
-            ups_h_3_in_spec2_y*(v.ups_mu_2_t + ups_mu_2_t_2) -
-            v.ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x;
-        /* (ups-c_true) leg force on the platform without actuation, the last link's mass included */
-        const real ups_link3_mass = m->ups_link3_mass[i];
-        const real ups_c_true_in_axes2_x = v.ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z -
-            v.ups_acc_3_in_axes2_x*ups_link3_mass - v.ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y -
-            ups_h_3_in_spec2_x*(-ups_mu_2_t_2 - ups_mu_2_t_3);
-        const real ups_c_true_in_axes2_y = ups_c_in_axes2_y -
-            v.ups_acc_3_in_axes2_y*ups_link3_mass;
-        const real ups_c_true_in_axes2_z = ups_c_in_axes2_z -
-            v.ups_acc_3_in_axes2_z*ups_link3_mass;
-        const real ups_c_true_x = v.axis_x_ups_axes2_x*ups_c_true_in_axes2_x +
-            v.axis_y_ups_axes2_x*ups_c_true_in_axes2_y +
-            v.axis_z_ups_axes2_x*ups_c_true_in_axes2_z;
-        const real ups_c_true_y = v.axis_x_ups_axes2_y*ups_c_true_in_axes2_x +
-            v.axis_y_ups_axes2_y*ups_c_true_in_axes2_y +
-            v.axis_z_ups_axes2_y*ups_c_true_in_axes2_z;
-        const real ups_c_true_z = v.axis_x_ups_axes2_z*ups_c_true_in_axes2_x +
-            v.axis_y_ups_axes2_z*ups_c_true_in_axes2_y +
-            v.axis_z_ups_axes2_z*ups_c_true_in_axes2_z;
-        /* (ups-c_true) leg force on the platform without actuation, the last link's mass included */
-        o[0*count + k] = ups_c_true_x;
-        o[1*count + k] = ups_c_true_y;
-        o[2*count + k] = ups_c_true_z;
-        /* (ups-w_3) reciprocal vector 3 */
-        o[3*count + k] = v.axis_x_ups_axes2_x;
-        o[4*count + k] = v.axis_x_ups_axes2_y;
-        o[5*count + k] = v.axis_x_ups_axes2_z;
-        o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
-    }
+    values_ups v;
+    stage_ups_X(m, w, i, j, s, X, &v);
+    stage_ups_A_X(w, j, A, &v);
+    stage_ups_V_X(w, j, V, &v);
+    stage_ups_A_V_X(w, j, V, &v);
+    stage_ups_legs_required(m, i, &v);
+    /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    const real ups_mu_2_t_2 = v.ups_omega_1_in_axes2_y*v.ups_omega_1_in_axes2_y;
+    const real ups_mu_2_t_3 = v.ups_qd_2*v.ups_qd_2;
+    const real ups_mu_2_in_axes2_x = v.ups_B_2_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
+        v.ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] +
+        m->ups_J_group_2_in_axes2_yz[i]*(ups_mu_2_t_2 - ups_mu_2_t_3) +
+        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_x +
+        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] +
+        v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i] -
+        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_y[i] -
+        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_z[i];
+    const real ups_mu_2_in_axes2_y = v.ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] +
+        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_y +
+        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_y[i] +
+        v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
+        v.ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i] -
+        m->ups_J_group_2_in_axes2_xz[i]*(v.ups_mu_2_t - ups_mu_2_t_3) -
+        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_x[i] -
+        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i];
+    const real ups_mu_2_in_axes2_z = v.ups_B_2_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
+        m->ups_J_group_2_in_axes2_xy[i]*(v.ups_mu_2_t - ups_mu_2_t_2) +
+        m->ups_J_group_2_in_axes2_xz[i]*v.ups_alpha_1_in_axes2_x +
+        m->ups_J_group_2_in_axes2_yz[i]*v.ups_alpha_1_in_axes2_y +
+        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_z[i] +
+        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_x[i] -
+        v.ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] -
+        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] -
+        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i];
+    /* (ups-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real ups_c_in_axes2_y = v.ups_alpha_1_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
+        v.inv_ups_q_3*ups_mu_2_in_axes2_z - v.ups_B_2_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
+        m->ups_h_3_in_spec2_z[i]*(v.ups_mu_2_t + ups_mu_2_t_3);
+    const real ups_c_in_axes2_z = v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
+        v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) +
+        v.ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] +
+        m->ups_h_3_in_spec2_y[i]*(v.ups_mu_2_t + ups_mu_2_t_2) -
+        v.ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i];
+    /* (ups-c_true) leg force on the platform without actuation, the last link's mass included */
+    const real ups_c_true_in_axes2_x = v.ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i] -
+        v.ups_acc_3_in_axes2_x*m->ups_link3_mass[i] -
+        v.ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i] -
+        m->ups_h_3_in_spec2_x[i]*(-ups_mu_2_t_2 - ups_mu_2_t_3);
+    const real ups_c_true_in_axes2_y = ups_c_in_axes2_y -
+        v.ups_acc_3_in_axes2_y*m->ups_link3_mass[i];
+    const real ups_c_true_in_axes2_z = ups_c_in_axes2_z -
+        v.ups_acc_3_in_axes2_z*m->ups_link3_mass[i];
+    const real ups_c_true_x = v.axis_x_ups_axes2_x*ups_c_true_in_axes2_x +
+        v.axis_y_ups_axes2_x*ups_c_true_in_axes2_y +
+        v.axis_z_ups_axes2_x*ups_c_true_in_axes2_z;
+    const real ups_c_true_y = v.axis_x_ups_axes2_y*ups_c_true_in_axes2_x +
+        v.axis_y_ups_axes2_y*ups_c_true_in_axes2_y +
+        v.axis_z_ups_axes2_y*ups_c_true_in_axes2_z;
+    const real ups_c_true_z = v.axis_x_ups_axes2_z*ups_c_true_in_axes2_x +
+        v.axis_y_ups_axes2_z*ups_c_true_in_axes2_y +
+        v.axis_z_ups_axes2_z*ups_c_true_in_axes2_z;
+    /* (ups-c_true) */
+    o[0*count + k] = ups_c_true_x;
+    o[1*count + k] = ups_c_true_y;
+    o[2*count + k] = ups_c_true_z;
+    /* (ups-w_3) reciprocal vector 3 */
+    o[3*count + k] = v.axis_x_ups_axes2_x;
+    o[4*count + k] = v.axis_x_ups_axes2_y;
+    o[5*count + k] = v.axis_x_ups_axes2_z;
+    o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void legs_place_ups(size_t w, size_t count, const real *o, size_t leg, size_t first, real
-    *leg_force, real *actuator, verdict *t)
+INLINE void legs_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *leg_force, real *actuator, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        leg_force[6*leg*w + k] = o[0*count + first + k];
-        leg_force[(6*leg + 1)*w + k] = o[1*count + first + k];
-        leg_force[(6*leg + 2)*w + k] = o[2*count + first + k];
-        actuator[6*leg*w + k] = o[3*count + first + k];
-        actuator[(6*leg + 1)*w + k] = o[4*count + first + k];
-        actuator[(6*leg + 2)*w + k] = o[5*count + first + k];
-        t->singular[k] += o[6*count + first + k];
-    }
+    leg_force[6*i*w + k] = o[0*count + at];
+    leg_force[(6*i + 1)*w + k] = o[1*count + at];
+    leg_force[(6*i + 2)*w + k] = o[2*count + at];
+    actuator[6*i*w + k] = o[3*count + at];
+    actuator[(6*i + 1)*w + k] = o[4*count + at];
+    actuator[(6*i + 2)*w + k] = o[5*count + at];
+    t->singular[k] += o[6*count + at];
 }
 
-INLINE void legs_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
+INLINE void legs_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_tube v;
-        stage_tube_X(m, w, i, j, s, X, &v);
-        stage_tube_A_X(w, j, A, &v);
-        stage_tube_V_X(w, j, V, &v);
-        stage_tube_A_V_X(w, j, V, &v);
-        stage_tube_legs_required(m, i, &v);
-        /* (tube-mu_c1) the moment that goes with it */
-        const real tube_mu_c1_x = v.axis_x_tube_axes2_x*v.tube_mu_c1_in_axes2_x +
-            v.axis_y_tube_axes2_x*v.tube_mu_c1_in_axes2_y +
-            v.axis_z_tube_axes2_x*v.tube_mu_c1_in_axes2_z;
-        const real tube_mu_c1_y = v.axis_x_tube_axes2_y*v.tube_mu_c1_in_axes2_x +
-            v.axis_y_tube_axes2_y*v.tube_mu_c1_in_axes2_y +
-            v.axis_z_tube_axes2_y*v.tube_mu_c1_in_axes2_z;
-        const real tube_mu_c1_z = v.axis_x_tube_axes2_z*v.tube_mu_c1_in_axes2_x +
-            v.axis_y_tube_axes2_z*v.tube_mu_c1_in_axes2_y +
-            v.axis_z_tube_axes2_z*v.tube_mu_c1_in_axes2_z;
-        /* (tube-mu_c2) the moment that goes with it */
-        const real tube_mu_c2_x = v.axis_y_tube_axes2_x*v.tube_mu_c2_in_axes2_y +
-            v.axis_z_tube_axes2_x*v.tube_mu_c2_in_axes2_z - v.axis_x_tube_axes2_x*v.tube_mu_c2_t;
-        const real tube_mu_c2_y = v.axis_y_tube_axes2_y*v.tube_mu_c2_in_axes2_y +
-            v.axis_z_tube_axes2_y*v.tube_mu_c2_in_axes2_z - v.axis_x_tube_axes2_y*v.tube_mu_c2_t;
-        const real tube_mu_c2_z = v.axis_y_tube_axes2_z*v.tube_mu_c2_in_axes2_y +
-            v.axis_z_tube_axes2_z*v.tube_mu_c2_in_axes2_z - v.axis_x_tube_axes2_z*v.tube_mu_c2_t;
-        /* (tube-c_m) moment of the leg on the platform without actuation */
-        const real tube_c_m_x = -v.axis_x_tube_axes2_x*v.tube_G_m_in_axes2_x -
-            v.axis_y_tube_axes2_x*v.tube_G_m_in_axes2_y -
-            v.axis_z_tube_axes2_x*v.tube_G_m_in_axes2_z;
-        const real tube_c_m_y = -v.axis_x_tube_axes2_y*v.tube_G_m_in_axes2_x -
-            v.axis_y_tube_axes2_y*v.tube_G_m_in_axes2_y -
-            v.axis_z_tube_axes2_y*v.tube_G_m_in_axes2_z;
-        const real tube_c_m_z = -v.axis_x_tube_axes2_z*v.tube_G_m_in_axes2_x -
-            v.axis_y_tube_axes2_z*v.tube_G_m_in_axes2_y -
-            v.axis_z_tube_axes2_z*v.tube_G_m_in_axes2_z;
-        /* (tube-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        o[0*count + k] = v.tube_c_x;
-        o[1*count + k] = v.tube_c_y;
-        o[2*count + k] = v.tube_c_z;
-        /* (tube-c_m) moment of the leg on the platform without actuation */
-        o[3*count + k] = tube_c_m_x;
-        o[4*count + k] = tube_c_m_y;
-        o[5*count + k] = tube_c_m_z;
-        /* (tube-n_c1) unit force of the constraint wrench */
-        o[6*count + k] = v.axis_y_tube_axes2_x;
-        o[7*count + k] = v.axis_y_tube_axes2_y;
-        o[8*count + k] = v.axis_y_tube_axes2_z;
-        /* (tube-mu_c1) the moment that goes with it */
-        o[9*count + k] = tube_mu_c1_x;
-        o[10*count + k] = tube_mu_c1_y;
-        o[11*count + k] = tube_mu_c1_z;
-        /* (tube-n_c2) unit force of the constraint wrench */
-        o[12*count + k] = v.axis_z_tube_axes2_x;
-        o[13*count + k] = v.axis_z_tube_axes2_y;
-        o[14*count + k] = v.axis_z_tube_axes2_z;
-        /* (tube-mu_c2) the moment that goes with it */
-        o[15*count + k] = tube_mu_c2_x;
-        o[16*count + k] = tube_mu_c2_y;
-        o[17*count + k] = tube_mu_c2_z;
-        /* (tube-mu_c3) the moment that goes with it */
-        o[18*count + k] = v.tube_mu_c3_x;
-        o[19*count + k] = v.tube_mu_c3_y;
-        o[20*count + k] = v.tube_mu_c3_z;
-        o[21*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
-            UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
-            + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
-            LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_33) > LEAST_4) +
-            UNLESS(magnitude(v.tube_w_1_t_49) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_63) >
-            LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_75) > LEAST_5);
-    }
+    values_tube v;
+    stage_tube_X(m, w, i, j, s, X, &v);
+    stage_tube_A_X(w, j, A, &v);
+    stage_tube_V_X(w, j, V, &v);
+    stage_tube_A_V_X(w, j, V, &v);
+    stage_tube_legs_required(m, i, &v);
+    /* (tube-mu_c1) the moment that goes with it */
+    const real tube_mu_c1_x = v.axis_x_tube_axes2_x*v.tube_mu_c1_in_axes2_x +
+        v.axis_y_tube_axes2_x*v.tube_mu_c1_in_axes2_y +
+        v.axis_z_tube_axes2_x*v.tube_mu_c1_in_axes2_z;
+    const real tube_mu_c1_y = v.axis_x_tube_axes2_y*v.tube_mu_c1_in_axes2_x +
+        v.axis_y_tube_axes2_y*v.tube_mu_c1_in_axes2_y +
+        v.axis_z_tube_axes2_y*v.tube_mu_c1_in_axes2_z;
+    const real tube_mu_c1_z = v.axis_x_tube_axes2_z*v.tube_mu_c1_in_axes2_x +
+        v.axis_y_tube_axes2_z*v.tube_mu_c1_in_axes2_y +
+        v.axis_z_tube_axes2_z*v.tube_mu_c1_in_axes2_z;
+    /* (tube-mu_c2) the moment that goes with it */
+    const real tube_mu_c2_x = v.axis_y_tube_axes2_x*v.tube_mu_c2_in_axes2_y +
+        v.axis_z_tube_axes2_x*v.tube_mu_c2_in_axes2_z - v.axis_x_tube_axes2_x*v.tube_mu_c2_t;
+    const real tube_mu_c2_y = v.axis_y_tube_axes2_y*v.tube_mu_c2_in_axes2_y +
+        v.axis_z_tube_axes2_y*v.tube_mu_c2_in_axes2_z - v.axis_x_tube_axes2_y*v.tube_mu_c2_t;
+    const real tube_mu_c2_z = v.axis_y_tube_axes2_z*v.tube_mu_c2_in_axes2_y +
+        v.axis_z_tube_axes2_z*v.tube_mu_c2_in_axes2_z - v.axis_x_tube_axes2_z*v.tube_mu_c2_t;
+    /* (tube-c_m) moment of the leg on the platform without actuation */
+    const real tube_c_m_x = -v.axis_x_tube_axes2_x*v.tube_G_m_in_axes2_x -
+        v.axis_y_tube_axes2_x*v.tube_G_m_in_axes2_y -
+        v.axis_z_tube_axes2_x*v.tube_G_m_in_axes2_z;
+    const real tube_c_m_y = -v.axis_x_tube_axes2_y*v.tube_G_m_in_axes2_x -
+        v.axis_y_tube_axes2_y*v.tube_G_m_in_axes2_y -
+        v.axis_z_tube_axes2_y*v.tube_G_m_in_axes2_z;
+    const real tube_c_m_z = -v.axis_x_tube_axes2_z*v.tube_G_m_in_axes2_x -
+        v.axis_y_tube_axes2_z*v.tube_G_m_in_axes2_y -
+        v.axis_z_tube_axes2_z*v.tube_G_m_in_axes2_z;
+    /* (tube-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    o[0*count + k] = v.tube_c_x;
+    o[1*count + k] = v.tube_c_y;
+    o[2*count + k] = v.tube_c_z;
+    /* (tube-c_m) */
+    o[3*count + k] = tube_c_m_x;
+    o[4*count + k] = tube_c_m_y;
+    o[5*count + k] = tube_c_m_z;
+    /* (tube-n_c1) unit force of the constraint wrench */
+    o[6*count + k] = v.axis_y_tube_axes2_x;
+    o[7*count + k] = v.axis_y_tube_axes2_y;
+    o[8*count + k] = v.axis_y_tube_axes2_z;
+    /* (tube-mu_c1) */
+    o[9*count + k] = tube_mu_c1_x;
+    o[10*count + k] = tube_mu_c1_y;
+    o[11*count + k] = tube_mu_c1_z;
+    /* (tube-n_c2) unit force of the constraint wrench */
+    o[12*count + k] = v.axis_z_tube_axes2_x;
+    o[13*count + k] = v.axis_z_tube_axes2_y;
+    o[14*count + k] = v.axis_z_tube_axes2_z;
+    /* (tube-mu_c2) */
+    o[15*count + k] = tube_mu_c2_x;
+    o[16*count + k] = tube_mu_c2_y;
+    o[17*count + k] = tube_mu_c2_z;
+    /* (tube-mu_c3) the moment that goes with it */
+    o[18*count + k] = v.tube_mu_c3_x;
+    o[19*count + k] = v.tube_mu_c3_y;
+    o[20*count + k] = v.tube_mu_c3_z;
+    o[21*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
+        UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
+        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
+        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_33) > LEAST_4) +
+        UNLESS(magnitude(v.tube_w_1_t_49) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_63) >
+        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_75) > LEAST_5);
 }
 
-INLINE void legs_place_tube(size_t w, size_t count, const real *o, size_t first, real *leg_force,
-    real *constraint_direction, verdict *t)
+INLINE void legs_place_tube(size_t w, size_t k, size_t at, size_t count, const real *o, real
+    *leg_force, real *constraint_direction, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        leg_force[24*w + k] = o[0*count + first + k];
-        leg_force[(24 + 1)*w + k] = o[1*count + first + k];
-        leg_force[(24 + 2)*w + k] = o[2*count + first + k];
-        leg_force[(24 + 3)*w + k] = o[3*count + first + k];
-        leg_force[(24 + 4)*w + k] = o[4*count + first + k];
-        leg_force[(24 + 5)*w + k] = o[5*count + first + k];
-        constraint_direction[0*w + k] = o[6*count + first + k];
-        constraint_direction[1*w + k] = o[7*count + first + k];
-        constraint_direction[2*w + k] = o[8*count + first + k];
-        constraint_direction[3*w + k] = o[9*count + first + k];
-        constraint_direction[4*w + k] = o[10*count + first + k];
-        constraint_direction[5*w + k] = o[11*count + first + k];
-        constraint_direction[6*w + k] = o[12*count + first + k];
-        constraint_direction[(6 + 1)*w + k] = o[13*count + first + k];
-        constraint_direction[(6 + 2)*w + k] = o[14*count + first + k];
-        constraint_direction[(6 + 3)*w + k] = o[15*count + first + k];
-        constraint_direction[(6 + 4)*w + k] = o[16*count + first + k];
-        constraint_direction[(6 + 5)*w + k] = o[17*count + first + k];
-        constraint_direction[(12 + 3)*w + k] = o[18*count + first + k];
-        constraint_direction[(12 + 4)*w + k] = o[19*count + first + k];
-        constraint_direction[(12 + 5)*w + k] = o[20*count + first + k];
-        t->singular[k] += o[21*count + first + k];
-    }
+    leg_force[24*w + k] = o[0*count + at];
+    leg_force[(24 + 1)*w + k] = o[1*count + at];
+    leg_force[(24 + 2)*w + k] = o[2*count + at];
+    leg_force[(24 + 3)*w + k] = o[3*count + at];
+    leg_force[(24 + 4)*w + k] = o[4*count + at];
+    leg_force[(24 + 5)*w + k] = o[5*count + at];
+    constraint_direction[0*w + k] = o[6*count + at];
+    constraint_direction[1*w + k] = o[7*count + at];
+    constraint_direction[2*w + k] = o[8*count + at];
+    constraint_direction[3*w + k] = o[9*count + at];
+    constraint_direction[4*w + k] = o[10*count + at];
+    constraint_direction[5*w + k] = o[11*count + at];
+    constraint_direction[6*w + k] = o[12*count + at];
+    constraint_direction[(6 + 1)*w + k] = o[13*count + at];
+    constraint_direction[(6 + 2)*w + k] = o[14*count + at];
+    constraint_direction[(6 + 3)*w + k] = o[15*count + at];
+    constraint_direction[(6 + 4)*w + k] = o[16*count + at];
+    constraint_direction[(6 + 5)*w + k] = o[17*count + at];
+    constraint_direction[(12 + 3)*w + k] = o[18*count + at];
+    constraint_direction[(12 + 4)*w + k] = o[19*count + at];
+    constraint_direction[(12 + 5)*w + k] = o[20*count + at];
+    t->singular[k] += o[21*count + at];
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
@@ -8176,224 +7981,174 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     clear(leg_force, 6*NL);
     clear(actuator, 24);
     clear(constraint_direction, 6*NC);
-    legs_before(m, 1, X, s, t);
-    legs_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), X, V, A, o_ups);
-    legs_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), X, V, A, o_tube);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        legs_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, leg_force, actuator, t);
+    legs_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
+        legs_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, V, A, o_ups);
     }
-    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
-        legs_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, leg_force, constraint_direction, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
+        legs_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), s, X, V, A, o_tube);
+    }
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        legs_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, leg_force, actuator, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        legs_place_tube(1, 0, i, LEGS(LEGS_OF_tube), o_tube, leg_force, constraint_direction, t);
     }
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        /* (potential) potential energy */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real m_star = m->m_star;
-        const real t_x = X[0*w + k];
-        const real t_y = X[1*w + k];
-        const real t_z = X[2*w + k];
-        const real potential_t = gravity_x*(v.R_xx*h_star_in_platform_x +
-            v.R_xy*h_star_in_platform_y + v.R_xz*h_star_in_platform_z + m_star*t_x) +
-            gravity_y*(v.R_yx*h_star_in_platform_x + v.R_yy*h_star_in_platform_y +
-            v.R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(v.R_zx*h_star_in_platform_x +
-            v.R_zy*h_star_in_platform_y + v.R_zz*h_star_in_platform_z + m_star*t_z);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = potential_t;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    /* (potential) potential energy */
+    const real t_x = X[0*w + k];
+    const real t_y = X[1*w + k];
+    const real t_z = X[2*w + k];
+    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x +
+        v.R_xy*m->h_star_in_platform_y + v.R_xz*m->h_star_in_platform_z + m->m_star*t_x) +
+        m->gravity_y*(v.R_yx*m->h_star_in_platform_x + v.R_yy*m->h_star_in_platform_y +
+        v.R_yz*m->h_star_in_platform_z + m->m_star*t_y) +
+        m->gravity_z*(v.R_zx*m->h_star_in_platform_x + v.R_zy*m->h_star_in_platform_y +
+        v.R_zz*m->h_star_in_platform_z + m->m_star*t_z);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = potential_t;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void potential_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void potential_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_ups v;
-        stage_ups_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real ups_c_1 = v.inv_ups_root_1*v.ups_S_in_turn1_x;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = v.inv_ups_root_1*v.ups_S_in_turn1_y;
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real ups_c_2 = v.inv_ups_q_3*v.ups_root_1;
-        /* (potential) potential energy */
-        const real ups_e_1_in_axes2_x = v.inv_ups_q_3*v.ups_S_in_turn1_z;
-        const real ups_acc_3_t = m->ups_acc_3_t[i];
-        const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
-        const real ups_potential_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1;
-        const real ups_potential_t = m->ups_potential_t[i];
-        const real ups_potential_t_2 = m->ups_potential_t_2[i];
-        const real ups_potential_t_5 = ups_c_1*ups_potential_t + ups_potential_t_2*ups_s_1;
-        const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
-        const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
-        const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
-        const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
-        const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
-        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
-        const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
-        const real ups_link2_mass = m->ups_link2_mass[i];
-        const real ups_potential_t_3 = m->ups_potential_t_3[i];
-        const real ups_potential_t_6 = (ups_e_1_in_axes2_x*ups_potential_t_4 -
-            ups_acc_3_t_3*ups_c_2)*(ups_h_2_in_spec2_z + ups_h_3_in_spec2_z -
-            ups_link2_mass*(ups_e_1_in_axes2_x*ups_potential_t_5 - ups_c_2*ups_potential_t_3)) -
-            (ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1)*(ups_h_2_in_spec2_y + ups_h_3_in_spec2_y
-            + ups_link2_mass*(ups_c_1*ups_potential_t_2 - ups_potential_t*ups_s_1)) -
-            (ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_c_2*ups_potential_t_4)*(ups_h_2_in_spec2_x +
-            ups_h_3_in_spec2_x + ups_link2_mass*(ups_c_2*ups_potential_t_5 +
-            ups_e_1_in_axes2_x*ups_potential_t_3));
-        /* (potential) potential energy */
-        gather(&terms[0*count + k], add, ups_potential_t_6);  /* potential_of_legs */
-        o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1);
-    }
+    values_ups v;
+    stage_ups_inverse_kinematics_potential(m, w, i, j, s, X, &v);
+    /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real ups_c_1 = v.inv_ups_root_1*v.ups_S_in_turn1_x;
+    /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+    const real ups_s_1 = v.inv_ups_root_1*v.ups_S_in_turn1_y;
+    /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real ups_c_2 = v.inv_ups_q_3*v.ups_root_1;
+    /* (potential) */
+    const real ups_e_1_in_axes2_x = v.inv_ups_q_3*v.ups_S_in_turn1_z;
+    const real ups_potential_t_4 = m->ups_acc_3_t[i]*ups_c_1 + m->ups_acc_3_t_2[i]*ups_s_1;
+    const real ups_potential_t_5 = ups_c_1*m->ups_potential_t[i] +
+        m->ups_potential_t_2[i]*ups_s_1;
+    const real ups_potential_t_6 = (ups_e_1_in_axes2_x*ups_potential_t_4 -
+        m->ups_acc_3_t_3[i]*ups_c_2)*(m->ups_h_2_in_spec2_z[i] + m->ups_h_3_in_spec2_z[i] -
+        m->ups_link2_mass[i]*(ups_e_1_in_axes2_x*ups_potential_t_5 -
+        ups_c_2*m->ups_potential_t_3[i])) - (m->ups_acc_3_t_2[i]*ups_c_1 -
+        m->ups_acc_3_t[i]*ups_s_1)*(m->ups_h_2_in_spec2_y[i] + m->ups_h_3_in_spec2_y[i] +
+        m->ups_link2_mass[i]*(ups_c_1*m->ups_potential_t_2[i] -
+        m->ups_potential_t[i]*ups_s_1)) - (m->ups_acc_3_t_3[i]*ups_e_1_in_axes2_x +
+        ups_c_2*ups_potential_t_4)*(m->ups_h_2_in_spec2_x[i] + m->ups_h_3_in_spec2_x[i] +
+        m->ups_link2_mass[i]*(ups_c_2*ups_potential_t_5 +
+        ups_e_1_in_axes2_x*m->ups_potential_t_3[i]));
+    /* (potential) */
+    gather(&terms[0*count + k], add, ups_potential_t_6);  /* potential_of_legs */
+    o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1);
 }
 
-INLINE void potential_place_ups(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void potential_place_ups(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o[0*count + first + k];
-    }
+    t->singular[k] += o[0*count + at];
 }
 
-INLINE void potential_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void potential_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        /* (tube-S) from the base point to the connection point */
-        const real R_xx = s[0*w + j];
-        const real R_xy = s[1*w + j];
-        const real R_xz = s[2*w + j];
-        const real t_x = X[0*w + j];
-        const real tube_base_point_x = m->tube_base_point_x[i];
-        const real tube_platform_point_x = m->tube_platform_point_x[i];
-        const real tube_platform_point_y = m->tube_platform_point_y[i];
-        const real tube_platform_point_z = m->tube_platform_point_z[i];
-        const real tube_S_x = t_x + R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
-            R_xz*tube_platform_point_z - tube_base_point_x;
-        const real R_yx = s[3*w + j];
-        const real R_yy = s[4*w + j];
-        const real R_yz = s[5*w + j];
-        const real t_y = X[1*w + j];
-        const real tube_base_point_y = m->tube_base_point_y[i];
-        const real tube_S_y = t_y + R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
-            R_yz*tube_platform_point_z - tube_base_point_y;
-        const real R_zx = s[6*w + j];
-        const real R_zy = s[7*w + j];
-        const real R_zz = s[8*w + j];
-        const real t_z = X[2*w + j];
-        const real tube_base_point_z = m->tube_base_point_z[i];
-        const real tube_S_z = t_z + R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
-            R_zz*tube_platform_point_z - tube_base_point_z;
-        const real tube_base_frame_xx = m->tube_base_frame_xx[i];
-        const real tube_base_frame_yx = m->tube_base_frame_yx[i];
-        const real tube_base_frame_zx = m->tube_base_frame_zx[i];
-        const real tube_S_in_turn1_x = tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx +
-            tube_S_z*tube_base_frame_zx;
-        const real tube_base_frame_xy = m->tube_base_frame_xy[i];
-        const real tube_base_frame_yy = m->tube_base_frame_yy[i];
-        const real tube_base_frame_zy = m->tube_base_frame_zy[i];
-        const real tube_S_in_turn1_y = tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy +
-            tube_S_z*tube_base_frame_zy;
-        const real tube_base_frame_xz = m->tube_base_frame_xz[i];
-        const real tube_base_frame_yz = m->tube_base_frame_yz[i];
-        const real tube_base_frame_zz = m->tube_base_frame_zz[i];
-        const real tube_S_in_turn1_z = tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz +
-            tube_S_z*tube_base_frame_zz;
-        /* (tube-root_1) amplitude, the length across axis 1, with the sign of the branch */
-        const real tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x +
-            tube_S_in_turn1_y*tube_S_in_turn1_y;
-        const real tube_branch_1 = m->tube_branch_1[i];
-        const real tube_root_1 = tube_branch_1*root(tube_root_1_t);
-        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_tube_root_1 = 1/tube_root_1;
-        const real tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x;
-        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
-        const real tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y;
-        /* (tube-q_3) displacement of joint 3 */
-        const real tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t;
-        const real tube_branch_2 = m->tube_branch_2[i];
-        const real tube_q_3 = tube_branch_2*root(tube_q_3_t);
-        /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_tube_q_3 = 1/tube_q_3;
-        const real tube_c_2 = inv_tube_q_3*tube_root_1;
-        /* (potential) potential energy */
-        const real tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z;
-        const real tube_acc_3_t = m->tube_acc_3_t[i];
-        const real tube_acc_3_t_2 = m->tube_acc_3_t_2[i];
-        const real tube_potential_t_4 = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1;
-        const real tube_potential_t = m->tube_potential_t[i];
-        const real tube_potential_t_2 = m->tube_potential_t_2[i];
-        const real tube_potential_t_5 = tube_c_1*tube_potential_t + tube_potential_t_2*tube_s_1;
-        const real tube_b_in_spec2_y = tube_c_1*tube_potential_t_2 - tube_potential_t*tube_s_1;
-        const real tube_potential_t_3 = m->tube_potential_t_3[i];
-        const real tube_b_in_spec2_x = tube_c_2*tube_potential_t_5 +
-            tube_e_1_in_axes2_x*tube_potential_t_3;
-        const real tube_b_in_spec2_z = tube_c_2*tube_potential_t_3 -
-            tube_e_1_in_axes2_x*tube_potential_t_5;
-        const real tube_acc_3_t_3 = m->tube_acc_3_t_3[i];
-        const real tube_h_2_in_spec2_x = m->tube_h_2_in_spec2_x[i];
-        const real tube_h_2_in_spec2_y = m->tube_h_2_in_spec2_y[i];
-        const real tube_h_2_in_spec2_z = m->tube_h_2_in_spec2_z[i];
-        const real tube_h_3_in_spec2_x = m->tube_h_3_in_spec2_x[i];
-        const real tube_h_3_in_spec2_y = m->tube_h_3_in_spec2_y[i];
-        const real tube_h_3_in_spec2_z = m->tube_h_3_in_spec2_z[i];
-        const real tube_link2_mass = m->tube_link2_mass[i];
-        const real tube_link3_mass = m->tube_link3_mass[i];
-        const real tube_potential_t_6 = (tube_e_1_in_axes2_x*tube_potential_t_4 -
-            tube_acc_3_t_3*tube_c_2)*(tube_h_2_in_spec2_z + tube_h_3_in_spec2_z +
-            tube_b_in_spec2_z*tube_link2_mass + tube_b_in_spec2_z*tube_link3_mass) -
-            (tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1)*(tube_h_2_in_spec2_y +
-            tube_h_3_in_spec2_y + tube_b_in_spec2_y*tube_link2_mass +
-            tube_b_in_spec2_y*tube_link3_mass) - (tube_acc_3_t_3*tube_e_1_in_axes2_x +
-            tube_c_2*tube_potential_t_4)*(tube_h_2_in_spec2_x + tube_h_3_in_spec2_x +
-            tube_b_in_spec2_x*tube_link2_mass + tube_link3_mass*(tube_b_in_spec2_x + tube_q_3));
-        /* (potential) potential energy */
-        gather(&terms[0*count + k], add, tube_potential_t_6);  /* potential_of_legs */
-        o[0*count + k] = UNLESS(magnitude(tube_root_1_t) > LEAST_3) + UNLESS(magnitude(tube_q_3_t)
-            > LEAST_3);
-    }
+    /* (tube-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real t_x = X[0*w + j];
+    const real tube_S_x = t_x + R_xx*m->tube_platform_point_x[i] +
+        R_xy*m->tube_platform_point_y[i] + R_xz*m->tube_platform_point_z[i] -
+        m->tube_base_point_x[i];
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real t_y = X[1*w + j];
+    const real tube_S_y = t_y + R_yx*m->tube_platform_point_x[i] +
+        R_yy*m->tube_platform_point_y[i] + R_yz*m->tube_platform_point_z[i] -
+        m->tube_base_point_y[i];
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real t_z = X[2*w + j];
+    const real tube_S_z = t_z + R_zx*m->tube_platform_point_x[i] +
+        R_zy*m->tube_platform_point_y[i] + R_zz*m->tube_platform_point_z[i] -
+        m->tube_base_point_z[i];
+    const real tube_S_in_turn1_x = tube_S_x*m->tube_base_frame_xx[i] +
+        tube_S_y*m->tube_base_frame_yx[i] + tube_S_z*m->tube_base_frame_zx[i];
+    const real tube_S_in_turn1_y = tube_S_x*m->tube_base_frame_xy[i] +
+        tube_S_y*m->tube_base_frame_yy[i] + tube_S_z*m->tube_base_frame_zy[i];
+    const real tube_S_in_turn1_z = tube_S_x*m->tube_base_frame_xz[i] +
+        tube_S_y*m->tube_base_frame_yz[i] + tube_S_z*m->tube_base_frame_zz[i];
+    /* (tube-root_1) amplitude, the length across axis 1, with the sign of the branch */
+    const real tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x +
+        tube_S_in_turn1_y*tube_S_in_turn1_y;
+    const real tube_root_1 = m->tube_branch_1[i]*root(tube_root_1_t);
+    /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real inv_tube_root_1 = 1/tube_root_1;
+    const real tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x;
+    /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
+    const real tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y;
+    /* (tube-q_3) displacement of joint 3 */
+    const real tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t;
+    const real tube_q_3 = m->tube_branch_2[i]*root(tube_q_3_t);
+    /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real inv_tube_q_3 = 1/tube_q_3;
+    const real tube_c_2 = inv_tube_q_3*tube_root_1;
+    /* (potential) */
+    const real tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z;
+    const real tube_potential_t_4 = m->tube_acc_3_t[i]*tube_c_1 +
+        m->tube_acc_3_t_2[i]*tube_s_1;
+    const real tube_potential_t_5 = tube_c_1*m->tube_potential_t[i] +
+        m->tube_potential_t_2[i]*tube_s_1;
+    const real tube_b_in_spec2_y = tube_c_1*m->tube_potential_t_2[i] -
+        m->tube_potential_t[i]*tube_s_1;
+    const real tube_b_in_spec2_x = tube_c_2*tube_potential_t_5 +
+        tube_e_1_in_axes2_x*m->tube_potential_t_3[i];
+    const real tube_b_in_spec2_z = tube_c_2*m->tube_potential_t_3[i] -
+        tube_e_1_in_axes2_x*tube_potential_t_5;
+    const real tube_potential_t_6 = (tube_e_1_in_axes2_x*tube_potential_t_4 -
+        m->tube_acc_3_t_3[i]*tube_c_2)*(m->tube_h_2_in_spec2_z[i] + m->tube_h_3_in_spec2_z[i]
+        + tube_b_in_spec2_z*m->tube_link2_mass[i] + tube_b_in_spec2_z*m->tube_link3_mass[i]) -
+        (m->tube_acc_3_t_2[i]*tube_c_1 -
+        m->tube_acc_3_t[i]*tube_s_1)*(m->tube_h_2_in_spec2_y[i] + m->tube_h_3_in_spec2_y[i] +
+        tube_b_in_spec2_y*m->tube_link2_mass[i] + tube_b_in_spec2_y*m->tube_link3_mass[i]) -
+        (m->tube_acc_3_t_3[i]*tube_e_1_in_axes2_x +
+        tube_c_2*tube_potential_t_4)*(m->tube_h_2_in_spec2_x[i] + m->tube_h_3_in_spec2_x[i] +
+        tube_b_in_spec2_x*m->tube_link2_mass[i] + m->tube_link3_mass[i]*(tube_b_in_spec2_x +
+        tube_q_3));
+    /* (potential) */
+    gather(&terms[0*count + k], add, tube_potential_t_6);  /* potential_of_legs */
+    o[0*count + k] = UNLESS(magnitude(tube_root_1_t) > LEAST_3) + UNLESS(magnitude(tube_q_3_t)
+        > LEAST_3);
 }
 
-INLINE void potential_place_tube(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void potential_place_tube(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o[0*count + first + k];
-    }
+    t->singular[k] += o[0*count + at];
 }
 
-INLINE void potential_after(size_t w, const real *s, const real *sums, real *potential)
+INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (potential) potential energy */
-        const real potential_of_legs = sums[0*w + k];
-        const real potential_t = s[9*w + k];
-        const real potential_ = potential_of_legs - potential_t;
-        /* (potential) potential energy */
-        potential[0*w + k] = potential_;
-    }
+    /* (potential) */
+    const real potential_of_legs = sums[0*w + k];
+    const real potential_t = s[9*w + k];
+    const real potential_ = potential_of_legs - potential_t;
+    /* (potential) */
+    potential[0*w + k] = potential_;
 }
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
@@ -8401,435 +8156,401 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
     real s[10] = {0}, sums[1] = {0};
     real terms_ups[LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
     real terms_tube[LEGS(LEGS_OF_tube)] = {0}, o_tube[LEGS(LEGS_OF_tube)] = {0};
-    potential_before(m, 1, X, s, t);
-    potential_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, X, terms_ups, o_ups);
-    potential_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), 0, X, terms_tube, o_tube);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        potential_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, t);
+    potential_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
+        potential_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, terms_ups, o_ups);
+    }
+    for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
+        potential_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), 0, s, X, terms_tube, o_tube);
+    }
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        potential_place_ups(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
-    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
-        potential_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, t);
+    for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        potential_place_tube(0, i, LEGS(LEGS_OF_tube), o_tube, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
             sums[n] += terms_tube[n*LEGS(LEGS_OF_tube) + leg];
         }
     }
-    potential_after(1, s, sums, potential);
+    potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
-    verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
+    *lengths, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        lengths[1*w + k] = R(1.3764070284330867);
-        t->total[k] += 0;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    lengths[1*w + k] = R(1.3764070284330867);
+    t->total[k] += 0;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void condition_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void condition_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_ups v;
-        stage_ups_X(m, w, i, j, s, X, &v);
-        /* (ups-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real ups_pivot_size = magnitude(v.ups_root_1_t);
-        const real ups_pivot_size_2 = magnitude(v.ups_q_3_t);
-        const real ups_pivot_size_3 = magnitude(v.ups_root_1);
-        const real ups_pivot_size_4 = magnitude(v.ups_q_3);
-        const real ups_least_pivots =
-            lesser(lesser(lesser(R(0.7231023985306559)*root(ups_pivot_size),
-            R(0.7231023985306559)*root(ups_pivot_size_2)),
-            R(0.7231023985306559)*ups_pivot_size_3), R(0.7231023985306559)*ups_pivot_size_4);
-        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        const real ups_H_a_3_x = v.ups_q_y*v.ups_w_3_z - v.ups_q_z*v.ups_w_3_y;
-        const real ups_H_a_3_y = v.ups_q_z*v.ups_w_3_x - v.ups_q_x*v.ups_w_3_z;
-        const real ups_H_a_3_z = v.ups_q_x*v.ups_w_3_y - v.ups_q_y*v.ups_w_3_x;
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_in_platform_x = m->b_c_in_platform_x;
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_spread_t = b_c_in_platform_x - ups_platform_point_x;
-        const real b_c_in_platform_y = m->b_c_in_platform_y;
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_spread_t_2 = b_c_in_platform_y - ups_platform_point_y;
-        const real b_c_in_platform_z = m->b_c_in_platform_z;
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_spread_t_3 = b_c_in_platform_z - ups_platform_point_z;
-        const real ups_spread_t_4 = ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 +
-            ups_spread_t_3*ups_spread_t_3;
-        /* (spread) rms distance of the platform points from their centroid */
-        gather(&terms[0*count + k], add, ups_spread_t_4);  /* spread_ups */
-        /* (ups-w_3) reciprocal vector 3 */
-        o[0*count + k] = v.ups_w_3_x;
-        o[1*count + k] = v.ups_w_3_y;
-        o[2*count + k] = v.ups_w_3_z;
-        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        o[3*count + k] = ups_H_a_3_x;
-        o[4*count + k] = ups_H_a_3_y;
-        o[5*count + k] = ups_H_a_3_z;
-        /* (ups-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        o[6*count + k] = ups_least_pivots;
-        o[8*count + k] = (v.ups_w_3_x + (v.ups_w_3_y + v.ups_w_3_z)) + ((ups_H_a_3_x +
-            ups_H_a_3_y) + (ups_H_a_3_z + ups_least_pivots));
-        o[7*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
-    }
+    values_ups v;
+    stage_ups_X(m, w, i, j, s, X, &v);
+    /* (ups-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real ups_pivot_size = magnitude(v.ups_root_1_t);
+    const real ups_pivot_size_2 = magnitude(v.ups_q_3_t);
+    const real ups_pivot_size_3 = magnitude(v.ups_root_1);
+    const real ups_pivot_size_4 = magnitude(v.ups_q_3);
+    const real ups_least_pivots =
+        lesser(lesser(lesser(R(0.7231023985306559)*root(ups_pivot_size),
+        R(0.7231023985306559)*root(ups_pivot_size_2)),
+        R(0.7231023985306559)*ups_pivot_size_3), R(0.7231023985306559)*ups_pivot_size_4);
+    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
+    const real ups_H_a_3_x = v.ups_q_y*v.ups_w_3_z - v.ups_q_z*v.ups_w_3_y;
+    const real ups_H_a_3_y = v.ups_q_z*v.ups_w_3_x - v.ups_q_x*v.ups_w_3_z;
+    const real ups_H_a_3_z = v.ups_q_x*v.ups_w_3_y - v.ups_q_y*v.ups_w_3_x;
+    /* (spread) rms distance of the platform points from their centroid */
+    const real ups_spread_t = m->b_c_in_platform_x - m->ups_platform_point_x[i];
+    const real ups_spread_t_2 = m->b_c_in_platform_y - m->ups_platform_point_y[i];
+    const real ups_spread_t_3 = m->b_c_in_platform_z - m->ups_platform_point_z[i];
+    const real ups_spread_t_4 = ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 +
+        ups_spread_t_3*ups_spread_t_3;
+    /* (spread) */
+    gather(&terms[0*count + k], add, ups_spread_t_4);  /* spread_ups */
+    /* (ups-w_3) reciprocal vector 3 */
+    o[0*count + k] = v.ups_w_3_x;
+    o[1*count + k] = v.ups_w_3_y;
+    o[2*count + k] = v.ups_w_3_z;
+    /* (ups-H_a_3) */
+    o[3*count + k] = ups_H_a_3_x;
+    o[4*count + k] = ups_H_a_3_y;
+    o[5*count + k] = ups_H_a_3_z;
+    /* (ups-G) */
+    o[6*count + k] = ups_least_pivots;
+    o[8*count + k] = (v.ups_w_3_x + (v.ups_w_3_y + v.ups_w_3_z)) + ((ups_H_a_3_x +
+        ups_H_a_3_y) + (ups_H_a_3_z + ups_least_pivots));
+    o[7*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void condition_place_ups(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *H, real *pivots, verdict *t)
+INLINE void condition_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real
+    *o, real *H, real *pivots, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        H[(3*NU + leg)*w + k] = o[3*count + first + k];
-        H[(4*NU + leg)*w + k] = o[4*count + first + k];
-        H[(5*NU + leg)*w + k] = o[5*count + first + k];
-        pivots[leg*w + k] = o[6*count + first + k];
-        t->singular[k] += o[7*count + first + k];
-        t->total[k] += o[8*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    H[(3*NU + i)*w + k] = o[3*count + at];
+    H[(4*NU + i)*w + k] = o[4*count + at];
+    H[(5*NU + i)*w + k] = o[5*count + at];
+    pivots[i*w + k] = o[6*count + at];
+    t->singular[k] += o[7*count + at];
+    t->total[k] += o[8*count + at];
 }
 
-INLINE void condition_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void condition_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_tube v;
-        stage_tube_X(m, w, i, j, s, X, &v);
-        /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real tube_platform_joint_rotation_yx = m->tube_platform_joint_rotation_yx[i];
-        const real tube_platform_joint_rotation_yy = m->tube_platform_joint_rotation_yy[i];
-        const real tube_platform_joint_rotation_yz = m->tube_platform_joint_rotation_yz[i];
-        const real tube_n_m1_in_axes2_z = v.tube_e_1_in_axes2_x*(v.tube_c_1*v.tube_n_m1_t_10 +
-            v.tube_n_m1_t_11*v.tube_s_1) -
-            v.tube_c_2*(v.tube_n_m1_t_7*tube_platform_joint_rotation_yx +
-            v.tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            v.tube_n_m1_t_9*tube_platform_joint_rotation_yz);
-        /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real tube_platform_joint_rotation_zx = m->tube_platform_joint_rotation_zx[i];
-        const real tube_platform_joint_rotation_zy = m->tube_platform_joint_rotation_zy[i];
-        const real tube_platform_joint_rotation_zz = m->tube_platform_joint_rotation_zz[i];
-        const real tube_n_m2_t = v.tube_n_m1_t_7*tube_platform_joint_rotation_zx +
-            v.tube_n_m1_t_8*tube_platform_joint_rotation_zy +
-            v.tube_n_m1_t_9*tube_platform_joint_rotation_zz;
-        const real tube_n_m2_t_2 = v.tube_c_1*(v.tube_n_m1_t*tube_platform_joint_rotation_zx +
-            v.tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            v.tube_n_m1_t_3*tube_platform_joint_rotation_zz) +
-            v.tube_s_1*(v.tube_n_m1_t_4*tube_platform_joint_rotation_zx +
-            v.tube_n_m1_t_5*tube_platform_joint_rotation_zy +
-            v.tube_n_m1_t_6*tube_platform_joint_rotation_zz);
-        const real tube_n_m2_in_axes2_y = v.tube_c_2*tube_n_m2_t_2 +
-            v.tube_e_1_in_axes2_x*tube_n_m2_t;
-        const real tube_end_p2_in_axes2_y = v.tube_e_1_in_axes2_x*tube_n_m2_t_2 -
-            v.tube_c_2*tube_n_m2_t;
-        const real tube_n_m2_t_3 = v.tube_c_2*tube_n_m2_in_axes2_y +
-            v.tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y;
-        /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
-        const real tube_platform_joint_rotation_xx = m->tube_platform_joint_rotation_xx[i];
-        const real tube_platform_joint_rotation_xy = m->tube_platform_joint_rotation_xy[i];
-        const real tube_platform_joint_rotation_xz = m->tube_platform_joint_rotation_xz[i];
-        const real tube_n_m3_in_axes2_z = v.tube_c_2*(v.tube_c_1*v.tube_n_m3_t +
-            v.tube_n_m3_t_2*v.tube_s_1) +
-            v.tube_e_1_in_axes2_x*(v.tube_n_m1_t_7*tube_platform_joint_rotation_xx +
-            v.tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            v.tube_n_m1_t_9*tube_platform_joint_rotation_xz);
-        const real tube_n_m3_t_3 = v.tube_e_1_in_axes2_x*v.tube_end_p3_in_axes2_z;
-        /* (tube-f_c1) force part of constraint wrench 1 */
-        const real tube_f_c1_t = v.tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
-            tube_n_m1_in_axes2_z*tube_n_m3_t_3;
-        /* (tube-m1_c1) moment part 1 of constraint wrench 1 */
-        const real inv_tube_f_c1_t = 1/tube_f_c1_t;
-        const real tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_3*v.tube_q_3;
-        /* (tube-m3_c1) moment part 3 of constraint wrench 1 */
-        const real tube_m3_c1_t = inv_tube_f_c1_t*v.tube_n_m1_in_axes1_z*v.tube_q_3;
-        /* (tube-m1_c2) moment part 1 of constraint wrench 2 */
-        const real tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*v.tube_root_1;
-        /* (tube-m3_c2) moment part 3 of constraint wrench 2 */
-        const real tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*v.tube_root_1;
-        /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
-        const real tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_3*tube_n_m3_in_axes2_z;
-        /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
-        const real tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_3;
-        /* (tube-mu_c1) the moment that goes with it */
-        const real tube_mu_c1_in_axes2_y = v.tube_end_p1_in_axes2_z*tube_m1_c1_t;
-        const real tube_mu_c1_in_axes2_x = v.tube_end_p3_in_axes2_z*tube_m3_c1_t;
-        const real tube_mu_c1_in_axes2_z = -tube_m1_c1_t*tube_n_m1_in_axes2_z -
-            tube_m3_c1_t*tube_n_m3_in_axes2_z;
-        /* (tube-mu_c2) the moment that goes with it */
-        const real tube_mu_c2_in_axes2_y = v.tube_end_p1_in_axes2_z*tube_m1_c2_t;
-        const real tube_mu_c2_t = v.tube_end_p3_in_axes2_z*tube_m3_c2;
-        const real tube_mu_c2_in_axes2_z = tube_m3_c2*tube_n_m3_in_axes2_z -
-            tube_m1_c2_t*tube_n_m1_in_axes2_z;
-        /* (tube-size_c3) size of the moment */
-        const real tube_size_c3 = root(1 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t);
-        /* (tube-mu1_c3) moment along direction 1 that goes with it */
-        const real inv_tube_size_c3 = 1/tube_size_c3;
-        const real tube_mu1_c3 = inv_tube_size_c3*tube_m1_c3;
-        /* (tube-mu3_c3) moment along direction 3 that goes with it */
-        const real tube_mu3_c3_t = inv_tube_size_c3*tube_m3_c3_t;
-        /* (tube-mu_c3) the moment that goes with it */
-        const real axis_x_tube_axes2_x = v.tube_n_c1_y*v.tube_n_c2_z -
-            v.tube_n_c1_z*v.tube_n_c2_y;
-        const real axis_x_tube_axes2_y = v.tube_n_c1_z*v.tube_n_c2_x -
-            v.tube_n_c1_x*v.tube_n_c2_z;
-        const real axis_x_tube_axes2_z = v.tube_n_c1_x*v.tube_n_c2_y -
-            v.tube_n_c1_y*v.tube_n_c2_x;
-        const real tube_mu_c3_in_axes2_x = v.tube_end_p3_in_axes2_z*tube_mu3_c3_t -
-            inv_tube_size_c3*tube_end_p2_in_axes2_y;
-        const real tube_mu_c3_in_axes2_y = inv_tube_size_c3*tube_n_m2_in_axes2_y -
-            v.tube_end_p1_in_axes2_z*tube_mu1_c3;
-        const real tube_mu_c3_in_axes2_z = tube_mu1_c3*tube_n_m1_in_axes2_z -
-            tube_mu3_c3_t*tube_n_m3_in_axes2_z;
-        const real tube_mu_c3_x = axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x +
-            tube_mu_c3_in_axes2_y*v.tube_n_c1_x + tube_mu_c3_in_axes2_z*v.tube_n_c2_x;
-        const real tube_mu_c3_y = axis_x_tube_axes2_y*tube_mu_c3_in_axes2_x +
-            tube_mu_c3_in_axes2_y*v.tube_n_c1_y + tube_mu_c3_in_axes2_z*v.tube_n_c2_y;
-        const real tube_mu_c3_z = axis_x_tube_axes2_z*tube_mu_c3_in_axes2_x +
-            tube_mu_c3_in_axes2_y*v.tube_n_c1_z + tube_mu_c3_in_axes2_z*v.tube_n_c2_z;
-        /* (tube-w_1) force part of reciprocal wrench 1 */
-        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_t_3;
-        const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t_3;
-        const real tube_w_1_t_4 = R(1.35)*tube_n_m1_in_axes2_z;
-        const real tube_w_1_t_5 = R(1.35)*tube_n_m3_in_axes2_z;
-        const real tube_w_1_t_6 = R(1.35)*tube_m1_c1_t;
-        const real tube_w_1_t_7 = R(1.35)*tube_m3_c1_t;
-        const real tube_w_1_t_8 = R(1.35)*tube_m1_c2_t;
-        const real tube_w_1_t_9 = R(1.35)*tube_m3_c2;
-        const real tube_w_1_t_10 = R(1.35)*tube_mu1_c3;
-        const real tube_w_1_t_11 = R(1.35)*inv_tube_size_c3;
-        const real tube_w_1_t_12 = R(1.35)*tube_mu3_c3_t;
-        const real tube_w_1_t_13 = root(v.tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 +
-            tube_w_1_t_5*tube_w_1_t_5);
-        const real inv_tube_w_1_t_13 = 1/tube_w_1_t_13;
-        const real tube_w_1_t_14 = inv_tube_w_1_t_13*v.tube_q_3;
-        const real tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4;
-        const real tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5;
-        const real tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 -
-            tube_w_1_t_14;
-        const real tube_w_1_t_18 = 1 + tube_w_1_t_14*tube_w_1_t_17;
-        const real tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6;
-        const real tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7;
-        const real tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9;
-        const real tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21;
-        const real tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8;
-        const real tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21;
-        const real tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16;
-        const real tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25;
-        const real tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25;
-        const real tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25;
-        const real tube_w_1_t_29 = v.tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3;
-        const real tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29;
-        const real tube_w_1_t_31 = v.tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29;
-        const real tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29;
-        const real tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19
-            + tube_w_1_t_20*tube_w_1_t_20);
-        const real inv_tube_w_1_t_33 = 1/tube_w_1_t_33;
-        const real tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18;
-        const real tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19;
-        const real tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20;
-        const real tube_w_1_t_37 = tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 +
-            tube_w_1_t_24*tube_w_1_t_36;
-        const real tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37;
-        const real tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37;
-        const real tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37;
-        const real tube_w_1_t_41 = tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 -
-            tube_w_1_t_27*tube_w_1_t_35;
-        const real tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41;
-        const real tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41;
-        const real tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41;
-        const real tube_w_1_t_45 = tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 -
-            tube_w_1_t_31*tube_w_1_t_35;
-        const real tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45;
-        const real tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45;
-        const real tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45;
-        const real tube_w_1_t_49 = root(1 + tube_w_1_t_38*tube_w_1_t_38 +
-            tube_w_1_t_39*tube_w_1_t_39 + tube_w_1_t_40*tube_w_1_t_40);
-        const real inv_tube_w_1_t_49 = 1/tube_w_1_t_49;
-        const real tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38;
-        const real tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39;
-        const real tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40;
-        const real tube_w_1_t_53 = tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 -
-            tube_w_1_t_43*tube_w_1_t_51;
-        const real tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42;
-        const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
-        const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
-        const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
-        const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 -
-            inv_tube_w_1_t_49*v.tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
-        const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
-        const real tube_w_1_t_60 = v.tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
-        const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
-        const real tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48;
-        const real tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54
-            + tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
-            tube_w_1_t_57*tube_w_1_t_57);
-        const real inv_tube_w_1_t_63 = 1/tube_w_1_t_63;
-        const real tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54;
-        const real tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55;
-        const real tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56;
-        const real tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11;
-        const real tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57;
-        const real tube_w_1_t_69 = tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 +
-            tube_w_1_t_61*tube_w_1_t_66 + tube_w_1_t_62*tube_w_1_t_68 -
-            tube_w_1_t_2*tube_w_1_t_67;
-        const real tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69;
-        const real tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69;
-        const real tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69;
-        const real tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69;
-        const real tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69;
-        const real tube_w_1_t_75 = root(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71
-            + tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
-            tube_w_1_t_74*tube_w_1_t_74);
-        const real tube_pivot_size = magnitude(v.tube_root_1_t);
-        const real tube_pivot_size_2 = magnitude(v.tube_q_3_t);
-        const real tube_pivot_size_3 = magnitude(tube_f_c1_t);
-        const real tube_pivot_size_4 = magnitude(tube_size_c3);
-        const real tube_pivot_size_5 = magnitude(tube_w_1_t_13);
-        const real tube_pivot_size_6 = magnitude(tube_w_1_t_33);
-        const real tube_pivot_size_7 = magnitude(tube_w_1_t_49);
-        const real tube_pivot_size_8 = magnitude(tube_w_1_t_63);
-        const real tube_pivot_size_9 = magnitude(tube_w_1_t_75);
-        const real tube_least_pivots =
-            lesser(lesser(lesser(lesser(lesser(lesser(lesser(lesser(R(0.7407407407407407)*root(tube_pivot_size),
-            R(0.7407407407407407)*root(tube_pivot_size_2)), tube_pivot_size_3),
-            tube_pivot_size_4), R(0.7407407407407407)*tube_pivot_size_5), tube_pivot_size_6),
-            tube_pivot_size_7), R(0.7407407407407407)*tube_pivot_size_8),
-            R(0.7407407407407407)*tube_pivot_size_9);
-        /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real tube_Hk_a_1_x = axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x +
-            tube_mu_c1_in_axes2_y*v.tube_n_c1_x + tube_mu_c1_in_axes2_z*v.tube_n_c2_x +
-            v.tube_n_c1_z*v.tube_q_y - v.tube_n_c1_y*v.tube_q_z;
-        const real tube_Hk_a_1_y = axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x +
-            tube_mu_c1_in_axes2_y*v.tube_n_c1_y + tube_mu_c1_in_axes2_z*v.tube_n_c2_y +
-            v.tube_n_c1_x*v.tube_q_z - v.tube_n_c1_z*v.tube_q_x;
-        const real tube_Hk_a_1_z = axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x +
-            tube_mu_c1_in_axes2_y*v.tube_n_c1_z + tube_mu_c1_in_axes2_z*v.tube_n_c2_z +
-            v.tube_n_c1_y*v.tube_q_x - v.tube_n_c1_x*v.tube_q_y;
-        /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
-        const real tube_Hk_a_2_x = tube_mu_c2_in_axes2_y*v.tube_n_c1_x +
-            tube_mu_c2_in_axes2_z*v.tube_n_c2_x + v.tube_n_c2_z*v.tube_q_y -
-            axis_x_tube_axes2_x*tube_mu_c2_t - v.tube_n_c2_y*v.tube_q_z;
-        const real tube_Hk_a_2_y = tube_mu_c2_in_axes2_y*v.tube_n_c1_y +
-            tube_mu_c2_in_axes2_z*v.tube_n_c2_y + v.tube_n_c2_x*v.tube_q_z -
-            axis_x_tube_axes2_y*tube_mu_c2_t - v.tube_n_c2_z*v.tube_q_x;
-        const real tube_Hk_a_2_z = tube_mu_c2_in_axes2_y*v.tube_n_c1_z +
-            tube_mu_c2_in_axes2_z*v.tube_n_c2_z + v.tube_n_c2_y*v.tube_q_x -
-            axis_x_tube_axes2_z*tube_mu_c2_t - v.tube_n_c2_x*v.tube_q_y;
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_in_platform_x = m->b_c_in_platform_x;
-        const real tube_platform_point_x = m->tube_platform_point_x[i];
-        const real tube_spread_t = b_c_in_platform_x - tube_platform_point_x;
-        const real b_c_in_platform_y = m->b_c_in_platform_y;
-        const real tube_platform_point_y = m->tube_platform_point_y[i];
-        const real tube_spread_t_2 = b_c_in_platform_y - tube_platform_point_y;
-        const real b_c_in_platform_z = m->b_c_in_platform_z;
-        const real tube_platform_point_z = m->tube_platform_point_z[i];
-        const real tube_spread_t_3 = b_c_in_platform_z - tube_platform_point_z;
-        const real tube_spread_t_4 = tube_spread_t*tube_spread_t + tube_spread_t_2*tube_spread_t_2
-            + tube_spread_t_3*tube_spread_t_3;
-        /* (spread) rms distance of the platform points from their centroid */
-        gather(&terms[1*count + k], add, tube_spread_t_4);  /* spread_tube */
-        /* (tube-n_c1) unit force of the constraint wrench */
-        o[0*count + k] = v.tube_n_c1_x;
-        o[1*count + k] = v.tube_n_c1_y;
-        o[2*count + k] = v.tube_n_c1_z;
-        /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = tube_Hk_a_1_x;
-        o[4*count + k] = tube_Hk_a_1_y;
-        o[5*count + k] = tube_Hk_a_1_z;
-        /* (tube-n_c2) unit force of the constraint wrench */
-        o[6*count + k] = v.tube_n_c2_x;
-        o[7*count + k] = v.tube_n_c2_y;
-        o[8*count + k] = v.tube_n_c2_z;
-        /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
-        o[9*count + k] = tube_Hk_a_2_x;
-        o[10*count + k] = tube_Hk_a_2_y;
-        o[11*count + k] = tube_Hk_a_2_z;
-        /* (tube-Hk_a_3) moment of the column's unit force about the platform origin */
-        o[12*count + k] = tube_mu_c3_x;
-        o[13*count + k] = tube_mu_c3_y;
-        o[14*count + k] = tube_mu_c3_z;
-        /* (tube-w_1) force part of reciprocal wrench 1 */
-        o[15*count + k] = tube_least_pivots;
-        o[17*count + k] = (((v.tube_n_c1_x + v.tube_n_c1_y) + (v.tube_n_c1_z + tube_Hk_a_1_x)) +
-            ((tube_Hk_a_1_y + tube_Hk_a_1_z) + (v.tube_n_c2_x + v.tube_n_c2_y))) +
-            (((v.tube_n_c2_z + tube_Hk_a_2_x) + (tube_Hk_a_2_y + tube_Hk_a_2_z)) + ((tube_mu_c3_x
-            + tube_mu_c3_y) + (tube_mu_c3_z + tube_least_pivots)));
-        o[16*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
-            UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) +
-            UNLESS(magnitude(tube_size_c3) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_13) > LEAST_5)
-            + UNLESS(magnitude(tube_w_1_t_33) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_49) >
-            LEAST_4) + UNLESS(magnitude(tube_w_1_t_63) > LEAST_5) +
-            UNLESS(magnitude(tube_w_1_t_75) > LEAST_5);
-    }
+    values_tube v;
+    stage_tube_X(m, w, i, j, s, X, &v);
+    /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
+    const real tube_n_m1_in_axes2_z = v.tube_e_1_in_axes2_x*(v.tube_c_1*v.tube_n_m1_t_10 +
+        v.tube_n_m1_t_11*v.tube_s_1) -
+        v.tube_c_2*(v.tube_n_m1_t_7*m->tube_platform_joint_rotation_yx[i] +
+        v.tube_n_m1_t_8*m->tube_platform_joint_rotation_yy[i] +
+        v.tube_n_m1_t_9*m->tube_platform_joint_rotation_yz[i]);
+    /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
+    const real tube_n_m2_t = v.tube_n_m1_t_7*m->tube_platform_joint_rotation_zx[i] +
+        v.tube_n_m1_t_8*m->tube_platform_joint_rotation_zy[i] +
+        v.tube_n_m1_t_9*m->tube_platform_joint_rotation_zz[i];
+    const real tube_n_m2_t_2 = v.tube_c_1*(v.tube_n_m1_t*m->tube_platform_joint_rotation_zx[i]
+        + v.tube_n_m1_t_2*m->tube_platform_joint_rotation_zy[i] +
+        v.tube_n_m1_t_3*m->tube_platform_joint_rotation_zz[i]) +
+        v.tube_s_1*(v.tube_n_m1_t_4*m->tube_platform_joint_rotation_zx[i] +
+        v.tube_n_m1_t_5*m->tube_platform_joint_rotation_zy[i] +
+        v.tube_n_m1_t_6*m->tube_platform_joint_rotation_zz[i]);
+    const real tube_n_m2_in_axes2_y = v.tube_c_2*tube_n_m2_t_2 +
+        v.tube_e_1_in_axes2_x*tube_n_m2_t;
+    const real tube_end_p2_in_axes2_y = v.tube_e_1_in_axes2_x*tube_n_m2_t_2 -
+        v.tube_c_2*tube_n_m2_t;
+    const real tube_n_m2_t_3 = v.tube_c_2*tube_n_m2_in_axes2_y +
+        v.tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y;
+    /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
+    const real tube_n_m3_in_axes2_z = v.tube_c_2*(v.tube_c_1*v.tube_n_m3_t +
+        v.tube_n_m3_t_2*v.tube_s_1) +
+        v.tube_e_1_in_axes2_x*(v.tube_n_m1_t_7*m->tube_platform_joint_rotation_xx[i] +
+        v.tube_n_m1_t_8*m->tube_platform_joint_rotation_xy[i] +
+        v.tube_n_m1_t_9*m->tube_platform_joint_rotation_xz[i]);
+    const real tube_n_m3_t_3 = v.tube_e_1_in_axes2_x*v.tube_end_p3_in_axes2_z;
+    /* (tube-f_c1) force part of constraint wrench 1 */
+    const real tube_f_c1_t = v.tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
+        tube_n_m1_in_axes2_z*tube_n_m3_t_3;
+    /* (tube-m1_c1) moment part 1 of constraint wrench 1 */
+    const real inv_tube_f_c1_t = 1/tube_f_c1_t;
+    const real tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_3*v.tube_q_3;
+    /* (tube-m3_c1) moment part 3 of constraint wrench 1 */
+    const real tube_m3_c1_t = inv_tube_f_c1_t*v.tube_n_m1_in_axes1_z*v.tube_q_3;
+    /* (tube-m1_c2) moment part 1 of constraint wrench 2 */
+    const real tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*v.tube_root_1;
+    /* (tube-m3_c2) moment part 3 of constraint wrench 2 */
+    const real tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*v.tube_root_1;
+    /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
+    const real tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_3*tube_n_m3_in_axes2_z;
+    /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
+    const real tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_3;
+    /* (tube-mu_c1) the moment that goes with it */
+    const real tube_mu_c1_in_axes2_y = v.tube_end_p1_in_axes2_z*tube_m1_c1_t;
+    const real tube_mu_c1_in_axes2_x = v.tube_end_p3_in_axes2_z*tube_m3_c1_t;
+    const real tube_mu_c1_in_axes2_z = -tube_m1_c1_t*tube_n_m1_in_axes2_z -
+        tube_m3_c1_t*tube_n_m3_in_axes2_z;
+    /* (tube-mu_c2) the moment that goes with it */
+    const real tube_mu_c2_in_axes2_y = v.tube_end_p1_in_axes2_z*tube_m1_c2_t;
+    const real tube_mu_c2_t = v.tube_end_p3_in_axes2_z*tube_m3_c2;
+    const real tube_mu_c2_in_axes2_z = tube_m3_c2*tube_n_m3_in_axes2_z -
+        tube_m1_c2_t*tube_n_m1_in_axes2_z;
+    /* (tube-size_c3) size of the moment */
+    const real tube_size_c3 = root(1 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t);
+    /* (tube-mu1_c3) moment along direction 1 that goes with it */
+    const real inv_tube_size_c3 = 1/tube_size_c3;
+    const real tube_mu1_c3 = inv_tube_size_c3*tube_m1_c3;
+    /* (tube-mu3_c3) moment along direction 3 that goes with it */
+    const real tube_mu3_c3_t = inv_tube_size_c3*tube_m3_c3_t;
+    /* (tube-mu_c3) the moment that goes with it */
+    const real axis_x_tube_axes2_x = v.tube_n_c1_y*v.tube_n_c2_z -
+        v.tube_n_c1_z*v.tube_n_c2_y;
+    const real axis_x_tube_axes2_y = v.tube_n_c1_z*v.tube_n_c2_x -
+        v.tube_n_c1_x*v.tube_n_c2_z;
+    const real axis_x_tube_axes2_z = v.tube_n_c1_x*v.tube_n_c2_y -
+        v.tube_n_c1_y*v.tube_n_c2_x;
+    const real tube_mu_c3_in_axes2_x = v.tube_end_p3_in_axes2_z*tube_mu3_c3_t -
+        inv_tube_size_c3*tube_end_p2_in_axes2_y;
+    const real tube_mu_c3_in_axes2_y = inv_tube_size_c3*tube_n_m2_in_axes2_y -
+        v.tube_end_p1_in_axes2_z*tube_mu1_c3;
+    const real tube_mu_c3_in_axes2_z = tube_mu1_c3*tube_n_m1_in_axes2_z -
+        tube_mu3_c3_t*tube_n_m3_in_axes2_z;
+    const real tube_mu_c3_x = axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x +
+        tube_mu_c3_in_axes2_y*v.tube_n_c1_x + tube_mu_c3_in_axes2_z*v.tube_n_c2_x;
+    const real tube_mu_c3_y = axis_x_tube_axes2_y*tube_mu_c3_in_axes2_x +
+        tube_mu_c3_in_axes2_y*v.tube_n_c1_y + tube_mu_c3_in_axes2_z*v.tube_n_c2_y;
+    const real tube_mu_c3_z = axis_x_tube_axes2_z*tube_mu_c3_in_axes2_x +
+        tube_mu_c3_in_axes2_y*v.tube_n_c1_z + tube_mu_c3_in_axes2_z*v.tube_n_c2_z;
+    /* (tube-w_1) force part of reciprocal wrench 1 */
+    const real tube_w_1_t_2 = R(1.35)*tube_n_m2_t_3;
+    const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t_3;
+    const real tube_w_1_t_4 = R(1.35)*tube_n_m1_in_axes2_z;
+    const real tube_w_1_t_5 = R(1.35)*tube_n_m3_in_axes2_z;
+    const real tube_w_1_t_6 = R(1.35)*tube_m1_c1_t;
+    const real tube_w_1_t_7 = R(1.35)*tube_m3_c1_t;
+    const real tube_w_1_t_8 = R(1.35)*tube_m1_c2_t;
+    const real tube_w_1_t_9 = R(1.35)*tube_m3_c2;
+    const real tube_w_1_t_10 = R(1.35)*tube_mu1_c3;
+    const real tube_w_1_t_11 = R(1.35)*inv_tube_size_c3;
+    const real tube_w_1_t_12 = R(1.35)*tube_mu3_c3_t;
+    const real tube_w_1_t_13 = root(v.tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 +
+        tube_w_1_t_5*tube_w_1_t_5);
+    const real inv_tube_w_1_t_13 = 1/tube_w_1_t_13;
+    const real tube_w_1_t_14 = inv_tube_w_1_t_13*v.tube_q_3;
+    const real tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4;
+    const real tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5;
+    const real tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 -
+        tube_w_1_t_14;
+    const real tube_w_1_t_18 = 1 + tube_w_1_t_14*tube_w_1_t_17;
+    const real tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6;
+    const real tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7;
+    const real tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9;
+    const real tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21;
+    const real tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8;
+    const real tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21;
+    const real tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16;
+    const real tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25;
+    const real tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25;
+    const real tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25;
+    const real tube_w_1_t_29 = v.tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3;
+    const real tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29;
+    const real tube_w_1_t_31 = v.tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29;
+    const real tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29;
+    const real tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19
+        + tube_w_1_t_20*tube_w_1_t_20);
+    const real inv_tube_w_1_t_33 = 1/tube_w_1_t_33;
+    const real tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18;
+    const real tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19;
+    const real tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20;
+    const real tube_w_1_t_37 = tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 +
+        tube_w_1_t_24*tube_w_1_t_36;
+    const real tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37;
+    const real tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37;
+    const real tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37;
+    const real tube_w_1_t_41 = tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 -
+        tube_w_1_t_27*tube_w_1_t_35;
+    const real tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41;
+    const real tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41;
+    const real tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41;
+    const real tube_w_1_t_45 = tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 -
+        tube_w_1_t_31*tube_w_1_t_35;
+    const real tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45;
+    const real tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45;
+    const real tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45;
+    const real tube_w_1_t_49 = root(1 + tube_w_1_t_38*tube_w_1_t_38 +
+        tube_w_1_t_39*tube_w_1_t_39 + tube_w_1_t_40*tube_w_1_t_40);
+    const real inv_tube_w_1_t_49 = 1/tube_w_1_t_49;
+    const real tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38;
+    const real tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39;
+    const real tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40;
+    const real tube_w_1_t_53 = tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 -
+        tube_w_1_t_43*tube_w_1_t_51;
+    const real tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42;
+    const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
+    const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
+    const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
+    const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 -
+        inv_tube_w_1_t_49*v.tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
+    const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
+    const real tube_w_1_t_60 = v.tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
+    const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
+    const real tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48;
+    const real tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54
+        + tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
+        tube_w_1_t_57*tube_w_1_t_57);
+    const real inv_tube_w_1_t_63 = 1/tube_w_1_t_63;
+    const real tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54;
+    const real tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55;
+    const real tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56;
+    const real tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11;
+    const real tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57;
+    const real tube_w_1_t_69 = tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 +
+        tube_w_1_t_61*tube_w_1_t_66 + tube_w_1_t_62*tube_w_1_t_68 -
+        tube_w_1_t_2*tube_w_1_t_67;
+    const real tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69;
+    const real tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69;
+    const real tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69;
+    const real tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69;
+    const real tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69;
+    const real tube_w_1_t_75 = root(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71
+        + tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
+        tube_w_1_t_74*tube_w_1_t_74);
+    const real tube_pivot_size = magnitude(v.tube_root_1_t);
+    const real tube_pivot_size_2 = magnitude(v.tube_q_3_t);
+    const real tube_pivot_size_3 = magnitude(tube_f_c1_t);
+    const real tube_pivot_size_4 = magnitude(tube_size_c3);
+    const real tube_pivot_size_5 = magnitude(tube_w_1_t_13);
+    const real tube_pivot_size_6 = magnitude(tube_w_1_t_33);
+    const real tube_pivot_size_7 = magnitude(tube_w_1_t_49);
+    const real tube_pivot_size_8 = magnitude(tube_w_1_t_63);
+    const real tube_pivot_size_9 = magnitude(tube_w_1_t_75);
+    const real tube_least_pivots =
+        lesser(lesser(lesser(lesser(lesser(lesser(lesser(lesser(R(0.7407407407407407)*root(tube_pivot_size),
+        R(0.7407407407407407)*root(tube_pivot_size_2)), tube_pivot_size_3),
+        tube_pivot_size_4), R(0.7407407407407407)*tube_pivot_size_5), tube_pivot_size_6),
+        tube_pivot_size_7), R(0.7407407407407407)*tube_pivot_size_8),
+        R(0.7407407407407407)*tube_pivot_size_9);
+    /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
+    const real tube_Hk_a_1_x = axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x +
+        tube_mu_c1_in_axes2_y*v.tube_n_c1_x + tube_mu_c1_in_axes2_z*v.tube_n_c2_x +
+        v.tube_n_c1_z*v.tube_q_y - v.tube_n_c1_y*v.tube_q_z;
+    const real tube_Hk_a_1_y = axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x +
+        tube_mu_c1_in_axes2_y*v.tube_n_c1_y + tube_mu_c1_in_axes2_z*v.tube_n_c2_y +
+        v.tube_n_c1_x*v.tube_q_z - v.tube_n_c1_z*v.tube_q_x;
+    const real tube_Hk_a_1_z = axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x +
+        tube_mu_c1_in_axes2_y*v.tube_n_c1_z + tube_mu_c1_in_axes2_z*v.tube_n_c2_z +
+        v.tube_n_c1_y*v.tube_q_x - v.tube_n_c1_x*v.tube_q_y;
+    /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
+    const real tube_Hk_a_2_x = tube_mu_c2_in_axes2_y*v.tube_n_c1_x +
+        tube_mu_c2_in_axes2_z*v.tube_n_c2_x + v.tube_n_c2_z*v.tube_q_y -
+        axis_x_tube_axes2_x*tube_mu_c2_t - v.tube_n_c2_y*v.tube_q_z;
+    const real tube_Hk_a_2_y = tube_mu_c2_in_axes2_y*v.tube_n_c1_y +
+        tube_mu_c2_in_axes2_z*v.tube_n_c2_y + v.tube_n_c2_x*v.tube_q_z -
+        axis_x_tube_axes2_y*tube_mu_c2_t - v.tube_n_c2_z*v.tube_q_x;
+    const real tube_Hk_a_2_z = tube_mu_c2_in_axes2_y*v.tube_n_c1_z +
+        tube_mu_c2_in_axes2_z*v.tube_n_c2_z + v.tube_n_c2_y*v.tube_q_x -
+        axis_x_tube_axes2_z*tube_mu_c2_t - v.tube_n_c2_x*v.tube_q_y;
+    /* (spread) */
+    const real tube_spread_t = m->b_c_in_platform_x - m->tube_platform_point_x[i];
+    const real tube_spread_t_2 = m->b_c_in_platform_y - m->tube_platform_point_y[i];
+    const real tube_spread_t_3 = m->b_c_in_platform_z - m->tube_platform_point_z[i];
+    const real tube_spread_t_4 = tube_spread_t*tube_spread_t + tube_spread_t_2*tube_spread_t_2
+        + tube_spread_t_3*tube_spread_t_3;
+    /* (spread) */
+    gather(&terms[1*count + k], add, tube_spread_t_4);  /* spread_tube */
+    /* (tube-n_c1) unit force of the constraint wrench */
+    o[0*count + k] = v.tube_n_c1_x;
+    o[1*count + k] = v.tube_n_c1_y;
+    o[2*count + k] = v.tube_n_c1_z;
+    /* (tube-Hk_a_1) */
+    o[3*count + k] = tube_Hk_a_1_x;
+    o[4*count + k] = tube_Hk_a_1_y;
+    o[5*count + k] = tube_Hk_a_1_z;
+    /* (tube-n_c2) unit force of the constraint wrench */
+    o[6*count + k] = v.tube_n_c2_x;
+    o[7*count + k] = v.tube_n_c2_y;
+    o[8*count + k] = v.tube_n_c2_z;
+    /* (tube-Hk_a_2) */
+    o[9*count + k] = tube_Hk_a_2_x;
+    o[10*count + k] = tube_Hk_a_2_y;
+    o[11*count + k] = tube_Hk_a_2_z;
+    /* (tube-Hk_a_3) moment of the column's unit force about the platform origin */
+    o[12*count + k] = tube_mu_c3_x;
+    o[13*count + k] = tube_mu_c3_y;
+    o[14*count + k] = tube_mu_c3_z;
+    /* (tube-w_1) */
+    o[15*count + k] = tube_least_pivots;
+    o[17*count + k] = (((v.tube_n_c1_x + v.tube_n_c1_y) + (v.tube_n_c1_z + tube_Hk_a_1_x)) +
+        ((tube_Hk_a_1_y + tube_Hk_a_1_z) + (v.tube_n_c2_x + v.tube_n_c2_y))) +
+        (((v.tube_n_c2_z + tube_Hk_a_2_x) + (tube_Hk_a_2_y + tube_Hk_a_2_z)) + ((tube_mu_c3_x
+        + tube_mu_c3_y) + (tube_mu_c3_z + tube_least_pivots)));
+    o[16*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
+        UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) +
+        UNLESS(magnitude(tube_size_c3) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_13) > LEAST_5)
+        + UNLESS(magnitude(tube_w_1_t_33) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_49) >
+        LEAST_4) + UNLESS(magnitude(tube_w_1_t_63) > LEAST_5) +
+        UNLESS(magnitude(tube_w_1_t_75) > LEAST_5);
 }
 
-INLINE void condition_place_tube(size_t w, size_t count, const real *o, size_t first, real *Hk,
-    real *pivots, verdict *t)
+INLINE void condition_place_tube(size_t w, size_t k, size_t at, size_t count, const real *o, real
+    *Hk, real *pivots, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        Hk[0*w + k] = o[0*count + first + k];
-        Hk[NC*w + k] = o[1*count + first + k];
-        Hk[2*NC*w + k] = o[2*count + first + k];
-        Hk[3*NC*w + k] = o[3*count + first + k];
-        Hk[4*NC*w + k] = o[4*count + first + k];
-        Hk[5*NC*w + k] = o[5*count + first + k];
-        Hk[1*w + k] = o[6*count + first + k];
-        Hk[(NC + 1)*w + k] = o[7*count + first + k];
-        Hk[(2*NC + 1)*w + k] = o[8*count + first + k];
-        Hk[(3*NC + 1)*w + k] = o[9*count + first + k];
-        Hk[(4*NC + 1)*w + k] = o[10*count + first + k];
-        Hk[(5*NC + 1)*w + k] = o[11*count + first + k];
-        Hk[(3*NC + 2)*w + k] = o[12*count + first + k];
-        Hk[(4*NC + 2)*w + k] = o[13*count + first + k];
-        Hk[(5*NC + 2)*w + k] = o[14*count + first + k];
-        pivots[4*w + k] = o[15*count + first + k];
-        t->singular[k] += o[16*count + first + k];
-        t->total[k] += o[17*count + first + k];
-    }
+    Hk[0*w + k] = o[0*count + at];
+    Hk[NC*w + k] = o[1*count + at];
+    Hk[2*NC*w + k] = o[2*count + at];
+    Hk[3*NC*w + k] = o[3*count + at];
+    Hk[4*NC*w + k] = o[4*count + at];
+    Hk[5*NC*w + k] = o[5*count + at];
+    Hk[1*w + k] = o[6*count + at];
+    Hk[(NC + 1)*w + k] = o[7*count + at];
+    Hk[(2*NC + 1)*w + k] = o[8*count + at];
+    Hk[(3*NC + 1)*w + k] = o[9*count + at];
+    Hk[(4*NC + 1)*w + k] = o[10*count + at];
+    Hk[(5*NC + 1)*w + k] = o[11*count + at];
+    Hk[(3*NC + 2)*w + k] = o[12*count + at];
+    Hk[(4*NC + 2)*w + k] = o[13*count + at];
+    Hk[(5*NC + 2)*w + k] = o[14*count + at];
+    pivots[4*w + k] = o[15*count + at];
+    t->singular[k] += o[16*count + at];
+    t->total[k] += o[17*count + at];
 }
 
-INLINE void condition_after(size_t w, const real *sums, real *lengths, verdict *t)
+INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (spread) rms distance of the platform points from their centroid */
-        const real spread_tube = sums[1*w + k];
-        const real spread_ups = sums[0*w + k];
-        const real spread_ = root(R(0.2)*spread_tube + R(0.2)*spread_ups);
-        /* (spread) rms distance of the platform points from their centroid */
-        lengths[0*w + k] = spread_;
-        t->total[k] += spread_;
-    }
+    /* (spread) */
+    const real spread_tube = sums[1*w + k];
+    const real spread_ups = sums[0*w + k];
+    const real spread_ = root(R(0.2)*spread_tube + R(0.2)*spread_ups);
+    /* (spread) */
+    lengths[0*w + k] = spread_;
+    t->total[k] += spread_;
 }
 
-INLINE void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
+APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
     *pivots, real *reach, verdict *t)
 {
     real s[9] = {0}, sums[2] = {0};
@@ -8837,29 +8558,33 @@ INLINE void condition_run(const prepared *m, const real *X, real *H, real *Hk, r
     real terms_tube[2*LEGS(LEGS_OF_tube)] = {0}, o_tube[18*LEGS(LEGS_OF_tube)] = {0};
     clear(Hk, NV*NC);
     clear(reach, NL);
-    condition_before(m, 1, X, s, lengths, t);
-    condition_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, X, terms_ups, o_ups);
-    condition_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), 0, X, terms_tube, o_tube);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        condition_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, H, pivots, t);
+    condition_before(m, 1, 0, X, s, lengths, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
+        condition_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, terms_ups, o_ups);
+    }
+    for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
+        condition_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), 0, s, X, terms_tube, o_tube);
+    }
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        condition_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, pivots, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
-    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
-        condition_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, Hk, pivots, t);
+    for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        condition_place_tube(1, 0, i, LEGS(LEGS_OF_tube), o_tube, Hk, pivots, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
             sums[n] += terms_tube[n*LEGS(LEGS_OF_tube) + leg];
         }
     }
-    condition_after(1, sums, lengths, t);
+    condition_after(1, 0, sums, lengths, t);
 }
 
 /* ---- what users call, as steps over these ---- */
 
-INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
+int quadrupod_M(const prepared *m, const real *X, real *M_out)
 {
     verdict why;
     start(1, &why);
@@ -8868,9 +8593,11 @@ INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NV, M_out);
     }
+    return code;
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -8884,7 +8611,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
     deliver(NV*NV, M, M_out);
 }
 
-INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
+int quadrupod_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     verdict why;
     start(1, &why);
@@ -8897,9 +8624,11 @@ INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, 
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, Z_out);
     }
+    return code;
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -8914,7 +8643,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
     deliver(NV, Z, Z_out);
 }
 
-INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
+int quadrupod_H(const prepared *m, const real *X, real *H_out)
 {
     verdict why;
     start(1, &why);
@@ -8923,9 +8652,11 @@ INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NU, H_out);
     }
+    return code;
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -8939,7 +8670,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
     deliver(NV*NU, H, H_out);
 }
 
-INLINE void Hk_one(const prepared *m, const real *X, real *Hk_out, int *code)
+int quadrupod_Hk(const prepared *m, const real *X, real *Hk_out)
 {
     verdict why;
     start(1, &why);
@@ -8948,9 +8679,11 @@ INLINE void Hk_one(const prepared *m, const real *X, real *Hk_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NC, 1, Hk_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NC, Hk_out);
     }
+    return code;
 }
 
 INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
@@ -8964,7 +8697,7 @@ INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
     deliver(NV*NC, Hk, Hk_out);
 }
 
-INLINE void constraints_one(const prepared *m, const real *X, real *constraints_out, int *code)
+int quadrupod_constraints(const prepared *m, const real *X, real *constraints_out)
 {
     verdict why;
     start(1, &why);
@@ -8973,9 +8706,11 @@ INLINE void constraints_one(const prepared *m, const real *X, real *constraints_
     if (!is_finite(why.total[0])) {
         check(3, 1, constraints_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(3, constraints_out);
     }
+    return code;
 }
 
 INLINE void constraints_lanes(const prepared *m, const real *X, real *constraints_out, int *code)
@@ -8989,8 +8724,8 @@ INLINE void constraints_lanes(const prepared *m, const real *X, real *constraint
     deliver(3, constraints, constraints_out);
 }
 
-INLINE void constraint_bias_one(const prepared *m, const real *X, const real *V, real
-    *constraint_bias_out, int *code)
+int quadrupod_constraint_bias(const prepared *m, const real *X, const real *V, real
+    *constraint_bias_out)
 {
     verdict why;
     start(1, &why);
@@ -9003,9 +8738,11 @@ INLINE void constraint_bias_one(const prepared *m, const real *X, const real *V,
     if (!is_finite(why.total[0])) {
         check(3, 1, constraint_bias_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(3, constraint_bias_out);
     }
+    return code;
 }
 
 INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *V, real
@@ -9021,7 +8758,7 @@ INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *
     deliver(3, constraint_bias, constraint_bias_out);
 }
 
-INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out, int *code)
+int quadrupod_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
     verdict why;
     start(1, &why);
@@ -9030,9 +8767,11 @@ INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, q_out);
     }
+    return code;
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -9046,8 +8785,7 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
     deliver(NJ, q, q_out);
 }
 
-INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
-    *code)
+int quadrupod_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     verdict why;
     start(1, &why);
@@ -9060,9 +8798,11 @@ INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, rea
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, qd_out);
     }
+    return code;
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -9078,8 +8818,8 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
     deliver(NJ, qd, qd_out);
 }
 
-INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out, int *code)
+int quadrupod_joint_accelerations(const prepared *m, const real *X, const real *V, const real *A,
+    real *qdd_out)
 {
     verdict why;
     start(1, &why);
@@ -9093,9 +8833,11 @@ INLINE void joint_accelerations_one(const prepared *m, const real *X, const real
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, qdd_out);
     }
+    return code;
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -9112,8 +8854,8 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
     deliver(NJ, qdd, qdd_out);
 }
 
-INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
-    *Z_out, real *H_out, int *code)
+int quadrupod_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real *Z_out,
+    real *H_out)
 {
     real Hk[NV*NC] = {0}, constraint_bias[3] = {0};
     verdict why;
@@ -9131,11 +8873,13 @@ INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *
     }
     check(NV*NC, 1, Hk, why.overflow);
     check(3, 1, constraint_bias, why.overflow);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NV, M_out);
         refuse(NV, Z_out);
         refuse(NV*NU, H_out);
     }
+    return code;
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -9206,8 +8950,8 @@ INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real
 static const size_t order_lambda_[] = {1, 0, 2};
 static const real sizes_lambda_[] = {1.0, 1.0, 1.0};
 
-static void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, const real *weights, real *tau_out, real *lambda_out, int *code)
+static int inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, const real *weights, real *tau_out, real *lambda_out)
 {
     real wrench_in[NW], weights_in[NU], required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0},
         subtract_1[NV] = {0}, beside_1[NV*(NU + NC)] = {0}, resolve_1[NC*NV] = {0}, resolve_2[NC*NV] =
@@ -9260,14 +9004,16 @@ static void inverse_dynamics_one(const prepared *m, const real *X, const real *V
     }
     check(NU, 1, tau, why.overflow);
     copy(NU, tau, tau_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, tau_out);
         refuse(NC, lambda_out);
     }
+    return code;
 }
 
-INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
-    const real *wrench, real *A_out, real *lambda_out, int *code)
+int quadrupod_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau,
+    const real *wrench, real *A_out, real *lambda_out)
 {
     real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0},
         constraint_bias[3] = {0}, times_1[NV] = {0}, add_1[NV] = {0}, subtract_1[NV] = {0},
@@ -9302,10 +9048,12 @@ INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V
     check(NC, 1, lambda_, why.overflow);
     copy(NV, A, A_out);
     copy(NC, lambda_, lambda_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, A_out);
         refuse(NC, lambda_out);
     }
+    return code;
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -9344,21 +9092,28 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     deliver(NC, lambda_, lambda_out);
 }
 
-INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
+int quadrupod_complete_acceleration(const prepared *m, const real *X, const real *V, const real
+    *A, const real *wrench, real *completed_out)
 {
+    (void)m;
+    (void)X;
+    (void)V;
+    (void)wrench;
     verdict why;
     start(1, &why);
     check(NV, 1, A, why.invalid);
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, completed_out);
     }
+    return code;
 }
 
-INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces_out, int *code)
+int quadrupod_leg_reactions(const prepared *m, const real *X, const real *V, const real *A, const
+    real *wrench, real *forces_out)
 {
     static const size_t places_add_forces_1[] = {0, 1, 2, 3};
     static const size_t places_forces[] = {4, 4, 4};
@@ -9409,13 +9164,15 @@ INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, c
     add_forces(NC, 6, 1, places_forces, solve_1, constraint_direction, forces);
     check(6*NL, 1, forces, why.overflow);
     copy(6*NL, forces, forces_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(6*NL, forces_out);
     }
+    return code;
 }
 
-INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
-    *potential_out, int *code)
+int quadrupod_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
+    *potential_out)
 {
     real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
@@ -9433,15 +9190,17 @@ INLINE void energy_one(const prepared *m, const real *X, const real *V, real *ki
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, kinetic_out);
         refuse(1, potential_out);
     }
+    return code;
 }
 
-INLINE void condition_one(const prepared *m, const real *X, const real *length, real *sigma_out,
-    real *legs_out, int *code)
+int quadrupod_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
+    const real *length = NULL;
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real length_in[1], H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] =
         {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NU] = {0};
@@ -9468,15 +9227,18 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
     check(NL, 1, reach, why.overflow);
     copy(NU, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, sigma_out);
         refuse(NL, legs_out);
     }
+    return code;
 }
 
-INLINE void condition_constrained_one(const prepared *m, const real *X, const real *length, real
-    *sigma_out, real *legs_out, int *code)
+int quadrupod_condition_constrained(const prepared *m, const real *X, real *sigma_out, real
+    *legs_out)
 {
+    const real *length = NULL;
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real length_in[1], H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] =
         {0}, beside_1[NV*(NU + NC)] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*(NU + NC)] =
@@ -9504,14 +9266,16 @@ INLINE void condition_constrained_one(const prepared *m, const real *X, const re
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, sigma_out);
         refuse(NL, legs_out);
     }
+    return code;
 }
 
-INLINE void manipulability_one(const prepared *m, const real *X, real *measure_out, real
-    *isotropy_out, int *code)
+int quadrupod_manipulability(const prepared *m, const real *X, real *measure_out, real
+    *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     static const size_t places_divide_rows_2[] = {3, 4, 5};
@@ -9560,14 +9324,16 @@ INLINE void manipulability_one(const prepared *m, const real *X, real *measure_o
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, measure_out);
         refuse(1, isotropy_out);
     }
+    return code;
 }
 
-INLINE void singularity_distance_one(const prepared *m, const real *X, real *actuators_out, real
-    *legs_out, int *code)
+int quadrupod_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
+    *legs_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
@@ -9599,15 +9365,17 @@ INLINE void singularity_distance_one(const prepared *m, const real *X, real *act
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, actuators_out);
         refuse(1, legs_out);
     }
+    return code;
 }
 
-INLINE void force_distribution_one(const prepared *m, const real *X, const real *V, const real *A,
+int quadrupod_force_distribution(const prepared *m, const real *X, const real *V, const real *A,
     const real *tau_min, const real *tau_max, const real *wrench, const real *reference, real
-    *tau_out, real *lambda_out, int *code)
+    *tau_out, real *lambda_out)
 {
     real wrench_in[NW], reference_in[NU], required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0},
         subtract_1[NV] = {0}, beside_1[NV*(NU + NC)] = {0}, resolve_1[NC*NV] = {0}, resolve_2[NC*NV] =
@@ -9656,14 +9424,15 @@ INLINE void force_distribution_one(const prepared *m, const real *X, const real 
     check(NU, 1, tau, why.overflow);
     check(NC, 1, lambda_out, why.overflow);
     copy(NU, tau, tau_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, tau_out);
         refuse(NC, lambda_out);
     }
+    return code;
 }
 
-static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
-    int *code)
+static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
 {
     real q[NJ] = {0}, q_of_inverse_kinematics_from_2[4] = {0}, subtract_1[NU] = {0}, constraints[3] =
         {0}, negative_1[3] = {0}, gap[7] = {0};
@@ -9686,12 +9455,14 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
     beside(1, NU, 3, subtract_1, negative_1, gap);
     check(7, 1, gap, why.overflow);
     copy(7, gap, gap_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(7, gap_out);
     }
+    return code;
 }
 
-static void slope_one(const prepared *m, const real *X, real *slope_out, int *code)
+static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     real H[NV*NU] = {0}, Hk[NV*NC] = {0}, slope[NV*(NU + NC)] = {0};
     verdict why;
@@ -9702,9 +9473,11 @@ static void slope_one(const prepared *m, const real *X, real *slope_out, int *co
     beside(NV, NU, NC, H, Hk, slope);
     check(NV*(NU + NC), 1, slope, why.overflow);
     copy(NV*(NU + NC), slope, slope_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*(NU + NC), slope_out);
     }
+    return code;
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -9715,12 +9488,12 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    mismatch_one(m, found, q_actuated, gap, &code);
+    code = mismatch_one(m, found, q_actuated, gap);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        slope_one(m, found, slope, &code);
+        code = slope_one(m, found, slope);
         if (code != OK) {
             break;
         }
@@ -9734,7 +9507,7 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            mismatch_one(m, trial, q_actuated, next, &tried);
+            tried = mismatch_one(m, trial, q_actuated, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -9752,8 +9525,8 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 }
 
 
-INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
-    *X_out, int *code)
+int quadrupod_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real
+    *X_out)
 {
     real X[NQ] = {0};
     verdict why;
@@ -9766,12 +9539,14 @@ INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, co
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
-static void constraint_gap_one(const prepared *m, const real *X, real *gap_out, int *code)
+static int constraint_gap_one(const prepared *m, const real *X, real *gap_out)
 {
     real constraints[3] = {0}, gap[NC] = {0};
     verdict why;
@@ -9783,12 +9558,14 @@ static void constraint_gap_one(const prepared *m, const real *X, real *gap_out, 
     }
     check(NC, 1, gap, why.overflow);
     copy(NC, gap, gap_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NC, gap_out);
     }
+    return code;
 }
 
-static void constraint_slope_one(const prepared *m, const real *X, real *slope_out, int *code)
+static int constraint_slope_one(const prepared *m, const real *X, real *slope_out)
 {
     verdict why;
     start(1, &why);
@@ -9797,9 +9574,11 @@ static void constraint_slope_one(const prepared *m, const real *X, real *slope_o
     if (!is_finite(why.total[0])) {
         check(NV*NC, 1, slope_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NC, slope_out);
     }
+    return code;
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -9810,12 +9589,12 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    constraint_gap_one(m, found, gap, &code);
+    code = constraint_gap_one(m, found, gap);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > MET; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        constraint_slope_one(m, found, slope, &code);
+        code = constraint_slope_one(m, found, slope);
         if (code != OK) {
             break;
         }
@@ -9829,7 +9608,7 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            constraint_gap_one(m, trial, next, &tried);
+            tried = constraint_gap_one(m, trial, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -9847,7 +9626,7 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
 }
 
 
-INLINE void project_one(const prepared *m, const real *X, real *projected_out, int *code)
+int quadrupod_project(const prepared *m, const real *X, real *projected_out)
 {
     real projected[NQ] = {0};
     verdict why;
@@ -9856,13 +9635,17 @@ INLINE void project_one(const prepared *m, const real *X, real *projected_out, i
     blame(search_constraint_gap(m, X, projected), &why);
     check(NQ, 1, projected, why.overflow);
     copy(NQ, projected, projected_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, projected_out);
     }
+    return code;
 }
 
-INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
+int quadrupod_dissipation(const prepared *m, const real *X, const real *V, real *dissipation_out)
 {
+    (void)m;
+    (void)X;
     real subtract_1[NV] = {0};
     verdict why;
     start(1, &why);
@@ -9873,13 +9656,14 @@ INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, dissipation_out);
     }
+    return code;
 }
 
-INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
-    *code)
+int quadrupod_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
     real M[NV*NV] = {0}, momentum[NV] = {0};
     verdict why;
@@ -9893,27 +9677,14 @@ INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, momentum_out);
     }
+    return code;
 }
 
-INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
-    int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], momentum[NV*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    M_run_lanes(m, X, M, &why);
-    product(NV, NV, 1, LANES, M, V, momentum);
-    add_up(NV, momentum, why.total);
-    suspect(&why, code);
-    deliver(NV, momentum, momentum_out);
-}
-
-INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
+int quadrupod_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14};
     real q[NJ] = {0}, margins[NJ] = {0};
@@ -9926,28 +9697,14 @@ INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_ou
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, margins_out);
     }
+    return code;
 }
 
-INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
-{
-    static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14};
-    real X_in[NQ*LANES], q[NJ*LANES], margins[NJ*LANES];
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < NJ*LANES; ++i) {
-        margins[i] = q[i];
-    }
-    unlimited(NJ, NJ, LANES, places_margins, margins, why.invalid);
-    suspect(&why, code);
-    deliver(NJ, margins, margins_out);
-}
-
-INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
+int quadrupod_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
     verdict why;
@@ -9960,28 +9717,14 @@ INLINE void within_limits_one(const prepared *m, const real *X, real *within_out
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, within_out);
     }
+    return code;
 }
 
-INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
-{
-    real X_in[NQ*LANES], q[NJ*LANES], subtract_1[NJ*LANES], within[LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < NJ*LANES; ++i) {
-        subtract_1[i] = q[i] - q[i];
-    }
-    not_negative(NJ, LANES, subtract_1, within, why.invalid);
-    add_up(1, within, why.total);
-    suspect(&why, code);
-    deliver(1, within, within_out);
-}
-
-INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
+int quadrupod_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
     verdict why;
@@ -9991,26 +9734,14 @@ INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out
     take(NU, 1, quadrupod_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, q_out);
     }
+    return code;
 }
 
-INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
-{
-    real X_in[NQ*LANES], q_of_inverse_kinematics[NJ*LANES], q[NU*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
-    take(NU, LANES, quadrupod_ACTUATED, q_of_inverse_kinematics, q);
-    add_up(NU, q, why.total);
-    suspect(&why, code);
-    deliver(NU, q, q_out);
-}
-
-INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
-    *code)
+int quadrupod_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
     verdict why;
@@ -10024,28 +9755,15 @@ INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, 
     take(NU, 1, quadrupod_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, qd_out);
     }
+    return code;
 }
 
-INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
-    int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], qd_of_joint_rates[NJ*LANES], qd[NU*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
-    take(NU, LANES, quadrupod_ACTUATED, qd_of_joint_rates, qd);
-    add_up(NU, qd, why.total);
-    suspect(&why, code);
-    deliver(NU, qd, qd_out);
-}
-
-INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out, int *code)
+int quadrupod_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
     verdict why;
@@ -10060,30 +9778,15 @@ INLINE void actuator_accelerations_one(const prepared *m, const real *X, const r
     take(NU, 1, quadrupod_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, qdd_out);
     }
+    return code;
 }
 
-INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *qdd_out, int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd_of_joint_accelerations[NJ*LANES],
-        qdd[NU*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    A = side_by_side(NV, A, A_in, why.total);
-    joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
-    take(NU, LANES, quadrupod_ACTUATED, qdd_of_joint_accelerations, qdd);
-    add_up(NU, qdd, why.total);
-    suspect(&why, code);
-    deliver(NU, qdd, qdd_out);
-}
-
-INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out, int *code)
+int quadrupod_power(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out)
 {
     real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
     verdict why;
@@ -10099,30 +9802,14 @@ INLINE void power_one(const prepared *m, const real *X, const real *V, const rea
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, power_out);
     }
+    return code;
 }
 
-INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out, int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0},
-        power[LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    tau = side_by_side(NU, tau, tau_in, why.total);
-    H_run_lanes(m, X, H, &why);
-    product(NV, NU, 1, LANES, H, tau, times_1);
-    inner(NV, LANES, times_1, V, power);
-    add_up(1, power, why.total);
-    suspect(&why, code);
-    deliver(1, power, power_out);
-}
-
-INLINE void rotation_one(const real *X, real *R_out, int *code)
+int quadrupod_rotation(const real *X, real *R_out)
 {
     real R[9] = {0};
     verdict why;
@@ -10132,12 +9819,14 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     copy(9, R, R_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(9, R_out);
     }
+    return code;
 }
 
-INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
+int quadrupod_pose(const real *t, const real *R, real *X_out)
 {
     real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0};
     verdict why;
@@ -10152,12 +9841,14 @@ INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
-INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
+int quadrupod_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     real quaternion_rate_1[4] = {0}, X_dot[NQ] = {0};
     verdict why;
@@ -10174,12 +9865,14 @@ INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
     beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_dot_out);
     }
+    return code;
 }
 
-INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *code)
+int quadrupod_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
     real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0};
     verdict why;
@@ -10194,12 +9887,14 @@ INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
-INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
+int quadrupod_retract(const real *X, const real *step, real *X_moved_out)
 {
     real turn_quaternion_1[4] = {0}, add_1[3] = {0}, X_moved[NQ] = {0};
     verdict why;
@@ -10220,12 +9915,14 @@ INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int 
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_moved_out);
     }
+    return code;
 }
 
-INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
+int quadrupod_difference(const real *X0, const real *X1, real *step_out)
 {
     real turn_between_1[3] = {0}, subtract_1[3] = {0}, step[NV] = {0};
     verdict why;
@@ -10246,12 +9943,14 @@ INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, step_out);
     }
+    return code;
 }
 
-INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
+int quadrupod_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     real turn_between_1[3] = {0}, subtract_1[3] = {0}, join_1[6] = {0}, scale_1[6] = {0},
         turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
@@ -10286,879 +9985,263 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
 /* ---- one state, and batches ---- */
 
-int quadrupod_M(const prepared *model, const real *X, real *M)
+size_t quadrupod_M_batch(const prepared *m, size_t n, const real *X, real *M, int *status)
 {
-    int code;
-    M_one(model, X, M, &code);
-    return code;
+    SIDE_BY_SIDE(M_lanes(m, X + NQ*i, M + NV*NV*i, codes), quadrupod_M(m, X + NQ*j, M + NV*NV*j));
 }
 
-size_t quadrupod_M_batch(const prepared *model, size_t n, const real *X, real *M, int *status)
+size_t quadrupod_Z_batch(const prepared *m, size_t n, const real *X, const real *V, real *Z, int
+    *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = quadrupod_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(Z_lanes(m, X + NQ*i, V + NV*i, Z + NV*i, codes), quadrupod_Z(m, X + NQ*j, V + NV*j, Z
+        + NV*j));
 }
 
-int quadrupod_Z(const prepared *model, const real *X, const real *V, real *Z)
+size_t quadrupod_H_batch(const prepared *m, size_t n, const real *X, real *H, int *status)
 {
-    int code;
-    Z_one(model, X, V, Z, &code);
-    return code;
+    SIDE_BY_SIDE(H_lanes(m, X + NQ*i, H + NV*NU*i, codes), quadrupod_H(m, X + NQ*j, H + NV*NU*j));
 }
 
-size_t quadrupod_Z_batch(const prepared *model, size_t n, const real *X, const real *V, real *Z,
-    int *status)
+size_t quadrupod_Hk_batch(const prepared *m, size_t n, const real *X, real *Hk, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = quadrupod_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(Hk_lanes(m, X + NQ*i, Hk + NV*NC*i, codes), quadrupod_Hk(m, X + NQ*j, Hk + NV*NC*j));
 }
 
-int quadrupod_H(const prepared *model, const real *X, real *H)
+size_t quadrupod_constraints_batch(const prepared *m, size_t n, const real *X, real *residual, int
+    *status)
 {
-    int code;
-    H_one(model, X, H, &code);
-    return code;
+    SIDE_BY_SIDE(constraints_lanes(m, X + NQ*i, residual + NC*i, codes), quadrupod_constraints(m, X +
+        NQ*j, residual + NC*j));
 }
 
-size_t quadrupod_H_batch(const prepared *model, size_t n, const real *X, real *H, int *status)
+size_t quadrupod_constraint_bias_batch(const prepared *m, size_t n, const real *X, const real *V,
+    real *bias, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = quadrupod_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(constraint_bias_lanes(m, X + NQ*i, V + NV*i, bias + NC*i, codes),
+        quadrupod_constraint_bias(m, X + NQ*j, V + NV*j, bias + NC*j));
 }
 
-int quadrupod_Hk(const prepared *model, const real *X, real *Hk)
+size_t quadrupod_inverse_kinematics_batch(const prepared *m, size_t n, const real *X, real *q, int
+    *status)
 {
-    int code;
-    Hk_one(model, X, Hk, &code);
-    return code;
+    SIDE_BY_SIDE(inverse_kinematics_lanes(m, X + NQ*i, q + NJ*i, codes),
+        quadrupod_inverse_kinematics(m, X + NQ*j, q + NJ*j));
 }
 
-size_t quadrupod_Hk_batch(const prepared *model, size_t n, const real *X, real *Hk, int *status)
+size_t quadrupod_joint_rates_batch(const prepared *m, size_t n, const real *X, const real *V, real
+    *rates, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            Hk_lanes(model, X + NQ*i, Hk + NV*NC*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = quadrupod_Hk(model, X + NQ*(i + k), Hk + NV*NC*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(joint_rates_lanes(m, X + NQ*i, V + NV*i, rates + NJ*i, codes),
+        quadrupod_joint_rates(m, X + NQ*j, V + NV*j, rates + NJ*j));
 }
 
-int quadrupod_constraints(const prepared *model, const real *X, real *residual)
+size_t quadrupod_joint_accelerations_batch(const prepared *m, size_t n, const real *X, const real
+    *V, const real *A, real *accelerations, int *status)
 {
-    int code;
-    constraints_one(model, X, residual, &code);
-    return code;
+    SIDE_BY_SIDE(joint_accelerations_lanes(m, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i,
+        codes), quadrupod_joint_accelerations(m, X + NQ*j, V + NV*j, A + NV*j, accelerations + NJ*j));
 }
 
-size_t quadrupod_constraints_batch(const prepared *model, size_t n, const real *X, real *residual,
-    int *status)
+size_t quadrupod_dynamics_batch(const prepared *m, size_t n, const real *X, const real *V, real
+    *M, real *Z, real *H, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            constraints_lanes(model, X + NQ*i, residual + NC*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = quadrupod_constraints(model, X + NQ*(i + k), residual + NC*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(dynamics_lanes(m, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes),
+        quadrupod_dynamics(m, X + NQ*j, V + NV*j, M + NV*NV*j, Z + NV*j, H + NV*NU*j));
 }
 
-int quadrupod_constraint_bias(const prepared *model, const real *X, const real *V, real *bias)
-{
-    int code;
-    constraint_bias_one(model, X, V, bias, &code);
-    return code;
-}
-
-size_t quadrupod_constraint_bias_batch(const prepared *model, size_t n, const real *X, const real
-    *V, real *bias, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            constraint_bias_lanes(model, X + NQ*i, V + NV*i, bias + NC*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = quadrupod_constraint_bias(model, X + NQ*(i + k), V + NV*(i + k), bias + NC*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int quadrupod_inverse_kinematics(const prepared *model, const real *X, real *q)
-{
-    int code;
-    inverse_kinematics_one(model, X, q, &code);
-    return code;
-}
-
-size_t quadrupod_inverse_kinematics_batch(const prepared *model, size_t n, const real *X, real *q,
-    int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = quadrupod_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int quadrupod_joint_rates(const prepared *model, const real *X, const real *V, real *rates)
-{
-    int code;
-    joint_rates_one(model, X, V, rates, &code);
-    return code;
-}
-
-size_t quadrupod_joint_rates_batch(const prepared *model, size_t n, const real *X, const real *V,
-    real *rates, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = quadrupod_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int quadrupod_joint_accelerations(const prepared *model, const real *X, const real *V, const real
-    *A, real *accelerations)
-{
-    int code;
-    joint_accelerations_one(model, X, V, A, accelerations, &code);
-    return code;
-}
-
-size_t quadrupod_joint_accelerations_batch(const prepared *model, size_t n, const real *X, const
-    real *V, const real *A, real *accelerations, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = quadrupod_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
-                    accelerations + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int quadrupod_dynamics(const prepared *model, const real *X, const real *V, real *M, real *Z, real
-    *H)
-{
-    int code;
-    dynamics_one(model, X, V, M, Z, H, &code);
-    return code;
-}
-
-size_t quadrupod_dynamics_batch(const prepared *model, size_t n, const real *X, const real *V,
-    real *M, real *Z, real *H, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = quadrupod_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z + NV*(i
-                    + k), H + NV*NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int quadrupod_inverse_dynamics(const prepared *model, const real *X, const real *V, const real *A,
+int quadrupod_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau, real *lambda)
 {
-    int code;
-    inverse_dynamics_one(model, X, V, A, wrench, NULL, tau, lambda, &code);
-    return code;
+    return inverse_dynamics_one(m, X, V, A, wrench, NULL, tau, lambda);
 }
 
-size_t quadrupod_inverse_dynamics_batch(const prepared *model, size_t n, const real *X, const real
-    *V, const real *A, const real *wrench, real *tau, real *lambda, int *status)
+size_t quadrupod_inverse_dynamics_batch(const prepared *m, size_t n, const real *X, const real *V,
+    const real *A, const real *wrench, real *tau, real *lambda, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = quadrupod_inverse_dynamics(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench +
-            NW*i : NULL, tau + NU*i, lambda + NC*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(quadrupod_inverse_dynamics(m, X + NQ*j, V + NV*j, A + NV*j, wrench ? wrench + NW*j :
+        NULL, tau + NU*j, lambda + NC*j));
 }
 
-int quadrupod_inverse_dynamics_weighted(const prepared *model, const real *X, const real *V, const
+int quadrupod_inverse_dynamics_weighted(const prepared *m, const real *X, const real *V, const
     real *A, const real *wrench, const real *weights, real *tau, real *lambda)
 {
-    int code;
-    inverse_dynamics_one(model, X, V, A, wrench, weights, tau, lambda, &code);
-    return code;
+    return inverse_dynamics_one(m, X, V, A, wrench, weights, tau, lambda);
 }
 
-size_t quadrupod_inverse_dynamics_weighted_batch(const prepared *model, size_t n, const real *X,
-    const real *V, const real *A, const real *wrench, const real *weights, real *tau, real
-    *lambda, int *status)
+size_t quadrupod_inverse_dynamics_weighted_batch(const prepared *m, size_t n, const real *X, const
+    real *V, const real *A, const real *wrench, const real *weights, real *tau, real *lambda, int
+    *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = quadrupod_inverse_dynamics_weighted(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
-            wrench + NW*i : NULL, weights + NU*i, tau + NU*i, lambda + NC*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(quadrupod_inverse_dynamics_weighted(m, X + NQ*j, V + NV*j, A + NV*j, wrench ? wrench +
+        NW*j : NULL, weights + NU*j, tau + NU*j, lambda + NC*j));
 }
 
-int quadrupod_forward_dynamics(const prepared *model, const real *X, const real *V, const real
-    *tau, const real *wrench, real *A, real *lambda)
+size_t quadrupod_forward_dynamics_batch(const prepared *m, size_t n, const real *X, const real *V,
+    const real *tau, const real *wrench, real *A, real *lambda, int *status)
 {
-    int code;
-    forward_dynamics_one(model, X, V, tau, wrench, A, lambda, &code);
-    return code;
+    SIDE_BY_SIDE(forward_dynamics_lanes(m, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i :
+        NULL, A + NV*i, lambda + NC*i, codes), quadrupod_forward_dynamics(m, X + NQ*j, V + NV*j, tau +
+        NU*j, wrench ? wrench + NW*j : NULL, A + NV*j, lambda + NC*j));
 }
 
-size_t quadrupod_forward_dynamics_batch(const prepared *model, size_t n, const real *X, const real
-    *V, const real *tau, const real *wrench, real *A, real *lambda, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
-                NV*i, lambda + NC*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = quadrupod_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k),
-                    wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k), lambda + NC*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int quadrupod_complete_acceleration(const prepared *model, const real *X, const real *V, const
-    real *A, const real *wrench, real *completed)
-{
-    int code;
-    (void)model, (void)X, (void)V, (void)wrench;
-    complete_acceleration_one(A, completed, &code);
-    return code;
-}
-
-size_t quadrupod_complete_acceleration_batch(const prepared *model, size_t n, const real *X, const
+size_t quadrupod_complete_acceleration_batch(const prepared *m, size_t n, const real *X, const
     real *V, const real *A, const real *wrench, real *completed, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = quadrupod_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
-            wrench + NW*i : NULL, completed + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(quadrupod_complete_acceleration(m, X + NQ*j, V + NV*j, A + NV*j, wrench ? wrench + NW*j
+        : NULL, completed + NV*j));
 }
 
-int quadrupod_leg_reactions(const prepared *model, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces)
+size_t quadrupod_leg_reactions_batch(const prepared *m, size_t n, const real *X, const real *V,
+    const real *A, const real *wrench, real *forces, int *status)
 {
-    int code;
-    leg_reactions_one(model, X, V, A, wrench, forces, &code);
-    return code;
+    ONE_BY_ONE(quadrupod_leg_reactions(m, X + NQ*j, V + NV*j, A + NV*j, wrench ? wrench + NW*j : NULL,
+        forces + 30*j));
 }
 
-size_t quadrupod_leg_reactions_batch(const prepared *model, size_t n, const real *X, const real
-    *V, const real *A, const real *wrench, real *forces, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = quadrupod_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench +
-            NW*i : NULL, forces + 30*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int quadrupod_energy(const prepared *model, const real *X, const real *V, real *kinetic, real
-    *potential)
-{
-    int code;
-    energy_one(model, X, V, kinetic, potential, &code);
-    return code;
-}
-
-size_t quadrupod_energy_batch(const prepared *model, size_t n, const real *X, const real *V, real
+size_t quadrupod_energy_batch(const prepared *m, size_t n, const real *X, const real *V, real
     *kinetic, real *potential, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = quadrupod_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(quadrupod_energy(m, X + NQ*j, V + NV*j, kinetic + j, potential + j));
 }
 
-int quadrupod_condition(const prepared *model, const real *X, real *sigma, real *legs)
-{
-    int code;
-    condition_one(model, X, NULL, sigma, legs, &code);
-    return code;
-}
-
-size_t quadrupod_condition_batch(const prepared *model, size_t n, const real *X, real *sigma, real
+size_t quadrupod_condition_batch(const prepared *m, size_t n, const real *X, real *sigma, real
     *legs, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = quadrupod_condition(model, X + NQ*i, sigma + 4*i, legs + 5*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(quadrupod_condition(m, X + NQ*j, sigma + 4*j, legs + 5*j));
 }
 
-int quadrupod_condition_constrained(const prepared *model, const real *X, real *sigma, real *legs)
-{
-    int code;
-    condition_constrained_one(model, X, NULL, sigma, legs, &code);
-    return code;
-}
-
-size_t quadrupod_condition_constrained_batch(const prepared *model, size_t n, const real *X, real
+size_t quadrupod_condition_constrained_batch(const prepared *m, size_t n, const real *X, real
     *sigma, real *legs, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = quadrupod_condition_constrained(model, X + NQ*i, sigma + 6*i, legs + 5*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(quadrupod_condition_constrained(m, X + NQ*j, sigma + 6*j, legs + 5*j));
 }
 
-int quadrupod_manipulability(const prepared *model, const real *X, real *measure, real *isotropy)
+size_t quadrupod_manipulability_batch(const prepared *m, size_t n, const real *X, real *measure,
+    real *isotropy, int *status)
 {
-    int code;
-    manipulability_one(model, X, measure, isotropy, &code);
-    return code;
+    ONE_BY_ONE(quadrupod_manipulability(m, X + NQ*j, measure + j, isotropy + j));
 }
 
-size_t quadrupod_manipulability_batch(const prepared *model, size_t n, const real *X, real
-    *measure, real *isotropy, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = quadrupod_manipulability(model, X + NQ*i, measure + i, isotropy + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int quadrupod_singularity_distance(const prepared *model, const real *X, real *actuators, real
-    *legs)
-{
-    int code;
-    singularity_distance_one(model, X, actuators, legs, &code);
-    return code;
-}
-
-size_t quadrupod_singularity_distance_batch(const prepared *model, size_t n, const real *X, real
+size_t quadrupod_singularity_distance_batch(const prepared *m, size_t n, const real *X, real
     *actuators, real *legs, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = quadrupod_singularity_distance(model, X + NQ*i, actuators + i, legs + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(quadrupod_singularity_distance(m, X + NQ*j, actuators + j, legs + j));
 }
 
-int quadrupod_force_distribution(const prepared *model, const real *X, const real *V, const real
-    *A, const real *tau_min, const real *tau_max, const real *wrench, const real *reference, real
-    *tau, real *lambda)
+size_t quadrupod_force_distribution_batch(const prepared *m, size_t n, const real *X, const real
+    *V, const real *A, const real *tau_min, const real *tau_max, const real *wrench, const real
+    *reference, real *tau, real *lambda, int *status)
 {
-    int code;
-    force_distribution_one(model, X, V, A, tau_min, tau_max, wrench, reference, tau, lambda, &code);
-    return code;
+    ONE_BY_ONE(quadrupod_force_distribution(m, X + NQ*j, V + NV*j, A + NV*j, tau_min + NU*j, tau_max +
+        NU*j, wrench ? wrench + NW*j : NULL, reference ? reference + NU*j : NULL, tau + NU*j, lambda +
+        NC*j));
 }
 
-size_t quadrupod_force_distribution_batch(const prepared *model, size_t n, const real *X, const
-    real *V, const real *A, const real *tau_min, const real *tau_max, const real *wrench, const
-    real *reference, real *tau, real *lambda, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = quadrupod_force_distribution(model, X + NQ*i, V + NV*i, A + NV*i, tau_min + NU*i,
-            tau_max + NU*i, wrench ? wrench + NW*i : NULL, reference ? reference + NU*i : NULL, tau +
-            NU*i, lambda + NC*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int quadrupod_forward_kinematics(const prepared *model, const real *q_actuated, const real *X0,
-    real *X)
-{
-    int code;
-    forward_kinematics_one(model, q_actuated, X0, X, &code);
-    return code;
-}
-
-size_t quadrupod_forward_kinematics_batch(const prepared *model, size_t n, const real *q_actuated,
+size_t quadrupod_forward_kinematics_batch(const prepared *m, size_t n, const real *q_actuated,
     const real *X0, real *X, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = quadrupod_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(quadrupod_forward_kinematics(m, q_actuated + NU*j, X0 + NQ*j, X + NQ*j));
 }
 
-int quadrupod_project(const prepared *model, const real *X, real *projected)
+size_t quadrupod_project_batch(const prepared *m, size_t n, const real *X, real *projected, int
+    *status)
 {
-    int code;
-    project_one(model, X, projected, &code);
-    return code;
+    ONE_BY_ONE(quadrupod_project(m, X + NQ*j, projected + NQ*j));
 }
 
-size_t quadrupod_project_batch(const prepared *model, size_t n, const real *X, real *projected,
+size_t quadrupod_dissipation_batch(const prepared *m, size_t n, const real *X, const real *V, real
+    *dissipation, int *status)
+{
+    ONE_BY_ONE(quadrupod_dissipation(m, X + NQ*j, V + NV*j, dissipation + j));
+}
+
+size_t quadrupod_momentum_batch(const prepared *m, size_t n, const real *X, const real *V, real
+    *momentum, int *status)
+{
+    ONE_BY_ONE(quadrupod_momentum(m, X + NQ*j, V + NV*j, momentum + NV*j));
+}
+
+size_t quadrupod_joint_margins_batch(const prepared *m, size_t n, const real *X, real *margins,
     int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = quadrupod_project(model, X + NQ*i, projected + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(quadrupod_joint_margins(m, X + NQ*j, margins + NJ*j));
 }
 
-int quadrupod_dissipation(const prepared *model, const real *X, const real *V, real *dissipation)
+size_t quadrupod_within_limits_batch(const prepared *m, size_t n, const real *X, real *within, int
+    *status)
 {
-    int code;
-    (void)model, (void)X;
-    dissipation_one(V, dissipation, &code);
-    return code;
+    ONE_BY_ONE(quadrupod_within_limits(m, X + NQ*j, within + j));
 }
 
-size_t quadrupod_dissipation_batch(const prepared *model, size_t n, const real *X, const real *V,
-    real *dissipation, int *status)
+size_t quadrupod_actuator_positions_batch(const prepared *m, size_t n, const real *X, real *q, int
+    *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = quadrupod_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(quadrupod_actuator_positions(m, X + NQ*j, q + NU*j));
 }
 
-int quadrupod_momentum(const prepared *model, const real *X, const real *V, real *momentum)
+size_t quadrupod_actuator_rates_batch(const prepared *m, size_t n, const real *X, const real *V,
+    real *rates, int *status)
 {
-    int code;
-    momentum_one(model, X, V, momentum, &code);
-    return code;
+    ONE_BY_ONE(quadrupod_actuator_rates(m, X + NQ*j, V + NV*j, rates + NU*j));
 }
 
-size_t quadrupod_momentum_batch(const prepared *model, size_t n, const real *X, const real *V,
-    real *momentum, int *status)
+size_t quadrupod_actuator_accelerations_batch(const prepared *m, size_t n, const real *X, const
+    real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = quadrupod_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(quadrupod_actuator_accelerations(m, X + NQ*j, V + NV*j, A + NV*j, accelerations +
+        NU*j));
 }
 
-int quadrupod_joint_margins(const prepared *model, const real *X, real *margins)
+size_t quadrupod_power_batch(const prepared *m, size_t n, const real *X, const real *V, const real
+    *tau, real *power, int *status)
 {
-    int code;
-    joint_margins_one(model, X, margins, &code);
-    return code;
-}
-
-size_t quadrupod_joint_margins_batch(const prepared *model, size_t n, const real *X, real
-    *margins, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = quadrupod_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int quadrupod_within_limits(const prepared *model, const real *X, real *within)
-{
-    int code;
-    within_limits_one(model, X, within, &code);
-    return code;
-}
-
-size_t quadrupod_within_limits_batch(const prepared *model, size_t n, const real *X, real *within,
-    int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            within_limits_lanes(model, X + NQ*i, within + i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = quadrupod_within_limits(model, X + NQ*(i + k), within + (i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int quadrupod_actuator_positions(const prepared *model, const real *X, real *q)
-{
-    int code;
-    actuator_positions_one(model, X, q, &code);
-    return code;
-}
-
-size_t quadrupod_actuator_positions_batch(const prepared *model, size_t n, const real *X, real *q,
-    int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = quadrupod_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int quadrupod_actuator_rates(const prepared *model, const real *X, const real *V, real *rates)
-{
-    int code;
-    actuator_rates_one(model, X, V, rates, &code);
-    return code;
-}
-
-size_t quadrupod_actuator_rates_batch(const prepared *model, size_t n, const real *X, const real
-    *V, real *rates, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = quadrupod_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int quadrupod_actuator_accelerations(const prepared *model, const real *X, const real *V, const
-    real *A, real *accelerations)
-{
-    int code;
-    actuator_accelerations_one(model, X, V, A, accelerations, &code);
-    return code;
-}
-
-size_t quadrupod_actuator_accelerations_batch(const prepared *model, size_t n, const real *X,
-    const real *V, const real *A, real *accelerations, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = quadrupod_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
-                    accelerations + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int quadrupod_power(const prepared *model, const real *X, const real *V, const real *tau, real
-    *power)
-{
-    int code;
-    power_one(model, X, V, tau, power, &code);
-    return code;
-}
-
-size_t quadrupod_power_batch(const prepared *model, size_t n, const real *X, const real *V, const
-    real *tau, real *power, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = quadrupod_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power + (i +
-                    k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int quadrupod_rotation(const real *X, real *R)
-{
-    int code;
-    rotation_one(X, R, &code);
-    return code;
+    ONE_BY_ONE(quadrupod_power(m, X + NQ*j, V + NV*j, tau + NU*j, power + j));
 }
 
 size_t quadrupod_rotation_batch(size_t n, const real *X, real *R, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = quadrupod_rotation(X + NQ*i, R + 9*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int quadrupod_pose(const real *t, const real *R, real *X)
-{
-    int code;
-    pose_one(t, R, X, &code);
-    return code;
+    ONE_BY_ONE(quadrupod_rotation(X + NQ*j, R + 9*j));
 }
 
 size_t quadrupod_pose_batch(size_t n, const real *t, const real *R, real *X, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = quadrupod_pose(t + 3*i, R + 9*i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int quadrupod_X_dot(const real *X, const real *V, real *X_dot)
-{
-    int code;
-    X_dot_one(X, V, X_dot, &code);
-    return code;
+    ONE_BY_ONE(quadrupod_pose(t + 3*j, R + 9*j, X + NQ*j));
 }
 
 size_t quadrupod_X_dot_batch(size_t n, const real *X, const real *V, real *X_dot, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = quadrupod_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int quadrupod_pose_from_rpy(const real *t, const real *rpy, real *X)
-{
-    int code;
-    pose_from_rpy_one(t, rpy, X, &code);
-    return code;
+    ONE_BY_ONE(quadrupod_X_dot(X + NQ*j, V + NV*j, X_dot + NQ*j));
 }
 
 size_t quadrupod_pose_from_rpy_batch(size_t n, const real *t, const real *rpy, real *X, int
     *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = quadrupod_pose_from_rpy(t + 3*i, rpy + 3*i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int quadrupod_retract(const real *X, const real *step, real *X_moved)
-{
-    int code;
-    retract_one(X, step, X_moved, &code);
-    return code;
+    ONE_BY_ONE(quadrupod_pose_from_rpy(t + 3*j, rpy + 3*j, X + NQ*j));
 }
 
 size_t quadrupod_retract_batch(size_t n, const real *X, const real *step, real *X_moved, int
     *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = quadrupod_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int quadrupod_difference(const real *X0, const real *X1, real *step)
-{
-    int code;
-    difference_one(X0, X1, step, &code);
-    return code;
+    ONE_BY_ONE(quadrupod_retract(X + NQ*j, step + NV*j, X_moved + NQ*j));
 }
 
 size_t quadrupod_difference_batch(size_t n, const real *X0, const real *X1, real *step, int
     *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = quadrupod_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int quadrupod_interpolate(const real *X0, const real *X1, const real *s, real *X)
-{
-    int code;
-    interpolate_one(X0, X1, s, X, &code);
-    return code;
+    ONE_BY_ONE(quadrupod_difference(X0 + NQ*j, X1 + NQ*j, step + NV*j));
 }
 
 size_t quadrupod_interpolate_batch(size_t n, const real *X0, const real *X1, const real *s, real
     *X, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = quadrupod_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(quadrupod_interpolate(X0 + NQ*j, X1 + NQ*j, s + j, X + NQ*j));
 }

@@ -185,13 +185,27 @@ INLINE int sum_is_finite(const real *x, size_t n)
     return is_finite(total(sum, LANES));
 }
 
+/* How many of some numbers are not finite. */
+APART real not_finite(size_t n, const real *x)
+{
+    real count = 0;
+    if (!sum_is_finite(x, n)) {
+        for (size_t i = 0; i < n; ++i) {
+            count += UNLESS(is_finite(x[i]));
+        }
+    }
+    return count;
+}
+
 /* Flag the states with entries that are not finite; the states stand side by side. */
 INLINE void check(size_t size, size_t w, const real *x, real *flags)
 {
-    if (!sum_is_finite(x, size*w)) {
-        for (size_t i = 0; i < size*w; ++i) {
-            flags[i%w] += UNLESS(is_finite(x[i]));
-        }
+    if (w == 1) {
+        flags[0] += not_finite(size, x);
+        return;
+    }
+    for (size_t i = 0; i < size*w; ++i) {
+        flags[i%w] += UNLESS(is_finite(x[i]));
     }
 }
 
@@ -246,18 +260,17 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE int judge(const verdict *t, int *code)
+INLINE int judge(const verdict *t)
 {
-    *code = t->invalid[0] > 0 ? INVALID
+    return t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
         : t->unreachable[0] > 0 ? UNREACHABLE
         : t->singular[0] > 0 ? SINGULAR
         : t->overflow[0] > 0 ? INVALID : OK;
-    return *code;
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
-INLINE void suspect(const verdict *t, int *code)
+APART void suspect(const verdict *t, int *code)
 {
     real flags[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -279,7 +292,7 @@ INLINE void blame(int code, verdict *t)
 }
 
 /* Outputs of an impossible state. */
-INLINE void refuse(size_t size, real *out)
+APART void refuse(size_t size, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
@@ -315,6 +328,32 @@ INLINE size_t record(const int *code, size_t w, int *status)
     }
     return failed;
 }
+
+/* Bodies of batches.  lanes: settles the states from number i on, side by side, in codes; one: settles
+   state j, what fails and what is left too. */
+#define SIDE_BY_SIDE(lanes, one) \
+    size_t failed = 0, w; \
+    for (size_t i = 0; i < n; i += w) { \
+        int codes[LANES] = {INVALID}; \
+        w = LANES > 1 && i + LANES <= n ? LANES : 1; \
+        if (w > 1) { \
+            lanes; \
+        } \
+        for (size_t j = i; j < i + w; ++j) { \
+            if (codes[j - i] != OK) { \
+                codes[j - i] = one; \
+            } \
+        } \
+        failed += record(codes, w, status ? status + i : NULL); \
+    } \
+    return failed
+#define ONE_BY_ONE(one) \
+    size_t failed = 0; \
+    for (size_t j = 0; j < n; ++j) { \
+        const int code = one; \
+        failed += record(&code, 1, status ? status + j : NULL); \
+    } \
+    return failed
 
 /* What the reader of specifications allows; floats have less to offer. */
 #define ROUNDED BY_TYPE(1e-5, 1e-06, 1e-06)  /* lengths and products of unit vectors */
@@ -650,10 +689,10 @@ int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
         const real rrr_leg1_d_c_in_axes2_yy =
             -rrr_leg1_d_Gamma_2_in_axes2_y*rrr_leg1_w_2_in_axes2_y -
             rrr_leg1_h_2_in_spec2_x*rrr_leg1_w_2_in_axes2_y;
-        /* (h_star) first moment about the platform origin */
+        /* (h_star) */
         const real rrr_leg1_h_star_t = rrr_leg1_link2_mass*rrr_leg1_platform_point_x;
         const real rrr_leg1_h_star_t_2 = rrr_leg1_link2_mass*rrr_leg1_platform_point_y;
-        /* (J_star) inertia tensor about the platform origin */
+        /* (J_star) */
         const real rrr_leg1_J_star_t = rrr_leg1_platform_point_y*rrr_leg1_platform_point_y;
         const real rrr_leg1_J_star_t_2 = rrr_leg1_J_star_t +
             rrr_leg1_platform_point_x*rrr_leg1_platform_point_x;
@@ -787,15 +826,15 @@ int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
            without the mass at the connection point */
         const real rrr_d_c_in_axes2_yy = -rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_y -
             rrr_h_2_in_spec2_x*rrr_w_2_in_axes2_y;
-        /* (h_star) first moment about the platform origin */
+        /* (h_star) */
         const real rrr_h_star_t = rrr_link2_mass*rrr_platform_point_x;
         const real rrr_h_star_t_2 = rrr_link2_mass*rrr_platform_point_y;
-        /* (J_star) inertia tensor about the platform origin */
+        /* (J_star) */
         const real rrr_J_star_t = rrr_platform_point_y*rrr_platform_point_y;
         const real rrr_J_star_t_2 = rrr_J_star_t + rrr_platform_point_x*rrr_platform_point_x;
         const real rrr_J_star_t_3 = rrr_J_star_t*rrr_link2_mass;
         const real rrr_J_star_t_4 = rrr_J_star_t_2*rrr_link2_mass;
-        /* (potential) potential energy */
+        /* (potential) */
         const real rrr_potential_t = rrr_base_frame_xx*rrr_base_point_x +
             rrr_base_frame_yx*rrr_base_point_y;
         const real rrr_potential_t_2 = rrr_base_frame_xy*rrr_base_point_x +
@@ -848,10 +887,10 @@ int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
     }
     /* (m_star) mass of the platform with the gathered masses */
     const real m_star = m_star_of_legs + platform_mass;
-    /* (h_star) first moment about the platform origin */
+    /* (h_star) */
     const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
     const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
-    /* (J_star) inertia tensor about the platform origin */
+    /* (J_star) */
     const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + J_star_t_3;
     const real J_star_t_5 = J_star_in_platform_xx - J_star_t_4 - J_star_t_5_of_legs -
         platform_inertia_zz;
@@ -1334,10 +1373,8 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real R_xx = cosine(X_2);
     const real R_yx = sine(X_2);
     /* (h_star) first moment about the platform origin */
-    const real h_star_in_platform_x = m->h_star_in_platform_x;
-    const real h_star_in_platform_y = m->h_star_in_platform_y;
-    const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
-    const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
+    const real h_star_x = R_xx*m->h_star_in_platform_x - R_yx*m->h_star_in_platform_y;
+    const real h_star_y = R_xx*m->h_star_in_platform_y + R_yx*m->h_star_in_platform_x;
     v->R_xx = R_xx;
     v->R_yx = R_yx;
     v->h_star_x = h_star_x;
@@ -1362,68 +1399,55 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (rrr-S) from the base point to the connection point */
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
-    const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-    const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-    const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-    const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-    const real rrr_base_point_x = m->rrr_base_point_x[i];
+    const real rrr_q_x = R_xx*m->rrr_platform_point_x[i] - R_yx*m->rrr_platform_point_y[i];
+    const real rrr_q_y = R_xx*m->rrr_platform_point_y[i] + R_yx*m->rrr_platform_point_x[i];
     const real t_x = X[0*w + j];
-    const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
-    const real rrr_base_point_y = m->rrr_base_point_y[i];
+    const real rrr_S_x = rrr_q_x + t_x - m->rrr_base_point_x[i];
     const real t_y = X[1*w + j];
-    const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
+    const real rrr_S_y = rrr_q_y + t_y - m->rrr_base_point_y[i];
     /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 1 */
     const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-    const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-    const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-    const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
+    const real rrr_Kd_1 = m->rrr_Kd_1_t[i] + R(0.5)*rrr_Kd_1_t_3 - m->rrr_Kd_1_t_2[i];
     /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-    const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-    const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-    const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-    const real rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx +
-        rrr_S_y*rrr_base_frame_yx);
+    const real rrr_Kc_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xx[i] +
+        rrr_S_y*m->rrr_base_frame_yx[i]);
     /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-    const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-    const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-    const real rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy +
-        rrr_S_y*rrr_base_frame_yy);
+    const real rrr_Ks_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xy[i] +
+        rrr_S_y*m->rrr_base_frame_yy[i]);
     /* (rrr-rho2_1) squared amplitude */
     const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
     /* (rrr-disc_1) discriminant */
     const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
     /* (rrr-root_1) root, with the sign of the branch */
-    const real rrr_branch_1 = m->rrr_branch_1[i];
-    const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+    const real rrr_root_1 = m->rrr_branch_1[i]*root(rrr_disc_1);
     /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
     const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
     const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
     /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
     const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
     /* (rrr-x_2) from the origin of joint 2 to the connection point */
-    const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-    const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-        rrr_joint2_offset_x;
+    const real rrr_x_2_in_axes1_x = m->inv_rrr_size_t[i]*rrr_Kd_1*m->rrr_joint2_offset_x[i] -
+        m->rrr_joint2_offset_x[i];
     /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-    const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-    const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+    const real rrr_c_2 =
+        m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*rrr_x_2_in_axes1_x;
     /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
     const real rrr_s_2 =
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        -m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*rrr_root_1;
     /* (rrr-r_1) from joint 1 to the connection point, along the links */
-    const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-    const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+    const real rrr_r_1_in_axes1_y = m->rrr_platform_joint_offset_x[i]*rrr_s_2;
+    const real rrr_r_1_in_axes1_x = m->rrr_joint2_offset_x[i] +
+        rrr_c_2*m->rrr_platform_joint_offset_x[i];
     const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
     const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
     /* (rrr-w_1) reciprocal vector 1 */
     const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
     const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-    const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
-        rrr_base_frame_xx*rrr_w_1_t;
-    const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
-        rrr_base_frame_yx*rrr_w_1_t;
+    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*rrr_w_1_t_2 -
+        m->rrr_base_frame_xx[i]*rrr_w_1_t;
+    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*rrr_w_1_t_2 -
+        m->rrr_base_frame_yx[i]*rrr_w_1_t;
     const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
     const real rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x;
     const real rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x;
@@ -1482,17 +1506,14 @@ INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     /* (rrr-W_1) centripetal tensor of link 1 */
     const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
     /* (rrr-omega_2) angular velocity of link 2 */
-    const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
     const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
-        rrr_w_2_in_axes2_y*(v->axis_x_rrr_axes2_x*rrr_S_dot_y +
+        m->rrr_w_2_in_axes2_y[i]*(v->axis_x_rrr_axes2_x*rrr_S_dot_y +
         v->axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*v->rrr_r_1_in_axes2_x);
     /* (rrr-W_2) centripetal tensor of link 2 */
     const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
     /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-    const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-    const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-        rrr_W_1_t*v->rrr_c_2*rrr_joint2_offset_x;
+    const real rrr_bias_in_axes2_x = -rrr_W_2_t*m->rrr_platform_joint_offset_x[i] -
+        rrr_W_1_t*v->rrr_c_2*m->rrr_joint2_offset_x[i];
     v->rrr_S_dot_t = rrr_S_dot_t;
     v->rrr_S_dot_t_2 = rrr_S_dot_t_2;
     v->rrr_S_dot_x = rrr_S_dot_x;
@@ -1515,19 +1536,14 @@ INLINE void stage_rrr_A_V_X(size_t w, size_t j, const real *V, values_rrr *v)
 INLINE void stage_rrr_H_condition(const prepared *m, size_t i, values_rrr *v)
 {
     /* (rrr-r_1) from joint 1 to the connection point, along the links */
-    const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-    const real rrr_r_1_in_axes2_y = v->rrr_c_2*rrr_platform_joint_offset_x*v->rrr_s_2 -
+    const real rrr_r_1_in_axes2_y = v->rrr_c_2*m->rrr_platform_joint_offset_x[i]*v->rrr_s_2 -
         v->rrr_r_1_in_axes1_x*v->rrr_s_2;
     /* (rrr-w_1) reciprocal vector 1 */
     const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
-    const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-    const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-    const real rrr_w_1_x = rrr_w_1_in_axes2_x*(rrr_base_frame_yy*v->rrr_w_1_t_2 -
-        rrr_base_frame_yx*v->rrr_w_1_t);
-    const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-    const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-    const real rrr_w_1_y = -rrr_w_1_in_axes2_x*(rrr_base_frame_xy*v->rrr_w_1_t_2 -
-        rrr_base_frame_xx*v->rrr_w_1_t);
+    const real rrr_w_1_x = rrr_w_1_in_axes2_x*(m->rrr_base_frame_yy[i]*v->rrr_w_1_t_2 -
+        m->rrr_base_frame_yx[i]*v->rrr_w_1_t);
+    const real rrr_w_1_y = -rrr_w_1_in_axes2_x*(m->rrr_base_frame_xy[i]*v->rrr_w_1_t_2 -
+        m->rrr_base_frame_xx[i]*v->rrr_w_1_t);
     /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
     const real rrr_H_a_1_z = v->rrr_q_x*rrr_w_1_y - v->rrr_q_y*rrr_w_1_x;
     v->rrr_r_1_in_axes2_y = rrr_r_1_in_axes2_y;
@@ -1539,29 +1555,22 @@ INLINE void stage_rrr_H_condition(const prepared *m, size_t i, values_rrr *v)
 INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
 {
     /* (rrr-w_2) reciprocal vector 2 */
-    const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
     const real rrr_w_2_in_axes2_x =
-        -v->rrr_r_1_in_axes2_x*v->rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y;
+        -v->rrr_r_1_in_axes2_x*v->rrr_w_1_in_axes2_x*m->rrr_w_2_in_axes2_y[i];
     /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
        inertia and weight */
-    const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
-    const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*v->rrr_r_1_in_axes2_x;
-    const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
-    const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-    const real rrr_d_Gamma_2_in_axes2_x = v->rrr_w_1_in_axes2_x*(rrr_J_2_in_spec2_zz -
-        rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y;
+    const real rrr_d_Gamma_2_t_2 = m->rrr_d_Gamma_2_t[i]*v->rrr_r_1_in_axes2_x;
+    const real rrr_d_Gamma_2_in_axes2_x = v->rrr_w_1_in_axes2_x*(m->rrr_J_2_in_spec2_zz[i] -
+        rrr_d_Gamma_2_t_2) - m->rrr_h_2_in_spec2_y[i];
     /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
-    const real rrr_Jc_1_in_axes1_zz = m->rrr_Jc_1_in_axes1_zz[i];
-    const real rrr_d_Gamma_1_in_axes2_x = v->rrr_w_1_in_axes2_x*(rrr_Jc_1_in_axes1_zz -
-        rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y;
+    const real rrr_d_Gamma_1_in_axes2_x = v->rrr_w_1_in_axes2_x*(m->rrr_Jc_1_in_axes1_zz[i] -
+        rrr_d_Gamma_2_t_2) - m->rrr_h_2_in_spec2_y[i];
     /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
        without the mass at the connection point */
-    const real rrr_d_Gamma_2_in_axes2_y = m->rrr_d_Gamma_2_in_axes2_y[i];
-    const real rrr_d_phi_2_t = m->rrr_d_phi_2_t[i];
-    const real rrr_d_c_in_axes2_xy = rrr_d_phi_2_t -
-        rrr_d_Gamma_2_in_axes2_y*v->rrr_w_1_in_axes2_x -
-        rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x;
+    const real rrr_d_c_in_axes2_xy = m->rrr_d_phi_2_t[i] -
+        m->rrr_d_Gamma_2_in_axes2_y[i]*v->rrr_w_1_in_axes2_x -
+        m->rrr_d_Gamma_2_in_axes2_y[i]*rrr_w_2_in_axes2_x;
     v->rrr_w_2_in_axes2_x = rrr_w_2_in_axes2_x;
     v->rrr_d_Gamma_2_in_axes2_x = rrr_d_Gamma_2_in_axes2_x;
     v->rrr_d_Gamma_1_in_axes2_x = rrr_d_Gamma_1_in_axes2_x;
@@ -1574,46 +1583,33 @@ INLINE void stage_rrr_inverse_kinematics_potential(const prepared *m, size_t w, 
     /* (rrr-S) from the base point to the connection point */
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
-    const real rrr_base_point_x = m->rrr_base_point_x[i];
-    const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-    const real rrr_platform_point_y = m->rrr_platform_point_y[i];
     const real t_x = X[0*w + j];
-    const real rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x -
-        R_yx*rrr_platform_point_y;
-    const real rrr_base_point_y = m->rrr_base_point_y[i];
+    const real rrr_S_x = t_x + R_xx*m->rrr_platform_point_x[i] - m->rrr_base_point_x[i] -
+        R_yx*m->rrr_platform_point_y[i];
     const real t_y = X[1*w + j];
-    const real rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x -
-        rrr_base_point_y;
+    const real rrr_S_y = t_y + R_xx*m->rrr_platform_point_y[i] +
+        R_yx*m->rrr_platform_point_x[i] - m->rrr_base_point_y[i];
     /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 1 */
     const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-    const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-    const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-    const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
+    const real rrr_Kd_1 = m->rrr_Kd_1_t[i] + R(0.5)*rrr_Kd_1_t_3 - m->rrr_Kd_1_t_2[i];
     /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-    const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-    const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-    const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-    const real rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx +
-        rrr_S_y*rrr_base_frame_yx);
+    const real rrr_Kc_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xx[i] +
+        rrr_S_y*m->rrr_base_frame_yx[i]);
     /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-    const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-    const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-    const real rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy +
-        rrr_S_y*rrr_base_frame_yy);
+    const real rrr_Ks_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xy[i] +
+        rrr_S_y*m->rrr_base_frame_yy[i]);
     /* (rrr-rho2_1) squared amplitude */
     const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
     /* (rrr-disc_1) discriminant */
     const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
     /* (rrr-root_1) root, with the sign of the branch */
-    const real rrr_branch_1 = m->rrr_branch_1[i];
-    const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+    const real rrr_root_1 = m->rrr_branch_1[i]*root(rrr_disc_1);
     /* (rrr-q_1) displacement of joint 1 */
     const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
     /* (rrr-x_2) from the origin of joint 2 to the connection point */
-    const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-    const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-        rrr_joint2_offset_x;
+    const real rrr_x_2_in_axes1_x = m->inv_rrr_size_t[i]*rrr_Kd_1*m->rrr_joint2_offset_x[i] -
+        m->rrr_joint2_offset_x[i];
     v->rrr_Kd_1 = rrr_Kd_1;
     v->rrr_Kc_1 = rrr_Kc_1;
     v->rrr_Ks_1 = rrr_Ks_1;
@@ -1633,50 +1629,40 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
         v->axis_y_rrr_axes2_x*v->rrr_S_ddot_x;
     /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
     const real rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - v->rrr_bias_in_axes2_x;
-    const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
     const real rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y -
-        v->rrr_W_1_t*rrr_joint2_offset_x*v->rrr_s_2;
+        v->rrr_W_1_t*m->rrr_joint2_offset_x[i]*v->rrr_s_2;
     /* (rrr-B_1) acceleration tensor of link 1 */
     const real rrr_B_1_in_axes1_xy = -rrr_rel_in_axes2_x*v->rrr_w_1_in_axes2_x;
     /* (rrr-alpha_2) angular acceleration of link 2 */
-    const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-    const real rrr_alpha_2_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
+    const real rrr_alpha_2_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_in_axes2_y +
         rrr_B_1_in_axes1_xy*v->rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
     /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
-    const real gravity_x = m->gravity_x;
-    const real gravity_y = m->gravity_y;
-    const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x + v->axis_y_rrr_axes2_x*gravity_y
-        - v->axis_x_rrr_axes2_x*gravity_x;
-    const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - v->axis_x_rrr_axes2_x*gravity_y
-        - v->axis_y_rrr_axes2_x*gravity_x;
+    const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x +
+        v->axis_y_rrr_axes2_x*m->gravity_y - v->axis_x_rrr_axes2_x*m->gravity_x;
+    const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y -
+        v->axis_x_rrr_axes2_x*m->gravity_y - v->axis_y_rrr_axes2_x*m->gravity_x;
     /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
-    const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
-    const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-    const real rrr_mu_2_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z +
-        rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y;
+    const real rrr_mu_2_in_axes2_z = m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_in_axes2_z +
+        rrr_acc_2_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
+        rrr_acc_2_in_axes2_x*m->rrr_h_2_in_spec2_y[i];
     /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-    const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
-    const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
-    const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
-    const real rrr_mu_1_t = m->rrr_mu_1_t[i];
-    const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
-    const real rrr_mu_1_in_axes1_z = rrr_h_1_in_spec1_y*(v->rrr_c_1*rrr_mu_1_t +
-        rrr_mu_1_t_2*v->rrr_s_1) - rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz -
-        rrr_h_1_in_spec1_x*(v->rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v->rrr_s_1);
+    const real rrr_mu_1_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v->rrr_c_1*m->rrr_mu_1_t[i] +
+        m->rrr_mu_1_t_2[i]*v->rrr_s_1) - rrr_B_1_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i] -
+        m->rrr_h_1_in_spec1_x[i]*(v->rrr_c_1*m->rrr_mu_1_t_2[i] -
+        m->rrr_mu_1_t[i]*v->rrr_s_1);
     /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
     /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
-    const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y;
+    const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
     /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rrr_c_in_axes2_x = v->rrr_W_2_t*rrr_h_2_in_spec2_x +
-        rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
+    const real rrr_c_in_axes2_x = v->rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
+        rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
         v->rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*v->rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
-    const real rrr_c_in_axes2_y = v->rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
-        rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x;
+    const real rrr_c_in_axes2_y = v->rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] - rrr_G_in_axes2_y -
+        rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_x[i];
     v->rrr_acc_2_in_axes2_x = rrr_acc_2_in_axes2_x;
     v->rrr_acc_2_in_axes2_y = rrr_acc_2_in_axes2_y;
     v->rrr_c_in_axes2_x = rrr_c_in_axes2_x;
@@ -1704,40 +1690,33 @@ INLINE void stage_rrr_leg1_X(const prepared *m, size_t w, size_t i, size_t j, co
     /* (rrr_leg1-S) from the base point to the connection point */
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
-    const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
-    const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
-    const real rrr_leg1_q_x = R_xx*rrr_leg1_platform_point_x - R_yx*rrr_leg1_platform_point_y;
-    const real rrr_leg1_q_y = R_xx*rrr_leg1_platform_point_y + R_yx*rrr_leg1_platform_point_x;
-    const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
+    const real rrr_leg1_q_x = R_xx*m->rrr_leg1_platform_point_x[i] -
+        R_yx*m->rrr_leg1_platform_point_y[i];
+    const real rrr_leg1_q_y = R_xx*m->rrr_leg1_platform_point_y[i] +
+        R_yx*m->rrr_leg1_platform_point_x[i];
     const real t_x = X[0*w + j];
-    const real rrr_leg1_S_x = rrr_leg1_q_x + t_x - rrr_leg1_base_point_x;
-    const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
+    const real rrr_leg1_S_x = rrr_leg1_q_x + t_x - m->rrr_leg1_base_point_x[i];
     const real t_y = X[1*w + j];
-    const real rrr_leg1_S_y = rrr_leg1_q_y + t_y - rrr_leg1_base_point_y;
+    const real rrr_leg1_S_y = rrr_leg1_q_y + t_y - m->rrr_leg1_base_point_y[i];
     /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
        beyond joint 1 */
     const real rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
-    const real rrr_leg1_Kd_1_t = m->rrr_leg1_Kd_1_t[i];
-    const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
-    const real rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + R(0.5)*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2;
+    const real rrr_leg1_Kd_1 = m->rrr_leg1_Kd_1_t[i] + R(0.5)*rrr_leg1_Kd_1_t_3 -
+        m->rrr_leg1_Kd_1_t_2[i];
     /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
-    const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
-    const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
-    const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
-    const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*(rrr_leg1_S_x*rrr_leg1_base_frame_xx +
-        rrr_leg1_S_y*rrr_leg1_base_frame_yx);
+    const real rrr_leg1_Kc_1 =
+        m->rrr_leg1_joint2_offset_x[i]*(rrr_leg1_S_x*m->rrr_leg1_base_frame_xx[i] +
+        rrr_leg1_S_y*m->rrr_leg1_base_frame_yx[i]);
     /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
-    const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
-    const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
-    const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*(rrr_leg1_S_x*rrr_leg1_base_frame_xy +
-        rrr_leg1_S_y*rrr_leg1_base_frame_yy);
+    const real rrr_leg1_Ks_1 =
+        m->rrr_leg1_joint2_offset_x[i]*(rrr_leg1_S_x*m->rrr_leg1_base_frame_xy[i] +
+        rrr_leg1_S_y*m->rrr_leg1_base_frame_yy[i]);
     /* (rrr_leg1-rho2_1) squared amplitude */
     const real rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1;
     /* (rrr_leg1-disc_1) discriminant */
     const real rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1;
     /* (rrr_leg1-root_1) root, with the sign of the branch */
-    const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
-    const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
+    const real rrr_leg1_root_1 = m->rrr_leg1_branch_1[i]*root(rrr_leg1_disc_1);
     /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
     const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
     const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
@@ -1746,21 +1725,19 @@ INLINE void stage_rrr_leg1_X(const prepared *m, size_t w, size_t i, size_t j, co
     const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
         rrr_leg1_Kd_1*rrr_leg1_Ks_1);
     /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
-    const real inv_rrr_leg1_size_t = m->inv_rrr_leg1_size_t[i];
     const real rrr_leg1_x_2_in_axes1_x =
-        inv_rrr_leg1_size_t*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x;
+        m->inv_rrr_leg1_size_t[i]*rrr_leg1_Kd_1*m->rrr_leg1_joint2_offset_x[i] -
+        m->rrr_leg1_joint2_offset_x[i];
     /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real inv_rrr_leg1_size_t_2 = m->inv_rrr_leg1_size_t_2[i];
-    const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
     const real rrr_leg1_c_2 =
-        inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x;
+        m->inv_rrr_leg1_size_t_2[i]*m->rrr_leg1_platform_joint_offset_x[i]*rrr_leg1_x_2_in_axes1_x;
     /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
     const real rrr_leg1_s_2 =
-        -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
+        -m->inv_rrr_leg1_size_t[i]*m->inv_rrr_leg1_size_t_2[i]*m->rrr_leg1_joint2_offset_x[i]*m->rrr_leg1_platform_joint_offset_x[i]*rrr_leg1_root_1;
     /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
-    const real rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
-    const real rrr_leg1_r_1_in_axes1_x = rrr_leg1_joint2_offset_x +
-        rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
+    const real rrr_leg1_r_1_in_axes1_y = m->rrr_leg1_platform_joint_offset_x[i]*rrr_leg1_s_2;
+    const real rrr_leg1_r_1_in_axes1_x = m->rrr_leg1_joint2_offset_x[i] +
+        rrr_leg1_c_2*m->rrr_leg1_platform_joint_offset_x[i];
     const real rrr_leg1_r_1_in_axes2_x = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x +
         rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2;
     const real rrr_leg1_r_1_in_axes2_y = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y -
@@ -1768,20 +1745,19 @@ INLINE void stage_rrr_leg1_X(const prepared *m, size_t w, size_t i, size_t j, co
     /* (rrr_leg1-w_1) reciprocal vector 1 */
     const real rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1;
     const real rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2;
-    const real axis_y_rrr_leg1_axes2_x = rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 -
-        rrr_leg1_base_frame_xx*rrr_leg1_w_1_t;
-    const real axis_x_rrr_leg1_axes2_x = rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 -
-        rrr_leg1_base_frame_yx*rrr_leg1_w_1_t;
+    const real axis_y_rrr_leg1_axes2_x = m->rrr_leg1_base_frame_xy[i]*rrr_leg1_w_1_t_2 -
+        m->rrr_leg1_base_frame_xx[i]*rrr_leg1_w_1_t;
+    const real axis_x_rrr_leg1_axes2_x = m->rrr_leg1_base_frame_yy[i]*rrr_leg1_w_1_t_2 -
+        m->rrr_leg1_base_frame_yx[i]*rrr_leg1_w_1_t;
     const real rrr_leg1_w_1_in_axes2_x = -1/rrr_leg1_r_1_in_axes2_y;
     const real rrr_leg1_w_1_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x;
     const real rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x;
     /* (rrr_leg1-w_2) reciprocal vector 2 */
-    const real rrr_leg1_w_2_in_axes2_y = m->rrr_leg1_w_2_in_axes2_y[i];
     const real rrr_leg1_w_2_in_axes2_x =
-        -rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y;
+        -rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i];
     const real rrr_leg1_w_2_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
-        axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_y;
-    const real rrr_leg1_w_2_y = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_y -
+        axis_y_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i];
+    const real rrr_leg1_w_2_y = axis_x_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i] -
         axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x;
     /* (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin */
     const real rrr_leg1_H_a_1_z = rrr_leg1_q_x*rrr_leg1_w_1_y - rrr_leg1_q_y*rrr_leg1_w_1_x;
@@ -1843,18 +1819,16 @@ INLINE void stage_rrr_leg1_V_X(const prepared *m, size_t w, size_t i, size_t j, 
     /* (rrr_leg1-W_1) centripetal tensor of link 1 */
     const real rrr_leg1_W_1_t = rrr_leg1_qd_1*rrr_leg1_qd_1;
     /* (rrr_leg1-omega_2) angular velocity of link 2 */
-    const real rrr_leg1_w_2_in_axes2_y = m->rrr_leg1_w_2_in_axes2_y[i];
     const real rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 +
-        rrr_leg1_w_2_in_axes2_y*(v->axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
+        m->rrr_leg1_w_2_in_axes2_y[i]*(v->axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
         v->axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x -
         rrr_leg1_qd_1*v->rrr_leg1_r_1_in_axes2_x);
     /* (rrr_leg1-W_2) centripetal tensor of link 2 */
     const real rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z;
     /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
-    const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
-    const real rrr_leg1_bias_in_axes2_x = -rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x -
-        rrr_leg1_W_1_t*v->rrr_leg1_c_2*rrr_leg1_joint2_offset_x;
+    const real rrr_leg1_bias_in_axes2_x =
+        -rrr_leg1_W_2_t*m->rrr_leg1_platform_joint_offset_x[i] -
+        rrr_leg1_W_1_t*v->rrr_leg1_c_2*m->rrr_leg1_joint2_offset_x[i];
     v->rrr_leg1_S_dot_t = rrr_leg1_S_dot_t;
     v->rrr_leg1_S_dot_t_2 = rrr_leg1_S_dot_t_2;
     v->rrr_leg1_S_dot_x = rrr_leg1_S_dot_x;
@@ -1877,13 +1851,12 @@ INLINE void stage_rrr_leg1_A_V_X(size_t w, size_t j, const real *V, values_rrr_l
 INLINE void stage_rrr_leg1_H_condition(const prepared *m, size_t i, values_rrr_leg1 *v)
 {
     /* (rrr_leg1-w_2) reciprocal vector 2 */
-    const real rrr_leg1_w_2_in_axes2_y = m->rrr_leg1_w_2_in_axes2_y[i];
     const real rrr_leg1_w_2_in_axes2_x =
-        -v->rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y*(v->rrr_leg1_c_2*v->rrr_leg1_r_1_in_axes1_x
+        -v->rrr_leg1_w_1_in_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i]*(v->rrr_leg1_c_2*v->rrr_leg1_r_1_in_axes1_x
         + v->rrr_leg1_r_1_in_axes1_y*v->rrr_leg1_s_2);
     const real rrr_leg1_w_2_x = v->axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
-        v->axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_y;
-    const real rrr_leg1_w_2_y = v->axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_y -
+        v->axis_y_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i];
+    const real rrr_leg1_w_2_y = v->axis_x_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i] -
         v->axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x;
     /* (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin */
     const real rrr_leg1_H_a_2_z = v->rrr_leg1_q_x*rrr_leg1_w_2_y -
@@ -1897,26 +1870,20 @@ INLINE void stage_rrr_leg1_M_dynamics(const prepared *m, size_t i, values_rrr_le
 {
     /* (rrr_leg1-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
        links' inertia and weight */
-    const real rrr_leg1_d_Gamma_2_t = m->rrr_leg1_d_Gamma_2_t[i];
-    const real rrr_leg1_d_Gamma_2_t_2 = rrr_leg1_d_Gamma_2_t*v->rrr_leg1_r_1_in_axes2_x;
-    const real rrr_leg1_J_2_in_spec2_zz = m->rrr_leg1_J_2_in_spec2_zz[i];
-    const real rrr_leg1_h_2_in_spec2_y = m->rrr_leg1_h_2_in_spec2_y[i];
+    const real rrr_leg1_d_Gamma_2_t_2 = m->rrr_leg1_d_Gamma_2_t[i]*v->rrr_leg1_r_1_in_axes2_x;
     const real rrr_leg1_d_Gamma_2_in_axes2_x =
-        v->rrr_leg1_w_1_in_axes2_x*(rrr_leg1_J_2_in_spec2_zz - rrr_leg1_d_Gamma_2_t_2) -
-        rrr_leg1_h_2_in_spec2_y;
+        v->rrr_leg1_w_1_in_axes2_x*(m->rrr_leg1_J_2_in_spec2_zz[i] - rrr_leg1_d_Gamma_2_t_2) -
+        m->rrr_leg1_h_2_in_spec2_y[i];
     /* (rrr_leg1-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
        links' inertia and weight */
-    const real rrr_leg1_Jc_1_in_axes1_zz = m->rrr_leg1_Jc_1_in_axes1_zz[i];
     const real rrr_leg1_d_Gamma_1_in_axes2_x =
-        v->rrr_leg1_w_1_in_axes2_x*(rrr_leg1_Jc_1_in_axes1_zz - rrr_leg1_d_Gamma_2_t_2) -
-        rrr_leg1_h_2_in_spec2_y;
+        v->rrr_leg1_w_1_in_axes2_x*(m->rrr_leg1_Jc_1_in_axes1_zz[i] - rrr_leg1_d_Gamma_2_t_2)
+        - m->rrr_leg1_h_2_in_spec2_y[i];
     /* (rrr_leg1-d_c) coefficient of the acceleration in: leg force on the platform without actuation
        and without the mass at the connection point */
-    const real rrr_leg1_d_Gamma_2_in_axes2_y = m->rrr_leg1_d_Gamma_2_in_axes2_y[i];
-    const real rrr_leg1_d_phi_2_t = m->rrr_leg1_d_phi_2_t[i];
-    const real rrr_leg1_d_c_in_axes2_xy = rrr_leg1_d_phi_2_t -
-        rrr_leg1_d_Gamma_2_in_axes2_y*v->rrr_leg1_w_1_in_axes2_x -
-        rrr_leg1_d_Gamma_2_in_axes2_y*v->rrr_leg1_w_2_in_axes2_x;
+    const real rrr_leg1_d_c_in_axes2_xy = m->rrr_leg1_d_phi_2_t[i] -
+        m->rrr_leg1_d_Gamma_2_in_axes2_y[i]*v->rrr_leg1_w_1_in_axes2_x -
+        m->rrr_leg1_d_Gamma_2_in_axes2_y[i]*v->rrr_leg1_w_2_in_axes2_x;
     v->rrr_leg1_d_Gamma_2_in_axes2_x = rrr_leg1_d_Gamma_2_in_axes2_x;
     v->rrr_leg1_d_Gamma_1_in_axes2_x = rrr_leg1_d_Gamma_1_in_axes2_x;
     v->rrr_leg1_d_c_in_axes2_xy = rrr_leg1_d_c_in_axes2_xy;
@@ -1928,46 +1895,37 @@ INLINE void stage_rrr_leg1_inverse_kinematics_potential(const prepared *m, size_
     /* (rrr_leg1-S) from the base point to the connection point */
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
-    const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
-    const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
-    const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
     const real t_x = X[0*w + j];
-    const real rrr_leg1_S_x = t_x + R_xx*rrr_leg1_platform_point_x - rrr_leg1_base_point_x -
-        R_yx*rrr_leg1_platform_point_y;
-    const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
+    const real rrr_leg1_S_x = t_x + R_xx*m->rrr_leg1_platform_point_x[i] -
+        m->rrr_leg1_base_point_x[i] - R_yx*m->rrr_leg1_platform_point_y[i];
     const real t_y = X[1*w + j];
-    const real rrr_leg1_S_y = t_y + R_xx*rrr_leg1_platform_point_y +
-        R_yx*rrr_leg1_platform_point_x - rrr_leg1_base_point_y;
+    const real rrr_leg1_S_y = t_y + R_xx*m->rrr_leg1_platform_point_y[i] +
+        R_yx*m->rrr_leg1_platform_point_x[i] - m->rrr_leg1_base_point_y[i];
     /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
        beyond joint 1 */
     const real rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
-    const real rrr_leg1_Kd_1_t = m->rrr_leg1_Kd_1_t[i];
-    const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
-    const real rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + R(0.5)*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2;
+    const real rrr_leg1_Kd_1 = m->rrr_leg1_Kd_1_t[i] + R(0.5)*rrr_leg1_Kd_1_t_3 -
+        m->rrr_leg1_Kd_1_t_2[i];
     /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
-    const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
-    const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
-    const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
-    const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*(rrr_leg1_S_x*rrr_leg1_base_frame_xx +
-        rrr_leg1_S_y*rrr_leg1_base_frame_yx);
+    const real rrr_leg1_Kc_1 =
+        m->rrr_leg1_joint2_offset_x[i]*(rrr_leg1_S_x*m->rrr_leg1_base_frame_xx[i] +
+        rrr_leg1_S_y*m->rrr_leg1_base_frame_yx[i]);
     /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
-    const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
-    const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
-    const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*(rrr_leg1_S_x*rrr_leg1_base_frame_xy +
-        rrr_leg1_S_y*rrr_leg1_base_frame_yy);
+    const real rrr_leg1_Ks_1 =
+        m->rrr_leg1_joint2_offset_x[i]*(rrr_leg1_S_x*m->rrr_leg1_base_frame_xy[i] +
+        rrr_leg1_S_y*m->rrr_leg1_base_frame_yy[i]);
     /* (rrr_leg1-rho2_1) squared amplitude */
     const real rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1;
     /* (rrr_leg1-disc_1) discriminant */
     const real rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1;
     /* (rrr_leg1-root_1) root, with the sign of the branch */
-    const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
-    const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
+    const real rrr_leg1_root_1 = m->rrr_leg1_branch_1[i]*root(rrr_leg1_disc_1);
     /* (rrr_leg1-q_1) displacement of joint 1 */
     const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
     /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
-    const real inv_rrr_leg1_size_t = m->inv_rrr_leg1_size_t[i];
     const real rrr_leg1_x_2_in_axes1_x =
-        inv_rrr_leg1_size_t*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x;
+        m->inv_rrr_leg1_size_t[i]*rrr_leg1_Kd_1*m->rrr_leg1_joint2_offset_x[i] -
+        m->rrr_leg1_joint2_offset_x[i];
     v->rrr_leg1_Kd_1 = rrr_leg1_Kd_1;
     v->rrr_leg1_Kc_1 = rrr_leg1_Kc_1;
     v->rrr_leg1_Ks_1 = rrr_leg1_Ks_1;
@@ -1988,56 +1946,47 @@ INLINE void stage_rrr_leg1_legs_required(const prepared *m, size_t i, values_rrr
     /* (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations */
     const real rrr_leg1_rel_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x -
         v->rrr_leg1_bias_in_axes2_x;
-    const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
     const real rrr_leg1_rel_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y -
-        v->rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*v->rrr_leg1_s_2;
+        v->rrr_leg1_W_1_t*m->rrr_leg1_joint2_offset_x[i]*v->rrr_leg1_s_2;
     /* (rrr_leg1-B_1) acceleration tensor of link 1 */
     const real rrr_leg1_B_1_in_axes1_xy = -rrr_leg1_rel_in_axes2_x*v->rrr_leg1_w_1_in_axes2_x;
     /* (rrr_leg1-alpha_2) angular acceleration of link 2 */
-    const real rrr_leg1_w_2_in_axes2_y = m->rrr_leg1_w_2_in_axes2_y[i];
-    const real rrr_leg1_alpha_2_in_axes2_z = rrr_leg1_w_2_in_axes2_y*(rrr_leg1_rel_in_axes2_y
-        + rrr_leg1_B_1_in_axes1_xy*v->rrr_leg1_r_1_in_axes2_x) - rrr_leg1_B_1_in_axes1_xy;
+    const real rrr_leg1_alpha_2_in_axes2_z =
+        m->rrr_leg1_w_2_in_axes2_y[i]*(rrr_leg1_rel_in_axes2_y +
+        rrr_leg1_B_1_in_axes1_xy*v->rrr_leg1_r_1_in_axes2_x) - rrr_leg1_B_1_in_axes1_xy;
     /* (rrr_leg1-acc_2) acceleration of the reference point of link 2, less gravity */
-    const real gravity_x = m->gravity_x;
-    const real gravity_y = m->gravity_y;
     const real rrr_leg1_acc_2_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x +
-        v->axis_y_rrr_leg1_axes2_x*gravity_y - v->axis_x_rrr_leg1_axes2_x*gravity_x;
+        v->axis_y_rrr_leg1_axes2_x*m->gravity_y - v->axis_x_rrr_leg1_axes2_x*m->gravity_x;
     const real rrr_leg1_acc_2_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y -
-        v->axis_x_rrr_leg1_axes2_x*gravity_y - v->axis_y_rrr_leg1_axes2_x*gravity_x;
+        v->axis_x_rrr_leg1_axes2_x*m->gravity_y - v->axis_y_rrr_leg1_axes2_x*m->gravity_x;
     /* (rrr_leg1-mu_2) inertia moment of the links that turn with link 2, about their reference points
        */
-    const real rrr_leg1_J_2_in_spec2_zz = m->rrr_leg1_J_2_in_spec2_zz[i];
-    const real rrr_leg1_h_2_in_spec2_x = m->rrr_leg1_h_2_in_spec2_x[i];
-    const real rrr_leg1_h_2_in_spec2_y = m->rrr_leg1_h_2_in_spec2_y[i];
-    const real rrr_leg1_mu_2_in_axes2_z = rrr_leg1_J_2_in_spec2_zz*rrr_leg1_alpha_2_in_axes2_z
-        + rrr_leg1_acc_2_in_axes2_y*rrr_leg1_h_2_in_spec2_x -
-        rrr_leg1_acc_2_in_axes2_x*rrr_leg1_h_2_in_spec2_y;
+    const real rrr_leg1_mu_2_in_axes2_z =
+        m->rrr_leg1_J_2_in_spec2_zz[i]*rrr_leg1_alpha_2_in_axes2_z +
+        rrr_leg1_acc_2_in_axes2_y*m->rrr_leg1_h_2_in_spec2_x[i] -
+        rrr_leg1_acc_2_in_axes2_x*m->rrr_leg1_h_2_in_spec2_y[i];
     /* (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
        */
-    const real rrr_leg1_J_1_in_spec1_zz = m->rrr_leg1_J_1_in_spec1_zz[i];
-    const real rrr_leg1_h_1_in_spec1_x = m->rrr_leg1_h_1_in_spec1_x[i];
-    const real rrr_leg1_h_1_in_spec1_y = m->rrr_leg1_h_1_in_spec1_y[i];
-    const real rrr_leg1_mu_1_t = m->rrr_leg1_mu_1_t[i];
-    const real rrr_leg1_mu_1_t_2 = m->rrr_leg1_mu_1_t_2[i];
     const real rrr_leg1_mu_1_in_axes1_z =
-        rrr_leg1_h_1_in_spec1_y*(v->rrr_leg1_c_1*rrr_leg1_mu_1_t +
-        rrr_leg1_mu_1_t_2*v->rrr_leg1_s_1) - rrr_leg1_B_1_in_axes1_xy*rrr_leg1_J_1_in_spec1_zz
-        - rrr_leg1_h_1_in_spec1_x*(v->rrr_leg1_c_1*rrr_leg1_mu_1_t_2 -
-        rrr_leg1_mu_1_t*v->rrr_leg1_s_1);
+        m->rrr_leg1_h_1_in_spec1_y[i]*(v->rrr_leg1_c_1*m->rrr_leg1_mu_1_t[i] +
+        m->rrr_leg1_mu_1_t_2[i]*v->rrr_leg1_s_1) -
+        rrr_leg1_B_1_in_axes1_xy*m->rrr_leg1_J_1_in_spec1_zz[i] -
+        m->rrr_leg1_h_1_in_spec1_x[i]*(v->rrr_leg1_c_1*m->rrr_leg1_mu_1_t_2[i] -
+        m->rrr_leg1_mu_1_t[i]*v->rrr_leg1_s_1);
     /* (rrr_leg1-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection
        point left out */
     const real rrr_leg1_N_1_in_axes1_z = rrr_leg1_mu_1_in_axes1_z + rrr_leg1_mu_2_in_axes2_z;
     /* (rrr_leg1-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
-    const real rrr_leg1_G_in_axes2_y = rrr_leg1_mu_2_in_axes2_z*rrr_leg1_w_2_in_axes2_y;
+    const real rrr_leg1_G_in_axes2_y = rrr_leg1_mu_2_in_axes2_z*m->rrr_leg1_w_2_in_axes2_y[i];
     /* (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rrr_leg1_c_in_axes2_x = v->rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x +
-        rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
+    const real rrr_leg1_c_in_axes2_x = v->rrr_leg1_W_2_t*m->rrr_leg1_h_2_in_spec2_x[i] +
+        rrr_leg1_alpha_2_in_axes2_z*m->rrr_leg1_h_2_in_spec2_y[i] +
         v->rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_in_axes2_y*v->rrr_leg1_r_1_in_axes2_x -
         rrr_leg1_N_1_in_axes1_z);
-    const real rrr_leg1_c_in_axes2_y = v->rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y -
-        rrr_leg1_G_in_axes2_y - rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_x;
+    const real rrr_leg1_c_in_axes2_y = v->rrr_leg1_W_2_t*m->rrr_leg1_h_2_in_spec2_y[i] -
+        rrr_leg1_G_in_axes2_y - rrr_leg1_alpha_2_in_axes2_z*m->rrr_leg1_h_2_in_spec2_x[i];
     v->rrr_leg1_acc_2_in_axes2_x = rrr_leg1_acc_2_in_axes2_x;
     v->rrr_leg1_acc_2_in_axes2_y = rrr_leg1_acc_2_in_axes2_y;
     v->rrr_leg1_c_in_axes2_x = rrr_leg1_c_in_axes2_x;
@@ -2047,944 +1996,841 @@ INLINE void stage_rrr_leg1_legs_required(const prepared *m, size_t i, values_rrr
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_V(w, k, V, &v);
-        stage_X(m, w, k, X, &v);
-        /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = v.W_p_xx*v.h_star_x - Z_p_t;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = v.W_p_xx*v.h_star_y - Z_p_t_2;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real Z_q_z = gravity_x*v.h_star_y - gravity_y*v.h_star_x;
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-        s[2*w + k] = v.h_star_x;
-        s[3*w + k] = v.h_star_y;
-        s[4*w + k] = Z_p_x;
-        s[5*w + k] = Z_p_y;
-        s[6*w + k] = Z_q_z;
-    }
+    values v;
+    stage_V(w, k, V, &v);
+    stage_X(m, w, k, X, &v);
+    /* (Z_p) centripetal force and weight of the platform */
+    const real Z_p_x = v.W_p_xx*v.h_star_x - m->Z_p_t;
+    const real Z_p_y = v.W_p_xx*v.h_star_y - m->Z_p_t_2;
+    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    const real Z_q_z = m->gravity_x*v.h_star_y - m->gravity_y*v.h_star_x;
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
+    s[2*w + k] = v.h_star_x;
+    s[3*w + k] = v.h_star_y;
+    s[4*w + k] = Z_p_x;
+    s[5*w + k] = Z_p_y;
+    s[6*w + k] = Z_q_z;
 }
 
-INLINE void dynamics_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, const
-    real *s, size_t states, size_t count, int add, const real *X, const real *V, real *terms, real
-    *o)
+INLINE void dynamics_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, size_t k,
+    size_t count, int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr_leg1 v;
-        stage_rrr_leg1_X(m, w, i, j, s, X, &v);
-        stage_rrr_leg1_V_X(m, w, i, j, V, &v);
-        stage_rrr_leg1_M_dynamics(m, i, &v);
-        /* (rrr_leg1-u_1) centripetal acceleration of the connection point */
-        const real omega_z = V[2*w + j];
-        const real rrr_leg1_u_1_x = -omega_z*v.rrr_leg1_S_dot_t_2;
-        const real rrr_leg1_u_1_t = omega_z*v.rrr_leg1_S_dot_t;
-        const real rrr_leg1_u_1_in_axes2_x = v.axis_x_rrr_leg1_axes2_x*rrr_leg1_u_1_x +
-            v.axis_y_rrr_leg1_axes2_x*rrr_leg1_u_1_t;
-        const real rrr_leg1_u_1_in_axes2_y = v.axis_y_rrr_leg1_axes2_x*rrr_leg1_u_1_x -
-            v.axis_x_rrr_leg1_axes2_x*rrr_leg1_u_1_t;
-        /* (rrr_leg1-rel_o) remainder of: acceleration of the connection point left to the joint
-           accelerations */
-        const real rrr_leg1_rel_o_in_axes2_x = rrr_leg1_u_1_in_axes2_x -
-            v.rrr_leg1_bias_in_axes2_x;
-        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
-        const real rrr_leg1_rel_o_in_axes2_y = rrr_leg1_u_1_in_axes2_y -
-            v.rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*v.rrr_leg1_s_2;
-        /* (rrr_leg1-B_1_o) remainder of the acceleration tensor of link 1 */
-        const real rrr_leg1_B_1_o_in_axes1_xy =
-            -rrr_leg1_rel_o_in_axes2_x*v.rrr_leg1_w_1_in_axes2_x;
-        /* (rrr_leg1-alpha_2_o) remainder of: angular acceleration of link 2 */
-        const real rrr_leg1_w_2_in_axes2_y = m->rrr_leg1_w_2_in_axes2_y[i];
-        const real rrr_leg1_alpha_2_o_in_axes2_z =
-            rrr_leg1_w_2_in_axes2_y*(rrr_leg1_rel_o_in_axes2_y +
-            rrr_leg1_B_1_o_in_axes1_xy*v.rrr_leg1_r_1_in_axes2_x) - rrr_leg1_B_1_o_in_axes1_xy;
-        /* (rrr_leg1-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real rrr_leg1_acc_2_o_in_axes2_x = rrr_leg1_u_1_in_axes2_x +
-            v.axis_y_rrr_leg1_axes2_x*gravity_y - v.axis_x_rrr_leg1_axes2_x*gravity_x;
-        const real rrr_leg1_acc_2_o_in_axes2_y = rrr_leg1_u_1_in_axes2_y -
-            v.axis_x_rrr_leg1_axes2_x*gravity_y - v.axis_y_rrr_leg1_axes2_x*gravity_x;
-        /* (rrr_leg1-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-           reference points */
-        const real rrr_leg1_J_2_in_spec2_zz = m->rrr_leg1_J_2_in_spec2_zz[i];
-        const real rrr_leg1_h_2_in_spec2_x = m->rrr_leg1_h_2_in_spec2_x[i];
-        const real rrr_leg1_h_2_in_spec2_y = m->rrr_leg1_h_2_in_spec2_y[i];
-        const real rrr_leg1_mu_2_o_in_axes2_z =
-            rrr_leg1_J_2_in_spec2_zz*rrr_leg1_alpha_2_o_in_axes2_z +
-            rrr_leg1_acc_2_o_in_axes2_y*rrr_leg1_h_2_in_spec2_x -
-            rrr_leg1_acc_2_o_in_axes2_x*rrr_leg1_h_2_in_spec2_y;
-        /* (rrr_leg1-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-           reference points */
-        const real rrr_leg1_J_1_in_spec1_zz = m->rrr_leg1_J_1_in_spec1_zz[i];
-        const real rrr_leg1_h_1_in_spec1_x = m->rrr_leg1_h_1_in_spec1_x[i];
-        const real rrr_leg1_h_1_in_spec1_y = m->rrr_leg1_h_1_in_spec1_y[i];
-        const real rrr_leg1_mu_1_t = m->rrr_leg1_mu_1_t[i];
-        const real rrr_leg1_mu_1_t_2 = m->rrr_leg1_mu_1_t_2[i];
-        const real rrr_leg1_mu_1_o_in_axes1_z =
-            rrr_leg1_h_1_in_spec1_y*(v.rrr_leg1_c_1*rrr_leg1_mu_1_t +
-            rrr_leg1_mu_1_t_2*v.rrr_leg1_s_1) -
-            rrr_leg1_B_1_o_in_axes1_xy*rrr_leg1_J_1_in_spec1_zz -
-            rrr_leg1_h_1_in_spec1_x*(v.rrr_leg1_c_1*rrr_leg1_mu_1_t_2 -
-            rrr_leg1_mu_1_t*v.rrr_leg1_s_1);
-        /* (rrr_leg1-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at
-           the connection point left out */
-        const real rrr_leg1_N_1_o_in_axes1_z = rrr_leg1_mu_1_o_in_axes1_z +
-            rrr_leg1_mu_2_o_in_axes2_z;
-        /* (rrr_leg1-G_o) remainder of: force at the connection point that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real rrr_leg1_G_o_in_axes2_y = rrr_leg1_mu_2_o_in_axes2_z*rrr_leg1_w_2_in_axes2_y;
-        /* (rrr_leg1-c_o) remainder of: leg force on the platform without actuation and without the mass
-           at the connection point */
-        const real rrr_leg1_c_o_in_axes2_x = v.rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x +
-            rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
-            v.rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_o_in_axes2_y*v.rrr_leg1_r_1_in_axes2_x -
-            rrr_leg1_N_1_o_in_axes1_z);
-        const real rrr_leg1_c_o_in_axes2_y = v.rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y -
-            rrr_leg1_G_o_in_axes2_y - rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_x;
-        /* (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rrr_leg1_d_c_in_axes2_yy = m->rrr_leg1_d_c_in_axes2_yy[i];
-        const real rrr_leg1_Q_t = rrr_leg1_h_2_in_spec2_y*(v.rrr_leg1_w_1_in_axes2_x +
-            v.rrr_leg1_w_2_in_axes2_x) - rrr_leg1_d_c_in_axes2_yy -
-            v.rrr_leg1_d_Gamma_1_in_axes2_x*v.rrr_leg1_w_1_in_axes2_x -
-            v.rrr_leg1_d_Gamma_2_in_axes2_x*v.rrr_leg1_w_2_in_axes2_x;
-        const real rrr_leg1_Q_t_2 = R(0.5)*rrr_leg1_Q_t;
-        const real rrr_leg1_Q_t_3 = v.axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_2 +
-            v.axis_y_rrr_leg1_axes2_x*v.rrr_leg1_d_c_in_axes2_xy;
-        const real rrr_leg1_Q_t_4 = v.axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_2 -
-            v.axis_x_rrr_leg1_axes2_x*v.rrr_leg1_d_c_in_axes2_xy;
-        const real rrr_leg1_Q_xx = -rrr_leg1_d_c_in_axes2_yy -
-            2*v.axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_3;
-        const real rrr_leg1_Q_xy = v.axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 +
-            v.axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_3;
-        const real rrr_leg1_Q_yy = -rrr_leg1_d_c_in_axes2_yy -
-            2*v.axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4;
-        /* (rrr_leg1-U) velocity and gravity terms of the leg force */
-        const real rrr_leg1_U_x = -v.axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x -
-            v.axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y;
-        const real rrr_leg1_U_y = v.axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x -
-            v.axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y;
-        /* (M_ta) coupling block of M */
-        const real rrr_leg1_M_ta_t = rrr_leg1_Q_xy*v.rrr_leg1_q_x - rrr_leg1_Q_xx*v.rrr_leg1_q_y;
-        const real rrr_leg1_M_ta_t_2 = rrr_leg1_Q_yy*v.rrr_leg1_q_x -
-            rrr_leg1_Q_xy*v.rrr_leg1_q_y;
-        /* (M_aa) rotational block of M */
-        const real rrr_leg1_M_aa_t = rrr_leg1_M_ta_t_2*v.rrr_leg1_q_x -
-            rrr_leg1_M_ta_t*v.rrr_leg1_q_y;
-        /* (Z_a) rotational part of Z */
-        const real rrr_leg1_Z_a_t = rrr_leg1_U_y*v.rrr_leg1_q_x - rrr_leg1_U_x*v.rrr_leg1_q_y;
-        /* (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin */
-        const real rrr_leg1_H_a_2_z = v.rrr_leg1_q_x*v.rrr_leg1_w_2_y -
-            v.rrr_leg1_q_y*v.rrr_leg1_w_2_x;
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, rrr_leg1_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, rrr_leg1_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, rrr_leg1_Q_yy);  /* M_tt_yy_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[3*count + k], add, rrr_leg1_M_ta_t);  /* M_ta_xz_of_legs */
-        gather(&terms[4*count + k], add, rrr_leg1_M_ta_t_2);  /* M_ta_yz_of_legs */
-        /* (M_aa) rotational block of M */
-        gather(&terms[5*count + k], add, rrr_leg1_M_aa_t);  /* M_aa_zz_of_legs */
-        /* (Z_t) translational part of Z */
-        gather(&terms[6*count + k], add, rrr_leg1_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[7*count + k], add, rrr_leg1_U_y);  /* Z_t_y_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[8*count + k], add, rrr_leg1_Z_a_t);  /* Z_a_z_of_legs */
-        /* (rrr_leg1-w_1) reciprocal vector 1 */
-        o[0*count + k] = v.rrr_leg1_w_1_x;
-        o[1*count + k] = v.rrr_leg1_w_1_y;
-        /* (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = v.rrr_leg1_H_a_1_z;
-        /* (rrr_leg1-w_2) reciprocal vector 2 */
-        o[3*count + k] = v.rrr_leg1_w_2_x;
-        o[4*count + k] = v.rrr_leg1_w_2_y;
-        /* (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin */
-        o[5*count + k] = rrr_leg1_H_a_2_z;
-        o[8*count + k] = (v.rrr_leg1_w_1_x + (v.rrr_leg1_w_1_y + v.rrr_leg1_H_a_1_z)) +
-            (v.rrr_leg1_w_2_x + (v.rrr_leg1_w_2_y + rrr_leg1_H_a_2_z));
-        const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
-        const real rrr_leg1_size = m->rrr_leg1_size[i];
-        o[7*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
-            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) >
-            TOLERANCE*rrr_leg1_size);
-        o[6*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
-    }
+    values_rrr_leg1 v;
+    stage_rrr_leg1_X(m, w, i, j, s, X, &v);
+    stage_rrr_leg1_V_X(m, w, i, j, V, &v);
+    stage_rrr_leg1_M_dynamics(m, i, &v);
+    /* (rrr_leg1-u_1) centripetal acceleration of the connection point */
+    const real omega_z = V[2*w + j];
+    const real rrr_leg1_u_1_x = -omega_z*v.rrr_leg1_S_dot_t_2;
+    const real rrr_leg1_u_1_t = omega_z*v.rrr_leg1_S_dot_t;
+    const real rrr_leg1_u_1_in_axes2_x = v.axis_x_rrr_leg1_axes2_x*rrr_leg1_u_1_x +
+        v.axis_y_rrr_leg1_axes2_x*rrr_leg1_u_1_t;
+    const real rrr_leg1_u_1_in_axes2_y = v.axis_y_rrr_leg1_axes2_x*rrr_leg1_u_1_x -
+        v.axis_x_rrr_leg1_axes2_x*rrr_leg1_u_1_t;
+    /* (rrr_leg1-rel_o) remainder of: acceleration of the connection point left to the joint
+       accelerations */
+    const real rrr_leg1_rel_o_in_axes2_x = rrr_leg1_u_1_in_axes2_x -
+        v.rrr_leg1_bias_in_axes2_x;
+    const real rrr_leg1_rel_o_in_axes2_y = rrr_leg1_u_1_in_axes2_y -
+        v.rrr_leg1_W_1_t*m->rrr_leg1_joint2_offset_x[i]*v.rrr_leg1_s_2;
+    /* (rrr_leg1-B_1_o) remainder of the acceleration tensor of link 1 */
+    const real rrr_leg1_B_1_o_in_axes1_xy =
+        -rrr_leg1_rel_o_in_axes2_x*v.rrr_leg1_w_1_in_axes2_x;
+    /* (rrr_leg1-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real rrr_leg1_alpha_2_o_in_axes2_z =
+        m->rrr_leg1_w_2_in_axes2_y[i]*(rrr_leg1_rel_o_in_axes2_y +
+        rrr_leg1_B_1_o_in_axes1_xy*v.rrr_leg1_r_1_in_axes2_x) - rrr_leg1_B_1_o_in_axes1_xy;
+    /* (rrr_leg1-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
+    const real rrr_leg1_acc_2_o_in_axes2_x = rrr_leg1_u_1_in_axes2_x +
+        v.axis_y_rrr_leg1_axes2_x*m->gravity_y - v.axis_x_rrr_leg1_axes2_x*m->gravity_x;
+    const real rrr_leg1_acc_2_o_in_axes2_y = rrr_leg1_u_1_in_axes2_y -
+        v.axis_x_rrr_leg1_axes2_x*m->gravity_y - v.axis_y_rrr_leg1_axes2_x*m->gravity_x;
+    /* (rrr_leg1-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real rrr_leg1_mu_2_o_in_axes2_z =
+        m->rrr_leg1_J_2_in_spec2_zz[i]*rrr_leg1_alpha_2_o_in_axes2_z +
+        rrr_leg1_acc_2_o_in_axes2_y*m->rrr_leg1_h_2_in_spec2_x[i] -
+        rrr_leg1_acc_2_o_in_axes2_x*m->rrr_leg1_h_2_in_spec2_y[i];
+    /* (rrr_leg1-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
+    const real rrr_leg1_mu_1_o_in_axes1_z =
+        m->rrr_leg1_h_1_in_spec1_y[i]*(v.rrr_leg1_c_1*m->rrr_leg1_mu_1_t[i] +
+        m->rrr_leg1_mu_1_t_2[i]*v.rrr_leg1_s_1) -
+        rrr_leg1_B_1_o_in_axes1_xy*m->rrr_leg1_J_1_in_spec1_zz[i] -
+        m->rrr_leg1_h_1_in_spec1_x[i]*(v.rrr_leg1_c_1*m->rrr_leg1_mu_1_t_2[i] -
+        m->rrr_leg1_mu_1_t[i]*v.rrr_leg1_s_1);
+    /* (rrr_leg1-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at
+       the connection point left out */
+    const real rrr_leg1_N_1_o_in_axes1_z = rrr_leg1_mu_1_o_in_axes1_z +
+        rrr_leg1_mu_2_o_in_axes2_z;
+    /* (rrr_leg1-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real rrr_leg1_G_o_in_axes2_y =
+        rrr_leg1_mu_2_o_in_axes2_z*m->rrr_leg1_w_2_in_axes2_y[i];
+    /* (rrr_leg1-c_o) remainder of: leg force on the platform without actuation and without the mass
+       at the connection point */
+    const real rrr_leg1_c_o_in_axes2_x = v.rrr_leg1_W_2_t*m->rrr_leg1_h_2_in_spec2_x[i] +
+        rrr_leg1_alpha_2_o_in_axes2_z*m->rrr_leg1_h_2_in_spec2_y[i] +
+        v.rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_o_in_axes2_y*v.rrr_leg1_r_1_in_axes2_x -
+        rrr_leg1_N_1_o_in_axes1_z);
+    const real rrr_leg1_c_o_in_axes2_y = v.rrr_leg1_W_2_t*m->rrr_leg1_h_2_in_spec2_y[i] -
+        rrr_leg1_G_o_in_axes2_y - rrr_leg1_alpha_2_o_in_axes2_z*m->rrr_leg1_h_2_in_spec2_x[i];
+    /* (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rrr_leg1_Q_t = m->rrr_leg1_h_2_in_spec2_y[i]*(v.rrr_leg1_w_1_in_axes2_x +
+        v.rrr_leg1_w_2_in_axes2_x) - m->rrr_leg1_d_c_in_axes2_yy[i] -
+        v.rrr_leg1_d_Gamma_1_in_axes2_x*v.rrr_leg1_w_1_in_axes2_x -
+        v.rrr_leg1_d_Gamma_2_in_axes2_x*v.rrr_leg1_w_2_in_axes2_x;
+    const real rrr_leg1_Q_t_2 = R(0.5)*rrr_leg1_Q_t;
+    const real rrr_leg1_Q_t_3 = v.axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_2 +
+        v.axis_y_rrr_leg1_axes2_x*v.rrr_leg1_d_c_in_axes2_xy;
+    const real rrr_leg1_Q_t_4 = v.axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_2 -
+        v.axis_x_rrr_leg1_axes2_x*v.rrr_leg1_d_c_in_axes2_xy;
+    const real rrr_leg1_Q_xx = -m->rrr_leg1_d_c_in_axes2_yy[i] -
+        2*v.axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_3;
+    const real rrr_leg1_Q_xy = v.axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 +
+        v.axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_3;
+    const real rrr_leg1_Q_yy = -m->rrr_leg1_d_c_in_axes2_yy[i] -
+        2*v.axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4;
+    /* (rrr_leg1-U) velocity and gravity terms of the leg force */
+    const real rrr_leg1_U_x = -v.axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x -
+        v.axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y;
+    const real rrr_leg1_U_y = v.axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x -
+        v.axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y;
+    /* (M_ta) coupling block of M */
+    const real rrr_leg1_M_ta_t = rrr_leg1_Q_xy*v.rrr_leg1_q_x - rrr_leg1_Q_xx*v.rrr_leg1_q_y;
+    const real rrr_leg1_M_ta_t_2 = rrr_leg1_Q_yy*v.rrr_leg1_q_x -
+        rrr_leg1_Q_xy*v.rrr_leg1_q_y;
+    /* (M_aa) rotational block of M */
+    const real rrr_leg1_M_aa_t = rrr_leg1_M_ta_t_2*v.rrr_leg1_q_x -
+        rrr_leg1_M_ta_t*v.rrr_leg1_q_y;
+    /* (Z_a) rotational part of Z */
+    const real rrr_leg1_Z_a_t = rrr_leg1_U_y*v.rrr_leg1_q_x - rrr_leg1_U_x*v.rrr_leg1_q_y;
+    /* (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin */
+    const real rrr_leg1_H_a_2_z = v.rrr_leg1_q_x*v.rrr_leg1_w_2_y -
+        v.rrr_leg1_q_y*v.rrr_leg1_w_2_x;
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, rrr_leg1_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, rrr_leg1_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, rrr_leg1_Q_yy);  /* M_tt_yy_of_legs */
+    /* (M_ta) */
+    gather(&terms[3*count + k], add, rrr_leg1_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, rrr_leg1_M_ta_t_2);  /* M_ta_yz_of_legs */
+    /* (M_aa) */
+    gather(&terms[5*count + k], add, rrr_leg1_M_aa_t);  /* M_aa_zz_of_legs */
+    /* (Z_t) translational part of Z */
+    gather(&terms[6*count + k], add, rrr_leg1_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[7*count + k], add, rrr_leg1_U_y);  /* Z_t_y_of_legs */
+    /* (Z_a) */
+    gather(&terms[8*count + k], add, rrr_leg1_Z_a_t);  /* Z_a_z_of_legs */
+    /* (rrr_leg1-w_1) reciprocal vector 1 */
+    o[0*count + k] = v.rrr_leg1_w_1_x;
+    o[1*count + k] = v.rrr_leg1_w_1_y;
+    /* (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v.rrr_leg1_H_a_1_z;
+    /* (rrr_leg1-w_2) reciprocal vector 2 */
+    o[3*count + k] = v.rrr_leg1_w_2_x;
+    o[4*count + k] = v.rrr_leg1_w_2_y;
+    /* (rrr_leg1-H_a_2) */
+    o[5*count + k] = rrr_leg1_H_a_2_z;
+    o[8*count + k] = (v.rrr_leg1_w_1_x + (v.rrr_leg1_w_1_y + v.rrr_leg1_H_a_1_z)) +
+        (v.rrr_leg1_w_2_x + (v.rrr_leg1_w_2_y + rrr_leg1_H_a_2_z));
+    o[7*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
+        UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
+    o[6*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
-INLINE void dynamics_place_rrr_leg1(size_t w, size_t count, const real *o, size_t first, real *H,
-    verdict *t)
+INLINE void dynamics_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const real *o,
+    real *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[0*w + k] = o[0*count + first + k];
-        H[NU*w + k] = o[1*count + first + k];
-        H[2*NU*w + k] = o[2*count + first + k];
-        H[1*w + k] = o[3*count + first + k];
-        H[(NU + 1)*w + k] = o[4*count + first + k];
-        H[(2*NU + 1)*w + k] = o[5*count + first + k];
-        t->unreachable[k] += o[6*count + first + k];
-        t->singular[k] += o[7*count + first + k];
-        t->total[k] += o[8*count + first + k];
-    }
+    H[0*w + k] = o[0*count + at];
+    H[NU*w + k] = o[1*count + at];
+    H[2*NU*w + k] = o[2*count + at];
+    H[1*w + k] = o[3*count + at];
+    H[(NU + 1)*w + k] = o[4*count + at];
+    H[(2*NU + 1)*w + k] = o[5*count + at];
+    t->unreachable[k] += o[6*count + at];
+    t->singular[k] += o[7*count + at];
+    t->total[k] += o[8*count + at];
 }
 
-INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
+INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_X(m, w, i, j, s, X, &v);
-        stage_rrr_V_X(m, w, i, j, V, &v);
-        stage_rrr_M_dynamics(m, i, &v);
-        /* (rrr-u_1) centripetal acceleration of the connection point */
-        const real omega_z = V[2*w + j];
-        const real rrr_u_1_x = -omega_z*v.rrr_S_dot_t_2;
-        const real rrr_u_1_t = omega_z*v.rrr_S_dot_t;
-        const real rrr_u_1_in_axes2_x = v.axis_x_rrr_axes2_x*rrr_u_1_x +
-            v.axis_y_rrr_axes2_x*rrr_u_1_t;
-        const real rrr_u_1_in_axes2_y = v.axis_y_rrr_axes2_x*rrr_u_1_x -
-            v.axis_x_rrr_axes2_x*rrr_u_1_t;
-        /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-           */
-        const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - v.rrr_bias_in_axes2_x;
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
-            v.rrr_W_1_t*rrr_joint2_offset_x*v.rrr_s_2;
-        /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
-        const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*v.rrr_w_1_in_axes2_x;
-        /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_alpha_2_o_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y +
-            rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
-        /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + v.axis_y_rrr_axes2_x*gravity_y -
-            v.axis_x_rrr_axes2_x*gravity_x;
-        const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - v.axis_x_rrr_axes2_x*gravity_y -
-            v.axis_y_rrr_axes2_x*gravity_x;
-        /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-           reference points */
-        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
-        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
-        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-        const real rrr_mu_2_o_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
-            rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y;
-        /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-           reference points */
-        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
-        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
-        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
-        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
-        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
-        const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(v.rrr_c_1*rrr_mu_1_t +
-            rrr_mu_1_t_2*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
-            rrr_h_1_in_spec1_x*(v.rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v.rrr_s_1);
-        /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
-           connection point left out */
-        const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
-        /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y;
-        /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-           connection point */
-        const real rrr_c_o_in_axes2_x = v.rrr_W_2_t*rrr_h_2_in_spec2_x +
-            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
-            v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
-        const real rrr_c_o_in_axes2_y = v.rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
-            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x;
-        /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rrr_d_c_in_axes2_yy = m->rrr_d_c_in_axes2_yy[i];
-        const real rrr_Q_t = rrr_h_2_in_spec2_y*(v.rrr_w_1_in_axes2_x + v.rrr_w_2_in_axes2_x) -
-            rrr_d_c_in_axes2_yy - v.rrr_d_Gamma_1_in_axes2_x*v.rrr_w_1_in_axes2_x -
-            v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
-        const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
-        const real rrr_Q_t_3 = v.axis_x_rrr_axes2_x*rrr_Q_t_2 +
-            v.axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
-        const real rrr_Q_t_4 = v.axis_y_rrr_axes2_x*rrr_Q_t_2 -
-            v.axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
-        const real rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2*v.axis_x_rrr_axes2_x*rrr_Q_t_3;
-        const real rrr_Q_xy = v.axis_x_rrr_axes2_x*rrr_Q_t_4 + v.axis_y_rrr_axes2_x*rrr_Q_t_3;
-        const real rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2*v.axis_y_rrr_axes2_x*rrr_Q_t_4;
-        /* (rrr-U) velocity and gravity terms of the leg force */
-        const real rrr_U_x = -v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
-            v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
-        const real rrr_U_y = v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
-            v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
-        /* (M_ta) coupling block of M */
-        const real rrr_M_ta_t = rrr_Q_xy*v.rrr_q_x - rrr_Q_xx*v.rrr_q_y;
-        const real rrr_M_ta_t_2 = rrr_Q_yy*v.rrr_q_x - rrr_Q_xy*v.rrr_q_y;
-        /* (M_aa) rotational block of M */
-        const real rrr_M_aa_t = rrr_M_ta_t_2*v.rrr_q_x - rrr_M_ta_t*v.rrr_q_y;
-        /* (Z_a) rotational part of Z */
-        const real rrr_Z_a_t = rrr_U_y*v.rrr_q_x - rrr_U_x*v.rrr_q_y;
-        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_H_a_1_z = v.rrr_q_x*v.rrr_w_1_y - v.rrr_q_y*v.rrr_w_1_x;
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, rrr_Q_yy);  /* M_tt_yy_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[3*count + k], add, rrr_M_ta_t);  /* M_ta_xz_of_legs */
-        gather(&terms[4*count + k], add, rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
-        /* (M_aa) rotational block of M */
-        gather(&terms[5*count + k], add, rrr_M_aa_t);  /* M_aa_zz_of_legs */
-        /* (Z_t) translational part of Z */
-        gather(&terms[6*count + k], add, rrr_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[7*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[8*count + k], add, rrr_Z_a_t);  /* Z_a_z_of_legs */
-        /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = v.rrr_w_1_x;
-        o[1*count + k] = v.rrr_w_1_y;
-        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = rrr_H_a_1_z;
-        o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + rrr_H_a_1_z);
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        const real rrr_size = m->rrr_size[i];
-        o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
+    values_rrr v;
+    stage_rrr_X(m, w, i, j, s, X, &v);
+    stage_rrr_V_X(m, w, i, j, V, &v);
+    stage_rrr_M_dynamics(m, i, &v);
+    /* (rrr-u_1) centripetal acceleration of the connection point */
+    const real omega_z = V[2*w + j];
+    const real rrr_u_1_x = -omega_z*v.rrr_S_dot_t_2;
+    const real rrr_u_1_t = omega_z*v.rrr_S_dot_t;
+    const real rrr_u_1_in_axes2_x = v.axis_x_rrr_axes2_x*rrr_u_1_x +
+        v.axis_y_rrr_axes2_x*rrr_u_1_t;
+    const real rrr_u_1_in_axes2_y = v.axis_y_rrr_axes2_x*rrr_u_1_x -
+        v.axis_x_rrr_axes2_x*rrr_u_1_t;
+    /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - v.rrr_bias_in_axes2_x;
+    const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
+        v.rrr_W_1_t*m->rrr_joint2_offset_x[i]*v.rrr_s_2;
+    /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
+    const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*v.rrr_w_1_in_axes2_x;
+    /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real rrr_alpha_2_o_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_o_in_axes2_y +
+        rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
+    /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
+    const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + v.axis_y_rrr_axes2_x*m->gravity_y
+        - v.axis_x_rrr_axes2_x*m->gravity_x;
+    const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - v.axis_x_rrr_axes2_x*m->gravity_y
+        - v.axis_y_rrr_axes2_x*m->gravity_x;
+    /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real rrr_mu_2_o_in_axes2_z = m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z +
+        rrr_acc_2_o_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
+        rrr_acc_2_o_in_axes2_x*m->rrr_h_2_in_spec2_y[i];
+    /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
+    const real rrr_mu_1_o_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] +
+        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i] -
+        m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v.rrr_s_1);
+    /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+       connection point left out */
+    const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
+    /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
+    /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
+    const real rrr_c_o_in_axes2_x = v.rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
+        v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
+    const real rrr_c_o_in_axes2_y = v.rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] - rrr_G_o_in_axes2_y
+        - rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i];
+    /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rrr_Q_t = m->rrr_h_2_in_spec2_y[i]*(v.rrr_w_1_in_axes2_x +
+        v.rrr_w_2_in_axes2_x) - m->rrr_d_c_in_axes2_yy[i] -
+        v.rrr_d_Gamma_1_in_axes2_x*v.rrr_w_1_in_axes2_x -
+        v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
+    const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
+    const real rrr_Q_t_3 = v.axis_x_rrr_axes2_x*rrr_Q_t_2 +
+        v.axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+    const real rrr_Q_t_4 = v.axis_y_rrr_axes2_x*rrr_Q_t_2 -
+        v.axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+    const real rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v.axis_x_rrr_axes2_x*rrr_Q_t_3;
+    const real rrr_Q_xy = v.axis_x_rrr_axes2_x*rrr_Q_t_4 + v.axis_y_rrr_axes2_x*rrr_Q_t_3;
+    const real rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v.axis_y_rrr_axes2_x*rrr_Q_t_4;
+    /* (rrr-U) velocity and gravity terms of the leg force */
+    const real rrr_U_x = -v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
+        v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
+    const real rrr_U_y = v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
+        v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
+    /* (M_ta) */
+    const real rrr_M_ta_t = rrr_Q_xy*v.rrr_q_x - rrr_Q_xx*v.rrr_q_y;
+    const real rrr_M_ta_t_2 = rrr_Q_yy*v.rrr_q_x - rrr_Q_xy*v.rrr_q_y;
+    /* (M_aa) */
+    const real rrr_M_aa_t = rrr_M_ta_t_2*v.rrr_q_x - rrr_M_ta_t*v.rrr_q_y;
+    /* (Z_a) */
+    const real rrr_Z_a_t = rrr_U_y*v.rrr_q_x - rrr_U_x*v.rrr_q_y;
+    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+    const real rrr_H_a_1_z = v.rrr_q_x*v.rrr_w_1_y - v.rrr_q_y*v.rrr_w_1_x;
+    /* (M_tt) */
+    gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, rrr_Q_yy);  /* M_tt_yy_of_legs */
+    /* (M_ta) */
+    gather(&terms[3*count + k], add, rrr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    /* (M_aa) */
+    gather(&terms[5*count + k], add, rrr_M_aa_t);  /* M_aa_zz_of_legs */
+    /* (Z_t) */
+    gather(&terms[6*count + k], add, rrr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[7*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
+    /* (Z_a) */
+    gather(&terms[8*count + k], add, rrr_Z_a_t);  /* Z_a_z_of_legs */
+    /* (rrr-w_1) reciprocal vector 1 */
+    o[0*count + k] = v.rrr_w_1_x;
+    o[1*count + k] = v.rrr_w_1_y;
+    /* (rrr-H_a_1) */
+    o[2*count + k] = rrr_H_a_1_z;
+    o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + rrr_H_a_1_z);
+    o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
+        + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
+    o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void dynamics_place_rrr(size_t w, size_t count, const real *o, size_t first, real *H,
-    verdict *t)
+INLINE void dynamics_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
+    *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[2*w + k] = o[0*count + first + k];
-        H[(NU + 2)*w + k] = o[1*count + first + k];
-        H[(2*NU + 2)*w + k] = o[2*count + first + k];
-        t->unreachable[k] += o[3*count + first + k];
-        t->singular[k] += o[4*count + first + k];
-        t->total[k] += o[5*count + first + k];
-    }
+    H[2*w + k] = o[0*count + at];
+    H[(NU + 2)*w + k] = o[1*count + at];
+    H[(2*NU + 2)*w + k] = o[2*count + at];
+    t->unreachable[k] += o[3*count + at];
+    t->singular[k] += o[4*count + at];
+    t->total[k] += o[5*count + at];
 }
 
-INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const real *sums, real *M,
-    real *Z, verdict *t)
+INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
+    real *M, real *Z, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (M_tt) translational block of M */
-        const real M_tt_xx_of_legs = sums[0*w + k];
-        const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_xx_of_legs + m_star;
-        const real M_tt_yy_of_legs = sums[2*w + k];
-        const real M_tt_yy = M_tt_yy_of_legs + m_star;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xz_of_legs = sums[3*w + k];
-        const real h_star_y = s[3*w + k];
-        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-        const real M_ta_yz_of_legs = sums[4*w + k];
-        const real h_star_x = s[2*w + k];
-        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
-        /* (M_aa) rotational block of M */
-        const real J_star_zz = m->J_star_zz;
-        const real M_aa_zz_of_legs = sums[5*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-        /* (Z_t) translational part of Z */
-        const real Z_p_x = s[4*w + k];
-        const real Z_t_x_of_legs = sums[6*w + k];
-        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[5*w + k];
-        const real Z_t_y_of_legs = sums[7*w + k];
-        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        /* (Z_a) rotational part of Z */
-        const real Z_a_z_of_legs = sums[8*w + k];
-        const real Z_q_z = s[6*w + k];
-        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
-        /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        const real M_tt_xy = sums[1*w + k];
-        M[1*w + k] = M_tt_xy;
-        M[NV*w + k] = M_tt_xy;
-        M[(NV + 1)*w + k] = M_tt_yy;
-        /* (M_ta) coupling block of M */
-        M[2*w + k] = M_ta_xz;
-        M[2*NV*w + k] = M_ta_xz;
-        M[(NV + 2)*w + k] = M_ta_yz;
-        M[(2*NV + 1)*w + k] = M_ta_yz;
-        /* (M_aa) rotational block of M */
-        M[(2*NV + 2)*w + k] = M_aa_zz;
-        /* (Z_t) translational part of Z */
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-        /* (Z_a) rotational part of Z */
-        Z[2*w + k] = Z_a_z;
-        t->total[k] += ((M_tt_xx + M_tt_xy) + (M_tt_yy + M_ta_xz)) + ((M_ta_yz + M_aa_zz) + (Z_t_x
-            + (Z_t_y + Z_a_z)));
-    }
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_yy_of_legs = sums[2*w + k];
+    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    /* (M_ta) */
+    const real M_ta_xz_of_legs = sums[3*w + k];
+    const real h_star_y = s[3*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yz_of_legs = sums[4*w + k];
+    const real h_star_x = s[2*w + k];
+    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    /* (M_aa) */
+    const real M_aa_zz_of_legs = sums[5*w + k];
+    const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
+    /* (Z_t) */
+    const real Z_p_x = s[4*w + k];
+    const real Z_t_x_of_legs = sums[6*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[5*w + k];
+    const real Z_t_y_of_legs = sums[7*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    /* (Z_a) */
+    const real Z_a_z_of_legs = sums[8*w + k];
+    const real Z_q_z = s[6*w + k];
+    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    /* (M_ta) */
+    M[2*w + k] = M_ta_xz;
+    M[2*NV*w + k] = M_ta_xz;
+    M[(NV + 2)*w + k] = M_ta_yz;
+    M[(2*NV + 1)*w + k] = M_ta_yz;
+    /* (M_aa) */
+    M[(2*NV + 2)*w + k] = M_aa_zz;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    /* (Z_a) */
+    Z[2*w + k] = Z_a_z;
+    t->total[k] += ((M_tt_xx + M_tt_xy) + (M_tt_yy + M_ta_xz)) + ((M_ta_yz + M_aa_zz) + (Z_t_x
+        + (Z_t_y + Z_a_z)));
 }
 
-INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
+APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, verdict *t)
 {
     real s[7] = {0}, sums[9] = {0};
     real terms_rrr_leg1[9*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[9*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real terms_rrr[9*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
-    dynamics_before(m, 1, X, V, s);
-    dynamics_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr_leg1), 0, X, V, terms_rrr_leg1, o_rrr_leg1);
-    dynamics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, V, terms_rrr, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
-        dynamics_place_rrr_leg1(1, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, leg, H, t);
+    dynamics_before(m, 1, 0, X, V, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
+        dynamics_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, s, X, V, terms_rrr_leg1, o_rrr_leg1);
+    }
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        dynamics_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, V, terms_rrr, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        dynamics_place_rrr_leg1(1, 0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        dynamics_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, t);
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        dynamics_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
-    dynamics_after(m, 1, s, sums, M, Z, t);
+    dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
-INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
-    real *H, verdict *t)
+APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
+    real *restrict Z, real *restrict H, verdict *restrict t)
 {
     real s[7*LANES], sums[9*LANES];
     real o_rrr_leg1[9*LANES];
     real o_rrr[6*LANES];
-    dynamics_before(m, LANES, X, V, s);
+    for (size_t k = 0; k < LANES; ++k) {
+        dynamics_before(m, LANES, k, X, V, s);
+    }
     clear(sums, 9*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
-        dynamics_legs_rrr_leg1(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rrr_leg1);
-        dynamics_place_rrr_leg1(LANES, LANES, o_rrr_leg1, 0, H, t);
+    for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_legs_rrr_leg1(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrr_leg1);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_place_rrr_leg1(LANES, k, k, LANES, o_rrr_leg1, H, t);
+        }
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        dynamics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rrr);
-        dynamics_place_rrr(LANES, LANES, o_rrr, 0, H, t);
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
+        }
     }
-    dynamics_after(m, LANES, s, sums, M, Z, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        dynamics_after(m, LANES, k, s, sums, M, Z, t);
+    }
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-        s[2*w + k] = v.h_star_x;
-        s[3*w + k] = v.h_star_y;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
+    s[2*w + k] = v.h_star_x;
+    s[3*w + k] = v.h_star_y;
 }
 
-INLINE void M_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void M_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr_leg1 v;
-        stage_rrr_leg1_X(m, w, i, j, s, X, &v);
-        stage_rrr_leg1_M_dynamics(m, i, &v);
-        /* (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rrr_leg1_Q_t = v.rrr_leg1_c_1*v.rrr_leg1_s_2 + v.rrr_leg1_c_2*v.rrr_leg1_s_1;
-        const real rrr_leg1_Q_t_2 = v.rrr_leg1_c_1*v.rrr_leg1_c_2 - v.rrr_leg1_s_1*v.rrr_leg1_s_2;
-        const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
-        const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
-        const real axis_y_rrr_leg1_axes2_x = rrr_leg1_Q_t_2*rrr_leg1_base_frame_xy -
-            rrr_leg1_Q_t*rrr_leg1_base_frame_xx;
-        const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
-        const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
-        const real axis_x_rrr_leg1_axes2_x = rrr_leg1_Q_t_2*rrr_leg1_base_frame_yy -
-            rrr_leg1_Q_t*rrr_leg1_base_frame_yx;
-        const real rrr_leg1_d_c_in_axes2_yy = m->rrr_leg1_d_c_in_axes2_yy[i];
-        const real rrr_leg1_h_2_in_spec2_y = m->rrr_leg1_h_2_in_spec2_y[i];
-        const real rrr_leg1_Q_t_3 = rrr_leg1_h_2_in_spec2_y*(v.rrr_leg1_w_1_in_axes2_x +
-            v.rrr_leg1_w_2_in_axes2_x) - rrr_leg1_d_c_in_axes2_yy -
-            v.rrr_leg1_d_Gamma_1_in_axes2_x*v.rrr_leg1_w_1_in_axes2_x -
-            v.rrr_leg1_d_Gamma_2_in_axes2_x*v.rrr_leg1_w_2_in_axes2_x;
-        const real rrr_leg1_Q_t_4 = R(0.5)*rrr_leg1_Q_t_3;
-        const real rrr_leg1_Q_t_5 = axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 +
-            axis_y_rrr_leg1_axes2_x*v.rrr_leg1_d_c_in_axes2_xy;
-        const real rrr_leg1_Q_t_6 = axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 -
-            axis_x_rrr_leg1_axes2_x*v.rrr_leg1_d_c_in_axes2_xy;
-        const real rrr_leg1_Q_xx = -rrr_leg1_d_c_in_axes2_yy -
-            2*axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_5;
-        const real rrr_leg1_Q_xy = axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_6 +
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_5;
-        const real rrr_leg1_Q_yy = -rrr_leg1_d_c_in_axes2_yy -
-            2*axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_6;
-        /* (M_ta) coupling block of M */
-        const real rrr_leg1_M_ta_t = rrr_leg1_Q_xy*v.rrr_leg1_q_x - rrr_leg1_Q_xx*v.rrr_leg1_q_y;
-        const real rrr_leg1_M_ta_t_2 = rrr_leg1_Q_yy*v.rrr_leg1_q_x -
-            rrr_leg1_Q_xy*v.rrr_leg1_q_y;
-        /* (M_aa) rotational block of M */
-        const real rrr_leg1_M_aa_t = rrr_leg1_M_ta_t_2*v.rrr_leg1_q_x -
-            rrr_leg1_M_ta_t*v.rrr_leg1_q_y;
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, rrr_leg1_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, rrr_leg1_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, rrr_leg1_Q_yy);  /* M_tt_yy_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[3*count + k], add, rrr_leg1_M_ta_t);  /* M_ta_xz_of_legs */
-        gather(&terms[4*count + k], add, rrr_leg1_M_ta_t_2);  /* M_ta_yz_of_legs */
-        /* (M_aa) rotational block of M */
-        gather(&terms[5*count + k], add, rrr_leg1_M_aa_t);  /* M_aa_zz_of_legs */
-        const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
-        const real rrr_leg1_size = m->rrr_leg1_size[i];
-        o[1*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
-            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) >
-            TOLERANCE*rrr_leg1_size);
-        o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
-    }
+    values_rrr_leg1 v;
+    stage_rrr_leg1_X(m, w, i, j, s, X, &v);
+    stage_rrr_leg1_M_dynamics(m, i, &v);
+    /* (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rrr_leg1_Q_t = v.rrr_leg1_c_1*v.rrr_leg1_s_2 + v.rrr_leg1_c_2*v.rrr_leg1_s_1;
+    const real rrr_leg1_Q_t_2 = v.rrr_leg1_c_1*v.rrr_leg1_c_2 - v.rrr_leg1_s_1*v.rrr_leg1_s_2;
+    const real axis_y_rrr_leg1_axes2_x = rrr_leg1_Q_t_2*m->rrr_leg1_base_frame_xy[i] -
+        rrr_leg1_Q_t*m->rrr_leg1_base_frame_xx[i];
+    const real axis_x_rrr_leg1_axes2_x = rrr_leg1_Q_t_2*m->rrr_leg1_base_frame_yy[i] -
+        rrr_leg1_Q_t*m->rrr_leg1_base_frame_yx[i];
+    const real rrr_leg1_Q_t_3 = m->rrr_leg1_h_2_in_spec2_y[i]*(v.rrr_leg1_w_1_in_axes2_x +
+        v.rrr_leg1_w_2_in_axes2_x) - m->rrr_leg1_d_c_in_axes2_yy[i] -
+        v.rrr_leg1_d_Gamma_1_in_axes2_x*v.rrr_leg1_w_1_in_axes2_x -
+        v.rrr_leg1_d_Gamma_2_in_axes2_x*v.rrr_leg1_w_2_in_axes2_x;
+    const real rrr_leg1_Q_t_4 = R(0.5)*rrr_leg1_Q_t_3;
+    const real rrr_leg1_Q_t_5 = axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 +
+        axis_y_rrr_leg1_axes2_x*v.rrr_leg1_d_c_in_axes2_xy;
+    const real rrr_leg1_Q_t_6 = axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 -
+        axis_x_rrr_leg1_axes2_x*v.rrr_leg1_d_c_in_axes2_xy;
+    const real rrr_leg1_Q_xx = -m->rrr_leg1_d_c_in_axes2_yy[i] -
+        2*axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_5;
+    const real rrr_leg1_Q_xy = axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_6 +
+        axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_5;
+    const real rrr_leg1_Q_yy = -m->rrr_leg1_d_c_in_axes2_yy[i] -
+        2*axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_6;
+    /* (M_ta) coupling block of M */
+    const real rrr_leg1_M_ta_t = rrr_leg1_Q_xy*v.rrr_leg1_q_x - rrr_leg1_Q_xx*v.rrr_leg1_q_y;
+    const real rrr_leg1_M_ta_t_2 = rrr_leg1_Q_yy*v.rrr_leg1_q_x -
+        rrr_leg1_Q_xy*v.rrr_leg1_q_y;
+    /* (M_aa) rotational block of M */
+    const real rrr_leg1_M_aa_t = rrr_leg1_M_ta_t_2*v.rrr_leg1_q_x -
+        rrr_leg1_M_ta_t*v.rrr_leg1_q_y;
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, rrr_leg1_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, rrr_leg1_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, rrr_leg1_Q_yy);  /* M_tt_yy_of_legs */
+    /* (M_ta) */
+    gather(&terms[3*count + k], add, rrr_leg1_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, rrr_leg1_M_ta_t_2);  /* M_ta_yz_of_legs */
+    /* (M_aa) */
+    gather(&terms[5*count + k], add, rrr_leg1_M_aa_t);  /* M_aa_zz_of_legs */
+    o[1*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
+        UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
+    o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
-INLINE void M_place_rrr_leg1(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void M_place_rrr_leg1(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o[0*count + first + k];
-        t->singular[k] += o[1*count + first + k];
-    }
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
 }
 
-INLINE void M_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_X(m, w, i, j, s, X, &v);
-        stage_rrr_M_dynamics(m, i, &v);
-        /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rrr_Q_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
-        const real rrr_Q_t_2 = v.rrr_c_1*v.rrr_c_2 - v.rrr_s_1*v.rrr_s_2;
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real axis_y_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_xy - rrr_Q_t*rrr_base_frame_xx;
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real axis_x_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_yy - rrr_Q_t*rrr_base_frame_yx;
-        const real rrr_d_c_in_axes2_yy = m->rrr_d_c_in_axes2_yy[i];
-        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-        const real rrr_Q_t_3 = rrr_h_2_in_spec2_y*(v.rrr_w_1_in_axes2_x + v.rrr_w_2_in_axes2_x) -
-            rrr_d_c_in_axes2_yy - v.rrr_d_Gamma_1_in_axes2_x*v.rrr_w_1_in_axes2_x -
-            v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
-        const real rrr_Q_t_4 = R(0.5)*rrr_Q_t_3;
-        const real rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 +
-            axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
-        const real rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 -
-            axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
-        const real rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2*axis_x_rrr_axes2_x*rrr_Q_t_5;
-        const real rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_6 + axis_y_rrr_axes2_x*rrr_Q_t_5;
-        const real rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2*axis_y_rrr_axes2_x*rrr_Q_t_6;
-        /* (M_ta) coupling block of M */
-        const real rrr_M_ta_t = rrr_Q_xy*v.rrr_q_x - rrr_Q_xx*v.rrr_q_y;
-        const real rrr_M_ta_t_2 = rrr_Q_yy*v.rrr_q_x - rrr_Q_xy*v.rrr_q_y;
-        /* (M_aa) rotational block of M */
-        const real rrr_M_aa_t = rrr_M_ta_t_2*v.rrr_q_x - rrr_M_ta_t*v.rrr_q_y;
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, rrr_Q_yy);  /* M_tt_yy_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[3*count + k], add, rrr_M_ta_t);  /* M_ta_xz_of_legs */
-        gather(&terms[4*count + k], add, rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
-        /* (M_aa) rotational block of M */
-        gather(&terms[5*count + k], add, rrr_M_aa_t);  /* M_aa_zz_of_legs */
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        const real rrr_size = m->rrr_size[i];
-        o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
+    values_rrr v;
+    stage_rrr_X(m, w, i, j, s, X, &v);
+    stage_rrr_M_dynamics(m, i, &v);
+    /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rrr_Q_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
+    const real rrr_Q_t_2 = v.rrr_c_1*v.rrr_c_2 - v.rrr_s_1*v.rrr_s_2;
+    const real axis_y_rrr_axes2_x = rrr_Q_t_2*m->rrr_base_frame_xy[i] -
+        rrr_Q_t*m->rrr_base_frame_xx[i];
+    const real axis_x_rrr_axes2_x = rrr_Q_t_2*m->rrr_base_frame_yy[i] -
+        rrr_Q_t*m->rrr_base_frame_yx[i];
+    const real rrr_Q_t_3 = m->rrr_h_2_in_spec2_y[i]*(v.rrr_w_1_in_axes2_x +
+        v.rrr_w_2_in_axes2_x) - m->rrr_d_c_in_axes2_yy[i] -
+        v.rrr_d_Gamma_1_in_axes2_x*v.rrr_w_1_in_axes2_x -
+        v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
+    const real rrr_Q_t_4 = R(0.5)*rrr_Q_t_3;
+    const real rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 +
+        axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+    const real rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 -
+        axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+    const real rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*axis_x_rrr_axes2_x*rrr_Q_t_5;
+    const real rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_6 + axis_y_rrr_axes2_x*rrr_Q_t_5;
+    const real rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*axis_y_rrr_axes2_x*rrr_Q_t_6;
+    /* (M_ta) */
+    const real rrr_M_ta_t = rrr_Q_xy*v.rrr_q_x - rrr_Q_xx*v.rrr_q_y;
+    const real rrr_M_ta_t_2 = rrr_Q_yy*v.rrr_q_x - rrr_Q_xy*v.rrr_q_y;
+    /* (M_aa) */
+    const real rrr_M_aa_t = rrr_M_ta_t_2*v.rrr_q_x - rrr_M_ta_t*v.rrr_q_y;
+    /* (M_tt) */
+    gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, rrr_Q_yy);  /* M_tt_yy_of_legs */
+    /* (M_ta) */
+    gather(&terms[3*count + k], add, rrr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    /* (M_aa) */
+    gather(&terms[5*count + k], add, rrr_M_aa_t);  /* M_aa_zz_of_legs */
+    o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
+        + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
+    o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void M_place_rrr(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void M_place_rrr(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o[0*count + first + k];
-        t->singular[k] += o[1*count + first + k];
-    }
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
 }
 
-INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums, real *M, verdict
-    *t)
+INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
+    *M, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (M_tt) translational block of M */
-        const real M_tt_xx_of_legs = sums[0*w + k];
-        const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_xx_of_legs + m_star;
-        const real M_tt_yy_of_legs = sums[2*w + k];
-        const real M_tt_yy = M_tt_yy_of_legs + m_star;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xz_of_legs = sums[3*w + k];
-        const real h_star_y = s[3*w + k];
-        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-        const real M_ta_yz_of_legs = sums[4*w + k];
-        const real h_star_x = s[2*w + k];
-        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
-        /* (M_aa) rotational block of M */
-        const real J_star_zz = m->J_star_zz;
-        const real M_aa_zz_of_legs = sums[5*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-        /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        const real M_tt_xy = sums[1*w + k];
-        M[1*w + k] = M_tt_xy;
-        M[NV*w + k] = M_tt_xy;
-        M[(NV + 1)*w + k] = M_tt_yy;
-        /* (M_ta) coupling block of M */
-        M[2*w + k] = M_ta_xz;
-        M[2*NV*w + k] = M_ta_xz;
-        M[(NV + 2)*w + k] = M_ta_yz;
-        M[(2*NV + 1)*w + k] = M_ta_yz;
-        /* (M_aa) rotational block of M */
-        M[(2*NV + 2)*w + k] = M_aa_zz;
-        t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
-    }
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_yy_of_legs = sums[2*w + k];
+    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    /* (M_ta) */
+    const real M_ta_xz_of_legs = sums[3*w + k];
+    const real h_star_y = s[3*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yz_of_legs = sums[4*w + k];
+    const real h_star_x = s[2*w + k];
+    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    /* (M_aa) */
+    const real M_aa_zz_of_legs = sums[5*w + k];
+    const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    /* (M_ta) */
+    M[2*w + k] = M_ta_xz;
+    M[2*NV*w + k] = M_ta_xz;
+    M[(NV + 2)*w + k] = M_ta_yz;
+    M[(2*NV + 1)*w + k] = M_ta_yz;
+    /* (M_aa) */
+    M[(2*NV + 2)*w + k] = M_aa_zz;
+    t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
 }
 
-INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
+APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
     real s[4] = {0}, sums[6] = {0};
     real terms_rrr_leg1[6*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real terms_rrr[6*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    M_before(m, 1, X, s);
-    M_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr_leg1), 0, X, terms_rrr_leg1, o_rrr_leg1);
-    M_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
-        M_place_rrr_leg1(1, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, leg, t);
+    M_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
+        M_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, s, X, terms_rrr_leg1, o_rrr_leg1);
+    }
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        M_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, terms_rrr, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        M_place_rrr_leg1(0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        M_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        M_place_rrr(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
-    M_after(m, 1, s, sums, M, t);
+    M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
+INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verdict *restrict t)
 {
     real s[4*LANES], sums[6*LANES];
     real o_rrr_leg1[2*LANES];
     real o_rrr[2*LANES];
-    M_before(m, LANES, X, s);
+    for (size_t k = 0; k < LANES; ++k) {
+        M_before(m, LANES, k, X, s);
+    }
     clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
-        M_legs_rrr_leg1(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_rrr_leg1);
-        M_place_rrr_leg1(LANES, LANES, o_rrr_leg1, 0, t);
+    for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            M_legs_rrr_leg1(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rrr_leg1);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            M_place_rrr_leg1(k, k, LANES, o_rrr_leg1, t);
+        }
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        M_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_rrr);
-        M_place_rrr(LANES, LANES, o_rrr, 0, t);
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            M_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            M_place_rrr(k, k, LANES, o_rrr, t);
+        }
     }
-    M_after(m, LANES, s, sums, M, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        M_after(m, LANES, k, s, sums, M, t);
+    }
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s)
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_V(w, k, V, &v);
-        stage_X(m, w, k, X, &v);
-        /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = v.W_p_xx*v.h_star_x - Z_p_t;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = v.W_p_xx*v.h_star_y - Z_p_t_2;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real Z_q_z = gravity_x*v.h_star_y - gravity_y*v.h_star_x;
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-        s[2*w + k] = Z_p_x;
-        s[3*w + k] = Z_p_y;
-        s[4*w + k] = Z_q_z;
-    }
+    values v;
+    stage_V(w, k, V, &v);
+    stage_X(m, w, k, X, &v);
+    /* (Z_p) centripetal force and weight of the platform */
+    const real Z_p_x = v.W_p_xx*v.h_star_x - m->Z_p_t;
+    const real Z_p_y = v.W_p_xx*v.h_star_y - m->Z_p_t_2;
+    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    const real Z_q_z = m->gravity_x*v.h_star_y - m->gravity_y*v.h_star_x;
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
+    s[2*w + k] = Z_p_x;
+    s[3*w + k] = Z_p_y;
+    s[4*w + k] = Z_q_z;
 }
 
-INLINE void Z_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
+INLINE void Z_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr_leg1 v;
-        stage_rrr_leg1_X(m, w, i, j, s, X, &v);
-        stage_rrr_leg1_V_X(m, w, i, j, V, &v);
-        /* (rrr_leg1-qd_1) rate of joint 1 */
-        const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
-        const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
-        const real axis_y_rrr_leg1_axes2_x = rrr_leg1_base_frame_xy*v.rrr_leg1_qd_1_t_2 -
-            rrr_leg1_base_frame_xx*v.rrr_leg1_qd_1_t;
-        const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
-        const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
-        const real axis_x_rrr_leg1_axes2_x = rrr_leg1_base_frame_yy*v.rrr_leg1_qd_1_t_2 -
-            rrr_leg1_base_frame_yx*v.rrr_leg1_qd_1_t;
-        const real rrr_leg1_qd_1 =
-            v.rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*v.rrr_leg1_S_dot_x -
-            axis_y_rrr_leg1_axes2_x*v.rrr_leg1_S_dot_y);
-        /* (rrr_leg1-W_1) centripetal tensor of link 1 */
-        const real rrr_leg1_W_1_t = rrr_leg1_qd_1*rrr_leg1_qd_1;
-        /* (rrr_leg1-omega_2) angular velocity of link 2 */
-        const real rrr_leg1_w_2_in_axes2_y = m->rrr_leg1_w_2_in_axes2_y[i];
-        const real rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 +
-            rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*v.rrr_leg1_S_dot_y +
-            axis_y_rrr_leg1_axes2_x*v.rrr_leg1_S_dot_x - rrr_leg1_qd_1*v.rrr_leg1_r_1_in_axes2_x);
-        /* (rrr_leg1-W_2) centripetal tensor of link 2 */
-        const real rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z;
-        /* (rrr_leg1-u_1) centripetal acceleration of the connection point */
-        const real omega_z = V[2*w + j];
-        const real rrr_leg1_u_1_x = -omega_z*v.rrr_leg1_S_dot_t_2;
-        const real rrr_leg1_u_1_t = omega_z*v.rrr_leg1_S_dot_t;
-        const real rrr_leg1_u_1_in_axes2_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_u_1_x +
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_u_1_t;
-        const real rrr_leg1_u_1_in_axes2_y = axis_y_rrr_leg1_axes2_x*rrr_leg1_u_1_x -
-            axis_x_rrr_leg1_axes2_x*rrr_leg1_u_1_t;
-        /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
-        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_bias_in_axes2_x = -rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x -
-            rrr_leg1_W_1_t*v.rrr_leg1_c_2*rrr_leg1_joint2_offset_x;
-        /* (rrr_leg1-rel_o) remainder of: acceleration of the connection point left to the joint
-           accelerations */
-        const real rrr_leg1_rel_o_in_axes2_x = rrr_leg1_u_1_in_axes2_x - rrr_leg1_bias_in_axes2_x;
-        const real rrr_leg1_rel_o_in_axes2_y = rrr_leg1_u_1_in_axes2_y -
-            rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*v.rrr_leg1_s_2;
-        /* (rrr_leg1-B_1_o) remainder of the acceleration tensor of link 1 */
-        const real rrr_leg1_B_1_o_in_axes1_xy =
-            -rrr_leg1_rel_o_in_axes2_x*v.rrr_leg1_w_1_in_axes2_x;
-        /* (rrr_leg1-alpha_2_o) remainder of: angular acceleration of link 2 */
-        const real rrr_leg1_alpha_2_o_in_axes2_z =
-            rrr_leg1_w_2_in_axes2_y*(rrr_leg1_rel_o_in_axes2_y +
-            rrr_leg1_B_1_o_in_axes1_xy*v.rrr_leg1_r_1_in_axes2_x) - rrr_leg1_B_1_o_in_axes1_xy;
-        /* (rrr_leg1-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real rrr_leg1_acc_2_o_in_axes2_x = rrr_leg1_u_1_in_axes2_x +
-            axis_y_rrr_leg1_axes2_x*gravity_y - axis_x_rrr_leg1_axes2_x*gravity_x;
-        const real rrr_leg1_acc_2_o_in_axes2_y = rrr_leg1_u_1_in_axes2_y -
-            axis_x_rrr_leg1_axes2_x*gravity_y - axis_y_rrr_leg1_axes2_x*gravity_x;
-        /* (rrr_leg1-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-           reference points */
-        const real rrr_leg1_J_2_in_spec2_zz = m->rrr_leg1_J_2_in_spec2_zz[i];
-        const real rrr_leg1_h_2_in_spec2_x = m->rrr_leg1_h_2_in_spec2_x[i];
-        const real rrr_leg1_h_2_in_spec2_y = m->rrr_leg1_h_2_in_spec2_y[i];
-        const real rrr_leg1_mu_2_o_in_axes2_z =
-            rrr_leg1_J_2_in_spec2_zz*rrr_leg1_alpha_2_o_in_axes2_z +
-            rrr_leg1_acc_2_o_in_axes2_y*rrr_leg1_h_2_in_spec2_x -
-            rrr_leg1_acc_2_o_in_axes2_x*rrr_leg1_h_2_in_spec2_y;
-        /* (rrr_leg1-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-           reference points */
-        const real rrr_leg1_J_1_in_spec1_zz = m->rrr_leg1_J_1_in_spec1_zz[i];
-        const real rrr_leg1_h_1_in_spec1_x = m->rrr_leg1_h_1_in_spec1_x[i];
-        const real rrr_leg1_h_1_in_spec1_y = m->rrr_leg1_h_1_in_spec1_y[i];
-        const real rrr_leg1_mu_1_t = m->rrr_leg1_mu_1_t[i];
-        const real rrr_leg1_mu_1_t_2 = m->rrr_leg1_mu_1_t_2[i];
-        const real rrr_leg1_mu_1_o_in_axes1_z =
-            rrr_leg1_h_1_in_spec1_y*(v.rrr_leg1_c_1*rrr_leg1_mu_1_t +
-            rrr_leg1_mu_1_t_2*v.rrr_leg1_s_1) -
-            rrr_leg1_B_1_o_in_axes1_xy*rrr_leg1_J_1_in_spec1_zz -
-            rrr_leg1_h_1_in_spec1_x*(v.rrr_leg1_c_1*rrr_leg1_mu_1_t_2 -
-            rrr_leg1_mu_1_t*v.rrr_leg1_s_1);
-        /* (rrr_leg1-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at
-           the connection point left out */
-        const real rrr_leg1_N_1_o_in_axes1_z = rrr_leg1_mu_1_o_in_axes1_z +
-            rrr_leg1_mu_2_o_in_axes2_z;
-        /* (rrr_leg1-G_o) remainder of: force at the connection point that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real rrr_leg1_G_o_in_axes2_y = rrr_leg1_mu_2_o_in_axes2_z*rrr_leg1_w_2_in_axes2_y;
-        /* (rrr_leg1-c_o) remainder of: leg force on the platform without actuation and without the mass
-           at the connection point */
-        const real rrr_leg1_c_o_in_axes2_x = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x +
-            rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
-            v.rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_o_in_axes2_y*v.rrr_leg1_r_1_in_axes2_x -
-            rrr_leg1_N_1_o_in_axes1_z);
-        const real rrr_leg1_c_o_in_axes2_y = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y -
-            rrr_leg1_G_o_in_axes2_y - rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_x;
-        /* (rrr_leg1-U) velocity and gravity terms of the leg force */
-        const real rrr_leg1_U_x = -axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x -
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y;
-        const real rrr_leg1_U_y = axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x -
-            axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y;
-        /* (Z_a) rotational part of Z */
-        const real rrr_leg1_Z_a_t = rrr_leg1_U_y*v.rrr_leg1_q_x - rrr_leg1_U_x*v.rrr_leg1_q_y;
-        /* (Z_t) translational part of Z */
-        gather(&terms[0*count + k], add, rrr_leg1_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[1*count + k], add, rrr_leg1_U_y);  /* Z_t_y_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[2*count + k], add, rrr_leg1_Z_a_t);  /* Z_a_z_of_legs */
-        const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
-        const real rrr_leg1_size = m->rrr_leg1_size[i];
-        o[1*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
-            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) >
-            TOLERANCE*rrr_leg1_size);
-        o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
-    }
+    values_rrr_leg1 v;
+    stage_rrr_leg1_X(m, w, i, j, s, X, &v);
+    stage_rrr_leg1_V_X(m, w, i, j, V, &v);
+    /* (rrr_leg1-qd_1) rate of joint 1 */
+    const real axis_y_rrr_leg1_axes2_x = m->rrr_leg1_base_frame_xy[i]*v.rrr_leg1_qd_1_t_2 -
+        m->rrr_leg1_base_frame_xx[i]*v.rrr_leg1_qd_1_t;
+    const real axis_x_rrr_leg1_axes2_x = m->rrr_leg1_base_frame_yy[i]*v.rrr_leg1_qd_1_t_2 -
+        m->rrr_leg1_base_frame_yx[i]*v.rrr_leg1_qd_1_t;
+    const real rrr_leg1_qd_1 =
+        v.rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*v.rrr_leg1_S_dot_x -
+        axis_y_rrr_leg1_axes2_x*v.rrr_leg1_S_dot_y);
+    /* (rrr_leg1-W_1) centripetal tensor of link 1 */
+    const real rrr_leg1_W_1_t = rrr_leg1_qd_1*rrr_leg1_qd_1;
+    /* (rrr_leg1-omega_2) angular velocity of link 2 */
+    const real rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 +
+        m->rrr_leg1_w_2_in_axes2_y[i]*(axis_x_rrr_leg1_axes2_x*v.rrr_leg1_S_dot_y +
+        axis_y_rrr_leg1_axes2_x*v.rrr_leg1_S_dot_x - rrr_leg1_qd_1*v.rrr_leg1_r_1_in_axes2_x);
+    /* (rrr_leg1-W_2) centripetal tensor of link 2 */
+    const real rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z;
+    /* (rrr_leg1-u_1) centripetal acceleration of the connection point */
+    const real omega_z = V[2*w + j];
+    const real rrr_leg1_u_1_x = -omega_z*v.rrr_leg1_S_dot_t_2;
+    const real rrr_leg1_u_1_t = omega_z*v.rrr_leg1_S_dot_t;
+    const real rrr_leg1_u_1_in_axes2_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_u_1_x +
+        axis_y_rrr_leg1_axes2_x*rrr_leg1_u_1_t;
+    const real rrr_leg1_u_1_in_axes2_y = axis_y_rrr_leg1_axes2_x*rrr_leg1_u_1_x -
+        axis_x_rrr_leg1_axes2_x*rrr_leg1_u_1_t;
+    /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
+    const real rrr_leg1_bias_in_axes2_x =
+        -rrr_leg1_W_2_t*m->rrr_leg1_platform_joint_offset_x[i] -
+        rrr_leg1_W_1_t*v.rrr_leg1_c_2*m->rrr_leg1_joint2_offset_x[i];
+    /* (rrr_leg1-rel_o) remainder of: acceleration of the connection point left to the joint
+       accelerations */
+    const real rrr_leg1_rel_o_in_axes2_x = rrr_leg1_u_1_in_axes2_x - rrr_leg1_bias_in_axes2_x;
+    const real rrr_leg1_rel_o_in_axes2_y = rrr_leg1_u_1_in_axes2_y -
+        rrr_leg1_W_1_t*m->rrr_leg1_joint2_offset_x[i]*v.rrr_leg1_s_2;
+    /* (rrr_leg1-B_1_o) remainder of the acceleration tensor of link 1 */
+    const real rrr_leg1_B_1_o_in_axes1_xy =
+        -rrr_leg1_rel_o_in_axes2_x*v.rrr_leg1_w_1_in_axes2_x;
+    /* (rrr_leg1-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real rrr_leg1_alpha_2_o_in_axes2_z =
+        m->rrr_leg1_w_2_in_axes2_y[i]*(rrr_leg1_rel_o_in_axes2_y +
+        rrr_leg1_B_1_o_in_axes1_xy*v.rrr_leg1_r_1_in_axes2_x) - rrr_leg1_B_1_o_in_axes1_xy;
+    /* (rrr_leg1-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
+    const real rrr_leg1_acc_2_o_in_axes2_x = rrr_leg1_u_1_in_axes2_x +
+        axis_y_rrr_leg1_axes2_x*m->gravity_y - axis_x_rrr_leg1_axes2_x*m->gravity_x;
+    const real rrr_leg1_acc_2_o_in_axes2_y = rrr_leg1_u_1_in_axes2_y -
+        axis_x_rrr_leg1_axes2_x*m->gravity_y - axis_y_rrr_leg1_axes2_x*m->gravity_x;
+    /* (rrr_leg1-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real rrr_leg1_mu_2_o_in_axes2_z =
+        m->rrr_leg1_J_2_in_spec2_zz[i]*rrr_leg1_alpha_2_o_in_axes2_z +
+        rrr_leg1_acc_2_o_in_axes2_y*m->rrr_leg1_h_2_in_spec2_x[i] -
+        rrr_leg1_acc_2_o_in_axes2_x*m->rrr_leg1_h_2_in_spec2_y[i];
+    /* (rrr_leg1-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
+    const real rrr_leg1_mu_1_o_in_axes1_z =
+        m->rrr_leg1_h_1_in_spec1_y[i]*(v.rrr_leg1_c_1*m->rrr_leg1_mu_1_t[i] +
+        m->rrr_leg1_mu_1_t_2[i]*v.rrr_leg1_s_1) -
+        rrr_leg1_B_1_o_in_axes1_xy*m->rrr_leg1_J_1_in_spec1_zz[i] -
+        m->rrr_leg1_h_1_in_spec1_x[i]*(v.rrr_leg1_c_1*m->rrr_leg1_mu_1_t_2[i] -
+        m->rrr_leg1_mu_1_t[i]*v.rrr_leg1_s_1);
+    /* (rrr_leg1-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at
+       the connection point left out */
+    const real rrr_leg1_N_1_o_in_axes1_z = rrr_leg1_mu_1_o_in_axes1_z +
+        rrr_leg1_mu_2_o_in_axes2_z;
+    /* (rrr_leg1-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real rrr_leg1_G_o_in_axes2_y =
+        rrr_leg1_mu_2_o_in_axes2_z*m->rrr_leg1_w_2_in_axes2_y[i];
+    /* (rrr_leg1-c_o) remainder of: leg force on the platform without actuation and without the mass
+       at the connection point */
+    const real rrr_leg1_c_o_in_axes2_x = rrr_leg1_W_2_t*m->rrr_leg1_h_2_in_spec2_x[i] +
+        rrr_leg1_alpha_2_o_in_axes2_z*m->rrr_leg1_h_2_in_spec2_y[i] +
+        v.rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_o_in_axes2_y*v.rrr_leg1_r_1_in_axes2_x -
+        rrr_leg1_N_1_o_in_axes1_z);
+    const real rrr_leg1_c_o_in_axes2_y = rrr_leg1_W_2_t*m->rrr_leg1_h_2_in_spec2_y[i] -
+        rrr_leg1_G_o_in_axes2_y - rrr_leg1_alpha_2_o_in_axes2_z*m->rrr_leg1_h_2_in_spec2_x[i];
+    /* (rrr_leg1-U) velocity and gravity terms of the leg force */
+    const real rrr_leg1_U_x = -axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x -
+        axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y;
+    const real rrr_leg1_U_y = axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x -
+        axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y;
+    /* (Z_a) rotational part of Z */
+    const real rrr_leg1_Z_a_t = rrr_leg1_U_y*v.rrr_leg1_q_x - rrr_leg1_U_x*v.rrr_leg1_q_y;
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, rrr_leg1_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, rrr_leg1_U_y);  /* Z_t_y_of_legs */
+    /* (Z_a) */
+    gather(&terms[2*count + k], add, rrr_leg1_Z_a_t);  /* Z_a_z_of_legs */
+    o[1*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
+        UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
+    o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
-INLINE void Z_place_rrr_leg1(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void Z_place_rrr_leg1(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o[0*count + first + k];
-        t->singular[k] += o[1*count + first + k];
-    }
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
 }
 
-INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
+INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_X(m, w, i, j, s, X, &v);
-        stage_rrr_V_X(m, w, i, j, V, &v);
-        /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*v.rrr_qd_1_t_2 -
-            rrr_base_frame_xx*v.rrr_qd_1_t;
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*v.rrr_qd_1_t_2 -
-            rrr_base_frame_yx*v.rrr_qd_1_t;
-        const real rrr_qd_1 = v.rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*v.rrr_S_dot_x -
-            axis_y_rrr_axes2_x*v.rrr_S_dot_y);
-        /* (rrr-W_1) centripetal tensor of link 1 */
-        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
-            rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*v.rrr_S_dot_y +
-            axis_y_rrr_axes2_x*v.rrr_S_dot_x - rrr_qd_1*v.rrr_r_1_in_axes2_x);
-        /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
-        /* (rrr-u_1) centripetal acceleration of the connection point */
-        const real omega_z = V[2*w + j];
-        const real rrr_u_1_x = -omega_z*v.rrr_S_dot_t_2;
-        const real rrr_u_1_t = omega_z*v.rrr_S_dot_t;
-        const real rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x +
-            axis_y_rrr_axes2_x*rrr_u_1_t;
-        const real rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x -
-            axis_x_rrr_axes2_x*rrr_u_1_t;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-            rrr_W_1_t*v.rrr_c_2*rrr_joint2_offset_x;
-        /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-           */
-        const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x;
-        const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
-            rrr_W_1_t*rrr_joint2_offset_x*v.rrr_s_2;
-        /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
-        const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*v.rrr_w_1_in_axes2_x;
-        /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
-        const real rrr_alpha_2_o_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y +
-            rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
-        /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
-            axis_x_rrr_axes2_x*gravity_x;
-        const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
-            axis_y_rrr_axes2_x*gravity_x;
-        /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-           reference points */
-        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
-        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
-        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-        const real rrr_mu_2_o_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
-            rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y;
-        /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-           reference points */
-        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
-        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
-        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
-        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
-        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
-        const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(v.rrr_c_1*rrr_mu_1_t +
-            rrr_mu_1_t_2*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
-            rrr_h_1_in_spec1_x*(v.rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v.rrr_s_1);
-        /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
-           connection point left out */
-        const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
-        /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y;
-        /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-           connection point */
-        const real rrr_c_o_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
-            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
-            v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
-        const real rrr_c_o_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
-            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x;
-        /* (rrr-U) velocity and gravity terms of the leg force */
-        const real rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
-            axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
-        const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
-            axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
-        /* (Z_a) rotational part of Z */
-        const real rrr_Z_a_t = rrr_U_y*v.rrr_q_x - rrr_U_x*v.rrr_q_y;
-        /* (Z_t) translational part of Z */
-        gather(&terms[0*count + k], add, rrr_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[1*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[2*count + k], add, rrr_Z_a_t);  /* Z_a_z_of_legs */
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        const real rrr_size = m->rrr_size[i];
-        o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
+    values_rrr v;
+    stage_rrr_X(m, w, i, j, s, X, &v);
+    stage_rrr_V_X(m, w, i, j, V, &v);
+    /* (rrr-qd_1) rate of joint 1 */
+    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*v.rrr_qd_1_t_2 -
+        m->rrr_base_frame_xx[i]*v.rrr_qd_1_t;
+    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*v.rrr_qd_1_t_2 -
+        m->rrr_base_frame_yx[i]*v.rrr_qd_1_t;
+    const real rrr_qd_1 = v.rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*v.rrr_S_dot_x -
+        axis_y_rrr_axes2_x*v.rrr_S_dot_y);
+    /* (rrr-W_1) centripetal tensor of link 1 */
+    const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+    /* (rrr-omega_2) angular velocity of link 2 */
+    const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
+        m->rrr_w_2_in_axes2_y[i]*(axis_x_rrr_axes2_x*v.rrr_S_dot_y +
+        axis_y_rrr_axes2_x*v.rrr_S_dot_x - rrr_qd_1*v.rrr_r_1_in_axes2_x);
+    /* (rrr-W_2) centripetal tensor of link 2 */
+    const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
+    /* (rrr-u_1) centripetal acceleration of the connection point */
+    const real omega_z = V[2*w + j];
+    const real rrr_u_1_x = -omega_z*v.rrr_S_dot_t_2;
+    const real rrr_u_1_t = omega_z*v.rrr_S_dot_t;
+    const real rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x +
+        axis_y_rrr_axes2_x*rrr_u_1_t;
+    const real rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x -
+        axis_x_rrr_axes2_x*rrr_u_1_t;
+    /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+    const real rrr_bias_in_axes2_x = -rrr_W_2_t*m->rrr_platform_joint_offset_x[i] -
+        rrr_W_1_t*v.rrr_c_2*m->rrr_joint2_offset_x[i];
+    /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x;
+    const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
+        rrr_W_1_t*m->rrr_joint2_offset_x[i]*v.rrr_s_2;
+    /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
+    const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*v.rrr_w_1_in_axes2_x;
+    /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real rrr_alpha_2_o_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_o_in_axes2_y +
+        rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
+    /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
+    const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*m->gravity_y -
+        axis_x_rrr_axes2_x*m->gravity_x;
+    const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*m->gravity_y -
+        axis_y_rrr_axes2_x*m->gravity_x;
+    /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real rrr_mu_2_o_in_axes2_z = m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z +
+        rrr_acc_2_o_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
+        rrr_acc_2_o_in_axes2_x*m->rrr_h_2_in_spec2_y[i];
+    /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
+    const real rrr_mu_1_o_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] +
+        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i] -
+        m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v.rrr_s_1);
+    /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+       connection point left out */
+    const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
+    /* (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
+    /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
+    const real rrr_c_o_in_axes2_x = rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
+        v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
+    const real rrr_c_o_in_axes2_y = rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] - rrr_G_o_in_axes2_y -
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i];
+    /* (rrr-U) velocity and gravity terms of the leg force */
+    const real rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
+        axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
+    const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
+        axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
+    /* (Z_a) */
+    const real rrr_Z_a_t = rrr_U_y*v.rrr_q_x - rrr_U_x*v.rrr_q_y;
+    /* (Z_t) */
+    gather(&terms[0*count + k], add, rrr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
+    /* (Z_a) */
+    gather(&terms[2*count + k], add, rrr_Z_a_t);  /* Z_a_z_of_legs */
+    o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
+        + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
+    o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void Z_place_rrr(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void Z_place_rrr(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o[0*count + first + k];
-        t->singular[k] += o[1*count + first + k];
-    }
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
 }
 
-INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict *t)
+INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (Z_t) translational part of Z */
-        const real Z_p_x = s[2*w + k];
-        const real Z_t_x_of_legs = sums[0*w + k];
-        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[3*w + k];
-        const real Z_t_y_of_legs = sums[1*w + k];
-        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        /* (Z_a) rotational part of Z */
-        const real Z_a_z_of_legs = sums[2*w + k];
-        const real Z_q_z = s[4*w + k];
-        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
-        /* (Z_t) translational part of Z */
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-        /* (Z_a) rotational part of Z */
-        Z[2*w + k] = Z_a_z;
-        t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
-    }
+    /* (Z_t) */
+    const real Z_p_x = s[2*w + k];
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[3*w + k];
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    /* (Z_a) */
+    const real Z_a_z_of_legs = sums[2*w + k];
+    const real Z_q_z = s[4*w + k];
+    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    /* (Z_a) */
+    Z[2*w + k] = Z_a_z;
+    t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
 }
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
@@ -2992,973 +2838,918 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     real s[5] = {0}, sums[3] = {0};
     real terms_rrr_leg1[3*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    Z_before(m, 1, X, V, s);
-    Z_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr_leg1), 0, X, V, terms_rrr_leg1, o_rrr_leg1);
-    Z_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, V, terms_rrr, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
-        Z_place_rrr_leg1(1, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, leg, t);
+    Z_before(m, 1, 0, X, V, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
+        Z_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, s, X, V, terms_rrr_leg1, o_rrr_leg1);
+    }
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        Z_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, V, terms_rrr, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        Z_place_rrr_leg1(0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        Z_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        Z_place_rrr(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
-    Z_after(1, s, sums, Z, t);
+    Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z, verdict
+    *restrict t)
 {
     real s[5*LANES], sums[3*LANES];
     real o_rrr_leg1[2*LANES];
     real o_rrr[2*LANES];
-    Z_before(m, LANES, X, V, s);
+    for (size_t k = 0; k < LANES; ++k) {
+        Z_before(m, LANES, k, X, V, s);
+    }
     clear(sums, 3*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
-        Z_legs_rrr_leg1(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rrr_leg1);
-        Z_place_rrr_leg1(LANES, LANES, o_rrr_leg1, 0, t);
+    for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_legs_rrr_leg1(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrr_leg1);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_place_rrr_leg1(k, k, LANES, o_rrr_leg1, t);
+        }
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        Z_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rrr);
-        Z_place_rrr(LANES, LANES, o_rrr, 0, t);
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_place_rrr(k, k, LANES, o_rrr, t);
+        }
     }
-    Z_after(LANES, s, sums, Z, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        Z_after(LANES, k, s, sums, Z, t);
+    }
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
 }
 
-INLINE void H_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, const real *X, real *o)
+INLINE void H_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr_leg1 v;
-        stage_rrr_leg1_X(m, w, i, j, s, X, &v);
-        stage_rrr_leg1_H_condition(m, i, &v);
-        /* (rrr_leg1-w_1) reciprocal vector 1 */
-        o[0*count + k] = v.rrr_leg1_w_1_x;
-        o[1*count + k] = v.rrr_leg1_w_1_y;
-        /* (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = v.rrr_leg1_H_a_1_z;
-        /* (rrr_leg1-w_2) reciprocal vector 2 */
-        o[3*count + k] = v.rrr_leg1_w_2_x;
-        o[4*count + k] = v.rrr_leg1_w_2_y;
-        /* (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin */
-        o[5*count + k] = v.rrr_leg1_H_a_2_z;
-        o[8*count + k] = (v.rrr_leg1_w_1_x + (v.rrr_leg1_w_1_y + v.rrr_leg1_H_a_1_z)) +
-            (v.rrr_leg1_w_2_x + (v.rrr_leg1_w_2_y + v.rrr_leg1_H_a_2_z));
-        const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
-        const real rrr_leg1_size = m->rrr_leg1_size[i];
-        o[7*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
-            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) >
-            TOLERANCE*rrr_leg1_size);
-        o[6*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
-    }
+    values_rrr_leg1 v;
+    stage_rrr_leg1_X(m, w, i, j, s, X, &v);
+    stage_rrr_leg1_H_condition(m, i, &v);
+    /* (rrr_leg1-w_1) reciprocal vector 1 */
+    o[0*count + k] = v.rrr_leg1_w_1_x;
+    o[1*count + k] = v.rrr_leg1_w_1_y;
+    /* (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v.rrr_leg1_H_a_1_z;
+    /* (rrr_leg1-w_2) reciprocal vector 2 */
+    o[3*count + k] = v.rrr_leg1_w_2_x;
+    o[4*count + k] = v.rrr_leg1_w_2_y;
+    /* (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin */
+    o[5*count + k] = v.rrr_leg1_H_a_2_z;
+    o[8*count + k] = (v.rrr_leg1_w_1_x + (v.rrr_leg1_w_1_y + v.rrr_leg1_H_a_1_z)) +
+        (v.rrr_leg1_w_2_x + (v.rrr_leg1_w_2_y + v.rrr_leg1_H_a_2_z));
+    o[7*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
+        UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
+    o[6*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
-INLINE void H_place_rrr_leg1(size_t w, size_t count, const real *o, size_t first, real *H, verdict
-    *t)
+INLINE void H_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[0*w + k] = o[0*count + first + k];
-        H[NU*w + k] = o[1*count + first + k];
-        H[2*NU*w + k] = o[2*count + first + k];
-        H[1*w + k] = o[3*count + first + k];
-        H[(NU + 1)*w + k] = o[4*count + first + k];
-        H[(2*NU + 1)*w + k] = o[5*count + first + k];
-        t->unreachable[k] += o[6*count + first + k];
-        t->singular[k] += o[7*count + first + k];
-        t->total[k] += o[8*count + first + k];
-    }
+    H[0*w + k] = o[0*count + at];
+    H[NU*w + k] = o[1*count + at];
+    H[2*NU*w + k] = o[2*count + at];
+    H[1*w + k] = o[3*count + at];
+    H[(NU + 1)*w + k] = o[4*count + at];
+    H[(2*NU + 1)*w + k] = o[5*count + at];
+    t->unreachable[k] += o[6*count + at];
+    t->singular[k] += o[7*count + at];
+    t->total[k] += o[8*count + at];
 }
 
-INLINE void H_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, const real *X, real *o)
+INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_X(m, w, i, j, s, X, &v);
-        stage_rrr_H_condition(m, i, &v);
-        /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = v.rrr_w_1_x;
-        o[1*count + k] = v.rrr_w_1_y;
-        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = v.rrr_H_a_1_z;
-        o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + v.rrr_H_a_1_z);
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        const real rrr_size = m->rrr_size[i];
-        o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
+    values_rrr v;
+    stage_rrr_X(m, w, i, j, s, X, &v);
+    stage_rrr_H_condition(m, i, &v);
+    /* (rrr-w_1) reciprocal vector 1 */
+    o[0*count + k] = v.rrr_w_1_x;
+    o[1*count + k] = v.rrr_w_1_y;
+    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v.rrr_H_a_1_z;
+    o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + v.rrr_H_a_1_z);
+    o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
+        + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
+    o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void H_place_rrr(size_t w, size_t count, const real *o, size_t first, real *H, verdict *t)
+INLINE void H_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[2*w + k] = o[0*count + first + k];
-        H[(NU + 2)*w + k] = o[1*count + first + k];
-        H[(2*NU + 2)*w + k] = o[2*count + first + k];
-        t->unreachable[k] += o[3*count + first + k];
-        t->singular[k] += o[4*count + first + k];
-        t->total[k] += o[5*count + first + k];
-    }
+    H[2*w + k] = o[0*count + at];
+    H[(NU + 2)*w + k] = o[1*count + at];
+    H[(2*NU + 2)*w + k] = o[2*count + at];
+    t->unreachable[k] += o[3*count + at];
+    t->singular[k] += o[4*count + at];
+    t->total[k] += o[5*count + at];
 }
 
-INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
+APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
     real s[2] = {0};
     real o_rrr_leg1[9*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
-    H_before(m, 1, X, s);
-    H_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr_leg1), X, o_rrr_leg1);
-    H_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), X, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
-        H_place_rrr_leg1(1, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, leg, H, t);
+    H_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
+        H_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), s, X, o_rrr_leg1);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        H_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        H_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        H_place_rrr_leg1(1, 0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, H, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        H_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
 }
 
-INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
+INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verdict *restrict t)
 {
     real s[2*LANES];
     real o_rrr_leg1[9*LANES];
     real o_rrr[6*LANES];
-    H_before(m, LANES, X, s);
-    for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
-        H_legs_rrr_leg1(m, LANES, leg, 0, s, 1, LANES, X, o_rrr_leg1);
-        H_place_rrr_leg1(LANES, LANES, o_rrr_leg1, 0, H, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        H_before(m, LANES, k, X, s);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        H_legs_rrr(m, LANES, leg, 0, s, 1, LANES, X, o_rrr);
-        H_place_rrr(LANES, LANES, o_rrr, 0, H, t);
+    for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            H_legs_rrr_leg1(m, LANES, i, k, k, LANES, s, X, o_rrr_leg1);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            H_place_rrr_leg1(LANES, k, k, LANES, o_rrr_leg1, H, t);
+        }
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            H_legs_rrr(m, LANES, i, k, k, LANES, s, X, o_rrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            H_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
+        }
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, real *s)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_V(w, k, V, &v);
-        stage_X(m, w, k, X, &v);
-        /* (a_t) acceleration of the platform origin, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real t_ddot_x = A[0*w + k];
-        const real a_t_x = t_ddot_x - gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real t_ddot_y = A[1*w + k];
-        const real a_t_y = t_ddot_y - gravity_y;
-        /* (f_p) inertia force of the platform less its weight */
-        const real alpha_z = A[2*w + k];
-        const real m_star = m->m_star;
-        const real f_p_x = v.W_p_xx*v.h_star_x + a_t_x*m_star - alpha_z*v.h_star_y;
-        const real f_p_y = v.W_p_xx*v.h_star_y + a_t_y*m_star + alpha_z*v.h_star_x;
-        /* (mu_p) inertia moment of the platform less that of its weight */
-        const real J_star_zz = m->J_star_zz;
-        const real mu_p_z = J_star_zz*alpha_z + a_t_y*v.h_star_x - a_t_x*v.h_star_y;
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-        s[2*w + k] = f_p_x;
-        s[3*w + k] = f_p_y;
-        s[4*w + k] = mu_p_z;
-    }
+    values v;
+    stage_V(w, k, V, &v);
+    stage_X(m, w, k, X, &v);
+    /* (a_t) acceleration of the platform origin, less gravity */
+    const real t_ddot_x = A[0*w + k];
+    const real a_t_x = t_ddot_x - m->gravity_x;
+    const real t_ddot_y = A[1*w + k];
+    const real a_t_y = t_ddot_y - m->gravity_y;
+    /* (f_p) inertia force of the platform less its weight */
+    const real alpha_z = A[2*w + k];
+    const real f_p_x = v.W_p_xx*v.h_star_x + a_t_x*m->m_star - alpha_z*v.h_star_y;
+    const real f_p_y = v.W_p_xx*v.h_star_y + a_t_y*m->m_star + alpha_z*v.h_star_x;
+    /* (mu_p) inertia moment of the platform less that of its weight */
+    const real mu_p_z = m->J_star_zz*alpha_z + a_t_y*v.h_star_x - a_t_x*v.h_star_y;
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
+    s[2*w + k] = f_p_x;
+    s[3*w + k] = f_p_y;
+    s[4*w + k] = mu_p_z;
 }
 
-INLINE void required_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, const
-    real *s, size_t states, size_t count, int add, const real *X, const real *V, const real *A,
-    real *terms, real *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr_leg1 v;
-        stage_rrr_leg1_X(m, w, i, j, s, X, &v);
-        stage_rrr_leg1_A_X(w, j, A, &v);
-        stage_rrr_leg1_V_X(m, w, i, j, V, &v);
-        stage_rrr_leg1_A_V_X(w, j, V, &v);
-        stage_rrr_leg1_legs_required(m, i, &v);
-        /* (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real rrr_leg1_c_x = v.axis_x_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_x +
-            v.axis_y_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_y;
-        const real rrr_leg1_c_y = v.axis_x_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_y -
-            v.axis_y_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_x;
-        /* (R_a) moment that actuators and external wrench must give */
-        const real rrr_leg1_R_a_t = rrr_leg1_c_x*v.rrr_leg1_q_y - rrr_leg1_c_y*v.rrr_leg1_q_x;
-        /* (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin */
-        const real rrr_leg1_H_a_2_z = v.rrr_leg1_q_x*v.rrr_leg1_w_2_y -
-            v.rrr_leg1_q_y*v.rrr_leg1_w_2_x;
-        /* (R_t) force that actuators and external wrench must give */
-        gather(&terms[0*count + k], add, rrr_leg1_c_x);  /* R_t_x_of_legs */
-        gather(&terms[1*count + k], add, rrr_leg1_c_y);  /* R_t_y_of_legs */
-        /* (R_a) moment that actuators and external wrench must give */
-        gather(&terms[2*count + k], add, rrr_leg1_R_a_t);  /* R_a_z_of_legs */
-        /* (rrr_leg1-w_1) reciprocal vector 1 */
-        o[0*count + k] = v.rrr_leg1_w_1_x;
-        o[1*count + k] = v.rrr_leg1_w_1_y;
-        /* (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = v.rrr_leg1_H_a_1_z;
-        /* (rrr_leg1-w_2) reciprocal vector 2 */
-        o[3*count + k] = v.rrr_leg1_w_2_x;
-        o[4*count + k] = v.rrr_leg1_w_2_y;
-        /* (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin */
-        o[5*count + k] = rrr_leg1_H_a_2_z;
-        const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
-        const real rrr_leg1_size = m->rrr_leg1_size[i];
-        o[7*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
-            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) >
-            TOLERANCE*rrr_leg1_size);
-        o[6*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
-    }
-}
-
-INLINE void required_place_rrr_leg1(size_t w, size_t count, const real *o, size_t first, real *H,
-    verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        H[0*w + k] = o[0*count + first + k];
-        H[NU*w + k] = o[1*count + first + k];
-        H[2*NU*w + k] = o[2*count + first + k];
-        H[1*w + k] = o[3*count + first + k];
-        H[(NU + 1)*w + k] = o[4*count + first + k];
-        H[(2*NU + 1)*w + k] = o[5*count + first + k];
-        t->unreachable[k] += o[6*count + first + k];
-        t->singular[k] += o[7*count + first + k];
-    }
-}
-
-INLINE void required_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
+INLINE void required_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, size_t k,
+    size_t count, int add, const real *s, const real *X, const real *V, const real *A, real
     *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_X(m, w, i, j, s, X, &v);
-        stage_rrr_A_X(w, j, A, &v);
-        stage_rrr_V_X(m, w, i, j, V, &v);
-        stage_rrr_A_V_X(w, j, V, &v);
-        stage_rrr_legs_required(m, i, &v);
-        /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real rrr_c_x = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_x +
-            v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_y;
-        const real rrr_c_y = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_y -
-            v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_x;
-        /* (R_a) moment that actuators and external wrench must give */
-        const real rrr_R_a_t = rrr_c_x*v.rrr_q_y - rrr_c_y*v.rrr_q_x;
-        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_H_a_1_z = v.rrr_q_x*v.rrr_w_1_y - v.rrr_q_y*v.rrr_w_1_x;
-        /* (R_t) force that actuators and external wrench must give */
-        gather(&terms[0*count + k], add, rrr_c_x);  /* R_t_x_of_legs */
-        gather(&terms[1*count + k], add, rrr_c_y);  /* R_t_y_of_legs */
-        /* (R_a) moment that actuators and external wrench must give */
-        gather(&terms[2*count + k], add, rrr_R_a_t);  /* R_a_z_of_legs */
-        /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = v.rrr_w_1_x;
-        o[1*count + k] = v.rrr_w_1_y;
-        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = rrr_H_a_1_z;
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        const real rrr_size = m->rrr_size[i];
-        o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
+    values_rrr_leg1 v;
+    stage_rrr_leg1_X(m, w, i, j, s, X, &v);
+    stage_rrr_leg1_A_X(w, j, A, &v);
+    stage_rrr_leg1_V_X(m, w, i, j, V, &v);
+    stage_rrr_leg1_A_V_X(w, j, V, &v);
+    stage_rrr_leg1_legs_required(m, i, &v);
+    /* (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real rrr_leg1_c_x = v.axis_x_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_x +
+        v.axis_y_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_y;
+    const real rrr_leg1_c_y = v.axis_x_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_y -
+        v.axis_y_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_x;
+    /* (R_a) moment that actuators and external wrench must give */
+    const real rrr_leg1_R_a_t = rrr_leg1_c_x*v.rrr_leg1_q_y - rrr_leg1_c_y*v.rrr_leg1_q_x;
+    /* (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin */
+    const real rrr_leg1_H_a_2_z = v.rrr_leg1_q_x*v.rrr_leg1_w_2_y -
+        v.rrr_leg1_q_y*v.rrr_leg1_w_2_x;
+    /* (R_t) force that actuators and external wrench must give */
+    gather(&terms[0*count + k], add, rrr_leg1_c_x);  /* R_t_x_of_legs */
+    gather(&terms[1*count + k], add, rrr_leg1_c_y);  /* R_t_y_of_legs */
+    /* (R_a) */
+    gather(&terms[2*count + k], add, rrr_leg1_R_a_t);  /* R_a_z_of_legs */
+    /* (rrr_leg1-w_1) reciprocal vector 1 */
+    o[0*count + k] = v.rrr_leg1_w_1_x;
+    o[1*count + k] = v.rrr_leg1_w_1_y;
+    /* (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v.rrr_leg1_H_a_1_z;
+    /* (rrr_leg1-w_2) reciprocal vector 2 */
+    o[3*count + k] = v.rrr_leg1_w_2_x;
+    o[4*count + k] = v.rrr_leg1_w_2_y;
+    /* (rrr_leg1-H_a_2) */
+    o[5*count + k] = rrr_leg1_H_a_2_z;
+    o[7*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
+        UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
+    o[6*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
-INLINE void required_place_rrr(size_t w, size_t count, const real *o, size_t first, real *H,
-    verdict *t)
+INLINE void required_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const real *o,
+    real *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[2*w + k] = o[0*count + first + k];
-        H[(NU + 2)*w + k] = o[1*count + first + k];
-        H[(2*NU + 2)*w + k] = o[2*count + first + k];
-        t->unreachable[k] += o[3*count + first + k];
-        t->singular[k] += o[4*count + first + k];
-    }
+    H[0*w + k] = o[0*count + at];
+    H[NU*w + k] = o[1*count + at];
+    H[2*NU*w + k] = o[2*count + at];
+    H[1*w + k] = o[3*count + at];
+    H[(NU + 1)*w + k] = o[4*count + at];
+    H[(2*NU + 1)*w + k] = o[5*count + at];
+    t->unreachable[k] += o[6*count + at];
+    t->singular[k] += o[7*count + at];
 }
 
-INLINE void required_after(size_t w, const real *s, const real *sums, real *required)
+INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, const real *V, const real *A, real *terms, real
+    *o)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (R_t) force that actuators and external wrench must give */
-        const real R_t_x_of_legs = sums[0*w + k];
-        const real f_p_x = s[2*w + k];
-        const real R_t_x = f_p_x - R_t_x_of_legs;
-        const real R_t_y_of_legs = sums[1*w + k];
-        const real f_p_y = s[3*w + k];
-        const real R_t_y = f_p_y - R_t_y_of_legs;
-        /* (R_a) moment that actuators and external wrench must give */
-        const real R_a_z_of_legs = sums[2*w + k];
-        const real mu_p_z = s[4*w + k];
-        const real R_a_z = R_a_z_of_legs + mu_p_z;
-        /* (R_t) force that actuators and external wrench must give */
-        required[0*w + k] = R_t_x;
-        required[1*w + k] = R_t_y;
-        /* (R_a) moment that actuators and external wrench must give */
-        required[2*w + k] = R_a_z;
-    }
+    values_rrr v;
+    stage_rrr_X(m, w, i, j, s, X, &v);
+    stage_rrr_A_X(w, j, A, &v);
+    stage_rrr_V_X(m, w, i, j, V, &v);
+    stage_rrr_A_V_X(w, j, V, &v);
+    stage_rrr_legs_required(m, i, &v);
+    /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real rrr_c_x = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_x +
+        v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_y;
+    const real rrr_c_y = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_y -
+        v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_x;
+    /* (R_a) */
+    const real rrr_R_a_t = rrr_c_x*v.rrr_q_y - rrr_c_y*v.rrr_q_x;
+    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+    const real rrr_H_a_1_z = v.rrr_q_x*v.rrr_w_1_y - v.rrr_q_y*v.rrr_w_1_x;
+    /* (R_t) */
+    gather(&terms[0*count + k], add, rrr_c_x);  /* R_t_x_of_legs */
+    gather(&terms[1*count + k], add, rrr_c_y);  /* R_t_y_of_legs */
+    /* (R_a) */
+    gather(&terms[2*count + k], add, rrr_R_a_t);  /* R_a_z_of_legs */
+    /* (rrr-w_1) reciprocal vector 1 */
+    o[0*count + k] = v.rrr_w_1_x;
+    o[1*count + k] = v.rrr_w_1_y;
+    /* (rrr-H_a_1) */
+    o[2*count + k] = rrr_H_a_1_z;
+    o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
+        + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
+    o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+INLINE void required_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
+    *H, verdict *t)
+{
+    H[2*w + k] = o[0*count + at];
+    H[(NU + 2)*w + k] = o[1*count + at];
+    H[(2*NU + 2)*w + k] = o[2*count + at];
+    t->unreachable[k] += o[3*count + at];
+    t->singular[k] += o[4*count + at];
+}
+
+INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
+{
+    /* (R_t) */
+    const real R_t_x_of_legs = sums[0*w + k];
+    const real f_p_x = s[2*w + k];
+    const real R_t_x = f_p_x - R_t_x_of_legs;
+    const real R_t_y_of_legs = sums[1*w + k];
+    const real f_p_y = s[3*w + k];
+    const real R_t_y = f_p_y - R_t_y_of_legs;
+    /* (R_a) */
+    const real R_a_z_of_legs = sums[2*w + k];
+    const real mu_p_z = s[4*w + k];
+    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    /* (R_t) */
+    required[0*w + k] = R_t_x;
+    required[1*w + k] = R_t_y;
+    /* (R_a) */
+    required[2*w + k] = R_a_z;
+}
+
+APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
     real s[5] = {0}, sums[3] = {0};
     real terms_rrr_leg1[3*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[8*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    required_before(m, 1, X, V, A, s);
-    required_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr_leg1), 0, X, V, A, terms_rrr_leg1, o_rrr_leg1);
-    required_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, V, A, terms_rrr, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
-        required_place_rrr_leg1(1, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, leg, H, t);
+    required_before(m, 1, 0, X, V, A, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
+        required_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, s, X, V, A, terms_rrr_leg1, o_rrr_leg1);
+    }
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        required_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, V, A, terms_rrr, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        required_place_rrr_leg1(1, 0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, H, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        required_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, t);
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        required_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
-    required_after(1, s, sums, required);
+    required_after(1, 0, s, sums, required);
 }
 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *required, real *H, verdict *t)
+    real *restrict required, real *restrict H, verdict *restrict t)
 {
     real s[5*LANES], sums[3*LANES];
     real o_rrr_leg1[8*LANES];
     real o_rrr[5*LANES];
-    required_before(m, LANES, X, V, A, s);
+    for (size_t k = 0; k < LANES; ++k) {
+        required_before(m, LANES, k, X, V, A, s);
+    }
     clear(sums, 3*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
-        required_legs_rrr_leg1(m, LANES, leg, 0, s, 1, LANES, 1, X, V, A, sums, o_rrr_leg1);
-        required_place_rrr_leg1(LANES, LANES, o_rrr_leg1, 0, H, t);
+    for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            required_legs_rrr_leg1(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_rrr_leg1);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            required_place_rrr_leg1(LANES, k, k, LANES, o_rrr_leg1, H, t);
+        }
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        required_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, A, sums, o_rrr);
-        required_place_rrr(LANES, LANES, o_rrr, 0, H, t);
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            required_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_rrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            required_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
+        }
     }
-    required_after(LANES, s, sums, required);
+    for (size_t k = 0; k < LANES; ++k) {
+        required_after(LANES, k, s, sums, required);
+    }
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, real
+    *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
 }
 
-INLINE void inverse_kinematics_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, const real *X, real *o)
+INLINE void inverse_kinematics_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j,
+    size_t k, size_t count, const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr_leg1 v;
-        stage_rrr_leg1_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-        /* (rrr_leg1-q_1) displacement of joint 1 */
-        const real rrr_leg1_q_1 = angle(v.inv_rrr_leg1_rho2_1*(v.rrr_leg1_Kc_1*v.rrr_leg1_root_1 +
-            v.rrr_leg1_Kd_1*v.rrr_leg1_Ks_1),
-            v.inv_rrr_leg1_rho2_1*(v.rrr_leg1_Kc_1*v.rrr_leg1_Kd_1 -
-            v.rrr_leg1_Ks_1*v.rrr_leg1_root_1));
-        /* (rrr_leg1-q_2) displacement of joint 2 */
-        const real inv_rrr_leg1_size_t = m->inv_rrr_leg1_size_t[i];
-        const real inv_rrr_leg1_size_t_2 = m->inv_rrr_leg1_size_t_2[i];
-        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
-        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_q_2 =
-            angle(-inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*v.rrr_leg1_root_1,
-            inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*v.rrr_leg1_x_2_in_axes1_x);
-        /* (rrr_leg1-q_1) displacement of joint 1 */
-        o[0*count + k] = rrr_leg1_q_1;
-        /* (rrr_leg1-q_2) displacement of joint 2 */
-        o[1*count + k] = rrr_leg1_q_2;
-        o[4*count + k] = rrr_leg1_q_1 + rrr_leg1_q_2;
-        const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
-        o[3*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
-            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t);
-        o[2*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
-    }
+    values_rrr_leg1 v;
+    stage_rrr_leg1_inverse_kinematics_potential(m, w, i, j, s, X, &v);
+    /* (rrr_leg1-q_1) displacement of joint 1 */
+    const real rrr_leg1_q_1 = angle(v.inv_rrr_leg1_rho2_1*(v.rrr_leg1_Kc_1*v.rrr_leg1_root_1 +
+        v.rrr_leg1_Kd_1*v.rrr_leg1_Ks_1),
+        v.inv_rrr_leg1_rho2_1*(v.rrr_leg1_Kc_1*v.rrr_leg1_Kd_1 -
+        v.rrr_leg1_Ks_1*v.rrr_leg1_root_1));
+    /* (rrr_leg1-q_2) displacement of joint 2 */
+    const real rrr_leg1_q_2 =
+        angle(-m->inv_rrr_leg1_size_t[i]*m->inv_rrr_leg1_size_t_2[i]*m->rrr_leg1_joint2_offset_x[i]*m->rrr_leg1_platform_joint_offset_x[i]*v.rrr_leg1_root_1,
+        m->inv_rrr_leg1_size_t_2[i]*m->rrr_leg1_platform_joint_offset_x[i]*v.rrr_leg1_x_2_in_axes1_x);
+    /* (rrr_leg1-q_1) */
+    o[0*count + k] = rrr_leg1_q_1;
+    /* (rrr_leg1-q_2) */
+    o[1*count + k] = rrr_leg1_q_2;
+    o[4*count + k] = rrr_leg1_q_1 + rrr_leg1_q_2;
+    o[3*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]);
+    o[2*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
-INLINE void inverse_kinematics_place_rrr_leg1(size_t w, size_t count, const real *o, size_t first,
-    real *q, verdict *t)
+INLINE void inverse_kinematics_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const
+    real *o, real *q, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        q[0*w + k] = o[0*count + first + k];
-        q[1*w + k] = o[1*count + first + k];
-        t->unreachable[k] += o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
+    q[0*w + k] = o[0*count + at];
+    q[1*w + k] = o[1*count + at];
+    t->unreachable[k] += o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
 }
 
-INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, const real *X, real *o)
+INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k,
+    size_t count, const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-        /* (rrr-q_1) displacement of joint 1 */
-        const real rrr_q_1 = angle(v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_root_1 +
-            v.rrr_Kd_1*v.rrr_Ks_1), v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 -
-            v.rrr_Ks_1*v.rrr_root_1));
-        /* (rrr-q_2) displacement of joint 2 */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_q_2 =
-            angle(-inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*v.rrr_root_1,
-            inv_rrr_size_t_2*rrr_platform_joint_offset_x*v.rrr_x_2_in_axes1_x);
-        /* (rrr-q_1) displacement of joint 1 */
-        o[0*count + k] = rrr_q_1;
-        /* (rrr-q_2) displacement of joint 2 */
-        o[1*count + k] = rrr_q_2;
-        o[4*count + k] = rrr_q_1 + rrr_q_2;
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
-        o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
+    values_rrr v;
+    stage_rrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
+    /* (rrr-q_1) displacement of joint 1 */
+    const real rrr_q_1 = angle(v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_root_1 +
+        v.rrr_Kd_1*v.rrr_Ks_1), v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 -
+        v.rrr_Ks_1*v.rrr_root_1));
+    /* (rrr-q_2) displacement of joint 2 */
+    const real rrr_q_2 =
+        angle(-m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_root_1,
+        m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_x_2_in_axes1_x);
+    /* (rrr-q_1) */
+    o[0*count + k] = rrr_q_1;
+    /* (rrr-q_2) */
+    o[1*count + k] = rrr_q_2;
+    o[4*count + k] = rrr_q_1 + rrr_q_2;
+    o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
+    o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void inverse_kinematics_place_rrr(size_t w, size_t count, const real *o, size_t first, real
-    *q, verdict *t)
+INLINE void inverse_kinematics_place_rrr(size_t w, size_t k, size_t at, size_t count, const real
+    *o, real *q, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        q[2*w + k] = o[0*count + first + k];
-        q[3*w + k] = o[1*count + first + k];
-        t->unreachable[k] += o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
+    q[2*w + k] = o[0*count + at];
+    q[3*w + k] = o[1*count + at];
+    t->unreachable[k] += o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
 }
 
-INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
+APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
     real s[2] = {0};
     real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    inverse_kinematics_before(m, 1, X, s);
-    inverse_kinematics_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr_leg1), X, o_rrr_leg1);
-    inverse_kinematics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), X, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
-        inverse_kinematics_place_rrr_leg1(1, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, leg, q, t);
+    inverse_kinematics_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
+        inverse_kinematics_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), s, X, o_rrr_leg1);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        inverse_kinematics_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, q, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        inverse_kinematics_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        inverse_kinematics_place_rrr_leg1(1, 0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, q, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        inverse_kinematics_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, q, t);
     }
 }
 
-INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
+INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
+    verdict *restrict t)
 {
     real s[2*LANES];
     real o_rrr_leg1[5*LANES];
     real o_rrr[5*LANES];
-    inverse_kinematics_before(m, LANES, X, s);
-    for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
-        inverse_kinematics_legs_rrr_leg1(m, LANES, leg, 0, s, 1, LANES, X, o_rrr_leg1);
-        inverse_kinematics_place_rrr_leg1(LANES, LANES, o_rrr_leg1, 0, q, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        inverse_kinematics_before(m, LANES, k, X, s);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        inverse_kinematics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, X, o_rrr);
-        inverse_kinematics_place_rrr(LANES, LANES, o_rrr, 0, q, t);
+    for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_legs_rrr_leg1(m, LANES, i, k, k, LANES, s, X, o_rrr_leg1);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_place_rrr_leg1(LANES, k, k, LANES, o_rrr_leg1, q, t);
+        }
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_legs_rrr(m, LANES, i, k, k, LANES, s, X, o_rrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_place_rrr(LANES, k, k, LANES, o_rrr, q, t);
+        }
     }
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
 }
 
-INLINE void joint_rates_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, const
-    real *s, size_t states, size_t count, const real *X, const real *V, real *o)
+INLINE void joint_rates_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, size_t k,
+    size_t count, const real *s, const real *X, const real *V, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr_leg1 v;
-        stage_rrr_leg1_X(m, w, i, j, s, X, &v);
-        /* (rrr_leg1-S_dot) velocity of the connection point */
-        const real omega_z = V[2*w + j];
-        const real t_dot_x = V[0*w + j];
-        const real rrr_leg1_S_dot_x = t_dot_x - omega_z*v.rrr_leg1_q_y;
-        const real t_dot_y = V[1*w + j];
-        const real rrr_leg1_S_dot_y = t_dot_y + omega_z*v.rrr_leg1_q_x;
-        /* (rrr_leg1-qd_1) rate of joint 1 */
-        const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
-        const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
-        const real axis_y_rrr_leg1_axes2_x = rrr_leg1_base_frame_xy*v.rrr_leg1_qd_1_t_2 -
-            rrr_leg1_base_frame_xx*v.rrr_leg1_qd_1_t;
-        const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
-        const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
-        const real axis_x_rrr_leg1_axes2_x = rrr_leg1_base_frame_yy*v.rrr_leg1_qd_1_t_2 -
-            rrr_leg1_base_frame_yx*v.rrr_leg1_qd_1_t;
-        const real rrr_leg1_qd_1 = -(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_x -
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_y)/v.rrr_leg1_r_1_in_axes2_y;
-        /* (rrr_leg1-qd_2) rate of joint 2 */
-        const real rrr_leg1_w_2_in_axes2_y = m->rrr_leg1_w_2_in_axes2_y[i];
-        const real rrr_leg1_qd_2 =
-            rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x -
-            rrr_leg1_qd_1*(v.rrr_leg1_c_2*v.rrr_leg1_r_1_in_axes1_x +
-            v.rrr_leg1_r_1_in_axes1_y*v.rrr_leg1_s_2));
-        /* (rrr_leg1-qd_1) rate of joint 1 */
-        o[0*count + k] = rrr_leg1_qd_1;
-        /* (rrr_leg1-qd_2) rate of joint 2 */
-        o[1*count + k] = rrr_leg1_qd_2;
-        o[4*count + k] = rrr_leg1_qd_1 + rrr_leg1_qd_2;
-        const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
-        const real rrr_leg1_size = m->rrr_leg1_size[i];
-        o[3*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
-            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) >
-            TOLERANCE*rrr_leg1_size);
-        o[2*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
-    }
+    values_rrr_leg1 v;
+    stage_rrr_leg1_X(m, w, i, j, s, X, &v);
+    /* (rrr_leg1-S_dot) velocity of the connection point */
+    const real omega_z = V[2*w + j];
+    const real t_dot_x = V[0*w + j];
+    const real rrr_leg1_S_dot_x = t_dot_x - omega_z*v.rrr_leg1_q_y;
+    const real t_dot_y = V[1*w + j];
+    const real rrr_leg1_S_dot_y = t_dot_y + omega_z*v.rrr_leg1_q_x;
+    /* (rrr_leg1-qd_1) rate of joint 1 */
+    const real axis_y_rrr_leg1_axes2_x = m->rrr_leg1_base_frame_xy[i]*v.rrr_leg1_qd_1_t_2 -
+        m->rrr_leg1_base_frame_xx[i]*v.rrr_leg1_qd_1_t;
+    const real axis_x_rrr_leg1_axes2_x = m->rrr_leg1_base_frame_yy[i]*v.rrr_leg1_qd_1_t_2 -
+        m->rrr_leg1_base_frame_yx[i]*v.rrr_leg1_qd_1_t;
+    const real rrr_leg1_qd_1 = -(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_x -
+        axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_y)/v.rrr_leg1_r_1_in_axes2_y;
+    /* (rrr_leg1-qd_2) rate of joint 2 */
+    const real rrr_leg1_qd_2 =
+        m->rrr_leg1_w_2_in_axes2_y[i]*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
+        axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x -
+        rrr_leg1_qd_1*(v.rrr_leg1_c_2*v.rrr_leg1_r_1_in_axes1_x +
+        v.rrr_leg1_r_1_in_axes1_y*v.rrr_leg1_s_2));
+    /* (rrr_leg1-qd_1) */
+    o[0*count + k] = rrr_leg1_qd_1;
+    /* (rrr_leg1-qd_2) */
+    o[1*count + k] = rrr_leg1_qd_2;
+    o[4*count + k] = rrr_leg1_qd_1 + rrr_leg1_qd_2;
+    o[3*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
+        UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
+    o[2*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
-INLINE void joint_rates_place_rrr_leg1(size_t w, size_t count, const real *o, size_t first, real
+INLINE void joint_rates_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const real *o,
+    real *qd, verdict *t)
+{
+    qd[0*w + k] = o[0*count + at];
+    qd[1*w + k] = o[1*count + at];
+    t->unreachable[k] += o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
+}
+
+INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, const real *s, const real *X, const real *V, real *o)
+{
+    values_rrr v;
+    stage_rrr_X(m, w, i, j, s, X, &v);
+    /* (rrr-S_dot) velocity of the connection point */
+    const real omega_z = V[2*w + j];
+    const real t_dot_x = V[0*w + j];
+    const real rrr_S_dot_x = t_dot_x - omega_z*v.rrr_q_y;
+    const real t_dot_y = V[1*w + j];
+    const real rrr_S_dot_y = t_dot_y + omega_z*v.rrr_q_x;
+    /* (rrr-qd_1) rate of joint 1 */
+    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*v.rrr_qd_1_t_2 -
+        m->rrr_base_frame_xx[i]*v.rrr_qd_1_t;
+    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*v.rrr_qd_1_t_2 -
+        m->rrr_base_frame_yx[i]*v.rrr_qd_1_t;
+    const real rrr_qd_1 = -(axis_x_rrr_axes2_x*rrr_S_dot_x -
+        axis_y_rrr_axes2_x*rrr_S_dot_y)/v.rrr_r_1_in_axes2_y;
+    /* (rrr-qd_2) rate of joint 2 */
+    const real rrr_qd_2 = m->rrr_w_2_in_axes2_y[i]*(axis_x_rrr_axes2_x*rrr_S_dot_y +
+        axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*(v.rrr_c_2*v.rrr_r_1_in_axes1_x +
+        v.rrr_r_1_in_axes1_y*v.rrr_s_2));
+    /* (rrr-qd_1) */
+    o[0*count + k] = rrr_qd_1;
+    /* (rrr-qd_2) */
+    o[1*count + k] = rrr_qd_2;
+    o[4*count + k] = rrr_qd_1 + rrr_qd_2;
+    o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
+        + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
+    o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+}
+
+INLINE void joint_rates_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
     *qd, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        qd[0*w + k] = o[0*count + first + k];
-        qd[1*w + k] = o[1*count + first + k];
-        t->unreachable[k] += o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
+    qd[2*w + k] = o[0*count + at];
+    qd[3*w + k] = o[1*count + at];
+    t->unreachable[k] += o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
 }
 
-INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, const real *X, const real *V, real *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_X(m, w, i, j, s, X, &v);
-        /* (rrr-S_dot) velocity of the connection point */
-        const real omega_z = V[2*w + j];
-        const real t_dot_x = V[0*w + j];
-        const real rrr_S_dot_x = t_dot_x - omega_z*v.rrr_q_y;
-        const real t_dot_y = V[1*w + j];
-        const real rrr_S_dot_y = t_dot_y + omega_z*v.rrr_q_x;
-        /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*v.rrr_qd_1_t_2 -
-            rrr_base_frame_xx*v.rrr_qd_1_t;
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*v.rrr_qd_1_t_2 -
-            rrr_base_frame_yx*v.rrr_qd_1_t;
-        const real rrr_qd_1 = -(axis_x_rrr_axes2_x*rrr_S_dot_x -
-            axis_y_rrr_axes2_x*rrr_S_dot_y)/v.rrr_r_1_in_axes2_y;
-        /* (rrr-qd_2) rate of joint 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_qd_2 = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
-            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*(v.rrr_c_2*v.rrr_r_1_in_axes1_x +
-            v.rrr_r_1_in_axes1_y*v.rrr_s_2));
-        /* (rrr-qd_1) rate of joint 1 */
-        o[0*count + k] = rrr_qd_1;
-        /* (rrr-qd_2) rate of joint 2 */
-        o[1*count + k] = rrr_qd_2;
-        o[4*count + k] = rrr_qd_1 + rrr_qd_2;
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        const real rrr_size = m->rrr_size[i];
-        o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
-}
-
-INLINE void joint_rates_place_rrr(size_t w, size_t count, const real *o, size_t first, real *qd,
-    verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        qd[2*w + k] = o[0*count + first + k];
-        qd[3*w + k] = o[1*count + first + k];
-        t->unreachable[k] += o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
-}
-
-INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
     real s[2] = {0};
     real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    joint_rates_before(m, 1, X, s);
-    joint_rates_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr_leg1), X, V, o_rrr_leg1);
-    joint_rates_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), X, V, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
-        joint_rates_place_rrr_leg1(1, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, leg, qd, t);
+    joint_rates_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
+        joint_rates_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), s, X, V, o_rrr_leg1);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        joint_rates_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, qd, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        joint_rates_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, V, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        joint_rates_place_rrr_leg1(1, 0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, qd, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        joint_rates_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, qd, t);
     }
 }
 
-INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
-    verdict *t)
+INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
+    qd, verdict *restrict t)
 {
     real s[2*LANES];
     real o_rrr_leg1[5*LANES];
     real o_rrr[5*LANES];
-    joint_rates_before(m, LANES, X, s);
-    for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
-        joint_rates_legs_rrr_leg1(m, LANES, leg, 0, s, 1, LANES, X, V, o_rrr_leg1);
-        joint_rates_place_rrr_leg1(LANES, LANES, o_rrr_leg1, 0, qd, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        joint_rates_before(m, LANES, k, X, s);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        joint_rates_legs_rrr(m, LANES, leg, 0, s, 1, LANES, X, V, o_rrr);
-        joint_rates_place_rrr(LANES, LANES, o_rrr, 0, qd, t);
+    for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_legs_rrr_leg1(m, LANES, i, k, k, LANES, s, X, V, o_rrr_leg1);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_place_rrr_leg1(LANES, k, k, LANES, o_rrr_leg1, qd, t);
+        }
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_legs_rrr(m, LANES, i, k, k, LANES, s, X, V, o_rrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_place_rrr(LANES, k, k, LANES, o_rrr, qd, t);
+        }
     }
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
+    *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
 }
 
-INLINE void joint_accelerations_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t
-    legs, const real *s, size_t states, size_t count, const real *X, const real *V, const real *A,
-    real *o)
+INLINE void joint_accelerations_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j,
+    size_t k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr_leg1 v;
-        stage_rrr_leg1_X(m, w, i, j, s, X, &v);
-        stage_rrr_leg1_A_X(w, j, A, &v);
-        stage_rrr_leg1_V_X(m, w, i, j, V, &v);
-        stage_rrr_leg1_A_V_X(w, j, V, &v);
-        /* (rrr_leg1-qd_1) rate of joint 1 */
-        const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
-        const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
-        const real axis_y_rrr_leg1_axes2_x = rrr_leg1_base_frame_xy*v.rrr_leg1_qd_1_t_2 -
-            rrr_leg1_base_frame_xx*v.rrr_leg1_qd_1_t;
-        const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
-        const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
-        const real axis_x_rrr_leg1_axes2_x = rrr_leg1_base_frame_yy*v.rrr_leg1_qd_1_t_2 -
-            rrr_leg1_base_frame_yx*v.rrr_leg1_qd_1_t;
-        const real rrr_leg1_qd_1 =
-            v.rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*v.rrr_leg1_S_dot_x -
-            axis_y_rrr_leg1_axes2_x*v.rrr_leg1_S_dot_y);
-        /* (rrr_leg1-W_1) centripetal tensor of link 1 */
-        const real rrr_leg1_W_1_t = rrr_leg1_qd_1*rrr_leg1_qd_1;
-        /* (rrr_leg1-omega_2) angular velocity of link 2 */
-        const real rrr_leg1_w_2_in_axes2_y = m->rrr_leg1_w_2_in_axes2_y[i];
-        const real rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 +
-            rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*v.rrr_leg1_S_dot_y +
-            axis_y_rrr_leg1_axes2_x*v.rrr_leg1_S_dot_x - rrr_leg1_qd_1*v.rrr_leg1_r_1_in_axes2_x);
-        /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
-        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_bias_in_axes2_x =
-            -rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z*rrr_leg1_platform_joint_offset_x
-            - rrr_leg1_W_1_t*v.rrr_leg1_c_2*rrr_leg1_joint2_offset_x;
-        /* (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_leg1_rel_in_axes2_x = axis_x_rrr_leg1_axes2_x*v.rrr_leg1_S_ddot_x -
-            rrr_leg1_bias_in_axes2_x - axis_y_rrr_leg1_axes2_x*v.rrr_leg1_S_ddot_y;
-        const real rrr_leg1_rel_in_axes2_y = axis_x_rrr_leg1_axes2_x*v.rrr_leg1_S_ddot_y +
-            axis_y_rrr_leg1_axes2_x*v.rrr_leg1_S_ddot_x -
-            rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*v.rrr_leg1_s_2;
-        /* (rrr_leg1-qdd_1) acceleration of joint 1 */
-        const real rrr_leg1_qdd_1_t = -rrr_leg1_rel_in_axes2_x*v.rrr_leg1_w_1_in_axes2_x;
-        /* (rrr_leg1-qdd_2) acceleration of joint 2 */
-        const real rrr_leg1_qdd_2 = rrr_leg1_w_2_in_axes2_y*(rrr_leg1_rel_in_axes2_y +
-            rrr_leg1_qdd_1_t*v.rrr_leg1_r_1_in_axes2_x);
-        /* (rrr_leg1-qdd_1) acceleration of joint 1 */
-        o[0*count + k] = -rrr_leg1_qdd_1_t;
-        /* (rrr_leg1-qdd_2) acceleration of joint 2 */
-        o[1*count + k] = rrr_leg1_qdd_2;
-        o[4*count + k] = rrr_leg1_qdd_1_t + rrr_leg1_qdd_2;
-        const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
-        const real rrr_leg1_size = m->rrr_leg1_size[i];
-        o[3*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
-            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) >
-            TOLERANCE*rrr_leg1_size);
-        o[2*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
-    }
+    values_rrr_leg1 v;
+    stage_rrr_leg1_X(m, w, i, j, s, X, &v);
+    stage_rrr_leg1_A_X(w, j, A, &v);
+    stage_rrr_leg1_V_X(m, w, i, j, V, &v);
+    stage_rrr_leg1_A_V_X(w, j, V, &v);
+    /* (rrr_leg1-qd_1) rate of joint 1 */
+    const real axis_y_rrr_leg1_axes2_x = m->rrr_leg1_base_frame_xy[i]*v.rrr_leg1_qd_1_t_2 -
+        m->rrr_leg1_base_frame_xx[i]*v.rrr_leg1_qd_1_t;
+    const real axis_x_rrr_leg1_axes2_x = m->rrr_leg1_base_frame_yy[i]*v.rrr_leg1_qd_1_t_2 -
+        m->rrr_leg1_base_frame_yx[i]*v.rrr_leg1_qd_1_t;
+    const real rrr_leg1_qd_1 =
+        v.rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*v.rrr_leg1_S_dot_x -
+        axis_y_rrr_leg1_axes2_x*v.rrr_leg1_S_dot_y);
+    /* (rrr_leg1-W_1) centripetal tensor of link 1 */
+    const real rrr_leg1_W_1_t = rrr_leg1_qd_1*rrr_leg1_qd_1;
+    /* (rrr_leg1-omega_2) angular velocity of link 2 */
+    const real rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 +
+        m->rrr_leg1_w_2_in_axes2_y[i]*(axis_x_rrr_leg1_axes2_x*v.rrr_leg1_S_dot_y +
+        axis_y_rrr_leg1_axes2_x*v.rrr_leg1_S_dot_x - rrr_leg1_qd_1*v.rrr_leg1_r_1_in_axes2_x);
+    /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
+    const real rrr_leg1_bias_in_axes2_x =
+        -rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z*m->rrr_leg1_platform_joint_offset_x[i]
+        - rrr_leg1_W_1_t*v.rrr_leg1_c_2*m->rrr_leg1_joint2_offset_x[i];
+    /* (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations */
+    const real rrr_leg1_rel_in_axes2_x = axis_x_rrr_leg1_axes2_x*v.rrr_leg1_S_ddot_x -
+        rrr_leg1_bias_in_axes2_x - axis_y_rrr_leg1_axes2_x*v.rrr_leg1_S_ddot_y;
+    const real rrr_leg1_rel_in_axes2_y = axis_x_rrr_leg1_axes2_x*v.rrr_leg1_S_ddot_y +
+        axis_y_rrr_leg1_axes2_x*v.rrr_leg1_S_ddot_x -
+        rrr_leg1_W_1_t*m->rrr_leg1_joint2_offset_x[i]*v.rrr_leg1_s_2;
+    /* (rrr_leg1-qdd_1) acceleration of joint 1 */
+    const real rrr_leg1_qdd_1_t = -rrr_leg1_rel_in_axes2_x*v.rrr_leg1_w_1_in_axes2_x;
+    /* (rrr_leg1-qdd_2) acceleration of joint 2 */
+    const real rrr_leg1_qdd_2 = m->rrr_leg1_w_2_in_axes2_y[i]*(rrr_leg1_rel_in_axes2_y +
+        rrr_leg1_qdd_1_t*v.rrr_leg1_r_1_in_axes2_x);
+    /* (rrr_leg1-qdd_1) */
+    o[0*count + k] = -rrr_leg1_qdd_1_t;
+    /* (rrr_leg1-qdd_2) */
+    o[1*count + k] = rrr_leg1_qdd_2;
+    o[4*count + k] = rrr_leg1_qdd_1_t + rrr_leg1_qdd_2;
+    o[3*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
+        UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
+    o[2*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
-INLINE void joint_accelerations_place_rrr_leg1(size_t w, size_t count, const real *o, size_t
-    first, real *qdd, verdict *t)
+INLINE void joint_accelerations_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const
+    real *o, real *qdd, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        qdd[0*w + k] = o[0*count + first + k];
-        qdd[1*w + k] = o[1*count + first + k];
-        t->unreachable[k] += o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
+    qdd[0*w + k] = o[0*count + at];
+    qdd[1*w + k] = o[1*count + at];
+    t->unreachable[k] += o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
 }
 
-INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
-    *o)
+INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t
+    k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_X(m, w, i, j, s, X, &v);
-        stage_rrr_A_X(w, j, A, &v);
-        stage_rrr_V_X(m, w, i, j, V, &v);
-        stage_rrr_A_V_X(w, j, V, &v);
-        /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*v.rrr_qd_1_t_2 -
-            rrr_base_frame_xx*v.rrr_qd_1_t;
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*v.rrr_qd_1_t_2 -
-            rrr_base_frame_yx*v.rrr_qd_1_t;
-        const real rrr_qd_1 = v.rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*v.rrr_S_dot_x -
-            axis_y_rrr_axes2_x*v.rrr_S_dot_y);
-        /* (rrr-W_1) centripetal tensor of link 1 */
-        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
-            rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*v.rrr_S_dot_y +
-            axis_y_rrr_axes2_x*v.rrr_S_dot_x - rrr_qd_1*v.rrr_r_1_in_axes2_x);
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_bias_in_axes2_x =
-            -rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x -
-            rrr_W_1_t*v.rrr_c_2*rrr_joint2_offset_x;
-        /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*v.rrr_S_ddot_x - rrr_bias_in_axes2_x -
-            axis_y_rrr_axes2_x*v.rrr_S_ddot_y;
-        const real rrr_rel_in_axes2_y = axis_x_rrr_axes2_x*v.rrr_S_ddot_y +
-            axis_y_rrr_axes2_x*v.rrr_S_ddot_x - rrr_W_1_t*rrr_joint2_offset_x*v.rrr_s_2;
-        /* (rrr-qdd_1) acceleration of joint 1 */
-        const real rrr_qdd_1_t = -rrr_rel_in_axes2_x*v.rrr_w_1_in_axes2_x;
-        /* (rrr-qdd_2) acceleration of joint 2 */
-        const real rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
-            rrr_qdd_1_t*v.rrr_r_1_in_axes2_x);
-        /* (rrr-qdd_1) acceleration of joint 1 */
-        o[0*count + k] = -rrr_qdd_1_t;
-        /* (rrr-qdd_2) acceleration of joint 2 */
-        o[1*count + k] = rrr_qdd_2;
-        o[4*count + k] = rrr_qdd_1_t + rrr_qdd_2;
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        const real rrr_size = m->rrr_size[i];
-        o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
+    values_rrr v;
+    stage_rrr_X(m, w, i, j, s, X, &v);
+    stage_rrr_A_X(w, j, A, &v);
+    stage_rrr_V_X(m, w, i, j, V, &v);
+    stage_rrr_A_V_X(w, j, V, &v);
+    /* (rrr-qd_1) rate of joint 1 */
+    const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*v.rrr_qd_1_t_2 -
+        m->rrr_base_frame_xx[i]*v.rrr_qd_1_t;
+    const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*v.rrr_qd_1_t_2 -
+        m->rrr_base_frame_yx[i]*v.rrr_qd_1_t;
+    const real rrr_qd_1 = v.rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*v.rrr_S_dot_x -
+        axis_y_rrr_axes2_x*v.rrr_S_dot_y);
+    /* (rrr-W_1) centripetal tensor of link 1 */
+    const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+    /* (rrr-omega_2) angular velocity of link 2 */
+    const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
+        m->rrr_w_2_in_axes2_y[i]*(axis_x_rrr_axes2_x*v.rrr_S_dot_y +
+        axis_y_rrr_axes2_x*v.rrr_S_dot_x - rrr_qd_1*v.rrr_r_1_in_axes2_x);
+    /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+    const real rrr_bias_in_axes2_x =
+        -rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*m->rrr_platform_joint_offset_x[i] -
+        rrr_W_1_t*v.rrr_c_2*m->rrr_joint2_offset_x[i];
+    /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
+    const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*v.rrr_S_ddot_x - rrr_bias_in_axes2_x -
+        axis_y_rrr_axes2_x*v.rrr_S_ddot_y;
+    const real rrr_rel_in_axes2_y = axis_x_rrr_axes2_x*v.rrr_S_ddot_y +
+        axis_y_rrr_axes2_x*v.rrr_S_ddot_x - rrr_W_1_t*m->rrr_joint2_offset_x[i]*v.rrr_s_2;
+    /* (rrr-qdd_1) acceleration of joint 1 */
+    const real rrr_qdd_1_t = -rrr_rel_in_axes2_x*v.rrr_w_1_in_axes2_x;
+    /* (rrr-qdd_2) acceleration of joint 2 */
+    const real rrr_qdd_2 = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_in_axes2_y +
+        rrr_qdd_1_t*v.rrr_r_1_in_axes2_x);
+    /* (rrr-qdd_1) */
+    o[0*count + k] = -rrr_qdd_1_t;
+    /* (rrr-qdd_2) */
+    o[1*count + k] = rrr_qdd_2;
+    o[4*count + k] = rrr_qdd_1_t + rrr_qdd_2;
+    o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
+        + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
+    o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void joint_accelerations_place_rrr(size_t w, size_t count, const real *o, size_t first,
+INLINE void joint_accelerations_place_rrr(size_t w, size_t k, size_t at, size_t count, const real
+    *o, real *qdd, verdict *t)
+{
+    qdd[2*w + k] = o[0*count + at];
+    qdd[3*w + k] = o[1*count + at];
+    t->unreachable[k] += o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
+}
+
+APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        qdd[2*w + k] = o[0*count + first + k];
-        qdd[3*w + k] = o[1*count + first + k];
-        t->unreachable[k] += o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
-}
-
-INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd, verdict *t)
 {
     real s[2] = {0};
     real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    joint_accelerations_before(m, 1, X, s);
-    joint_accelerations_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr_leg1), X, V, A, o_rrr_leg1);
-    joint_accelerations_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), X, V, A, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
-        joint_accelerations_place_rrr_leg1(1, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, leg, qdd, t);
+    joint_accelerations_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
+        joint_accelerations_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), s, X, V, A, o_rrr_leg1);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        joint_accelerations_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, qdd, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        joint_accelerations_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, V, A, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        joint_accelerations_place_rrr_leg1(1, 0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, qdd, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        joint_accelerations_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, qdd, t);
     }
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *qdd, verdict *t)
+    real *A, real *restrict qdd, verdict *restrict t)
 {
     real s[2*LANES];
     real o_rrr_leg1[5*LANES];
     real o_rrr[5*LANES];
-    joint_accelerations_before(m, LANES, X, s);
-    for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
-        joint_accelerations_legs_rrr_leg1(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_rrr_leg1);
-        joint_accelerations_place_rrr_leg1(LANES, LANES, o_rrr_leg1, 0, qdd, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        joint_accelerations_before(m, LANES, k, X, s);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        joint_accelerations_legs_rrr(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_rrr);
-        joint_accelerations_place_rrr(LANES, LANES, o_rrr, 0, qdd, t);
+    for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_legs_rrr_leg1(m, LANES, i, k, k, LANES, s, X, V, A, o_rrr_leg1);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_place_rrr_leg1(LANES, k, k, LANES, o_rrr_leg1, qdd, t);
+        }
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_legs_rrr(m, LANES, i, k, k, LANES, s, X, V, A, o_rrr);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_place_rrr(LANES, k, k, LANES, o_rrr, qdd, t);
+        }
     }
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
 }
 
-INLINE void legs_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
+INLINE void legs_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr_leg1 v;
-        stage_rrr_leg1_X(m, w, i, j, s, X, &v);
-        stage_rrr_leg1_A_X(w, j, A, &v);
-        stage_rrr_leg1_V_X(m, w, i, j, V, &v);
-        stage_rrr_leg1_A_V_X(w, j, V, &v);
-        stage_rrr_leg1_legs_required(m, i, &v);
-        /* (rrr_leg1-c_true) leg force on the platform without actuation, the last link's mass included */
-        const real rrr_leg1_link2_mass = m->rrr_leg1_link2_mass[i];
-        const real rrr_leg1_c_true_in_axes2_x = v.rrr_leg1_c_in_axes2_x -
-            v.rrr_leg1_acc_2_in_axes2_x*rrr_leg1_link2_mass;
-        const real rrr_leg1_c_true_in_axes2_y = v.rrr_leg1_c_in_axes2_y -
-            v.rrr_leg1_acc_2_in_axes2_y*rrr_leg1_link2_mass;
-        const real rrr_leg1_c_true_x = v.axis_x_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_x +
-            v.axis_y_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_y;
-        const real rrr_leg1_c_true_y = v.axis_x_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_y -
-            v.axis_y_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_x;
-        /* (rrr_leg1-c_true) leg force on the platform without actuation, the last link's mass included */
-        o[0*count + k] = rrr_leg1_c_true_x;
-        o[1*count + k] = rrr_leg1_c_true_y;
-        /* (rrr_leg1-w_1) reciprocal vector 1 */
-        o[2*count + k] = v.rrr_leg1_w_1_x;
-        o[3*count + k] = v.rrr_leg1_w_1_y;
-        /* (rrr_leg1-w_2) reciprocal vector 2 */
-        o[4*count + k] = v.rrr_leg1_w_2_x;
-        o[5*count + k] = v.rrr_leg1_w_2_y;
-        const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
-        const real rrr_leg1_size = m->rrr_leg1_size[i];
-        o[7*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
-            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) >
-            TOLERANCE*rrr_leg1_size);
-        o[6*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
-    }
+    values_rrr_leg1 v;
+    stage_rrr_leg1_X(m, w, i, j, s, X, &v);
+    stage_rrr_leg1_A_X(w, j, A, &v);
+    stage_rrr_leg1_V_X(m, w, i, j, V, &v);
+    stage_rrr_leg1_A_V_X(w, j, V, &v);
+    stage_rrr_leg1_legs_required(m, i, &v);
+    /* (rrr_leg1-c_true) leg force on the platform without actuation, the last link's mass included */
+    const real rrr_leg1_c_true_in_axes2_x = v.rrr_leg1_c_in_axes2_x -
+        v.rrr_leg1_acc_2_in_axes2_x*m->rrr_leg1_link2_mass[i];
+    const real rrr_leg1_c_true_in_axes2_y = v.rrr_leg1_c_in_axes2_y -
+        v.rrr_leg1_acc_2_in_axes2_y*m->rrr_leg1_link2_mass[i];
+    const real rrr_leg1_c_true_x = v.axis_x_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_x +
+        v.axis_y_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_y;
+    const real rrr_leg1_c_true_y = v.axis_x_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_y -
+        v.axis_y_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_x;
+    /* (rrr_leg1-c_true) */
+    o[0*count + k] = rrr_leg1_c_true_x;
+    o[1*count + k] = rrr_leg1_c_true_y;
+    /* (rrr_leg1-w_1) reciprocal vector 1 */
+    o[2*count + k] = v.rrr_leg1_w_1_x;
+    o[3*count + k] = v.rrr_leg1_w_1_y;
+    /* (rrr_leg1-w_2) reciprocal vector 2 */
+    o[4*count + k] = v.rrr_leg1_w_2_x;
+    o[5*count + k] = v.rrr_leg1_w_2_y;
+    o[7*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
+        UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
+    o[6*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
-INLINE void legs_place_rrr_leg1(size_t w, size_t count, const real *o, size_t first, real
+INLINE void legs_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const real *o, real
     *leg_force, real *actuator, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        leg_force[0*w + k] = o[0*count + first + k];
-        leg_force[1*w + k] = o[1*count + first + k];
-        actuator[0*w + k] = o[2*count + first + k];
-        actuator[1*w + k] = o[3*count + first + k];
-        actuator[3*w + k] = o[4*count + first + k];
-        actuator[(3 + 1)*w + k] = o[5*count + first + k];
-        t->unreachable[k] += o[6*count + first + k];
-        t->singular[k] += o[7*count + first + k];
-    }
+    leg_force[0*w + k] = o[0*count + at];
+    leg_force[1*w + k] = o[1*count + at];
+    actuator[0*w + k] = o[2*count + at];
+    actuator[1*w + k] = o[3*count + at];
+    actuator[3*w + k] = o[4*count + at];
+    actuator[(3 + 1)*w + k] = o[5*count + at];
+    t->unreachable[k] += o[6*count + at];
+    t->singular[k] += o[7*count + at];
 }
 
-INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
+INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    const real *s, const real *X, const real *V, const real *A, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_X(m, w, i, j, s, X, &v);
-        stage_rrr_A_X(w, j, A, &v);
-        stage_rrr_V_X(m, w, i, j, V, &v);
-        stage_rrr_A_V_X(w, j, V, &v);
-        stage_rrr_legs_required(m, i, &v);
-        /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
-        const real rrr_link2_mass = m->rrr_link2_mass[i];
-        const real rrr_c_true_in_axes2_x = v.rrr_c_in_axes2_x -
-            v.rrr_acc_2_in_axes2_x*rrr_link2_mass;
-        const real rrr_c_true_in_axes2_y = v.rrr_c_in_axes2_y -
-            v.rrr_acc_2_in_axes2_y*rrr_link2_mass;
-        const real rrr_c_true_x = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x +
-            v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y;
-        const real rrr_c_true_y = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y -
-            v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x;
-        /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
-        o[0*count + k] = rrr_c_true_x;
-        o[1*count + k] = rrr_c_true_y;
-        /* (rrr-w_1) reciprocal vector 1 */
-        o[2*count + k] = v.rrr_w_1_x;
-        o[3*count + k] = v.rrr_w_1_y;
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        const real rrr_size = m->rrr_size[i];
-        o[5*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
+    values_rrr v;
+    stage_rrr_X(m, w, i, j, s, X, &v);
+    stage_rrr_A_X(w, j, A, &v);
+    stage_rrr_V_X(m, w, i, j, V, &v);
+    stage_rrr_A_V_X(w, j, V, &v);
+    stage_rrr_legs_required(m, i, &v);
+    /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
+    const real rrr_c_true_in_axes2_x = v.rrr_c_in_axes2_x -
+        v.rrr_acc_2_in_axes2_x*m->rrr_link2_mass[i];
+    const real rrr_c_true_in_axes2_y = v.rrr_c_in_axes2_y -
+        v.rrr_acc_2_in_axes2_y*m->rrr_link2_mass[i];
+    const real rrr_c_true_x = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x +
+        v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y;
+    const real rrr_c_true_y = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y -
+        v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x;
+    /* (rrr-c_true) */
+    o[0*count + k] = rrr_c_true_x;
+    o[1*count + k] = rrr_c_true_y;
+    /* (rrr-w_1) reciprocal vector 1 */
+    o[2*count + k] = v.rrr_w_1_x;
+    o[3*count + k] = v.rrr_w_1_y;
+    o[5*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
+        + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
+    o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void legs_place_rrr(size_t w, size_t count, const real *o, size_t first, real *leg_force,
-    real *actuator, verdict *t)
+INLINE void legs_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
+    *leg_force, real *actuator, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        leg_force[3*w + k] = o[0*count + first + k];
-        leg_force[(3 + 1)*w + k] = o[1*count + first + k];
-        actuator[6*w + k] = o[2*count + first + k];
-        actuator[(6 + 1)*w + k] = o[3*count + first + k];
-        t->unreachable[k] += o[4*count + first + k];
-        t->singular[k] += o[5*count + first + k];
-    }
+    leg_force[3*w + k] = o[0*count + at];
+    leg_force[(3 + 1)*w + k] = o[1*count + at];
+    actuator[6*w + k] = o[2*count + at];
+    actuator[(6 + 1)*w + k] = o[3*count + at];
+    t->unreachable[k] += o[4*count + at];
+    t->singular[k] += o[5*count + at];
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
@@ -3969,167 +3760,124 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
     clear(leg_force, 3*NL);
     clear(actuator, 9);
-    legs_before(m, 1, X, s);
-    legs_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr_leg1), X, V, A, o_rrr_leg1);
-    legs_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), X, V, A, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
-        legs_place_rrr_leg1(1, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, leg, leg_force, actuator, t);
+    legs_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
+        legs_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), s, X, V, A, o_rrr_leg1);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        legs_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg_force, actuator, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        legs_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, V, A, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        legs_place_rrr_leg1(1, 0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, leg_force, actuator, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        legs_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, leg_force, actuator, t);
     }
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        /* (potential) potential energy */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real m_star = m->m_star;
-        const real t_x = X[0*w + k];
-        const real t_y = X[1*w + k];
-        const real potential_t = gravity_x*(v.R_xx*h_star_in_platform_x + m_star*t_x -
-            v.R_yx*h_star_in_platform_y) + gravity_y*(v.R_xx*h_star_in_platform_y +
-            v.R_yx*h_star_in_platform_x + m_star*t_y);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-        s[2*w + k] = potential_t;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    /* (potential) potential energy */
+    const real t_x = X[0*w + k];
+    const real t_y = X[1*w + k];
+    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x + m->m_star*t_x -
+        v.R_yx*m->h_star_in_platform_y) + m->gravity_y*(v.R_xx*m->h_star_in_platform_y +
+        v.R_yx*m->h_star_in_platform_x + m->m_star*t_y);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
+    s[2*w + k] = potential_t;
 }
 
-INLINE void potential_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, const
-    real *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void potential_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, size_t k,
+    size_t count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr_leg1 v;
-        stage_rrr_leg1_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-        /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real rrr_leg1_c_1 = v.inv_rrr_leg1_rho2_1*(v.rrr_leg1_Kc_1*v.rrr_leg1_Kd_1 -
-            v.rrr_leg1_Ks_1*v.rrr_leg1_root_1);
-        /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_leg1_s_1 = v.inv_rrr_leg1_rho2_1*(v.rrr_leg1_Kc_1*v.rrr_leg1_root_1 +
-            v.rrr_leg1_Kd_1*v.rrr_leg1_Ks_1);
-        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_leg1_size_t_2 = m->inv_rrr_leg1_size_t_2[i];
-        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_c_2 =
-            inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*v.rrr_leg1_x_2_in_axes1_x;
-        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_leg1_size_t = m->inv_rrr_leg1_size_t[i];
-        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
-        const real rrr_leg1_s_2 =
-            -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*v.rrr_leg1_root_1;
-        /* (potential) potential energy */
-        const real rrr_leg1_h_1_in_spec1_x = m->rrr_leg1_h_1_in_spec1_x[i];
-        const real rrr_leg1_h_1_in_spec1_y = m->rrr_leg1_h_1_in_spec1_y[i];
-        const real rrr_leg1_h_2_in_spec2_x = m->rrr_leg1_h_2_in_spec2_x[i];
-        const real rrr_leg1_h_2_in_spec2_y = m->rrr_leg1_h_2_in_spec2_y[i];
-        const real rrr_leg1_link1_mass = m->rrr_leg1_link1_mass[i];
-        const real rrr_leg1_mu_1_t = m->rrr_leg1_mu_1_t[i];
-        const real rrr_leg1_mu_1_t_2 = m->rrr_leg1_mu_1_t_2[i];
-        const real rrr_leg1_potential_t = m->rrr_leg1_potential_t[i];
-        const real rrr_leg1_potential_t_2 = m->rrr_leg1_potential_t_2[i];
-        const real rrr_leg1_potential_t_3 = (rrr_leg1_c_1*rrr_leg1_mu_1_t +
-            rrr_leg1_mu_1_t_2*rrr_leg1_s_1)*(rrr_leg1_h_1_in_spec1_x +
-            rrr_leg1_c_2*rrr_leg1_h_2_in_spec2_x +
-            rrr_leg1_link1_mass*(rrr_leg1_c_1*rrr_leg1_potential_t +
-            rrr_leg1_potential_t_2*rrr_leg1_s_1) - rrr_leg1_h_2_in_spec2_y*rrr_leg1_s_2) +
-            (rrr_leg1_c_1*rrr_leg1_mu_1_t_2 -
-            rrr_leg1_mu_1_t*rrr_leg1_s_1)*(rrr_leg1_h_1_in_spec1_y +
-            rrr_leg1_c_2*rrr_leg1_h_2_in_spec2_y + rrr_leg1_h_2_in_spec2_x*rrr_leg1_s_2 +
-            rrr_leg1_link1_mass*(rrr_leg1_c_1*rrr_leg1_potential_t_2 -
-            rrr_leg1_potential_t*rrr_leg1_s_1));
-        /* (potential) potential energy */
-        gather(&terms[0*count + k], add, -rrr_leg1_potential_t_3);  /* potential_of_legs */
-        const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
-        o[1*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
-            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t);
-        o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
-    }
+    values_rrr_leg1 v;
+    stage_rrr_leg1_inverse_kinematics_potential(m, w, i, j, s, X, &v);
+    /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real rrr_leg1_c_1 = v.inv_rrr_leg1_rho2_1*(v.rrr_leg1_Kc_1*v.rrr_leg1_Kd_1 -
+        v.rrr_leg1_Ks_1*v.rrr_leg1_root_1);
+    /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
+    const real rrr_leg1_s_1 = v.inv_rrr_leg1_rho2_1*(v.rrr_leg1_Kc_1*v.rrr_leg1_root_1 +
+        v.rrr_leg1_Kd_1*v.rrr_leg1_Ks_1);
+    /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real rrr_leg1_c_2 =
+        m->inv_rrr_leg1_size_t_2[i]*m->rrr_leg1_platform_joint_offset_x[i]*v.rrr_leg1_x_2_in_axes1_x;
+    /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
+    const real rrr_leg1_s_2 =
+        -m->inv_rrr_leg1_size_t[i]*m->inv_rrr_leg1_size_t_2[i]*m->rrr_leg1_joint2_offset_x[i]*m->rrr_leg1_platform_joint_offset_x[i]*v.rrr_leg1_root_1;
+    /* (potential) */
+    const real rrr_leg1_potential_t_3 = (rrr_leg1_c_1*m->rrr_leg1_mu_1_t[i] +
+        m->rrr_leg1_mu_1_t_2[i]*rrr_leg1_s_1)*(m->rrr_leg1_h_1_in_spec1_x[i] +
+        rrr_leg1_c_2*m->rrr_leg1_h_2_in_spec2_x[i] +
+        m->rrr_leg1_link1_mass[i]*(rrr_leg1_c_1*m->rrr_leg1_potential_t[i] +
+        m->rrr_leg1_potential_t_2[i]*rrr_leg1_s_1) -
+        m->rrr_leg1_h_2_in_spec2_y[i]*rrr_leg1_s_2) + (rrr_leg1_c_1*m->rrr_leg1_mu_1_t_2[i] -
+        m->rrr_leg1_mu_1_t[i]*rrr_leg1_s_1)*(m->rrr_leg1_h_1_in_spec1_y[i] +
+        rrr_leg1_c_2*m->rrr_leg1_h_2_in_spec2_y[i] +
+        m->rrr_leg1_h_2_in_spec2_x[i]*rrr_leg1_s_2 +
+        m->rrr_leg1_link1_mass[i]*(rrr_leg1_c_1*m->rrr_leg1_potential_t_2[i] -
+        m->rrr_leg1_potential_t[i]*rrr_leg1_s_1));
+    /* (potential) */
+    gather(&terms[0*count + k], add, -rrr_leg1_potential_t_3);  /* potential_of_legs */
+    o[1*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]);
+    o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
-INLINE void potential_place_rrr_leg1(size_t w, size_t count, const real *o, size_t first, verdict
-    *t)
+INLINE void potential_place_rrr_leg1(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o[0*count + first + k];
-        t->singular[k] += o[1*count + first + k];
-    }
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
 }
 
-INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real rrr_c_1 = v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 - v.rrr_Ks_1*v.rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_root_1 + v.rrr_Kd_1*v.rrr_Ks_1);
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*v.rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*v.rrr_root_1;
-        /* (potential) potential energy */
-        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
-        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
-        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
-        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-        const real rrr_link1_mass = m->rrr_link1_mass[i];
-        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
-        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
-        const real rrr_potential_t = m->rrr_potential_t[i];
-        const real rrr_potential_t_2 = m->rrr_potential_t_2[i];
-        const real rrr_potential_t_3 = (rrr_c_1*rrr_mu_1_t +
-            rrr_mu_1_t_2*rrr_s_1)*(rrr_h_1_in_spec1_x + rrr_c_2*rrr_h_2_in_spec2_x +
-            rrr_link1_mass*(rrr_c_1*rrr_potential_t + rrr_potential_t_2*rrr_s_1) -
-            rrr_h_2_in_spec2_y*rrr_s_2) + (rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)*(rrr_h_1_in_spec1_y + rrr_c_2*rrr_h_2_in_spec2_y +
-            rrr_h_2_in_spec2_x*rrr_s_2 + rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 -
-            rrr_potential_t*rrr_s_1));
-        /* (potential) potential energy */
-        gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_2 */
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
-        o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
+    values_rrr v;
+    stage_rrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
+    /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real rrr_c_1 = v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 - v.rrr_Ks_1*v.rrr_root_1);
+    /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+    const real rrr_s_1 = v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_root_1 + v.rrr_Kd_1*v.rrr_Ks_1);
+    /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real rrr_c_2 =
+        m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_x_2_in_axes1_x;
+    /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+    const real rrr_s_2 =
+        -m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_root_1;
+    /* (potential) */
+    const real rrr_potential_t_3 = (rrr_c_1*m->rrr_mu_1_t[i] +
+        m->rrr_mu_1_t_2[i]*rrr_s_1)*(m->rrr_h_1_in_spec1_x[i] +
+        rrr_c_2*m->rrr_h_2_in_spec2_x[i] + m->rrr_link1_mass[i]*(rrr_c_1*m->rrr_potential_t[i]
+        + m->rrr_potential_t_2[i]*rrr_s_1) - m->rrr_h_2_in_spec2_y[i]*rrr_s_2) +
+        (rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*rrr_s_1)*(m->rrr_h_1_in_spec1_y[i] +
+        rrr_c_2*m->rrr_h_2_in_spec2_y[i] + m->rrr_h_2_in_spec2_x[i]*rrr_s_2 +
+        m->rrr_link1_mass[i]*(rrr_c_1*m->rrr_potential_t_2[i] -
+        m->rrr_potential_t[i]*rrr_s_1));
+    /* (potential) */
+    gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_2 */
+    o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
+    o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void potential_place_rrr(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void potential_place_rrr(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o[0*count + first + k];
-        t->singular[k] += o[1*count + first + k];
-    }
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
 }
 
-INLINE void potential_after(size_t w, const real *s, const real *sums, real *potential)
+INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (potential) potential energy */
-        const real potential_of_legs = sums[0*w + k];
-        const real potential_t = s[2*w + k];
-        const real potential_t_2 = sums[1*w + k];
-        const real potential_ = potential_of_legs - potential_t - potential_t_2;
-        /* (potential) potential energy */
-        potential[0*w + k] = potential_;
-    }
+    /* (potential) */
+    const real potential_of_legs = sums[0*w + k];
+    const real potential_t = s[2*w + k];
+    const real potential_t_2 = sums[1*w + k];
+    const real potential_ = potential_of_legs - potential_t - potential_t_2;
+    /* (potential) */
+    potential[0*w + k] = potential_;
 }
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
@@ -4137,217 +3885,191 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
     real s[3] = {0}, sums[2] = {0};
     real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    potential_before(m, 1, X, s);
-    potential_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr_leg1), 0, X, terms_rrr_leg1, o_rrr_leg1);
-    potential_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
-        potential_place_rrr_leg1(1, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, leg, t);
+    potential_before(m, 1, 0, X, s);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
+        potential_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, s, X, terms_rrr_leg1, o_rrr_leg1);
+    }
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        potential_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, terms_rrr, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        potential_place_rrr_leg1(0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        potential_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        potential_place_rrr(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
-    potential_after(1, s, sums, potential);
+    potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
-    verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
+    *lengths, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_yx;
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        const real legs_size = m->legs_size;
-        lengths[1*w + k] = legs_size;
-        t->total[k] += legs_size;
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_yx;
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    lengths[1*w + k] = m->legs_size;
+    t->total[k] += m->legs_size;
 }
 
-INLINE void condition_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, const
-    real *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void condition_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, size_t k,
+    size_t count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr_leg1 v;
-        stage_rrr_leg1_X(m, w, i, j, s, X, &v);
-        stage_rrr_leg1_H_condition(m, i, &v);
-        /* (rrr_leg1-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real rrr_leg1_pivot_size = magnitude(v.rrr_leg1_rho2_1);
-        const real rrr_leg1_pivot_size_2 = magnitude(v.rrr_leg1_r_1_in_axes2_y);
-        const real inv_rrr_leg1_rho2_1_t = m->inv_rrr_leg1_rho2_1_t[i];
-        const real inv_rrr_leg1_size = m->inv_rrr_leg1_size[i];
-        const real rrr_leg1_least_pivots = lesser(root(inv_rrr_leg1_rho2_1_t*rrr_leg1_pivot_size),
-            inv_rrr_leg1_size*rrr_leg1_pivot_size_2);
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_in_platform_x = m->b_c_in_platform_x;
-        const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
-        const real rrr_leg1_spread_t = b_c_in_platform_x - rrr_leg1_platform_point_x;
-        const real b_c_in_platform_y = m->b_c_in_platform_y;
-        const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
-        const real rrr_leg1_spread_t_2 = b_c_in_platform_y - rrr_leg1_platform_point_y;
-        const real rrr_leg1_spread_t_3 = rrr_leg1_spread_t*rrr_leg1_spread_t +
-            rrr_leg1_spread_t_2*rrr_leg1_spread_t_2;
-        /* (spread) rms distance of the platform points from their centroid */
-        gather(&terms[0*count + k], add, rrr_leg1_spread_t_3);  /* spread_rrr_leg1 */
-        /* (rrr_leg1-w_1) reciprocal vector 1 */
-        o[0*count + k] = v.rrr_leg1_w_1_x;
-        o[1*count + k] = v.rrr_leg1_w_1_y;
-        /* (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = v.rrr_leg1_H_a_1_z;
-        /* (rrr_leg1-w_2) reciprocal vector 2 */
-        o[3*count + k] = v.rrr_leg1_w_2_x;
-        o[4*count + k] = v.rrr_leg1_w_2_y;
-        /* (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin */
-        o[5*count + k] = v.rrr_leg1_H_a_2_z;
-        /* (rrr_leg1-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        o[6*count + k] = rrr_leg1_least_pivots;
-        o[7*count + k] = v.rrr_leg1_disc_1;
-        o[10*count + k] = ((v.rrr_leg1_w_1_x + v.rrr_leg1_w_1_y) + (v.rrr_leg1_H_a_1_z +
-            v.rrr_leg1_w_2_x)) + ((v.rrr_leg1_w_2_y + v.rrr_leg1_H_a_2_z) + (rrr_leg1_least_pivots
-            + v.rrr_leg1_disc_1));
-        const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
-        const real rrr_leg1_size = m->rrr_leg1_size[i];
-        o[9*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
-            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) >
-            TOLERANCE*rrr_leg1_size);
-        o[8*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
-    }
+    values_rrr_leg1 v;
+    stage_rrr_leg1_X(m, w, i, j, s, X, &v);
+    stage_rrr_leg1_H_condition(m, i, &v);
+    /* (rrr_leg1-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real rrr_leg1_pivot_size = magnitude(v.rrr_leg1_rho2_1);
+    const real rrr_leg1_pivot_size_2 = magnitude(v.rrr_leg1_r_1_in_axes2_y);
+    const real rrr_leg1_least_pivots =
+        lesser(root(m->inv_rrr_leg1_rho2_1_t[i]*rrr_leg1_pivot_size),
+        m->inv_rrr_leg1_size[i]*rrr_leg1_pivot_size_2);
+    /* (spread) rms distance of the platform points from their centroid */
+    const real rrr_leg1_spread_t = m->b_c_in_platform_x - m->rrr_leg1_platform_point_x[i];
+    const real rrr_leg1_spread_t_2 = m->b_c_in_platform_y - m->rrr_leg1_platform_point_y[i];
+    const real rrr_leg1_spread_t_3 = rrr_leg1_spread_t*rrr_leg1_spread_t +
+        rrr_leg1_spread_t_2*rrr_leg1_spread_t_2;
+    /* (spread) */
+    gather(&terms[0*count + k], add, rrr_leg1_spread_t_3);  /* spread_rrr_leg1 */
+    /* (rrr_leg1-w_1) reciprocal vector 1 */
+    o[0*count + k] = v.rrr_leg1_w_1_x;
+    o[1*count + k] = v.rrr_leg1_w_1_y;
+    /* (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v.rrr_leg1_H_a_1_z;
+    /* (rrr_leg1-w_2) reciprocal vector 2 */
+    o[3*count + k] = v.rrr_leg1_w_2_x;
+    o[4*count + k] = v.rrr_leg1_w_2_y;
+    /* (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin */
+    o[5*count + k] = v.rrr_leg1_H_a_2_z;
+    /* (rrr_leg1-G) */
+    o[6*count + k] = rrr_leg1_least_pivots;
+    o[7*count + k] = v.rrr_leg1_disc_1;
+    o[10*count + k] = ((v.rrr_leg1_w_1_x + v.rrr_leg1_w_1_y) + (v.rrr_leg1_H_a_1_z +
+        v.rrr_leg1_w_2_x)) + ((v.rrr_leg1_w_2_y + v.rrr_leg1_H_a_2_z) + (rrr_leg1_least_pivots
+        + v.rrr_leg1_disc_1));
+    o[9*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
+        UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
+    o[8*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
-INLINE void condition_place_rrr_leg1(size_t w, size_t count, const real *o, size_t first, real *H,
-    real *pivots, real *reach, verdict *t)
+INLINE void condition_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const real *o,
+    real *H, real *pivots, real *reach, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[0*w + k] = o[0*count + first + k];
-        H[NU*w + k] = o[1*count + first + k];
-        H[2*NU*w + k] = o[2*count + first + k];
-        H[1*w + k] = o[3*count + first + k];
-        H[(NU + 1)*w + k] = o[4*count + first + k];
-        H[(2*NU + 1)*w + k] = o[5*count + first + k];
-        pivots[0*w + k] = o[6*count + first + k];
-        reach[0*w + k] = o[7*count + first + k];
-        t->unreachable[k] += o[8*count + first + k];
-        t->singular[k] += o[9*count + first + k];
-        t->total[k] += o[10*count + first + k];
-    }
+    H[0*w + k] = o[0*count + at];
+    H[NU*w + k] = o[1*count + at];
+    H[2*NU*w + k] = o[2*count + at];
+    H[1*w + k] = o[3*count + at];
+    H[(NU + 1)*w + k] = o[4*count + at];
+    H[(2*NU + 1)*w + k] = o[5*count + at];
+    pivots[0*w + k] = o[6*count + at];
+    reach[0*w + k] = o[7*count + at];
+    t->unreachable[k] += o[8*count + at];
+    t->singular[k] += o[9*count + at];
+    t->total[k] += o[10*count + at];
 }
 
-INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rrr v;
-        stage_rrr_X(m, w, i, j, s, X, &v);
-        stage_rrr_H_condition(m, i, &v);
-        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real rrr_pivot_size = magnitude(v.rrr_rho2_1);
-        const real rrr_pivot_size_2 = magnitude(v.rrr_r_1_in_axes2_y);
-        const real inv_rrr_rho2_1_t = m->inv_rrr_rho2_1_t[i];
-        const real inv_rrr_size = m->inv_rrr_size[i];
-        const real rrr_least_pivots = lesser(root(inv_rrr_rho2_1_t*rrr_pivot_size),
-            inv_rrr_size*rrr_pivot_size_2);
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_in_platform_x = m->b_c_in_platform_x;
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_spread_t = b_c_in_platform_x - rrr_platform_point_x;
-        const real b_c_in_platform_y = m->b_c_in_platform_y;
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_spread_t_2 = b_c_in_platform_y - rrr_platform_point_y;
-        const real rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2;
-        /* (spread) rms distance of the platform points from their centroid */
-        gather(&terms[1*count + k], add, rrr_spread_t_3);  /* spread_rrr */
-        /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = v.rrr_w_1_x;
-        o[1*count + k] = v.rrr_w_1_y;
-        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = v.rrr_H_a_1_z;
-        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        o[3*count + k] = rrr_least_pivots;
-        o[4*count + k] = v.rrr_disc_1;
-        o[7*count + k] = (v.rrr_w_1_x + v.rrr_w_1_y) + (v.rrr_H_a_1_z + (rrr_least_pivots +
-            v.rrr_disc_1));
-        const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        const real rrr_size = m->rrr_size[i];
-        o[6*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[5*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-    }
+    values_rrr v;
+    stage_rrr_X(m, w, i, j, s, X, &v);
+    stage_rrr_H_condition(m, i, &v);
+    /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real rrr_pivot_size = magnitude(v.rrr_rho2_1);
+    const real rrr_pivot_size_2 = magnitude(v.rrr_r_1_in_axes2_y);
+    const real rrr_least_pivots = lesser(root(m->inv_rrr_rho2_1_t[i]*rrr_pivot_size),
+        m->inv_rrr_size[i]*rrr_pivot_size_2);
+    /* (spread) */
+    const real rrr_spread_t = m->b_c_in_platform_x - m->rrr_platform_point_x[i];
+    const real rrr_spread_t_2 = m->b_c_in_platform_y - m->rrr_platform_point_y[i];
+    const real rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2;
+    /* (spread) */
+    gather(&terms[1*count + k], add, rrr_spread_t_3);  /* spread_rrr */
+    /* (rrr-w_1) reciprocal vector 1 */
+    o[0*count + k] = v.rrr_w_1_x;
+    o[1*count + k] = v.rrr_w_1_y;
+    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v.rrr_H_a_1_z;
+    /* (rrr-G) */
+    o[3*count + k] = rrr_least_pivots;
+    o[4*count + k] = v.rrr_disc_1;
+    o[7*count + k] = (v.rrr_w_1_x + v.rrr_w_1_y) + (v.rrr_H_a_1_z + (rrr_least_pivots +
+        v.rrr_disc_1));
+    o[6*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
+        + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
+    o[5*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void condition_place_rrr(size_t w, size_t count, const real *o, size_t first, real *H, real
-    *pivots, real *reach, verdict *t)
+INLINE void condition_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
+    *H, real *pivots, real *reach, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[2*w + k] = o[0*count + first + k];
-        H[(NU + 2)*w + k] = o[1*count + first + k];
-        H[(2*NU + 2)*w + k] = o[2*count + first + k];
-        pivots[1*w + k] = o[3*count + first + k];
-        reach[1*w + k] = o[4*count + first + k];
-        t->unreachable[k] += o[5*count + first + k];
-        t->singular[k] += o[6*count + first + k];
-        t->total[k] += o[7*count + first + k];
-    }
+    H[2*w + k] = o[0*count + at];
+    H[(NU + 2)*w + k] = o[1*count + at];
+    H[(2*NU + 2)*w + k] = o[2*count + at];
+    pivots[1*w + k] = o[3*count + at];
+    reach[1*w + k] = o[4*count + at];
+    t->unreachable[k] += o[5*count + at];
+    t->singular[k] += o[6*count + at];
+    t->total[k] += o[7*count + at];
 }
 
-INLINE void condition_after(size_t w, const real *sums, real *lengths, verdict *t)
+INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (spread) rms distance of the platform points from their centroid */
-        const real spread_rrr = sums[1*w + k];
-        const real spread_rrr_leg1 = sums[0*w + k];
-        const real spread_ = root(R(0.5)*spread_rrr + R(0.5)*spread_rrr_leg1);
-        /* (spread) rms distance of the platform points from their centroid */
-        lengths[0*w + k] = spread_;
-        t->total[k] += spread_;
-    }
+    /* (spread) */
+    const real spread_rrr = sums[1*w + k];
+    const real spread_rrr_leg1 = sums[0*w + k];
+    const real spread_ = root(R(0.5)*spread_rrr + R(0.5)*spread_rrr_leg1);
+    /* (spread) */
+    lengths[0*w + k] = spread_;
+    t->total[k] += spread_;
 }
 
-INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
+APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, verdict *t)
 {
     real s[2] = {0}, sums[2] = {0};
     real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[11*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[8*LEGS(LEGS_OF_rrr)] = {0};
-    condition_before(m, 1, X, s, lengths, t);
-    condition_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr_leg1), 0, X, terms_rrr_leg1, o_rrr_leg1);
-    condition_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
-    for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
-        condition_place_rrr_leg1(1, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, leg, H, pivots, reach, t);
+    condition_before(m, 1, 0, X, s, lengths, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
+        condition_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, s, X, terms_rrr_leg1, o_rrr_leg1);
+    }
+    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
+        condition_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, terms_rrr, o_rrr);
+    }
+    for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        condition_place_rrr_leg1(1, 0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, H, pivots, reach, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
-    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        condition_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, pivots, reach, t);
+    for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        condition_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, pivots, reach, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
-    condition_after(1, sums, lengths, t);
+    condition_after(1, 0, sums, lengths, t);
 }
 
 /* ---- what users call, as steps over these ---- */
 
-INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
+int sixbar_M(const prepared *m, const real *X, real *M_out)
 {
     verdict why;
     start(1, &why);
@@ -4356,9 +4078,11 @@ INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NV, M_out);
     }
+    return code;
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -4372,7 +4096,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
     deliver(NV*NV, M, M_out);
 }
 
-INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
+int sixbar_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     verdict why;
     start(1, &why);
@@ -4385,9 +4109,11 @@ INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, 
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, Z_out);
     }
+    return code;
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -4402,7 +4128,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
     deliver(NV, Z, Z_out);
 }
 
-INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
+int sixbar_H(const prepared *m, const real *X, real *H_out)
 {
     verdict why;
     start(1, &why);
@@ -4411,9 +4137,11 @@ INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NU, H_out);
     }
+    return code;
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -4427,7 +4155,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
     deliver(NV*NU, H, H_out);
 }
 
-INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out, int *code)
+int sixbar_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
     verdict why;
     start(1, &why);
@@ -4436,9 +4164,11 @@ INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, q_out);
     }
+    return code;
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -4452,8 +4182,7 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
     deliver(NJ, q, q_out);
 }
 
-INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
-    *code)
+int sixbar_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     verdict why;
     start(1, &why);
@@ -4466,9 +4195,11 @@ INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, rea
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, qd_out);
     }
+    return code;
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -4484,8 +4215,8 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
     deliver(NJ, qd, qd_out);
 }
 
-INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out, int *code)
+int sixbar_joint_accelerations(const prepared *m, const real *X, const real *V, const real *A,
+    real *qdd_out)
 {
     verdict why;
     start(1, &why);
@@ -4499,9 +4230,11 @@ INLINE void joint_accelerations_one(const prepared *m, const real *X, const real
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, qdd_out);
     }
+    return code;
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4518,8 +4251,8 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
     deliver(NJ, qdd, qdd_out);
 }
 
-INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
-    *Z_out, real *H_out, int *code)
+int sixbar_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real *Z_out,
+    real *H_out)
 {
     verdict why;
     start(1, &why);
@@ -4534,11 +4267,13 @@ INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NV, M_out);
         refuse(NV, Z_out);
         refuse(NV*NU, H_out);
     }
+    return code;
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -4606,8 +4341,8 @@ INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real
 static const size_t order_tau[] = {0, 1, 2};
 static const real sizes_tau[] = {1.0, 4.0, 0.25};
 
-INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *tau_out, int *code)
+int sixbar_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A, const
+    real *wrench, real *tau_out)
 {
     real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
@@ -4633,9 +4368,11 @@ INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, tau_out);
     }
+    return code;
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -4661,8 +4398,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 static const size_t order_A[] = {0, 1, 2};
 static const real sizes_A[] = {4.0, 4.0, 0.0625};
 
-INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
-    const real *wrench, real *A_out, int *code)
+int sixbar_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau,
+    const real *wrench, real *A_out)
 {
     real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] =
         {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
@@ -4692,9 +4429,11 @@ INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, A_out);
     }
+    return code;
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4722,21 +4461,28 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     deliver(NV, A, A_out);
 }
 
-INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
+int sixbar_complete_acceleration(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *completed_out)
 {
+    (void)m;
+    (void)X;
+    (void)V;
+    (void)wrench;
     verdict why;
     start(1, &why);
     check(NV, 1, A, why.invalid);
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, completed_out);
     }
+    return code;
 }
 
-INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces_out, int *code)
+int sixbar_leg_reactions(const prepared *m, const real *X, const real *V, const real *A, const
+    real *wrench, real *forces_out)
 {
     static const size_t places_forces[] = {0, 0, 1};
     real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
@@ -4768,13 +4514,15 @@ INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, c
     add_forces(NV, 3, 1, places_forces, solve_1, actuator, forces);
     check(NL*NV, 1, forces, why.overflow);
     copy(NL*NV, forces, forces_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NL*NV, forces_out);
     }
+    return code;
 }
 
-INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
-    *potential_out, int *code)
+int sixbar_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
+    *potential_out)
 {
     real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
@@ -4792,15 +4540,17 @@ INLINE void energy_one(const prepared *m, const real *X, const real *V, real *ki
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, kinetic_out);
         refuse(1, potential_out);
     }
+    return code;
 }
 
-INLINE void condition_one(const prepared *m, const real *X, const real *length, real *sigma_out,
-    real *legs_out, int *code)
+int sixbar_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
+    const real *length = NULL;
     static const size_t places_divide_rows_1[] = {2};
     real length_in[1], H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
         choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
@@ -4826,14 +4576,15 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, sigma_out);
         refuse(NL, legs_out);
     }
+    return code;
 }
 
-INLINE void manipulability_one(const prepared *m, const real *X, real *measure_out, real
-    *isotropy_out, int *code)
+int sixbar_manipulability(const prepared *m, const real *X, real *measure_out, real *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {2};
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
@@ -4863,14 +4614,16 @@ INLINE void manipulability_one(const prepared *m, const real *X, real *measure_o
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, measure_out);
         refuse(1, isotropy_out);
     }
+    return code;
 }
 
-INLINE void singularity_distance_one(const prepared *m, const real *X, real *actuators_out, real
-    *legs_out, int *code)
+int sixbar_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
+    *legs_out)
 {
     static const size_t places_divide_rows_1[] = {2};
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
@@ -4900,14 +4653,15 @@ INLINE void singularity_distance_one(const prepared *m, const real *X, real *act
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, actuators_out);
         refuse(1, legs_out);
     }
+    return code;
 }
 
-static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
-    int *code)
+static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
 {
     real q[NJ] = {0}, subtract_1[NU] = {0}, gap[NU] = {0};
     verdict why;
@@ -4928,12 +4682,14 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
     wrap_turns(NU, 1, sixbar_ACTUATED, gap);
     check(NU, 1, gap, why.overflow);
     copy(NU, gap, gap_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, gap_out);
     }
+    return code;
 }
 
-static void slope_one(const prepared *m, const real *X, real *slope_out, int *code)
+static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     verdict why;
     start(1, &why);
@@ -4942,9 +4698,11 @@ static void slope_one(const prepared *m, const real *X, real *slope_out, int *co
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NU, slope_out);
     }
+    return code;
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -4955,12 +4713,12 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    mismatch_one(m, found, q_actuated, gap, &code);
+    code = mismatch_one(m, found, q_actuated, gap);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        slope_one(m, found, slope, &code);
+        code = slope_one(m, found, slope);
         if (code != OK) {
             break;
         }
@@ -4974,7 +4732,7 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            mismatch_one(m, trial, q_actuated, next, &tried);
+            tried = mismatch_one(m, trial, q_actuated, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -4992,8 +4750,8 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 }
 
 
-INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
-    *X_out, int *code)
+int sixbar_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real
+    *X_out)
 {
     real X[NQ] = {0};
     verdict why;
@@ -5006,13 +4764,17 @@ INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, co
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
-INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
+int sixbar_dissipation(const prepared *m, const real *X, const real *V, real *dissipation_out)
 {
+    (void)m;
+    (void)X;
     real subtract_1[NV] = {0};
     verdict why;
     start(1, &why);
@@ -5023,13 +4785,14 @@ INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, dissipation_out);
     }
+    return code;
 }
 
-INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
-    *code)
+int sixbar_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
     real M[NV*NV] = {0}, momentum[NV] = {0};
     verdict why;
@@ -5043,27 +4806,14 @@ INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, momentum_out);
     }
+    return code;
 }
 
-INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
-    int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], momentum[NV*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    M_run_lanes(m, X, M, &why);
-    product(NV, NV, 1, LANES, M, V, momentum);
-    add_up(NV, momentum, why.total);
-    suspect(&why, code);
-    deliver(NV, momentum, momentum_out);
-}
-
-INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
+int sixbar_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3};
     real q[NJ] = {0}, margins[NJ] = {0};
@@ -5076,28 +4826,14 @@ INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_ou
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, margins_out);
     }
+    return code;
 }
 
-INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
-{
-    static const size_t places_margins[] = {0, 1, 2, 3};
-    real X_in[NQ*LANES], q[NJ*LANES], margins[NJ*LANES];
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < NJ*LANES; ++i) {
-        margins[i] = q[i];
-    }
-    unlimited(NJ, NJ, LANES, places_margins, margins, why.invalid);
-    suspect(&why, code);
-    deliver(NJ, margins, margins_out);
-}
-
-INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
+int sixbar_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
     verdict why;
@@ -5110,28 +4846,14 @@ INLINE void within_limits_one(const prepared *m, const real *X, real *within_out
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, within_out);
     }
+    return code;
 }
 
-INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
-{
-    real X_in[NQ*LANES], q[NJ*LANES], subtract_1[NJ*LANES], within[LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < NJ*LANES; ++i) {
-        subtract_1[i] = q[i] - q[i];
-    }
-    not_negative(NJ, LANES, subtract_1, within, why.invalid);
-    add_up(1, within, why.total);
-    suspect(&why, code);
-    deliver(1, within, within_out);
-}
-
-INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
+int sixbar_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] = {0};
     verdict why;
@@ -5141,26 +4863,14 @@ INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out
     const real *const q = q_of_inverse_kinematics;
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, q_out);
     }
+    return code;
 }
 
-INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
-{
-    real X_in[NQ*LANES], q_of_inverse_kinematics[NJ*LANES];
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
-    const real *const q = q_of_inverse_kinematics;
-    add_up(NU, q, why.total);
-    suspect(&why, code);
-    deliver(NU, q, q_out);
-}
-
-INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
-    *code)
+int sixbar_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd_of_joint_rates[NJ] = {0};
     verdict why;
@@ -5174,28 +4884,15 @@ INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, 
     const real *const qd = qd_of_joint_rates;
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, qd_out);
     }
+    return code;
 }
 
-INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
-    int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], qd_of_joint_rates[NJ*LANES];
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
-    const real *const qd = qd_of_joint_rates;
-    add_up(NU, qd, why.total);
-    suspect(&why, code);
-    deliver(NU, qd, qd_out);
-}
-
-INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out, int *code)
+int sixbar_actuator_accelerations(const prepared *m, const real *X, const real *V, const real *A,
+    real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] = {0};
     verdict why;
@@ -5210,29 +4907,15 @@ INLINE void actuator_accelerations_one(const prepared *m, const real *X, const r
     const real *const qdd = qdd_of_joint_accelerations;
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, qdd_out);
     }
+    return code;
 }
 
-INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *qdd_out, int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd_of_joint_accelerations[NJ*LANES];
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    A = side_by_side(NV, A, A_in, why.total);
-    joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
-    const real *const qdd = qdd_of_joint_accelerations;
-    add_up(NU, qdd, why.total);
-    suspect(&why, code);
-    deliver(NU, qdd, qdd_out);
-}
-
-INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out, int *code)
+int sixbar_power(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out)
 {
     real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
     verdict why;
@@ -5248,30 +4931,14 @@ INLINE void power_one(const prepared *m, const real *X, const real *V, const rea
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, power_out);
     }
+    return code;
 }
 
-INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out, int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0},
-        power[LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    tau = side_by_side(NU, tau, tau_in, why.total);
-    H_run_lanes(m, X, H, &why);
-    product(NV, NU, 1, LANES, H, tau, times_1);
-    inner(NV, LANES, times_1, V, power);
-    add_up(1, power, why.total);
-    suspect(&why, code);
-    deliver(1, power, power_out);
-}
-
-INLINE void rotation_one(const real *X, real *R_out, int *code)
+int sixbar_rotation(const real *X, real *R_out)
 {
     real R[4] = {0};
     verdict why;
@@ -5281,12 +4948,14 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     rotation_of_angle(X_from_2, R);
     check(4, 1, R, why.overflow);
     copy(4, R, R_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(4, R_out);
     }
+    return code;
 }
 
-INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
+int sixbar_pose(const real *t, const real *R, real *X_out)
 {
     real angle_of_rotation_1[1] = {0}, join_1[3] = {0};
     verdict why;
@@ -5301,12 +4970,14 @@ INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
-INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
+int sixbar_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     verdict why;
     start(1, &why);
@@ -5318,12 +4989,14 @@ INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
     const real *const X_dot = V;
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_dot_out);
     }
+    return code;
 }
 
-INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
+int sixbar_retract(const real *X, const real *step, real *X_moved_out)
 {
     real X_moved[NQ] = {0};
     verdict why;
@@ -5338,12 +5011,14 @@ INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int 
     }
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_moved_out);
     }
+    return code;
 }
 
-INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
+int sixbar_difference(const real *X0, const real *X1, real *step_out)
 {
     static const size_t places_step[] = {2};
     real subtract_1[NQ] = {0}, step[NV] = {0};
@@ -5363,12 +5038,14 @@ INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *
     wrap_turns(1, 1, places_step, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, step_out);
     }
+    return code;
 }
 
-INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
+int sixbar_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     static const size_t places_wrap_turns_1[] = {2};
     real subtract_1[NQ] = {0}, wrap_turns_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
@@ -5395,707 +5072,195 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
     }
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
 /* ---- one state, and batches ---- */
 
-int sixbar_M(const prepared *model, const real *X, real *M)
+size_t sixbar_M_batch(const prepared *m, size_t n, const real *X, real *M, int *status)
 {
-    int code;
-    M_one(model, X, M, &code);
-    return code;
+    SIDE_BY_SIDE(M_lanes(m, X + NQ*i, M + NV*NV*i, codes), sixbar_M(m, X + NQ*j, M + NV*NV*j));
 }
 
-size_t sixbar_M_batch(const prepared *model, size_t n, const real *X, real *M, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = sixbar_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int sixbar_Z(const prepared *model, const real *X, const real *V, real *Z)
-{
-    int code;
-    Z_one(model, X, V, Z, &code);
-    return code;
-}
-
-size_t sixbar_Z_batch(const prepared *model, size_t n, const real *X, const real *V, real *Z, int
+size_t sixbar_Z_batch(const prepared *m, size_t n, const real *X, const real *V, real *Z, int
     *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = sixbar_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(Z_lanes(m, X + NQ*i, V + NV*i, Z + NV*i, codes), sixbar_Z(m, X + NQ*j, V + NV*j, Z +
+        NV*j));
 }
 
-int sixbar_H(const prepared *model, const real *X, real *H)
+size_t sixbar_H_batch(const prepared *m, size_t n, const real *X, real *H, int *status)
 {
-    int code;
-    H_one(model, X, H, &code);
-    return code;
+    SIDE_BY_SIDE(H_lanes(m, X + NQ*i, H + NV*NU*i, codes), sixbar_H(m, X + NQ*j, H + NV*NU*j));
 }
 
-size_t sixbar_H_batch(const prepared *model, size_t n, const real *X, real *H, int *status)
+size_t sixbar_inverse_kinematics_batch(const prepared *m, size_t n, const real *X, real *q, int
+    *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = sixbar_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(inverse_kinematics_lanes(m, X + NQ*i, q + NJ*i, codes), sixbar_inverse_kinematics(m,
+        X + NQ*j, q + NJ*j));
 }
 
-int sixbar_inverse_kinematics(const prepared *model, const real *X, real *q)
+size_t sixbar_joint_rates_batch(const prepared *m, size_t n, const real *X, const real *V, real
+    *rates, int *status)
 {
-    int code;
-    inverse_kinematics_one(model, X, q, &code);
-    return code;
+    SIDE_BY_SIDE(joint_rates_lanes(m, X + NQ*i, V + NV*i, rates + NJ*i, codes), sixbar_joint_rates(m,
+        X + NQ*j, V + NV*j, rates + NJ*j));
 }
 
-size_t sixbar_inverse_kinematics_batch(const prepared *model, size_t n, const real *X, real *q,
-    int *status)
+size_t sixbar_joint_accelerations_batch(const prepared *m, size_t n, const real *X, const real *V,
+    const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = sixbar_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(joint_accelerations_lanes(m, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i,
+        codes), sixbar_joint_accelerations(m, X + NQ*j, V + NV*j, A + NV*j, accelerations + NJ*j));
 }
 
-int sixbar_joint_rates(const prepared *model, const real *X, const real *V, real *rates)
+size_t sixbar_dynamics_batch(const prepared *m, size_t n, const real *X, const real *V, real *M,
+    real *Z, real *H, int *status)
 {
-    int code;
-    joint_rates_one(model, X, V, rates, &code);
-    return code;
+    SIDE_BY_SIDE(dynamics_lanes(m, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes),
+        sixbar_dynamics(m, X + NQ*j, V + NV*j, M + NV*NV*j, Z + NV*j, H + NV*NU*j));
 }
 
-size_t sixbar_joint_rates_batch(const prepared *model, size_t n, const real *X, const real *V,
-    real *rates, int *status)
+size_t sixbar_inverse_dynamics_batch(const prepared *m, size_t n, const real *X, const real *V,
+    const real *A, const real *wrench, real *tau, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = sixbar_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(inverse_dynamics_lanes(m, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i :
+        NULL, tau + NU*i, codes), sixbar_inverse_dynamics(m, X + NQ*j, V + NV*j, A + NV*j, wrench ?
+        wrench + NW*j : NULL, tau + NU*j));
 }
 
-int sixbar_joint_accelerations(const prepared *model, const real *X, const real *V, const real *A,
-    real *accelerations)
+size_t sixbar_forward_dynamics_batch(const prepared *m, size_t n, const real *X, const real *V,
+    const real *tau, const real *wrench, real *A, int *status)
 {
-    int code;
-    joint_accelerations_one(model, X, V, A, accelerations, &code);
-    return code;
+    SIDE_BY_SIDE(forward_dynamics_lanes(m, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i :
+        NULL, A + NV*i, codes), sixbar_forward_dynamics(m, X + NQ*j, V + NV*j, tau + NU*j, wrench ?
+        wrench + NW*j : NULL, A + NV*j));
 }
 
-size_t sixbar_joint_accelerations_batch(const prepared *model, size_t n, const real *X, const real
-    *V, const real *A, real *accelerations, int *status)
+size_t sixbar_complete_acceleration_batch(const prepared *m, size_t n, const real *X, const real
+    *V, const real *A, const real *wrench, real *completed, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = sixbar_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
-                    accelerations + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(sixbar_complete_acceleration(m, X + NQ*j, V + NV*j, A + NV*j, wrench ? wrench + NW*j :
+        NULL, completed + NV*j));
 }
 
-int sixbar_dynamics(const prepared *model, const real *X, const real *V, real *M, real *Z, real
-    *H)
+size_t sixbar_leg_reactions_batch(const prepared *m, size_t n, const real *X, const real *V, const
+    real *A, const real *wrench, real *forces, int *status)
 {
-    int code;
-    dynamics_one(model, X, V, M, Z, H, &code);
-    return code;
+    ONE_BY_ONE(sixbar_leg_reactions(m, X + NQ*j, V + NV*j, A + NV*j, wrench ? wrench + NW*j : NULL,
+        forces + 6*j));
 }
 
-size_t sixbar_dynamics_batch(const prepared *model, size_t n, const real *X, const real *V, real
-    *M, real *Z, real *H, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = sixbar_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z + NV*(i +
-                    k), H + NV*NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int sixbar_inverse_dynamics(const prepared *model, const real *X, const real *V, const real *A,
-    const real *wrench, real *tau)
-{
-    int code;
-    inverse_dynamics_one(model, X, V, A, wrench, tau, &code);
-    return code;
-}
-
-size_t sixbar_inverse_dynamics_batch(const prepared *model, size_t n, const real *X, const real
-    *V, const real *A, const real *wrench, real *tau, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
-                NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = sixbar_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k), wrench ?
-                    wrench + NW*(i + k) : NULL, tau + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int sixbar_forward_dynamics(const prepared *model, const real *X, const real *V, const real *tau,
-    const real *wrench, real *A)
-{
-    int code;
-    forward_dynamics_one(model, X, V, tau, wrench, A, &code);
-    return code;
-}
-
-size_t sixbar_forward_dynamics_batch(const prepared *model, size_t n, const real *X, const real
-    *V, const real *tau, const real *wrench, real *A, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
-                NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = sixbar_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), wrench
-                    ? wrench + NW*(i + k) : NULL, A + NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int sixbar_complete_acceleration(const prepared *model, const real *X, const real *V, const real
-    *A, const real *wrench, real *completed)
-{
-    int code;
-    (void)model, (void)X, (void)V, (void)wrench;
-    complete_acceleration_one(A, completed, &code);
-    return code;
-}
-
-size_t sixbar_complete_acceleration_batch(const prepared *model, size_t n, const real *X, const
-    real *V, const real *A, const real *wrench, real *completed, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = sixbar_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench
-            + NW*i : NULL, completed + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int sixbar_leg_reactions(const prepared *model, const real *X, const real *V, const real *A, const
-    real *wrench, real *forces)
-{
-    int code;
-    leg_reactions_one(model, X, V, A, wrench, forces, &code);
-    return code;
-}
-
-size_t sixbar_leg_reactions_batch(const prepared *model, size_t n, const real *X, const real *V,
-    const real *A, const real *wrench, real *forces, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = sixbar_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i
-            : NULL, forces + 6*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int sixbar_energy(const prepared *model, const real *X, const real *V, real *kinetic, real
-    *potential)
-{
-    int code;
-    energy_one(model, X, V, kinetic, potential, &code);
-    return code;
-}
-
-size_t sixbar_energy_batch(const prepared *model, size_t n, const real *X, const real *V, real
+size_t sixbar_energy_batch(const prepared *m, size_t n, const real *X, const real *V, real
     *kinetic, real *potential, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = sixbar_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(sixbar_energy(m, X + NQ*j, V + NV*j, kinetic + j, potential + j));
 }
 
-int sixbar_condition(const prepared *model, const real *X, real *sigma, real *legs)
+size_t sixbar_condition_batch(const prepared *m, size_t n, const real *X, real *sigma, real *legs,
+    int *status)
 {
-    int code;
-    condition_one(model, X, NULL, sigma, legs, &code);
-    return code;
+    ONE_BY_ONE(sixbar_condition(m, X + NQ*j, sigma + 3*j, legs + 2*j));
 }
 
-size_t sixbar_condition_batch(const prepared *model, size_t n, const real *X, real *sigma, real
-    *legs, int *status)
+size_t sixbar_manipulability_batch(const prepared *m, size_t n, const real *X, real *measure, real
+    *isotropy, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = sixbar_condition(model, X + NQ*i, sigma + 3*i, legs + 2*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(sixbar_manipulability(m, X + NQ*j, measure + j, isotropy + j));
 }
 
-int sixbar_manipulability(const prepared *model, const real *X, real *measure, real *isotropy)
-{
-    int code;
-    manipulability_one(model, X, measure, isotropy, &code);
-    return code;
-}
-
-size_t sixbar_manipulability_batch(const prepared *model, size_t n, const real *X, real *measure,
-    real *isotropy, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = sixbar_manipulability(model, X + NQ*i, measure + i, isotropy + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int sixbar_singularity_distance(const prepared *model, const real *X, real *actuators, real *legs)
-{
-    int code;
-    singularity_distance_one(model, X, actuators, legs, &code);
-    return code;
-}
-
-size_t sixbar_singularity_distance_batch(const prepared *model, size_t n, const real *X, real
+size_t sixbar_singularity_distance_batch(const prepared *m, size_t n, const real *X, real
     *actuators, real *legs, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = sixbar_singularity_distance(model, X + NQ*i, actuators + i, legs + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(sixbar_singularity_distance(m, X + NQ*j, actuators + j, legs + j));
 }
 
-int sixbar_forward_kinematics(const prepared *model, const real *q_actuated, const real *X0, real
-    *X)
+size_t sixbar_forward_kinematics_batch(const prepared *m, size_t n, const real *q_actuated, const
+    real *X0, real *X, int *status)
 {
-    int code;
-    forward_kinematics_one(model, q_actuated, X0, X, &code);
-    return code;
+    ONE_BY_ONE(sixbar_forward_kinematics(m, q_actuated + NU*j, X0 + NQ*j, X + NQ*j));
 }
 
-size_t sixbar_forward_kinematics_batch(const prepared *model, size_t n, const real *q_actuated,
-    const real *X0, real *X, int *status)
+size_t sixbar_dissipation_batch(const prepared *m, size_t n, const real *X, const real *V, real
+    *dissipation, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = sixbar_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(sixbar_dissipation(m, X + NQ*j, V + NV*j, dissipation + j));
 }
 
-int sixbar_dissipation(const prepared *model, const real *X, const real *V, real *dissipation)
-{
-    int code;
-    (void)model, (void)X;
-    dissipation_one(V, dissipation, &code);
-    return code;
-}
-
-size_t sixbar_dissipation_batch(const prepared *model, size_t n, const real *X, const real *V,
-    real *dissipation, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = sixbar_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int sixbar_momentum(const prepared *model, const real *X, const real *V, real *momentum)
-{
-    int code;
-    momentum_one(model, X, V, momentum, &code);
-    return code;
-}
-
-size_t sixbar_momentum_batch(const prepared *model, size_t n, const real *X, const real *V, real
+size_t sixbar_momentum_batch(const prepared *m, size_t n, const real *X, const real *V, real
     *momentum, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = sixbar_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(sixbar_momentum(m, X + NQ*j, V + NV*j, momentum + NV*j));
 }
 
-int sixbar_joint_margins(const prepared *model, const real *X, real *margins)
+size_t sixbar_joint_margins_batch(const prepared *m, size_t n, const real *X, real *margins, int
+    *status)
 {
-    int code;
-    joint_margins_one(model, X, margins, &code);
-    return code;
+    ONE_BY_ONE(sixbar_joint_margins(m, X + NQ*j, margins + NJ*j));
 }
 
-size_t sixbar_joint_margins_batch(const prepared *model, size_t n, const real *X, real *margins,
-    int *status)
+size_t sixbar_within_limits_batch(const prepared *m, size_t n, const real *X, real *within, int
+    *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = sixbar_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(sixbar_within_limits(m, X + NQ*j, within + j));
 }
 
-int sixbar_within_limits(const prepared *model, const real *X, real *within)
+size_t sixbar_actuator_positions_batch(const prepared *m, size_t n, const real *X, real *q, int
+    *status)
 {
-    int code;
-    within_limits_one(model, X, within, &code);
-    return code;
+    ONE_BY_ONE(sixbar_actuator_positions(m, X + NQ*j, q + NU*j));
 }
 
-size_t sixbar_within_limits_batch(const prepared *model, size_t n, const real *X, real *within,
-    int *status)
+size_t sixbar_actuator_rates_batch(const prepared *m, size_t n, const real *X, const real *V, real
+    *rates, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            within_limits_lanes(model, X + NQ*i, within + i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = sixbar_within_limits(model, X + NQ*(i + k), within + (i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(sixbar_actuator_rates(m, X + NQ*j, V + NV*j, rates + NU*j));
 }
 
-int sixbar_actuator_positions(const prepared *model, const real *X, real *q)
+size_t sixbar_actuator_accelerations_batch(const prepared *m, size_t n, const real *X, const real
+    *V, const real *A, real *accelerations, int *status)
 {
-    int code;
-    actuator_positions_one(model, X, q, &code);
-    return code;
+    ONE_BY_ONE(sixbar_actuator_accelerations(m, X + NQ*j, V + NV*j, A + NV*j, accelerations + NU*j));
 }
 
-size_t sixbar_actuator_positions_batch(const prepared *model, size_t n, const real *X, real *q,
-    int *status)
+size_t sixbar_power_batch(const prepared *m, size_t n, const real *X, const real *V, const real
+    *tau, real *power, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = sixbar_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int sixbar_actuator_rates(const prepared *model, const real *X, const real *V, real *rates)
-{
-    int code;
-    actuator_rates_one(model, X, V, rates, &code);
-    return code;
-}
-
-size_t sixbar_actuator_rates_batch(const prepared *model, size_t n, const real *X, const real *V,
-    real *rates, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = sixbar_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int sixbar_actuator_accelerations(const prepared *model, const real *X, const real *V, const real
-    *A, real *accelerations)
-{
-    int code;
-    actuator_accelerations_one(model, X, V, A, accelerations, &code);
-    return code;
-}
-
-size_t sixbar_actuator_accelerations_batch(const prepared *model, size_t n, const real *X, const
-    real *V, const real *A, real *accelerations, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = sixbar_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
-                    accelerations + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int sixbar_power(const prepared *model, const real *X, const real *V, const real *tau, real
-    *power)
-{
-    int code;
-    power_one(model, X, V, tau, power, &code);
-    return code;
-}
-
-size_t sixbar_power_batch(const prepared *model, size_t n, const real *X, const real *V, const
-    real *tau, real *power, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = sixbar_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power + (i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int sixbar_rotation(const real *X, real *R)
-{
-    int code;
-    rotation_one(X, R, &code);
-    return code;
+    ONE_BY_ONE(sixbar_power(m, X + NQ*j, V + NV*j, tau + NU*j, power + j));
 }
 
 size_t sixbar_rotation_batch(size_t n, const real *X, real *R, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = sixbar_rotation(X + NQ*i, R + 4*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int sixbar_pose(const real *t, const real *R, real *X)
-{
-    int code;
-    pose_one(t, R, X, &code);
-    return code;
+    ONE_BY_ONE(sixbar_rotation(X + NQ*j, R + 4*j));
 }
 
 size_t sixbar_pose_batch(size_t n, const real *t, const real *R, real *X, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = sixbar_pose(t + 2*i, R + 4*i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int sixbar_X_dot(const real *X, const real *V, real *X_dot)
-{
-    int code;
-    X_dot_one(X, V, X_dot, &code);
-    return code;
+    ONE_BY_ONE(sixbar_pose(t + 2*j, R + 4*j, X + NQ*j));
 }
 
 size_t sixbar_X_dot_batch(size_t n, const real *X, const real *V, real *X_dot, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = sixbar_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int sixbar_retract(const real *X, const real *step, real *X_moved)
-{
-    int code;
-    retract_one(X, step, X_moved, &code);
-    return code;
+    ONE_BY_ONE(sixbar_X_dot(X + NQ*j, V + NV*j, X_dot + NQ*j));
 }
 
 size_t sixbar_retract_batch(size_t n, const real *X, const real *step, real *X_moved, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = sixbar_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int sixbar_difference(const real *X0, const real *X1, real *step)
-{
-    int code;
-    difference_one(X0, X1, step, &code);
-    return code;
+    ONE_BY_ONE(sixbar_retract(X + NQ*j, step + NV*j, X_moved + NQ*j));
 }
 
 size_t sixbar_difference_batch(size_t n, const real *X0, const real *X1, real *step, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = sixbar_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int sixbar_interpolate(const real *X0, const real *X1, const real *s, real *X)
-{
-    int code;
-    interpolate_one(X0, X1, s, X, &code);
-    return code;
+    ONE_BY_ONE(sixbar_difference(X0 + NQ*j, X1 + NQ*j, step + NV*j));
 }
 
 size_t sixbar_interpolate_batch(size_t n, const real *X0, const real *X1, const real *s, real *X,
     int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = sixbar_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(sixbar_interpolate(X0 + NQ*j, X1 + NQ*j, s + j, X + NQ*j));
 }

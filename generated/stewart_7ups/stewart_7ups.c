@@ -187,13 +187,27 @@ INLINE int sum_is_finite(const real *x, size_t n)
     return is_finite(total(sum, LANES));
 }
 
+/* How many of some numbers are not finite. */
+APART real not_finite(size_t n, const real *x)
+{
+    real count = 0;
+    if (!sum_is_finite(x, n)) {
+        for (size_t i = 0; i < n; ++i) {
+            count += UNLESS(is_finite(x[i]));
+        }
+    }
+    return count;
+}
+
 /* Flag the states with entries that are not finite; the states stand side by side. */
 INLINE void check(size_t size, size_t w, const real *x, real *flags)
 {
-    if (!sum_is_finite(x, size*w)) {
-        for (size_t i = 0; i < size*w; ++i) {
-            flags[i%w] += UNLESS(is_finite(x[i]));
-        }
+    if (w == 1) {
+        flags[0] += not_finite(size, x);
+        return;
+    }
+    for (size_t i = 0; i < size*w; ++i) {
+        flags[i%w] += UNLESS(is_finite(x[i]));
     }
 }
 
@@ -248,18 +262,17 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE int judge(const verdict *t, int *code)
+INLINE int judge(const verdict *t)
 {
-    *code = t->invalid[0] > 0 ? INVALID
+    return t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
         : t->unreachable[0] > 0 ? UNREACHABLE
         : t->singular[0] > 0 ? SINGULAR
         : t->overflow[0] > 0 ? INVALID : OK;
-    return *code;
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
-INLINE void suspect(const verdict *t, int *code)
+APART void suspect(const verdict *t, int *code)
 {
     real flags[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -281,7 +294,7 @@ INLINE void blame(int code, verdict *t)
 }
 
 /* Outputs of an impossible state. */
-INLINE void refuse(size_t size, real *out)
+APART void refuse(size_t size, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
@@ -317,6 +330,32 @@ INLINE size_t record(const int *code, size_t w, int *status)
     }
     return failed;
 }
+
+/* Bodies of batches.  lanes: settles the states from number i on, side by side, in codes; one: settles
+   state j, what fails and what is left too. */
+#define SIDE_BY_SIDE(lanes, one) \
+    size_t failed = 0, w; \
+    for (size_t i = 0; i < n; i += w) { \
+        int codes[LANES] = {INVALID}; \
+        w = LANES > 1 && i + LANES <= n ? LANES : 1; \
+        if (w > 1) { \
+            lanes; \
+        } \
+        for (size_t j = i; j < i + w; ++j) { \
+            if (codes[j - i] != OK) { \
+                codes[j - i] = one; \
+            } \
+        } \
+        failed += record(codes, w, status ? status + i : NULL); \
+    } \
+    return failed
+#define ONE_BY_ONE(one) \
+    size_t failed = 0; \
+    for (size_t j = 0; j < n; ++j) { \
+        const int code = one; \
+        failed += record(&code, 1, status ? status + j : NULL); \
+    } \
+    return failed
 
 /* What the reader of specifications allows; floats have less to offer. */
 #define ROUNDED BY_TYPE(1e-5, 1e-06, 1e-06)  /* lengths and products of unit vectors */
@@ -654,11 +693,11 @@ int stewart_7ups_prepare(const stewart_7ups_params *params, stewart_7ups_model *
         const real ups_Sigma_2_in_axes2_xx = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_xx;
         const real ups_Sigma_2_in_axes2_yy = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_yy;
         const real ups_Sigma_2_in_axes2_zz = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_zz;
-        /* (h_star) first moment about the platform origin */
+        /* (h_star) */
         const real ups_h_star_t = ups_link3_mass*ups_platform_point_x;
         const real ups_h_star_t_2 = ups_link3_mass*ups_platform_point_y;
         const real ups_h_star_t_3 = ups_link3_mass*ups_platform_point_z;
-        /* (J_star) inertia tensor about the platform origin */
+        /* (J_star) */
         const real ups_J_star_t = ups_platform_point_x*ups_platform_point_x;
         const real ups_J_star_t_2 = ups_platform_point_y*ups_platform_point_y;
         const real ups_J_star_t_3 = ups_platform_point_z*ups_platform_point_z;
@@ -732,11 +771,11 @@ int stewart_7ups_prepare(const stewart_7ups_params *params, stewart_7ups_model *
     }
     /* (m_star) mass of the platform with the gathered masses */
     const real m_star = m_star_of_legs + platform_mass;
-    /* (h_star) first moment about the platform origin */
+    /* (h_star) */
     const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
     const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
     const real h_star_in_platform_z = h_star_in_platform_z_of_legs + h_star_t_3;
-    /* (J_star) inertia tensor about the platform origin */
+    /* (J_star) */
     const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + platform_inertia_xx -
         J_star_t_5;
     const real J_star_in_platform_xy = J_star_in_platform_xy_of_legs + platform_inertia_xy -
@@ -1581,15 +1620,12 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real R_zy = quaternion_wx + quaternion_yz;
     const real R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (h_star) first moment about the platform origin */
-    const real h_star_in_platform_x = m->h_star_in_platform_x;
-    const real h_star_in_platform_y = m->h_star_in_platform_y;
-    const real h_star_in_platform_z = m->h_star_in_platform_z;
-    const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-        R_xz*h_star_in_platform_z;
-    const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-        R_yz*h_star_in_platform_z;
-    const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-        R_zz*h_star_in_platform_z;
+    const real h_star_x = R_xx*m->h_star_in_platform_x + R_xy*m->h_star_in_platform_y +
+        R_xz*m->h_star_in_platform_z;
+    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yy*m->h_star_in_platform_y +
+        R_yz*m->h_star_in_platform_z;
+    const real h_star_z = R_zx*m->h_star_in_platform_x + R_zy*m->h_star_in_platform_y +
+        R_zz*m->h_star_in_platform_z;
     v->quaternion_scale = quaternion_scale;
     v->R_xx = R_xx;
     v->R_xy = R_xy;
@@ -1622,33 +1658,27 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
 INLINE void stage_M_dynamics(const prepared *m, values *v)
 {
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-    const real J_star_t_12 = m->J_star_t_12;
-    const real J_star_t = J_star_in_platform_xy*v->R_xx + J_star_in_platform_yz*v->R_xz -
-        J_star_t_12*v->R_xy;
-    const real J_star_t_2 = J_star_in_platform_xy*v->R_yx + J_star_in_platform_yz*v->R_yz -
-        J_star_t_12*v->R_yy;
-    const real J_star_t_3 = J_star_in_platform_xy*v->R_zx + J_star_in_platform_yz*v->R_zz -
-        J_star_t_12*v->R_zy;
-    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-    const real J_star_t_14 = m->J_star_t_14;
-    const real J_star_t_4 = J_star_t_14*v->R_xz - J_star_in_platform_xz*v->R_xx;
-    const real J_star_t_5 = J_star_t_14*v->R_yz - J_star_in_platform_xz*v->R_yx;
-    const real J_star_t_6 = J_star_t_14*v->R_zz - J_star_in_platform_xz*v->R_zx;
+    const real J_star_t = m->J_star_in_platform_xy*v->R_xx + m->J_star_in_platform_yz*v->R_xz
+        - m->J_star_t_12*v->R_xy;
+    const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
+        m->J_star_in_platform_yz*v->R_yz - m->J_star_t_12*v->R_yy;
+    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx +
+        m->J_star_in_platform_yz*v->R_zz - m->J_star_t_12*v->R_zy;
+    const real J_star_t_4 = m->J_star_t_14*v->R_xz - m->J_star_in_platform_xz*v->R_xx;
+    const real J_star_t_5 = m->J_star_t_14*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
+    const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
-    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-    const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+    const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
     const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
         J_star_t_5*v->R_xz;
     const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
     const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
-    const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+    const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
     const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
         J_star_t_6*v->R_yz;
     const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
-    const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
+    const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
     v->J_star_xx = J_star_xx;
     v->J_star_xy = J_star_xy;
     v->J_star_xz = J_star_xz;
@@ -1666,46 +1696,34 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real omega_x = V[3*w + k];
     const real Z_p_t_5 = v->h_star_x*omega_z - v->h_star_z*omega_x;
     const real Z_p_t_6 = v->h_star_y*omega_x - v->h_star_x*omega_y;
-    const real Z_p_t = m->Z_p_t;
-    const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-    const real Z_p_t_2 = m->Z_p_t_2;
-    const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-    const real Z_p_t_3 = m->Z_p_t_3;
-    const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
+    const real Z_p_x = Z_p_t_6*omega_y - m->Z_p_t - Z_p_t_5*omega_z;
+    const real Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
+    const real Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real gravity_x = m->gravity_x;
-    const real gravity_y = m->gravity_y;
-    const real gravity_z = m->gravity_z;
-    const real g_in_platform_x = v->R_xx*gravity_x + v->R_yx*gravity_y + v->R_zx*gravity_z;
-    const real g_in_platform_y = v->R_xy*gravity_x + v->R_yy*gravity_y + v->R_zy*gravity_z;
-    const real g_in_platform_z = v->R_xz*gravity_x + v->R_yz*gravity_y + v->R_zz*gravity_z;
-    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-    const real Z_q_t = J_star_in_platform_xx*v->omega_in_platform_x +
-        J_star_in_platform_xy*v->omega_in_platform_y +
-        J_star_in_platform_xz*v->omega_in_platform_z;
-    const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-    const real Z_q_t_2 = J_star_in_platform_xy*v->omega_in_platform_x +
-        J_star_in_platform_yy*v->omega_in_platform_y +
-        J_star_in_platform_yz*v->omega_in_platform_z;
-    const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-    const real Z_q_t_3 = J_star_in_platform_xz*v->omega_in_platform_x +
-        J_star_in_platform_yz*v->omega_in_platform_y +
-        J_star_in_platform_zz*v->omega_in_platform_z;
-    const real h_star_in_platform_y = m->h_star_in_platform_y;
-    const real h_star_in_platform_z = m->h_star_in_platform_z;
+    const real g_in_platform_x = v->R_xx*m->gravity_x + v->R_yx*m->gravity_y +
+        v->R_zx*m->gravity_z;
+    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_yy*m->gravity_y +
+        v->R_zy*m->gravity_z;
+    const real g_in_platform_z = v->R_xz*m->gravity_x + v->R_yz*m->gravity_y +
+        v->R_zz*m->gravity_z;
+    const real Z_q_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
+        m->J_star_in_platform_xy*v->omega_in_platform_y +
+        m->J_star_in_platform_xz*v->omega_in_platform_z;
+    const real Z_q_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
+        m->J_star_in_platform_yy*v->omega_in_platform_y +
+        m->J_star_in_platform_yz*v->omega_in_platform_z;
+    const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
+        m->J_star_in_platform_yz*v->omega_in_platform_y +
+        m->J_star_in_platform_zz*v->omega_in_platform_z;
     const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
-        g_in_platform_y*h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
-        g_in_platform_z*h_star_in_platform_y;
-    const real h_star_in_platform_x = m->h_star_in_platform_x;
+        g_in_platform_y*m->h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
+        g_in_platform_z*m->h_star_in_platform_y;
     const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
-        g_in_platform_z*h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
-        g_in_platform_x*h_star_in_platform_z;
+        g_in_platform_z*m->h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
+        g_in_platform_x*m->h_star_in_platform_z;
     const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
-        g_in_platform_x*h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
-        g_in_platform_y*h_star_in_platform_x;
+        g_in_platform_x*m->h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
+        g_in_platform_y*m->h_star_in_platform_x;
     const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
         v->R_xz*Z_q_in_platform_z;
     const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
@@ -1743,50 +1761,34 @@ INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real ups_platform_point_x = m->ups_platform_point_x[i];
-    const real ups_platform_point_y = m->ups_platform_point_y[i];
-    const real ups_platform_point_z = m->ups_platform_point_z[i];
-    const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
-        R_xz*ups_platform_point_z;
+    const real ups_q_x = R_xx*m->ups_platform_point_x[i] + R_xy*m->ups_platform_point_y[i] +
+        R_xz*m->ups_platform_point_z[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
-        R_yz*ups_platform_point_z;
+    const real ups_q_y = R_yx*m->ups_platform_point_x[i] + R_yy*m->ups_platform_point_y[i] +
+        R_yz*m->ups_platform_point_z[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
-    const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
-        R_zz*ups_platform_point_z;
+    const real ups_q_z = R_zx*m->ups_platform_point_x[i] + R_zy*m->ups_platform_point_y[i] +
+        R_zz*m->ups_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real ups_base_point_x = m->ups_base_point_x[i];
-    const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
+    const real ups_S_x = t_x + ups_q_x - m->ups_base_point_x[i];
     const real t_y = X[1*w + j];
-    const real ups_base_point_y = m->ups_base_point_y[i];
-    const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
+    const real ups_S_y = t_y + ups_q_y - m->ups_base_point_y[i];
     const real t_z = X[2*w + j];
-    const real ups_base_point_z = m->ups_base_point_z[i];
-    const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
-    const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-    const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-    const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-    const real ups_S_in_turn1_x = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-        ups_S_z*ups_base_frame_zx;
-    const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-    const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-    const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-    const real ups_S_in_turn1_y = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-        ups_S_z*ups_base_frame_zy;
-    const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-    const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-    const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-    const real ups_S_in_turn1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-        ups_S_z*ups_base_frame_zz;
+    const real ups_S_z = t_z + ups_q_z - m->ups_base_point_z[i];
+    const real ups_S_in_turn1_x = ups_S_x*m->ups_base_frame_xx[i] +
+        ups_S_y*m->ups_base_frame_yx[i] + ups_S_z*m->ups_base_frame_zx[i];
+    const real ups_S_in_turn1_y = ups_S_x*m->ups_base_frame_xy[i] +
+        ups_S_y*m->ups_base_frame_yy[i] + ups_S_z*m->ups_base_frame_zy[i];
+    const real ups_S_in_turn1_z = ups_S_x*m->ups_base_frame_xz[i] +
+        ups_S_y*m->ups_base_frame_yz[i] + ups_S_z*m->ups_base_frame_zz[i];
     /* (ups-root_1) amplitude, the length across axis 1, with the sign of the branch */
     const real ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x +
         ups_S_in_turn1_y*ups_S_in_turn1_y;
-    const real ups_branch_1 = m->ups_branch_1[i];
-    const real ups_root_1 = ups_branch_1*root(ups_root_1_t);
+    const real ups_root_1 = m->ups_branch_1[i]*root(ups_root_1_t);
     /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
     const real inv_ups_root_1 = 1/ups_root_1;
     const real ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x;
@@ -1794,8 +1796,7 @@ INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y;
     /* (ups-q_3) displacement of joint 3 */
     const real ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t;
-    const real ups_branch_2 = m->ups_branch_2[i];
-    const real ups_q_3 = ups_branch_2*root(ups_q_3_t);
+    const real ups_q_3 = m->ups_branch_2[i]*root(ups_q_3_t);
     /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
     const real inv_ups_q_3 = 1/ups_q_3;
     const real ups_c_2 = inv_ups_q_3*ups_root_1;
@@ -1804,9 +1805,12 @@ INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y;
     const real axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z;
     /* (ups-qd_1) rate of joint 1 */
-    const real axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1;
-    const real axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1;
-    const real axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1;
+    const real axis_z_ups_axes2_x = m->ups_base_frame_xy[i]*ups_c_1 -
+        m->ups_base_frame_xx[i]*ups_s_1;
+    const real axis_z_ups_axes2_y = m->ups_base_frame_yy[i]*ups_c_1 -
+        m->ups_base_frame_yx[i]*ups_s_1;
+    const real axis_z_ups_axes2_z = m->ups_base_frame_zy[i]*ups_c_1 -
+        m->ups_base_frame_zx[i]*ups_s_1;
     /* (ups-qd_2) rate of joint 2 */
     const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
         axis_x_ups_axes2_y*axis_z_ups_axes2_z;
@@ -1817,9 +1821,7 @@ INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (ups-omega_1) angular velocity of link 1 */
     const real ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z;
     /* (ups-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real ups_acc_3_t = m->ups_acc_3_t[i];
-    const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
-    const real ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1;
+    const real ups_g_in_axes2_z = m->ups_acc_3_t_2[i]*ups_c_1 - m->ups_acc_3_t[i]*ups_s_1;
     /* (ups-w_2) reciprocal vector 2 */
     const real ups_w_2_in_axes2_y = 1/ups_q_3;
     /* (ups-w_3) reciprocal vector 3 */
@@ -1971,14 +1973,11 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real ups_B_2_o_in_axes2_zx = v->ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y;
     const real ups_B_2_o_in_axes2_zy = v->ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x;
     /* (ups-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real ups_acc_3_t = m->ups_acc_3_t[i];
-    const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
-    const real ups_acc_3_o_t = ups_acc_3_t*v->ups_c_1 + ups_acc_3_t_2*v->ups_s_1;
-    const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
+    const real ups_acc_3_o_t = m->ups_acc_3_t[i]*v->ups_c_1 + m->ups_acc_3_t_2[i]*v->ups_s_1;
     const real ups_g_in_axes2_x = ups_acc_3_o_t*v->ups_c_2 +
-        ups_acc_3_t_3*v->ups_e_1_in_axes2_x;
+        m->ups_acc_3_t_3[i]*v->ups_e_1_in_axes2_x;
     const real ups_g_in_axes2_y = ups_acc_3_o_t*v->ups_e_1_in_axes2_x -
-        ups_acc_3_t_3*v->ups_c_2;
+        m->ups_acc_3_t_3[i]*v->ups_c_2;
     const real ups_acc_3_o_in_axes2_x = v->axis_x_ups_axes2_x*ups_u_1_x +
         v->axis_x_ups_axes2_y*ups_u_1_y + v->axis_x_ups_axes2_z*ups_u_1_z - ups_g_in_axes2_x;
     const real ups_acc_3_o_in_axes2_y = ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 -
@@ -1988,54 +1987,48 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
        */
     const real ups_phi_3_o_t = v->ups_omega_1_in_axes2_y*v->ups_omega_1_in_axes2_y;
     const real ups_phi_3_o_t_2 = v->ups_qd_2*v->ups_qd_2;
-    const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
-    const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
-    const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
-    const real ups_phi_3_o_in_axes2_x = ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y +
-        ups_h_3_in_spec2_x*(-ups_phi_3_o_t - ups_phi_3_o_t_2) -
-        ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z;
+    const real ups_phi_3_o_in_axes2_x = ups_alpha_1_o_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
+        m->ups_h_3_in_spec2_x[i]*(-ups_phi_3_o_t - ups_phi_3_o_t_2) -
+        ups_B_2_o_in_axes2_xy*m->ups_h_3_in_spec2_z[i];
     /* (ups-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real ups_mu_2_o_t = v->ups_omega_1_in_axes2_x*v->ups_omega_1_in_axes2_x;
-    const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
-    const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
-    const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
-    const real ups_Sigma_2_in_axes2_yy = m->ups_Sigma_2_in_axes2_yy[i];
-    const real ups_Sigma_2_in_axes2_zz = m->ups_Sigma_2_in_axes2_zz[i];
-    const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
-    const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
-    const real ups_mu_2_o_in_axes2_x = ups_B_2_o_in_axes2_yx*ups_J_group_2_in_axes2_xz +
-        ups_B_2_o_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
-        ups_J_group_2_in_axes2_yz*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
-        ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_x + ups_g_in_axes2_y*ups_h_2_in_spec2_y
-        + v->ups_g_in_axes2_z*ups_h_2_in_spec2_z -
-        ups_B_2_o_in_axes2_zx*ups_J_group_2_in_axes2_xy -
-        ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_z;
-    const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
-    const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
-    const real ups_mu_2_o_in_axes2_y = ups_B_2_o_in_axes2_zy*ups_J_group_2_in_axes2_xy +
-        ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_y +
-        ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_y + v->ups_g_in_axes2_z*ups_h_2_in_spec2_x -
-        ups_B_2_o_in_axes2_xy*ups_J_group_2_in_axes2_yz -
-        ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
-        ups_J_group_2_in_axes2_xz*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
-        ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_x - ups_g_in_axes2_x*ups_h_2_in_spec2_y;
-    const real ups_mu_2_o_in_axes2_z = ups_B_2_o_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
-        ups_J_group_2_in_axes2_xy*(ups_mu_2_o_t - ups_phi_3_o_t) +
-        ups_J_group_2_in_axes2_xz*ups_alpha_1_o_in_axes2_x +
-        ups_J_group_2_in_axes2_yz*ups_alpha_1_o_in_axes2_y +
-        ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_x
-        - ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z
-        - ups_g_in_axes2_y*ups_h_2_in_spec2_x;
+    const real ups_mu_2_o_in_axes2_x = ups_B_2_o_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
+        ups_B_2_o_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] +
+        m->ups_J_group_2_in_axes2_yz[i]*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
+        m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_in_axes2_x +
+        ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] +
+        v->ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] -
+        ups_B_2_o_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i] -
+        ups_acc_3_o_in_axes2_y*m->ups_h_3_in_spec2_y[i] -
+        ups_acc_3_o_in_axes2_z*m->ups_h_3_in_spec2_z[i];
+    const real ups_mu_2_o_in_axes2_y = ups_B_2_o_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] +
+        m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_in_axes2_y +
+        ups_acc_3_o_in_axes2_x*m->ups_h_3_in_spec2_y[i] +
+        v->ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
+        ups_B_2_o_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] -
+        ups_B_2_o_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i] -
+        m->ups_J_group_2_in_axes2_xz[i]*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
+        ups_acc_3_o_in_axes2_z*m->ups_h_3_in_spec2_x[i] -
+        ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i];
+    const real ups_mu_2_o_in_axes2_z = ups_B_2_o_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
+        m->ups_J_group_2_in_axes2_xy[i]*(ups_mu_2_o_t - ups_phi_3_o_t) +
+        m->ups_J_group_2_in_axes2_xz[i]*ups_alpha_1_o_in_axes2_x +
+        m->ups_J_group_2_in_axes2_yz[i]*ups_alpha_1_o_in_axes2_y +
+        ups_acc_3_o_in_axes2_x*m->ups_h_3_in_spec2_z[i] +
+        ups_acc_3_o_in_axes2_y*m->ups_h_3_in_spec2_x[i] -
+        ups_B_2_o_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] -
+        ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] - ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i];
     /* (ups-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
-    const real ups_c_o_in_axes2_y = ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y -
-        v->inv_ups_q_3*ups_mu_2_o_in_axes2_z - ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x -
-        ups_h_3_in_spec2_z*(ups_mu_2_o_t + ups_phi_3_o_t_2);
+    const real ups_c_o_in_axes2_y = ups_alpha_1_o_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
+        v->inv_ups_q_3*ups_mu_2_o_in_axes2_z - ups_B_2_o_in_axes2_yx*m->ups_h_3_in_spec2_x[i]
+        - m->ups_h_3_in_spec2_z[i]*(ups_mu_2_o_t + ups_phi_3_o_t_2);
     const real ups_c_o_in_axes2_z = v->inv_ups_root_1*(v->ups_c_2*ups_mu_2_o_in_axes2_y -
         v->ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x) +
-        ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_o_t +
-        ups_phi_3_o_t) - ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x;
+        ups_B_2_o_in_axes2_zy*m->ups_h_3_in_spec2_z[i] +
+        m->ups_h_3_in_spec2_y[i]*(ups_mu_2_o_t + ups_phi_3_o_t) -
+        ups_B_2_o_in_axes2_zx*m->ups_h_3_in_spec2_x[i];
     /* (ups-U) velocity and gravity terms of the leg force */
     const real ups_U_x = v->axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x -
         v->axis_y_ups_axes2_x*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_x*ups_c_o_in_axes2_z;
@@ -2063,52 +2056,38 @@ INLINE void stage_ups_inverse_kinematics_potential(const prepared *m, size_t w, 
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
     const real t_x = X[0*w + j];
-    const real ups_base_point_x = m->ups_base_point_x[i];
-    const real ups_platform_point_x = m->ups_platform_point_x[i];
-    const real ups_platform_point_y = m->ups_platform_point_y[i];
-    const real ups_platform_point_z = m->ups_platform_point_z[i];
-    const real ups_S_x = t_x + R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
-        R_xz*ups_platform_point_z - ups_base_point_x;
+    const real ups_S_x = t_x + R_xx*m->ups_platform_point_x[i] +
+        R_xy*m->ups_platform_point_y[i] + R_xz*m->ups_platform_point_z[i] -
+        m->ups_base_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real t_y = X[1*w + j];
-    const real ups_base_point_y = m->ups_base_point_y[i];
-    const real ups_S_y = t_y + R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
-        R_yz*ups_platform_point_z - ups_base_point_y;
+    const real ups_S_y = t_y + R_yx*m->ups_platform_point_x[i] +
+        R_yy*m->ups_platform_point_y[i] + R_yz*m->ups_platform_point_z[i] -
+        m->ups_base_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real t_z = X[2*w + j];
-    const real ups_base_point_z = m->ups_base_point_z[i];
-    const real ups_S_z = t_z + R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
-        R_zz*ups_platform_point_z - ups_base_point_z;
-    const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-    const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-    const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-    const real ups_S_in_turn1_x = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-        ups_S_z*ups_base_frame_zx;
-    const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-    const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-    const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-    const real ups_S_in_turn1_y = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-        ups_S_z*ups_base_frame_zy;
-    const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-    const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-    const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-    const real ups_S_in_turn1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-        ups_S_z*ups_base_frame_zz;
+    const real ups_S_z = t_z + R_zx*m->ups_platform_point_x[i] +
+        R_zy*m->ups_platform_point_y[i] + R_zz*m->ups_platform_point_z[i] -
+        m->ups_base_point_z[i];
+    const real ups_S_in_turn1_x = ups_S_x*m->ups_base_frame_xx[i] +
+        ups_S_y*m->ups_base_frame_yx[i] + ups_S_z*m->ups_base_frame_zx[i];
+    const real ups_S_in_turn1_y = ups_S_x*m->ups_base_frame_xy[i] +
+        ups_S_y*m->ups_base_frame_yy[i] + ups_S_z*m->ups_base_frame_zy[i];
+    const real ups_S_in_turn1_z = ups_S_x*m->ups_base_frame_xz[i] +
+        ups_S_y*m->ups_base_frame_yz[i] + ups_S_z*m->ups_base_frame_zz[i];
     /* (ups-root_1) amplitude, the length across axis 1, with the sign of the branch */
     const real ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x +
         ups_S_in_turn1_y*ups_S_in_turn1_y;
-    const real ups_branch_1 = m->ups_branch_1[i];
-    const real ups_root_1 = ups_branch_1*root(ups_root_1_t);
+    const real ups_root_1 = m->ups_branch_1[i]*root(ups_root_1_t);
     /* (ups-q_1) displacement of joint 1 */
     const real inv_ups_root_1 = 1/ups_root_1;
     /* (ups-q_3) displacement of joint 3 */
     const real ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t;
-    const real ups_branch_2 = m->ups_branch_2[i];
-    const real ups_q_3 = ups_branch_2*root(ups_q_3_t);
+    const real ups_q_3 = m->ups_branch_2[i]*root(ups_q_3_t);
     /* (ups-q_2) displacement of joint 2 */
     const real inv_ups_q_3 = 1/ups_q_3;
     v->ups_S_in_turn1_x = ups_S_in_turn1_x;
@@ -2147,14 +2126,11 @@ INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
     const real ups_B_2_in_axes2_zx = v->ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y;
     const real ups_B_2_in_axes2_zy = v->ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x;
     /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
-    const real ups_acc_3_t = m->ups_acc_3_t[i];
-    const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
-    const real ups_acc_3_t_4 = ups_acc_3_t*v->ups_c_1 + ups_acc_3_t_2*v->ups_s_1;
-    const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
-    const real ups_g_in_axes2_x = ups_acc_3_t_3*v->ups_e_1_in_axes2_x +
+    const real ups_acc_3_t_4 = m->ups_acc_3_t[i]*v->ups_c_1 + m->ups_acc_3_t_2[i]*v->ups_s_1;
+    const real ups_g_in_axes2_x = m->ups_acc_3_t_3[i]*v->ups_e_1_in_axes2_x +
         ups_acc_3_t_4*v->ups_c_2;
     const real ups_g_in_axes2_y = ups_acc_3_t_4*v->ups_e_1_in_axes2_x -
-        ups_acc_3_t_3*v->ups_c_2;
+        m->ups_acc_3_t_3[i]*v->ups_c_2;
     const real ups_acc_3_in_axes2_x = v->axis_x_ups_axes2_x*v->ups_S_ddot_x +
         v->axis_x_ups_axes2_y*v->ups_S_ddot_y + v->axis_x_ups_axes2_z*v->ups_S_ddot_z -
         ups_g_in_axes2_x;
@@ -2180,1500 +2156,1448 @@ INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s,
-    verdict *t)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        stage_V_X(w, k, V, &v);
-        stage_M_dynamics(m, &v);
-        stage_Z_dynamics(m, w, k, V, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = v.h_star_x;
-        s[10*w + k] = v.h_star_y;
-        s[11*w + k] = v.h_star_z;
-        s[12*w + k] = v.J_star_xx;
-        s[13*w + k] = v.J_star_xy;
-        s[14*w + k] = v.J_star_xz;
-        s[15*w + k] = v.J_star_yy;
-        s[16*w + k] = v.J_star_yz;
-        s[17*w + k] = v.J_star_zz;
-        s[18*w + k] = v.Z_p_x;
-        s[19*w + k] = v.Z_p_y;
-        s[20*w + k] = v.Z_p_z;
-        s[21*w + k] = v.Z_q_x;
-        s[22*w + k] = v.Z_q_y;
-        s[23*w + k] = v.Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    stage_V_X(w, k, V, &v);
+    stage_M_dynamics(m, &v);
+    stage_Z_dynamics(m, w, k, V, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = v.h_star_x;
+    s[10*w + k] = v.h_star_y;
+    s[11*w + k] = v.h_star_z;
+    s[12*w + k] = v.J_star_xx;
+    s[13*w + k] = v.J_star_xy;
+    s[14*w + k] = v.J_star_xz;
+    s[15*w + k] = v.J_star_yy;
+    s[16*w + k] = v.J_star_yz;
+    s[17*w + k] = v.J_star_zz;
+    s[18*w + k] = v.Z_p_x;
+    s[19*w + k] = v.Z_p_y;
+    s[20*w + k] = v.Z_p_z;
+    s[21*w + k] = v.Z_q_x;
+    s[22*w + k] = v.Z_q_y;
+    s[23*w + k] = v.Z_q_z;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
+INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_ups v;
-        stage_ups_X(m, w, i, j, s, X, &v);
-        stage_ups_V_X(w, j, V, &v);
-        stage_ups_Z_dynamics(m, w, i, j, V, &v);
-        /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real ups_d_alpha_1_in_axes2_xz = v.inv_ups_root_1*v.ups_e_1_in_axes2_x;
-        /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
-           about its reference point */
-        const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
-        const real ups_d_phi_3_in_axes2_xy = v.inv_ups_q_3*ups_h_3_in_spec2_z;
-        const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
-        const real ups_d_phi_3_in_axes2_yy = v.inv_ups_q_3*ups_h_3_in_spec2_x;
-        /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
-        const real ups_d_c_in_axes2_xz = v.inv_ups_q_3*ups_h_3_in_spec2_y;
-        const real ups_J_group_2_in_axes2_zz = m->ups_J_group_2_in_axes2_zz[i];
-        const real ups_d_c_in_axes2_yy = -ups_d_phi_3_in_axes2_yy -
-            v.inv_ups_q_3*(ups_h_3_in_spec2_x + v.inv_ups_q_3*ups_J_group_2_in_axes2_zz);
-        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
-        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
-        const real ups_d_c_in_axes2_yz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_y -
-            v.inv_ups_q_3*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
-            v.inv_ups_q_3*ups_J_group_2_in_axes2_yz);
-        const real ups_J_group_2_in_axes2_xx = m->ups_J_group_2_in_axes2_xx[i];
-        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
-        const real ups_J_group_2_in_axes2_yy = m->ups_J_group_2_in_axes2_yy[i];
-        const real ups_d_c_in_axes2_zz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_z -
-            ups_d_phi_3_in_axes2_yy -
-            v.inv_ups_root_1*(v.ups_e_1_in_axes2_x*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz
-            - ups_h_3_in_spec2_z - v.inv_ups_q_3*ups_J_group_2_in_axes2_xy) -
-            v.ups_c_2*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz - ups_h_3_in_spec2_x -
-            v.inv_ups_q_3*ups_J_group_2_in_axes2_yy));
-        /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
-        const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
-        const real ups_Q_t_3 = v.axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy -
-            v.axis_y_ups_axes2_x*ups_Q_t - v.axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
-        const real ups_Q_t_4 = v.axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy -
-            v.axis_y_ups_axes2_y*ups_Q_t - v.axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-        const real ups_Q_t_5 = v.axis_y_ups_axes2_z*ups_Q_t +
-            v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz -
-            v.axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy;
-        const real ups_Q_t_6 = v.axis_x_ups_axes2_x*ups_d_c_in_axes2_xz +
-            v.axis_z_ups_axes2_x*ups_Q_t_2;
-        const real ups_Q_t_7 = v.axis_x_ups_axes2_y*ups_d_c_in_axes2_xz +
-            v.axis_z_ups_axes2_y*ups_Q_t_2;
-        const real ups_Q_t_8 = v.axis_x_ups_axes2_z*ups_d_c_in_axes2_xz +
-            v.axis_z_ups_axes2_z*ups_Q_t_2;
-        const real ups_Q_t_9 = v.axis_z_ups_axes2_x*ups_Q_t_6 - v.axis_y_ups_axes2_x*ups_Q_t_3;
-        const real ups_Q_xx = -2*ups_Q_t_9;
-        const real ups_Q_xy = v.axis_y_ups_axes2_x*ups_Q_t_4 + v.axis_y_ups_axes2_y*ups_Q_t_3 -
-            v.axis_z_ups_axes2_x*ups_Q_t_7 - v.axis_z_ups_axes2_y*ups_Q_t_6;
-        const real ups_Q_xz = v.axis_y_ups_axes2_z*ups_Q_t_3 - v.axis_y_ups_axes2_x*ups_Q_t_5 -
-            v.axis_z_ups_axes2_x*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_6;
-        const real ups_Q_t_10 = v.axis_z_ups_axes2_y*ups_Q_t_7 - v.axis_y_ups_axes2_y*ups_Q_t_4;
-        const real ups_Q_yy = -2*ups_Q_t_10;
-        const real ups_Q_yz = v.axis_y_ups_axes2_z*ups_Q_t_4 - v.axis_y_ups_axes2_y*ups_Q_t_5 -
-            v.axis_z_ups_axes2_y*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_7;
-        const real ups_Q_t_11 = v.axis_y_ups_axes2_z*ups_Q_t_5 + v.axis_z_ups_axes2_z*ups_Q_t_8;
-        const real ups_Q_zz = -2*ups_Q_t_11;
-        /* (M_ta) coupling block of M */
-        const real ups_M_ta_t = ups_Q_xy*v.ups_q_z;
-        const real ups_M_ta_t_2 = ups_Q_xz*v.ups_q_y;
-        const real ups_M_ta_t_3 = ups_M_ta_t_2 - ups_M_ta_t;
-        const real ups_M_ta_t_4 = ups_Q_xx*v.ups_q_z - ups_Q_xz*v.ups_q_x;
-        const real ups_M_ta_t_5 = ups_Q_xy*v.ups_q_x - ups_Q_xx*v.ups_q_y;
-        const real ups_M_ta_t_6 = ups_Q_yz*v.ups_q_y - ups_Q_yy*v.ups_q_z;
-        const real ups_M_ta_t_7 = ups_Q_yz*v.ups_q_x;
-        const real ups_M_ta_t_8 = ups_M_ta_t_7 - ups_M_ta_t;
-        const real ups_M_ta_t_9 = ups_Q_yy*v.ups_q_x - ups_Q_xy*v.ups_q_y;
-        const real ups_M_ta_t_10 = ups_Q_zz*v.ups_q_y - ups_Q_yz*v.ups_q_z;
-        const real ups_M_ta_t_11 = ups_Q_xz*v.ups_q_z - ups_Q_zz*v.ups_q_x;
-        const real ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2;
-        /* (M_aa) rotational block of M */
-        const real ups_M_aa_t = ups_M_ta_t_10*v.ups_q_y - ups_M_ta_t_6*v.ups_q_z;
-        const real ups_M_aa_t_2 = ups_M_ta_t_11*v.ups_q_y + ups_M_ta_t_8*v.ups_q_z;
-        const real ups_M_aa_t_3 = ups_M_ta_t_12*v.ups_q_y - ups_M_ta_t_9*v.ups_q_z;
-        const real ups_M_aa_t_4 = ups_M_ta_t_4*v.ups_q_z - ups_M_ta_t_11*v.ups_q_x;
-        const real ups_M_aa_t_5 = ups_M_ta_t_5*v.ups_q_z - ups_M_ta_t_12*v.ups_q_x;
-        const real ups_M_aa_t_6 = ups_M_ta_t_9*v.ups_q_x - ups_M_ta_t_5*v.ups_q_y;
-        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        const real ups_H_a_3_x = v.axis_x_ups_axes2_z*v.ups_q_y - v.axis_x_ups_axes2_y*v.ups_q_z;
-        const real ups_H_a_3_y = v.axis_x_ups_axes2_x*v.ups_q_z - v.axis_x_ups_axes2_z*v.ups_q_x;
-        const real ups_H_a_3_z = v.axis_x_ups_axes2_y*v.ups_q_x - v.axis_x_ups_axes2_x*v.ups_q_y;
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, ups_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, ups_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, ups_Q_xz);  /* M_tt_xz */
-        gather(&terms[3*count + k], add, ups_Q_yy);  /* M_tt_yy_of_legs */
-        gather(&terms[4*count + k], add, ups_Q_yz);  /* M_tt_yz */
-        gather(&terms[5*count + k], add, ups_Q_zz);  /* M_tt_zz_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[6*count + k], add, ups_M_ta_t_3);  /* M_ta_xx */
-        gather(&terms[7*count + k], add, ups_M_ta_t_4);  /* M_ta_xy_of_legs */
-        gather(&terms[8*count + k], add, ups_M_ta_t_5);  /* M_ta_xz_of_legs */
-        gather(&terms[9*count + k], add, ups_M_ta_t_6);  /* M_ta_yx_of_legs */
-        gather(&terms[10*count + k], add, ups_M_ta_t_8);  /* M_ta_t */
-        gather(&terms[11*count + k], add, ups_M_ta_t_9);  /* M_ta_yz_of_legs */
-        gather(&terms[12*count + k], add, ups_M_ta_t_10);  /* M_ta_zx_of_legs */
-        gather(&terms[13*count + k], add, ups_M_ta_t_11);  /* M_ta_zy_of_legs */
-        gather(&terms[14*count + k], add, ups_M_ta_t_12);  /* M_ta_zz */
-        /* (M_aa) rotational block of M */
-        gather(&terms[15*count + k], add, ups_M_aa_t);  /* M_aa_xx_of_legs */
-        gather(&terms[16*count + k], add, ups_M_aa_t_2);  /* M_aa_xy_of_legs */
-        gather(&terms[17*count + k], add, ups_M_aa_t_3);  /* M_aa_xz_of_legs */
-        gather(&terms[18*count + k], add, ups_M_aa_t_4);  /* M_aa_yy_of_legs */
-        gather(&terms[19*count + k], add, ups_M_aa_t_5);  /* M_aa_yz_of_legs */
-        gather(&terms[20*count + k], add, ups_M_aa_t_6);  /* M_aa_zz_of_legs */
-        /* (Z_t) translational part of Z */
-        gather(&terms[21*count + k], add, v.ups_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[22*count + k], add, v.ups_U_y);  /* Z_t_y_of_legs */
-        gather(&terms[23*count + k], add, v.ups_U_z);  /* Z_t_z_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[24*count + k], add, v.ups_Z_a_t);  /* Z_a_x_of_legs */
-        gather(&terms[25*count + k], add, v.ups_Z_a_t_2);  /* Z_a_y_of_legs */
-        gather(&terms[26*count + k], add, v.ups_Z_a_t_3);  /* Z_a_z_of_legs */
-        /* (ups-w_3) reciprocal vector 3 */
-        o[0*count + k] = v.axis_x_ups_axes2_x;
-        o[1*count + k] = v.axis_x_ups_axes2_y;
-        o[2*count + k] = v.axis_x_ups_axes2_z;
-        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        o[3*count + k] = ups_H_a_3_x;
-        o[4*count + k] = ups_H_a_3_y;
-        o[5*count + k] = ups_H_a_3_z;
-        o[7*count + k] = (v.axis_x_ups_axes2_x + (v.axis_x_ups_axes2_y + v.axis_x_ups_axes2_z)) +
-            (ups_H_a_3_x + (ups_H_a_3_y + ups_H_a_3_z));
-        o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
-    }
+    values_ups v;
+    stage_ups_X(m, w, i, j, s, X, &v);
+    stage_ups_V_X(w, j, V, &v);
+    stage_ups_Z_dynamics(m, w, i, j, V, &v);
+    /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+    const real ups_d_alpha_1_in_axes2_xz = v.inv_ups_root_1*v.ups_e_1_in_axes2_x;
+    /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
+       about its reference point */
+    const real ups_d_phi_3_in_axes2_xy = v.inv_ups_q_3*m->ups_h_3_in_spec2_z[i];
+    const real ups_d_phi_3_in_axes2_yy = v.inv_ups_q_3*m->ups_h_3_in_spec2_x[i];
+    /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real ups_d_c_in_axes2_xz = v.inv_ups_q_3*m->ups_h_3_in_spec2_y[i];
+    const real ups_d_c_in_axes2_yy = -ups_d_phi_3_in_axes2_yy -
+        v.inv_ups_q_3*(m->ups_h_3_in_spec2_x[i] +
+        v.inv_ups_q_3*m->ups_J_group_2_in_axes2_zz[i]);
+    const real ups_d_c_in_axes2_yz = ups_d_alpha_1_in_axes2_xz*m->ups_h_3_in_spec2_y[i] -
+        v.inv_ups_q_3*(m->ups_J_group_2_in_axes2_xz[i]*ups_d_alpha_1_in_axes2_xz -
+        v.inv_ups_q_3*m->ups_J_group_2_in_axes2_yz[i]);
+    const real ups_d_c_in_axes2_zz = ups_d_alpha_1_in_axes2_xz*m->ups_h_3_in_spec2_z[i] -
+        ups_d_phi_3_in_axes2_yy -
+        v.inv_ups_root_1*(v.ups_e_1_in_axes2_x*(m->ups_J_group_2_in_axes2_xx[i]*ups_d_alpha_1_in_axes2_xz
+        - m->ups_h_3_in_spec2_z[i] - v.inv_ups_q_3*m->ups_J_group_2_in_axes2_xy[i]) -
+        v.ups_c_2*(m->ups_J_group_2_in_axes2_xy[i]*ups_d_alpha_1_in_axes2_xz -
+        m->ups_h_3_in_spec2_x[i] - v.inv_ups_q_3*m->ups_J_group_2_in_axes2_yy[i]));
+    /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
+    const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
+    const real ups_Q_t_3 = v.axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy -
+        v.axis_y_ups_axes2_x*ups_Q_t - v.axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_4 = v.axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy -
+        v.axis_y_ups_axes2_y*ups_Q_t - v.axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_5 = v.axis_y_ups_axes2_z*ups_Q_t +
+        v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz -
+        v.axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy;
+    const real ups_Q_t_6 = v.axis_x_ups_axes2_x*ups_d_c_in_axes2_xz +
+        v.axis_z_ups_axes2_x*ups_Q_t_2;
+    const real ups_Q_t_7 = v.axis_x_ups_axes2_y*ups_d_c_in_axes2_xz +
+        v.axis_z_ups_axes2_y*ups_Q_t_2;
+    const real ups_Q_t_8 = v.axis_x_ups_axes2_z*ups_d_c_in_axes2_xz +
+        v.axis_z_ups_axes2_z*ups_Q_t_2;
+    const real ups_Q_t_9 = v.axis_z_ups_axes2_x*ups_Q_t_6 - v.axis_y_ups_axes2_x*ups_Q_t_3;
+    const real ups_Q_xx = -2*ups_Q_t_9;
+    const real ups_Q_xy = v.axis_y_ups_axes2_x*ups_Q_t_4 + v.axis_y_ups_axes2_y*ups_Q_t_3 -
+        v.axis_z_ups_axes2_x*ups_Q_t_7 - v.axis_z_ups_axes2_y*ups_Q_t_6;
+    const real ups_Q_xz = v.axis_y_ups_axes2_z*ups_Q_t_3 - v.axis_y_ups_axes2_x*ups_Q_t_5 -
+        v.axis_z_ups_axes2_x*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_6;
+    const real ups_Q_t_10 = v.axis_z_ups_axes2_y*ups_Q_t_7 - v.axis_y_ups_axes2_y*ups_Q_t_4;
+    const real ups_Q_yy = -2*ups_Q_t_10;
+    const real ups_Q_yz = v.axis_y_ups_axes2_z*ups_Q_t_4 - v.axis_y_ups_axes2_y*ups_Q_t_5 -
+        v.axis_z_ups_axes2_y*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_7;
+    const real ups_Q_t_11 = v.axis_y_ups_axes2_z*ups_Q_t_5 + v.axis_z_ups_axes2_z*ups_Q_t_8;
+    const real ups_Q_zz = -2*ups_Q_t_11;
+    /* (M_ta) coupling block of M */
+    const real ups_M_ta_t = ups_Q_xy*v.ups_q_z;
+    const real ups_M_ta_t_2 = ups_Q_xz*v.ups_q_y;
+    const real ups_M_ta_t_3 = ups_M_ta_t_2 - ups_M_ta_t;
+    const real ups_M_ta_t_4 = ups_Q_xx*v.ups_q_z - ups_Q_xz*v.ups_q_x;
+    const real ups_M_ta_t_5 = ups_Q_xy*v.ups_q_x - ups_Q_xx*v.ups_q_y;
+    const real ups_M_ta_t_6 = ups_Q_yz*v.ups_q_y - ups_Q_yy*v.ups_q_z;
+    const real ups_M_ta_t_7 = ups_Q_yz*v.ups_q_x;
+    const real ups_M_ta_t_8 = ups_M_ta_t_7 - ups_M_ta_t;
+    const real ups_M_ta_t_9 = ups_Q_yy*v.ups_q_x - ups_Q_xy*v.ups_q_y;
+    const real ups_M_ta_t_10 = ups_Q_zz*v.ups_q_y - ups_Q_yz*v.ups_q_z;
+    const real ups_M_ta_t_11 = ups_Q_xz*v.ups_q_z - ups_Q_zz*v.ups_q_x;
+    const real ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2;
+    /* (M_aa) rotational block of M */
+    const real ups_M_aa_t = ups_M_ta_t_10*v.ups_q_y - ups_M_ta_t_6*v.ups_q_z;
+    const real ups_M_aa_t_2 = ups_M_ta_t_11*v.ups_q_y + ups_M_ta_t_8*v.ups_q_z;
+    const real ups_M_aa_t_3 = ups_M_ta_t_12*v.ups_q_y - ups_M_ta_t_9*v.ups_q_z;
+    const real ups_M_aa_t_4 = ups_M_ta_t_4*v.ups_q_z - ups_M_ta_t_11*v.ups_q_x;
+    const real ups_M_aa_t_5 = ups_M_ta_t_5*v.ups_q_z - ups_M_ta_t_12*v.ups_q_x;
+    const real ups_M_aa_t_6 = ups_M_ta_t_9*v.ups_q_x - ups_M_ta_t_5*v.ups_q_y;
+    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
+    const real ups_H_a_3_x = v.axis_x_ups_axes2_z*v.ups_q_y - v.axis_x_ups_axes2_y*v.ups_q_z;
+    const real ups_H_a_3_y = v.axis_x_ups_axes2_x*v.ups_q_z - v.axis_x_ups_axes2_z*v.ups_q_x;
+    const real ups_H_a_3_z = v.axis_x_ups_axes2_y*v.ups_q_x - v.axis_x_ups_axes2_x*v.ups_q_y;
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, ups_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, ups_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, ups_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, ups_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, ups_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, ups_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) */
+    gather(&terms[6*count + k], add, ups_M_ta_t_3);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, ups_M_ta_t_4);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, ups_M_ta_t_5);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, ups_M_ta_t_6);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, ups_M_ta_t_8);  /* M_ta_t */
+    gather(&terms[11*count + k], add, ups_M_ta_t_9);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, ups_M_ta_t_10);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, ups_M_ta_t_11);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, ups_M_ta_t_12);  /* M_ta_zz */
+    /* (M_aa) */
+    gather(&terms[15*count + k], add, ups_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, ups_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, ups_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, ups_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, ups_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, ups_M_aa_t_6);  /* M_aa_zz_of_legs */
+    /* (Z_t) translational part of Z */
+    gather(&terms[21*count + k], add, v.ups_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[22*count + k], add, v.ups_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[23*count + k], add, v.ups_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[24*count + k], add, v.ups_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[25*count + k], add, v.ups_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[26*count + k], add, v.ups_Z_a_t_3);  /* Z_a_z_of_legs */
+    /* (ups-w_3) reciprocal vector 3 */
+    o[0*count + k] = v.axis_x_ups_axes2_x;
+    o[1*count + k] = v.axis_x_ups_axes2_y;
+    o[2*count + k] = v.axis_x_ups_axes2_z;
+    /* (ups-H_a_3) */
+    o[3*count + k] = ups_H_a_3_x;
+    o[4*count + k] = ups_H_a_3_y;
+    o[5*count + k] = ups_H_a_3_z;
+    o[7*count + k] = (v.axis_x_ups_axes2_x + (v.axis_x_ups_axes2_y + v.axis_x_ups_axes2_z)) +
+        (ups_H_a_3_x + (ups_H_a_3_y + ups_H_a_3_z));
+    o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void dynamics_place_ups(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *H, verdict *t)
+INLINE void dynamics_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real
+    *o, real *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        H[(3*NU + leg)*w + k] = o[3*count + first + k];
-        H[(4*NU + leg)*w + k] = o[4*count + first + k];
-        H[(5*NU + leg)*w + k] = o[5*count + first + k];
-        t->singular[k] += o[6*count + first + k];
-        t->total[k] += o[7*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    H[(3*NU + i)*w + k] = o[3*count + at];
+    H[(4*NU + i)*w + k] = o[4*count + at];
+    H[(5*NU + i)*w + k] = o[5*count + at];
+    t->singular[k] += o[6*count + at];
+    t->total[k] += o[7*count + at];
 }
 
-INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const real *sums, real *M,
-    real *Z, verdict *t)
+INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
+    real *M, real *Z, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (M_tt) translational block of M */
-        const real M_tt_xx_of_legs = sums[0*w + k];
-        const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_xx_of_legs + m_star;
-        const real M_tt_yy_of_legs = sums[3*w + k];
-        const real M_tt_yy = M_tt_yy_of_legs + m_star;
-        const real M_tt_zz_of_legs = sums[5*w + k];
-        const real M_tt_zz = M_tt_zz_of_legs + m_star;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[11*w + k];
-        const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
-        const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[10*w + k];
-        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-        const real M_ta_yx_of_legs = sums[9*w + k];
-        const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-        const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[9*w + k];
-        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
-        const real M_ta_zx_of_legs = sums[12*w + k];
-        const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
-        const real M_ta_zy_of_legs = sums[13*w + k];
-        const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-        /* (M_aa) rotational block of M */
-        const real J_star_xx = s[12*w + k];
-        const real M_aa_xx_of_legs = sums[15*w + k];
-        const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[13*w + k];
-        const real M_aa_xy_of_legs = sums[16*w + k];
-        const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[14*w + k];
-        const real M_aa_xz_of_legs = sums[17*w + k];
-        const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[15*w + k];
-        const real M_aa_yy_of_legs = sums[18*w + k];
-        const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-        const real J_star_yz = s[16*w + k];
-        const real M_aa_yz_of_legs = sums[19*w + k];
-        const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[17*w + k];
-        const real M_aa_zz_of_legs = sums[20*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-        /* (Z_t) translational part of Z */
-        const real Z_p_x = s[18*w + k];
-        const real Z_t_x_of_legs = sums[21*w + k];
-        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[19*w + k];
-        const real Z_t_y_of_legs = sums[22*w + k];
-        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[20*w + k];
-        const real Z_t_z_of_legs = sums[23*w + k];
-        const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-        /* (Z_a) rotational part of Z */
-        const real Z_a_x_of_legs = sums[24*w + k];
-        const real Z_q_x = s[21*w + k];
-        const real Z_a_x = Z_a_x_of_legs + Z_q_x;
-        const real Z_a_y_of_legs = sums[25*w + k];
-        const real Z_q_y = s[22*w + k];
-        const real Z_a_y = Z_a_y_of_legs + Z_q_y;
-        const real Z_a_z_of_legs = sums[26*w + k];
-        const real Z_q_z = s[23*w + k];
-        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
-        /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        const real M_tt_xy = sums[1*w + k];
-        M[1*w + k] = M_tt_xy;
-        M[NV*w + k] = M_tt_xy;
-        const real M_tt_xz = sums[2*w + k];
-        M[2*w + k] = M_tt_xz;
-        M[2*NV*w + k] = M_tt_xz;
-        M[(NV + 1)*w + k] = M_tt_yy;
-        const real M_tt_yz = sums[4*w + k];
-        M[(NV + 2)*w + k] = M_tt_yz;
-        M[(2*NV + 1)*w + k] = M_tt_yz;
-        M[(2*NV + 2)*w + k] = M_tt_zz;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xx = sums[6*w + k];
-        M[3*w + k] = M_ta_xx;
-        M[3*NV*w + k] = M_ta_xx;
-        M[4*w + k] = M_ta_xy;
-        M[4*NV*w + k] = M_ta_xy;
-        M[5*w + k] = M_ta_xz;
-        M[5*NV*w + k] = M_ta_xz;
-        M[(NV + 3)*w + k] = M_ta_yx;
-        M[(3*NV + 1)*w + k] = M_ta_yx;
-        const real M_ta_t = sums[10*w + k];
-        M[(NV + 4)*w + k] = -M_ta_t;
-        M[(4*NV + 1)*w + k] = -M_ta_t;
-        M[(NV + 5)*w + k] = M_ta_yz;
-        M[(5*NV + 1)*w + k] = M_ta_yz;
-        M[(2*NV + 3)*w + k] = M_ta_zx;
-        M[(3*NV + 2)*w + k] = M_ta_zx;
-        M[(2*NV + 4)*w + k] = M_ta_zy;
-        M[(4*NV + 2)*w + k] = M_ta_zy;
-        const real M_ta_zz = sums[14*w + k];
-        M[(2*NV + 5)*w + k] = M_ta_zz;
-        M[(5*NV + 2)*w + k] = M_ta_zz;
-        /* (M_aa) rotational block of M */
-        M[(3*NV + 3)*w + k] = M_aa_xx;
-        M[(3*NV + 4)*w + k] = M_aa_xy;
-        M[(4*NV + 3)*w + k] = M_aa_xy;
-        M[(3*NV + 5)*w + k] = M_aa_xz;
-        M[(5*NV + 3)*w + k] = M_aa_xz;
-        M[(4*NV + 4)*w + k] = M_aa_yy;
-        M[(4*NV + 5)*w + k] = M_aa_yz;
-        M[(5*NV + 4)*w + k] = M_aa_yz;
-        M[(5*NV + 5)*w + k] = M_aa_zz;
-        /* (Z_t) translational part of Z */
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-        Z[2*w + k] = Z_t_z;
-        /* (Z_a) rotational part of Z */
-        Z[3*w + k] = Z_a_x;
-        Z[4*w + k] = Z_a_y;
-        Z[5*w + k] = Z_a_z;
-        t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
-            ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_t) + (M_ta_yz + M_ta_zx)))) +
-            (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
-            ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
-    }
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    /* (M_ta) */
+    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real h_star_z = s[11*w + k];
+    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real h_star_y = s[10*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yx_of_legs = sums[9*w + k];
+    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_yz_of_legs = sums[11*w + k];
+    const real h_star_x = s[9*w + k];
+    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_zx_of_legs = sums[12*w + k];
+    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zy_of_legs = sums[13*w + k];
+    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    /* (M_aa) */
+    const real J_star_xx = s[12*w + k];
+    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
+    const real J_star_xy = s[13*w + k];
+    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
+    const real J_star_xz = s[14*w + k];
+    const real M_aa_xz_of_legs = sums[17*w + k];
+    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
+    const real J_star_yy = s[15*w + k];
+    const real M_aa_yy_of_legs = sums[18*w + k];
+    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
+    const real J_star_yz = s[16*w + k];
+    const real M_aa_yz_of_legs = sums[19*w + k];
+    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
+    const real J_star_zz = s[17*w + k];
+    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
+    /* (Z_t) */
+    const real Z_p_x = s[18*w + k];
+    const real Z_t_x_of_legs = sums[21*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[19*w + k];
+    const real Z_t_y_of_legs = sums[22*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    const real Z_p_z = s[20*w + k];
+    const real Z_t_z_of_legs = sums[23*w + k];
+    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
+    /* (Z_a) */
+    const real Z_a_x_of_legs = sums[24*w + k];
+    const real Z_q_x = s[21*w + k];
+    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_y_of_legs = sums[25*w + k];
+    const real Z_q_y = s[22*w + k];
+    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_z_of_legs = sums[26*w + k];
+    const real Z_q_z = s[23*w + k];
+    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    const real M_tt_xz = sums[2*w + k];
+    M[2*w + k] = M_tt_xz;
+    M[2*NV*w + k] = M_tt_xz;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_yz = sums[4*w + k];
+    M[(NV + 2)*w + k] = M_tt_yz;
+    M[(2*NV + 1)*w + k] = M_tt_yz;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    /* (M_ta) */
+    const real M_ta_xx = sums[6*w + k];
+    M[3*w + k] = M_ta_xx;
+    M[3*NV*w + k] = M_ta_xx;
+    M[4*w + k] = M_ta_xy;
+    M[4*NV*w + k] = M_ta_xy;
+    M[5*w + k] = M_ta_xz;
+    M[5*NV*w + k] = M_ta_xz;
+    M[(NV + 3)*w + k] = M_ta_yx;
+    M[(3*NV + 1)*w + k] = M_ta_yx;
+    const real M_ta_t = sums[10*w + k];
+    M[(NV + 4)*w + k] = -M_ta_t;
+    M[(4*NV + 1)*w + k] = -M_ta_t;
+    M[(NV + 5)*w + k] = M_ta_yz;
+    M[(5*NV + 1)*w + k] = M_ta_yz;
+    M[(2*NV + 3)*w + k] = M_ta_zx;
+    M[(3*NV + 2)*w + k] = M_ta_zx;
+    M[(2*NV + 4)*w + k] = M_ta_zy;
+    M[(4*NV + 2)*w + k] = M_ta_zy;
+    const real M_ta_zz = sums[14*w + k];
+    M[(2*NV + 5)*w + k] = M_ta_zz;
+    M[(5*NV + 2)*w + k] = M_ta_zz;
+    /* (M_aa) */
+    M[(3*NV + 3)*w + k] = M_aa_xx;
+    M[(3*NV + 4)*w + k] = M_aa_xy;
+    M[(4*NV + 3)*w + k] = M_aa_xy;
+    M[(3*NV + 5)*w + k] = M_aa_xz;
+    M[(5*NV + 3)*w + k] = M_aa_xz;
+    M[(4*NV + 4)*w + k] = M_aa_yy;
+    M[(4*NV + 5)*w + k] = M_aa_yz;
+    M[(5*NV + 4)*w + k] = M_aa_yz;
+    M[(5*NV + 5)*w + k] = M_aa_zz;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    /* (Z_a) */
+    Z[3*w + k] = Z_a_x;
+    Z[4*w + k] = Z_a_y;
+    Z[5*w + k] = Z_a_z;
+    t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
+        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_t) + (M_ta_yz + M_ta_zx)))) +
+        (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
+        ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
 }
 
-INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
+APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, verdict *t)
 {
     real s[24] = {0}, sums[27] = {0};
     real terms_ups[27*LEGS(LEGS_OF_ups)] = {0}, o_ups[8*LEGS(LEGS_OF_ups)] = {0};
-    dynamics_before(m, 1, X, V, s, t);
-    dynamics_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, X, V, terms_ups, o_ups);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        dynamics_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, H, t);
+    dynamics_before(m, 1, 0, X, V, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
+        dynamics_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, V, terms_ups, o_ups);
+    }
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        dynamics_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
     }
     for (size_t n = 0; n < 27; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
-    dynamics_after(m, 1, s, sums, M, Z, t);
+    dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
-INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
-    real *H, verdict *t)
+APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
+    real *restrict Z, real *restrict H, verdict *restrict t)
 {
     real s[24*LANES], sums[27*LANES];
     real o_ups[8*LANES];
-    dynamics_before(m, LANES, X, V, s, t);
-    clear(sums, 27*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        dynamics_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_ups);
-        dynamics_place_ups(LANES, LANES, o_ups, leg, 0, H, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        dynamics_before(m, LANES, k, X, V, s, t);
     }
-    dynamics_after(m, LANES, s, sums, M, Z, t);
+    clear(sums, 27*LANES);
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_legs_ups(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_ups);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_place_ups(LANES, i, k, k, LANES, o_ups, H, t);
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        dynamics_after(m, LANES, k, s, sums, M, Z, t);
+    }
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        stage_M_dynamics(m, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = v.h_star_x;
-        s[10*w + k] = v.h_star_y;
-        s[11*w + k] = v.h_star_z;
-        s[12*w + k] = v.J_star_xx;
-        s[13*w + k] = v.J_star_xy;
-        s[14*w + k] = v.J_star_xz;
-        s[15*w + k] = v.J_star_yy;
-        s[16*w + k] = v.J_star_yz;
-        s[17*w + k] = v.J_star_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    stage_M_dynamics(m, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = v.h_star_x;
+    s[10*w + k] = v.h_star_y;
+    s[11*w + k] = v.h_star_z;
+    s[12*w + k] = v.J_star_xx;
+    s[13*w + k] = v.J_star_xy;
+    s[14*w + k] = v.J_star_xz;
+    s[15*w + k] = v.J_star_yy;
+    s[16*w + k] = v.J_star_yz;
+    s[17*w + k] = v.J_star_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void M_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void M_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_ups v;
-        stage_ups_X(m, w, i, j, s, X, &v);
-        /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real ups_e_1_in_axes2_x = v.ups_S_in_turn1_z*v.ups_w_2_in_axes2_y;
-        const real ups_d_alpha_1_in_axes2_xz = v.inv_ups_root_1*ups_e_1_in_axes2_x;
-        /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
-           about its reference point */
-        const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
-        const real ups_d_phi_3_in_axes2_xy = ups_h_3_in_spec2_z*v.ups_w_2_in_axes2_y;
-        const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
-        const real ups_d_phi_3_in_axes2_yy = ups_h_3_in_spec2_x*v.ups_w_2_in_axes2_y;
-        /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
-        const real ups_d_c_in_axes2_xz = ups_h_3_in_spec2_y*v.ups_w_2_in_axes2_y;
-        const real ups_J_group_2_in_axes2_zz = m->ups_J_group_2_in_axes2_zz[i];
-        const real ups_d_c_in_axes2_yy = -ups_d_phi_3_in_axes2_yy -
-            v.ups_w_2_in_axes2_y*(ups_h_3_in_spec2_x +
-            ups_J_group_2_in_axes2_zz*v.ups_w_2_in_axes2_y);
-        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
-        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
-        const real ups_d_c_in_axes2_yz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_y -
-            v.ups_w_2_in_axes2_y*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
-            ups_J_group_2_in_axes2_yz*v.ups_w_2_in_axes2_y);
-        const real ups_J_group_2_in_axes2_xx = m->ups_J_group_2_in_axes2_xx[i];
-        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
-        const real ups_J_group_2_in_axes2_yy = m->ups_J_group_2_in_axes2_yy[i];
-        const real ups_d_c_in_axes2_zz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_z -
-            ups_d_phi_3_in_axes2_yy -
-            v.inv_ups_root_1*(ups_e_1_in_axes2_x*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz
-            - ups_h_3_in_spec2_z - ups_J_group_2_in_axes2_xy*v.ups_w_2_in_axes2_y) -
-            v.ups_root_1*v.ups_w_2_in_axes2_y*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz
-            - ups_h_3_in_spec2_x - ups_J_group_2_in_axes2_yy*v.ups_w_2_in_axes2_y));
-        /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real axis_y_ups_axes2_x = v.axis_z_ups_axes2_y*v.ups_w_3_z -
-            v.axis_z_ups_axes2_z*v.ups_w_3_y;
-        const real axis_y_ups_axes2_y = v.axis_z_ups_axes2_z*v.ups_w_3_x -
-            v.axis_z_ups_axes2_x*v.ups_w_3_z;
-        const real axis_y_ups_axes2_z = v.axis_z_ups_axes2_x*v.ups_w_3_y -
-            v.axis_z_ups_axes2_y*v.ups_w_3_x;
-        const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
-        const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
-        const real ups_Q_t_3 = ups_d_phi_3_in_axes2_xy*v.ups_w_3_x - axis_y_ups_axes2_x*ups_Q_t -
-            v.axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
-        const real ups_Q_t_4 = ups_d_phi_3_in_axes2_xy*v.ups_w_3_y - axis_y_ups_axes2_y*ups_Q_t -
-            v.axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-        const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t +
-            v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz - ups_d_phi_3_in_axes2_xy*v.ups_w_3_z;
-        const real ups_Q_t_6 = v.axis_z_ups_axes2_x*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_x;
-        const real ups_Q_t_7 = v.axis_z_ups_axes2_y*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_y;
-        const real ups_Q_t_8 = v.axis_z_ups_axes2_z*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_z;
-        const real ups_Q_t_9 = v.axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3;
-        const real ups_Q_xx = -2*ups_Q_t_9;
-        const real ups_Q_xy = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 -
-            v.axis_z_ups_axes2_x*ups_Q_t_7 - v.axis_z_ups_axes2_y*ups_Q_t_6;
-        const real ups_Q_xz = axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 -
-            v.axis_z_ups_axes2_x*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_6;
-        const real ups_Q_t_10 = v.axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4;
-        const real ups_Q_yy = -2*ups_Q_t_10;
-        const real ups_Q_yz = axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 -
-            v.axis_z_ups_axes2_y*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_7;
-        const real ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + v.axis_z_ups_axes2_z*ups_Q_t_8;
-        const real ups_Q_zz = -2*ups_Q_t_11;
-        /* (M_ta) coupling block of M */
-        const real ups_M_ta_t = ups_Q_xy*v.ups_q_z;
-        const real ups_M_ta_t_2 = ups_Q_xz*v.ups_q_y;
-        const real ups_M_ta_t_3 = ups_M_ta_t_2 - ups_M_ta_t;
-        const real ups_M_ta_t_4 = ups_Q_xx*v.ups_q_z - ups_Q_xz*v.ups_q_x;
-        const real ups_M_ta_t_5 = ups_Q_xy*v.ups_q_x - ups_Q_xx*v.ups_q_y;
-        const real ups_M_ta_t_6 = ups_Q_yz*v.ups_q_y - ups_Q_yy*v.ups_q_z;
-        const real ups_M_ta_t_7 = ups_Q_yz*v.ups_q_x;
-        const real ups_M_ta_t_8 = ups_M_ta_t_7 - ups_M_ta_t;
-        const real ups_M_ta_t_9 = ups_Q_yy*v.ups_q_x - ups_Q_xy*v.ups_q_y;
-        const real ups_M_ta_t_10 = ups_Q_zz*v.ups_q_y - ups_Q_yz*v.ups_q_z;
-        const real ups_M_ta_t_11 = ups_Q_xz*v.ups_q_z - ups_Q_zz*v.ups_q_x;
-        const real ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2;
-        /* (M_aa) rotational block of M */
-        const real ups_M_aa_t = ups_M_ta_t_10*v.ups_q_y - ups_M_ta_t_6*v.ups_q_z;
-        const real ups_M_aa_t_2 = ups_M_ta_t_11*v.ups_q_y + ups_M_ta_t_8*v.ups_q_z;
-        const real ups_M_aa_t_3 = ups_M_ta_t_12*v.ups_q_y - ups_M_ta_t_9*v.ups_q_z;
-        const real ups_M_aa_t_4 = ups_M_ta_t_4*v.ups_q_z - ups_M_ta_t_11*v.ups_q_x;
-        const real ups_M_aa_t_5 = ups_M_ta_t_5*v.ups_q_z - ups_M_ta_t_12*v.ups_q_x;
-        const real ups_M_aa_t_6 = ups_M_ta_t_9*v.ups_q_x - ups_M_ta_t_5*v.ups_q_y;
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, ups_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, ups_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, ups_Q_xz);  /* M_tt_xz */
-        gather(&terms[3*count + k], add, ups_Q_yy);  /* M_tt_yy_of_legs */
-        gather(&terms[4*count + k], add, ups_Q_yz);  /* M_tt_yz */
-        gather(&terms[5*count + k], add, ups_Q_zz);  /* M_tt_zz_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[6*count + k], add, ups_M_ta_t_3);  /* M_ta_xx */
-        gather(&terms[7*count + k], add, ups_M_ta_t_4);  /* M_ta_xy_of_legs */
-        gather(&terms[8*count + k], add, ups_M_ta_t_5);  /* M_ta_xz_of_legs */
-        gather(&terms[9*count + k], add, ups_M_ta_t_6);  /* M_ta_yx_of_legs */
-        gather(&terms[10*count + k], add, ups_M_ta_t_8);  /* M_ta_t */
-        gather(&terms[11*count + k], add, ups_M_ta_t_9);  /* M_ta_yz_of_legs */
-        gather(&terms[12*count + k], add, ups_M_ta_t_10);  /* M_ta_zx_of_legs */
-        gather(&terms[13*count + k], add, ups_M_ta_t_11);  /* M_ta_zy_of_legs */
-        gather(&terms[14*count + k], add, ups_M_ta_t_12);  /* M_ta_zz */
-        /* (M_aa) rotational block of M */
-        gather(&terms[15*count + k], add, ups_M_aa_t);  /* M_aa_xx_of_legs */
-        gather(&terms[16*count + k], add, ups_M_aa_t_2);  /* M_aa_xy_of_legs */
-        gather(&terms[17*count + k], add, ups_M_aa_t_3);  /* M_aa_xz_of_legs */
-        gather(&terms[18*count + k], add, ups_M_aa_t_4);  /* M_aa_yy_of_legs */
-        gather(&terms[19*count + k], add, ups_M_aa_t_5);  /* M_aa_yz_of_legs */
-        gather(&terms[20*count + k], add, ups_M_aa_t_6);  /* M_aa_zz_of_legs */
-        o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
-    }
+    values_ups v;
+    stage_ups_X(m, w, i, j, s, X, &v);
+    /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+    const real ups_e_1_in_axes2_x = v.ups_S_in_turn1_z*v.ups_w_2_in_axes2_y;
+    const real ups_d_alpha_1_in_axes2_xz = v.inv_ups_root_1*ups_e_1_in_axes2_x;
+    /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
+       about its reference point */
+    const real ups_d_phi_3_in_axes2_xy = m->ups_h_3_in_spec2_z[i]*v.ups_w_2_in_axes2_y;
+    const real ups_d_phi_3_in_axes2_yy = m->ups_h_3_in_spec2_x[i]*v.ups_w_2_in_axes2_y;
+    /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real ups_d_c_in_axes2_xz = m->ups_h_3_in_spec2_y[i]*v.ups_w_2_in_axes2_y;
+    const real ups_d_c_in_axes2_yy = -ups_d_phi_3_in_axes2_yy -
+        v.ups_w_2_in_axes2_y*(m->ups_h_3_in_spec2_x[i] +
+        m->ups_J_group_2_in_axes2_zz[i]*v.ups_w_2_in_axes2_y);
+    const real ups_d_c_in_axes2_yz = ups_d_alpha_1_in_axes2_xz*m->ups_h_3_in_spec2_y[i] -
+        v.ups_w_2_in_axes2_y*(m->ups_J_group_2_in_axes2_xz[i]*ups_d_alpha_1_in_axes2_xz -
+        m->ups_J_group_2_in_axes2_yz[i]*v.ups_w_2_in_axes2_y);
+    const real ups_d_c_in_axes2_zz = ups_d_alpha_1_in_axes2_xz*m->ups_h_3_in_spec2_z[i] -
+        ups_d_phi_3_in_axes2_yy -
+        v.inv_ups_root_1*(ups_e_1_in_axes2_x*(m->ups_J_group_2_in_axes2_xx[i]*ups_d_alpha_1_in_axes2_xz
+        - m->ups_h_3_in_spec2_z[i] - m->ups_J_group_2_in_axes2_xy[i]*v.ups_w_2_in_axes2_y) -
+        v.ups_root_1*v.ups_w_2_in_axes2_y*(m->ups_J_group_2_in_axes2_xy[i]*ups_d_alpha_1_in_axes2_xz
+        - m->ups_h_3_in_spec2_x[i] - m->ups_J_group_2_in_axes2_yy[i]*v.ups_w_2_in_axes2_y));
+    /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real axis_y_ups_axes2_x = v.axis_z_ups_axes2_y*v.ups_w_3_z -
+        v.axis_z_ups_axes2_z*v.ups_w_3_y;
+    const real axis_y_ups_axes2_y = v.axis_z_ups_axes2_z*v.ups_w_3_x -
+        v.axis_z_ups_axes2_x*v.ups_w_3_z;
+    const real axis_y_ups_axes2_z = v.axis_z_ups_axes2_x*v.ups_w_3_y -
+        v.axis_z_ups_axes2_y*v.ups_w_3_x;
+    const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
+    const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
+    const real ups_Q_t_3 = ups_d_phi_3_in_axes2_xy*v.ups_w_3_x - axis_y_ups_axes2_x*ups_Q_t -
+        v.axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_4 = ups_d_phi_3_in_axes2_xy*v.ups_w_3_y - axis_y_ups_axes2_y*ups_Q_t -
+        v.axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t +
+        v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz - ups_d_phi_3_in_axes2_xy*v.ups_w_3_z;
+    const real ups_Q_t_6 = v.axis_z_ups_axes2_x*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_x;
+    const real ups_Q_t_7 = v.axis_z_ups_axes2_y*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_y;
+    const real ups_Q_t_8 = v.axis_z_ups_axes2_z*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_z;
+    const real ups_Q_t_9 = v.axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3;
+    const real ups_Q_xx = -2*ups_Q_t_9;
+    const real ups_Q_xy = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 -
+        v.axis_z_ups_axes2_x*ups_Q_t_7 - v.axis_z_ups_axes2_y*ups_Q_t_6;
+    const real ups_Q_xz = axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 -
+        v.axis_z_ups_axes2_x*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_6;
+    const real ups_Q_t_10 = v.axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4;
+    const real ups_Q_yy = -2*ups_Q_t_10;
+    const real ups_Q_yz = axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 -
+        v.axis_z_ups_axes2_y*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_7;
+    const real ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + v.axis_z_ups_axes2_z*ups_Q_t_8;
+    const real ups_Q_zz = -2*ups_Q_t_11;
+    /* (M_ta) coupling block of M */
+    const real ups_M_ta_t = ups_Q_xy*v.ups_q_z;
+    const real ups_M_ta_t_2 = ups_Q_xz*v.ups_q_y;
+    const real ups_M_ta_t_3 = ups_M_ta_t_2 - ups_M_ta_t;
+    const real ups_M_ta_t_4 = ups_Q_xx*v.ups_q_z - ups_Q_xz*v.ups_q_x;
+    const real ups_M_ta_t_5 = ups_Q_xy*v.ups_q_x - ups_Q_xx*v.ups_q_y;
+    const real ups_M_ta_t_6 = ups_Q_yz*v.ups_q_y - ups_Q_yy*v.ups_q_z;
+    const real ups_M_ta_t_7 = ups_Q_yz*v.ups_q_x;
+    const real ups_M_ta_t_8 = ups_M_ta_t_7 - ups_M_ta_t;
+    const real ups_M_ta_t_9 = ups_Q_yy*v.ups_q_x - ups_Q_xy*v.ups_q_y;
+    const real ups_M_ta_t_10 = ups_Q_zz*v.ups_q_y - ups_Q_yz*v.ups_q_z;
+    const real ups_M_ta_t_11 = ups_Q_xz*v.ups_q_z - ups_Q_zz*v.ups_q_x;
+    const real ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2;
+    /* (M_aa) rotational block of M */
+    const real ups_M_aa_t = ups_M_ta_t_10*v.ups_q_y - ups_M_ta_t_6*v.ups_q_z;
+    const real ups_M_aa_t_2 = ups_M_ta_t_11*v.ups_q_y + ups_M_ta_t_8*v.ups_q_z;
+    const real ups_M_aa_t_3 = ups_M_ta_t_12*v.ups_q_y - ups_M_ta_t_9*v.ups_q_z;
+    const real ups_M_aa_t_4 = ups_M_ta_t_4*v.ups_q_z - ups_M_ta_t_11*v.ups_q_x;
+    const real ups_M_aa_t_5 = ups_M_ta_t_5*v.ups_q_z - ups_M_ta_t_12*v.ups_q_x;
+    const real ups_M_aa_t_6 = ups_M_ta_t_9*v.ups_q_x - ups_M_ta_t_5*v.ups_q_y;
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, ups_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, ups_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, ups_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, ups_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, ups_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, ups_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) */
+    gather(&terms[6*count + k], add, ups_M_ta_t_3);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, ups_M_ta_t_4);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, ups_M_ta_t_5);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, ups_M_ta_t_6);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, ups_M_ta_t_8);  /* M_ta_t */
+    gather(&terms[11*count + k], add, ups_M_ta_t_9);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, ups_M_ta_t_10);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, ups_M_ta_t_11);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, ups_M_ta_t_12);  /* M_ta_zz */
+    /* (M_aa) */
+    gather(&terms[15*count + k], add, ups_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, ups_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, ups_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, ups_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, ups_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, ups_M_aa_t_6);  /* M_aa_zz_of_legs */
+    o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void M_place_ups(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void M_place_ups(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o[0*count + first + k];
-    }
+    t->singular[k] += o[0*count + at];
 }
 
-INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums, real *M, verdict
-    *t)
+INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
+    *M, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (M_tt) translational block of M */
-        const real M_tt_xx_of_legs = sums[0*w + k];
-        const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_xx_of_legs + m_star;
-        const real M_tt_yy_of_legs = sums[3*w + k];
-        const real M_tt_yy = M_tt_yy_of_legs + m_star;
-        const real M_tt_zz_of_legs = sums[5*w + k];
-        const real M_tt_zz = M_tt_zz_of_legs + m_star;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[11*w + k];
-        const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
-        const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[10*w + k];
-        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-        const real M_ta_yx_of_legs = sums[9*w + k];
-        const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-        const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[9*w + k];
-        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
-        const real M_ta_zx_of_legs = sums[12*w + k];
-        const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
-        const real M_ta_zy_of_legs = sums[13*w + k];
-        const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-        /* (M_aa) rotational block of M */
-        const real J_star_xx = s[12*w + k];
-        const real M_aa_xx_of_legs = sums[15*w + k];
-        const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[13*w + k];
-        const real M_aa_xy_of_legs = sums[16*w + k];
-        const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[14*w + k];
-        const real M_aa_xz_of_legs = sums[17*w + k];
-        const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[15*w + k];
-        const real M_aa_yy_of_legs = sums[18*w + k];
-        const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-        const real J_star_yz = s[16*w + k];
-        const real M_aa_yz_of_legs = sums[19*w + k];
-        const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[17*w + k];
-        const real M_aa_zz_of_legs = sums[20*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-        /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        const real M_tt_xy = sums[1*w + k];
-        M[1*w + k] = M_tt_xy;
-        M[NV*w + k] = M_tt_xy;
-        const real M_tt_xz = sums[2*w + k];
-        M[2*w + k] = M_tt_xz;
-        M[2*NV*w + k] = M_tt_xz;
-        M[(NV + 1)*w + k] = M_tt_yy;
-        const real M_tt_yz = sums[4*w + k];
-        M[(NV + 2)*w + k] = M_tt_yz;
-        M[(2*NV + 1)*w + k] = M_tt_yz;
-        M[(2*NV + 2)*w + k] = M_tt_zz;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xx = sums[6*w + k];
-        M[3*w + k] = M_ta_xx;
-        M[3*NV*w + k] = M_ta_xx;
-        M[4*w + k] = M_ta_xy;
-        M[4*NV*w + k] = M_ta_xy;
-        M[5*w + k] = M_ta_xz;
-        M[5*NV*w + k] = M_ta_xz;
-        M[(NV + 3)*w + k] = M_ta_yx;
-        M[(3*NV + 1)*w + k] = M_ta_yx;
-        const real M_ta_t = sums[10*w + k];
-        M[(NV + 4)*w + k] = -M_ta_t;
-        M[(4*NV + 1)*w + k] = -M_ta_t;
-        M[(NV + 5)*w + k] = M_ta_yz;
-        M[(5*NV + 1)*w + k] = M_ta_yz;
-        M[(2*NV + 3)*w + k] = M_ta_zx;
-        M[(3*NV + 2)*w + k] = M_ta_zx;
-        M[(2*NV + 4)*w + k] = M_ta_zy;
-        M[(4*NV + 2)*w + k] = M_ta_zy;
-        const real M_ta_zz = sums[14*w + k];
-        M[(2*NV + 5)*w + k] = M_ta_zz;
-        M[(5*NV + 2)*w + k] = M_ta_zz;
-        /* (M_aa) rotational block of M */
-        M[(3*NV + 3)*w + k] = M_aa_xx;
-        M[(3*NV + 4)*w + k] = M_aa_xy;
-        M[(4*NV + 3)*w + k] = M_aa_xy;
-        M[(3*NV + 5)*w + k] = M_aa_xz;
-        M[(5*NV + 3)*w + k] = M_aa_xz;
-        M[(4*NV + 4)*w + k] = M_aa_yy;
-        M[(4*NV + 5)*w + k] = M_aa_yz;
-        M[(5*NV + 4)*w + k] = M_aa_yz;
-        M[(5*NV + 5)*w + k] = M_aa_zz;
-        t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
-            M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_t + M_ta_yz) + (M_ta_zx +
-            (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
-            M_aa_zz))));
-    }
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    /* (M_ta) */
+    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real h_star_z = s[11*w + k];
+    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real h_star_y = s[10*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yx_of_legs = sums[9*w + k];
+    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_yz_of_legs = sums[11*w + k];
+    const real h_star_x = s[9*w + k];
+    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_zx_of_legs = sums[12*w + k];
+    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zy_of_legs = sums[13*w + k];
+    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    /* (M_aa) */
+    const real J_star_xx = s[12*w + k];
+    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
+    const real J_star_xy = s[13*w + k];
+    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
+    const real J_star_xz = s[14*w + k];
+    const real M_aa_xz_of_legs = sums[17*w + k];
+    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
+    const real J_star_yy = s[15*w + k];
+    const real M_aa_yy_of_legs = sums[18*w + k];
+    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
+    const real J_star_yz = s[16*w + k];
+    const real M_aa_yz_of_legs = sums[19*w + k];
+    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
+    const real J_star_zz = s[17*w + k];
+    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    const real M_tt_xz = sums[2*w + k];
+    M[2*w + k] = M_tt_xz;
+    M[2*NV*w + k] = M_tt_xz;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_yz = sums[4*w + k];
+    M[(NV + 2)*w + k] = M_tt_yz;
+    M[(2*NV + 1)*w + k] = M_tt_yz;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    /* (M_ta) */
+    const real M_ta_xx = sums[6*w + k];
+    M[3*w + k] = M_ta_xx;
+    M[3*NV*w + k] = M_ta_xx;
+    M[4*w + k] = M_ta_xy;
+    M[4*NV*w + k] = M_ta_xy;
+    M[5*w + k] = M_ta_xz;
+    M[5*NV*w + k] = M_ta_xz;
+    M[(NV + 3)*w + k] = M_ta_yx;
+    M[(3*NV + 1)*w + k] = M_ta_yx;
+    const real M_ta_t = sums[10*w + k];
+    M[(NV + 4)*w + k] = -M_ta_t;
+    M[(4*NV + 1)*w + k] = -M_ta_t;
+    M[(NV + 5)*w + k] = M_ta_yz;
+    M[(5*NV + 1)*w + k] = M_ta_yz;
+    M[(2*NV + 3)*w + k] = M_ta_zx;
+    M[(3*NV + 2)*w + k] = M_ta_zx;
+    M[(2*NV + 4)*w + k] = M_ta_zy;
+    M[(4*NV + 2)*w + k] = M_ta_zy;
+    const real M_ta_zz = sums[14*w + k];
+    M[(2*NV + 5)*w + k] = M_ta_zz;
+    M[(5*NV + 2)*w + k] = M_ta_zz;
+    /* (M_aa) */
+    M[(3*NV + 3)*w + k] = M_aa_xx;
+    M[(3*NV + 4)*w + k] = M_aa_xy;
+    M[(4*NV + 3)*w + k] = M_aa_xy;
+    M[(3*NV + 5)*w + k] = M_aa_xz;
+    M[(5*NV + 3)*w + k] = M_aa_xz;
+    M[(4*NV + 4)*w + k] = M_aa_yy;
+    M[(4*NV + 5)*w + k] = M_aa_yz;
+    M[(5*NV + 4)*w + k] = M_aa_yz;
+    M[(5*NV + 5)*w + k] = M_aa_zz;
+    t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
+        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_t + M_ta_yz) + (M_ta_zx +
+        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+        M_aa_zz))));
 }
 
-INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
+APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
     real s[18] = {0}, sums[21] = {0};
     real terms_ups[21*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
-    M_before(m, 1, X, s, t);
-    M_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, X, terms_ups, o_ups);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        M_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, t);
+    M_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
+        M_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, terms_ups, o_ups);
+    }
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        M_place_ups(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
     for (size_t n = 0; n < 21; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
-    M_after(m, 1, s, sums, M, t);
+    M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
+INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verdict *restrict t)
 {
     real s[18*LANES], sums[21*LANES];
     real o_ups[LANES];
-    M_before(m, LANES, X, s, t);
-    clear(sums, 21*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        M_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_ups);
-        M_place_ups(LANES, LANES, o_ups, 0, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        M_before(m, LANES, k, X, s, t);
     }
-    M_after(m, LANES, s, sums, M, t);
+    clear(sums, 21*LANES);
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            M_legs_ups(m, LANES, i, k, k, LANES, 1, s, X, sums, o_ups);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            M_place_ups(k, k, LANES, o_ups, t);
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        M_after(m, LANES, k, s, sums, M, t);
+    }
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s, verdict
-    *t)
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        stage_V_X(w, k, V, &v);
-        stage_Z_dynamics(m, w, k, V, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = v.Z_p_x;
-        s[10*w + k] = v.Z_p_y;
-        s[11*w + k] = v.Z_p_z;
-        s[12*w + k] = v.Z_q_x;
-        s[13*w + k] = v.Z_q_y;
-        s[14*w + k] = v.Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    stage_V_X(w, k, V, &v);
+    stage_Z_dynamics(m, w, k, V, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = v.Z_p_x;
+    s[10*w + k] = v.Z_p_y;
+    s[11*w + k] = v.Z_p_z;
+    s[12*w + k] = v.Z_q_x;
+    s[13*w + k] = v.Z_q_y;
+    s[14*w + k] = v.Z_q_z;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void Z_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
+INLINE void Z_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_ups v;
-        stage_ups_X(m, w, i, j, s, X, &v);
-        stage_ups_V_X(w, j, V, &v);
-        stage_ups_Z_dynamics(m, w, i, j, V, &v);
-        /* (Z_t) translational part of Z */
-        gather(&terms[0*count + k], add, v.ups_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[1*count + k], add, v.ups_U_y);  /* Z_t_y_of_legs */
-        gather(&terms[2*count + k], add, v.ups_U_z);  /* Z_t_z_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[3*count + k], add, v.ups_Z_a_t);  /* Z_a_x_of_legs */
-        gather(&terms[4*count + k], add, v.ups_Z_a_t_2);  /* Z_a_y_of_legs */
-        gather(&terms[5*count + k], add, v.ups_Z_a_t_3);  /* Z_a_z_of_legs */
-        o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
-    }
+    values_ups v;
+    stage_ups_X(m, w, i, j, s, X, &v);
+    stage_ups_V_X(w, j, V, &v);
+    stage_ups_Z_dynamics(m, w, i, j, V, &v);
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v.ups_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v.ups_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, v.ups_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[3*count + k], add, v.ups_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[4*count + k], add, v.ups_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[5*count + k], add, v.ups_Z_a_t_3);  /* Z_a_z_of_legs */
+    o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void Z_place_ups(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void Z_place_ups(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o[0*count + first + k];
-    }
+    t->singular[k] += o[0*count + at];
 }
 
-INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict *t)
+INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (Z_t) translational part of Z */
-        const real Z_p_x = s[9*w + k];
-        const real Z_t_x_of_legs = sums[0*w + k];
-        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[10*w + k];
-        const real Z_t_y_of_legs = sums[1*w + k];
-        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[11*w + k];
-        const real Z_t_z_of_legs = sums[2*w + k];
-        const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-        /* (Z_a) rotational part of Z */
-        const real Z_a_x_of_legs = sums[3*w + k];
-        const real Z_q_x = s[12*w + k];
-        const real Z_a_x = Z_a_x_of_legs + Z_q_x;
-        const real Z_a_y_of_legs = sums[4*w + k];
-        const real Z_q_y = s[13*w + k];
-        const real Z_a_y = Z_a_y_of_legs + Z_q_y;
-        const real Z_a_z_of_legs = sums[5*w + k];
-        const real Z_q_z = s[14*w + k];
-        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
-        /* (Z_t) translational part of Z */
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-        Z[2*w + k] = Z_t_z;
-        /* (Z_a) rotational part of Z */
-        Z[3*w + k] = Z_a_x;
-        Z[4*w + k] = Z_a_y;
-        Z[5*w + k] = Z_a_z;
-        t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
-    }
+    /* (Z_t) */
+    const real Z_p_x = s[9*w + k];
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[10*w + k];
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    const real Z_p_z = s[11*w + k];
+    const real Z_t_z_of_legs = sums[2*w + k];
+    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
+    /* (Z_a) */
+    const real Z_a_x_of_legs = sums[3*w + k];
+    const real Z_q_x = s[12*w + k];
+    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_y_of_legs = sums[4*w + k];
+    const real Z_q_y = s[13*w + k];
+    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_z_of_legs = sums[5*w + k];
+    const real Z_q_z = s[14*w + k];
+    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    /* (Z_a) */
+    Z[3*w + k] = Z_a_x;
+    Z[4*w + k] = Z_a_y;
+    Z[5*w + k] = Z_a_z;
+    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_ups[6*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
-    Z_before(m, 1, X, V, s, t);
-    Z_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, X, V, terms_ups, o_ups);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        Z_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, t);
+    Z_before(m, 1, 0, X, V, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
+        Z_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, V, terms_ups, o_ups);
+    }
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        Z_place_ups(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
-    Z_after(1, s, sums, Z, t);
+    Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z, verdict
+    *restrict t)
 {
     real s[15*LANES], sums[6*LANES];
     real o_ups[LANES];
-    Z_before(m, LANES, X, V, s, t);
-    clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        Z_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_ups);
-        Z_place_ups(LANES, LANES, o_ups, 0, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        Z_before(m, LANES, k, X, V, s, t);
     }
-    Z_after(LANES, s, sums, Z, t);
+    clear(sums, 6*LANES);
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_legs_ups(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_ups);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_place_ups(k, k, LANES, o_ups, t);
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        Z_after(LANES, k, s, sums, Z, t);
+    }
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void H_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, const real *X, real *o)
+INLINE void H_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_ups v;
-        stage_ups_X(m, w, i, j, s, X, &v);
-        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        const real ups_H_a_3_x = v.ups_q_y*v.ups_w_3_z - v.ups_q_z*v.ups_w_3_y;
-        const real ups_H_a_3_y = v.ups_q_z*v.ups_w_3_x - v.ups_q_x*v.ups_w_3_z;
-        const real ups_H_a_3_z = v.ups_q_x*v.ups_w_3_y - v.ups_q_y*v.ups_w_3_x;
-        /* (ups-w_3) reciprocal vector 3 */
-        o[0*count + k] = v.ups_w_3_x;
-        o[1*count + k] = v.ups_w_3_y;
-        o[2*count + k] = v.ups_w_3_z;
-        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        o[3*count + k] = ups_H_a_3_x;
-        o[4*count + k] = ups_H_a_3_y;
-        o[5*count + k] = ups_H_a_3_z;
-        o[7*count + k] = (v.ups_w_3_x + (v.ups_w_3_y + v.ups_w_3_z)) + (ups_H_a_3_x + (ups_H_a_3_y
-            + ups_H_a_3_z));
-        o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_q_3) > LEAST_2);
-    }
+    values_ups v;
+    stage_ups_X(m, w, i, j, s, X, &v);
+    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
+    const real ups_H_a_3_x = v.ups_q_y*v.ups_w_3_z - v.ups_q_z*v.ups_w_3_y;
+    const real ups_H_a_3_y = v.ups_q_z*v.ups_w_3_x - v.ups_q_x*v.ups_w_3_z;
+    const real ups_H_a_3_z = v.ups_q_x*v.ups_w_3_y - v.ups_q_y*v.ups_w_3_x;
+    /* (ups-w_3) reciprocal vector 3 */
+    o[0*count + k] = v.ups_w_3_x;
+    o[1*count + k] = v.ups_w_3_y;
+    o[2*count + k] = v.ups_w_3_z;
+    /* (ups-H_a_3) */
+    o[3*count + k] = ups_H_a_3_x;
+    o[4*count + k] = ups_H_a_3_y;
+    o[5*count + k] = ups_H_a_3_z;
+    o[7*count + k] = (v.ups_w_3_x + (v.ups_w_3_y + v.ups_w_3_z)) + (ups_H_a_3_x + (ups_H_a_3_y
+        + ups_H_a_3_z));
+    o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void H_place_ups(size_t w, size_t count, const real *o, size_t leg, size_t first, real *H,
-    verdict *t)
+INLINE void H_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
+    *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        H[(3*NU + leg)*w + k] = o[3*count + first + k];
-        H[(4*NU + leg)*w + k] = o[4*count + first + k];
-        H[(5*NU + leg)*w + k] = o[5*count + first + k];
-        t->singular[k] += o[6*count + first + k];
-        t->total[k] += o[7*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    H[(3*NU + i)*w + k] = o[3*count + at];
+    H[(4*NU + i)*w + k] = o[4*count + at];
+    H[(5*NU + i)*w + k] = o[5*count + at];
+    t->singular[k] += o[6*count + at];
+    t->total[k] += o[7*count + at];
 }
 
-INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
+APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
     real s[9] = {0};
     real o_ups[8*LEGS(LEGS_OF_ups)] = {0};
-    H_before(m, 1, X, s, t);
-    H_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), X, o_ups);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        H_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, H, t);
+    H_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
+        H_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, o_ups);
+    }
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        H_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
     }
 }
 
-INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
+INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verdict *restrict t)
 {
     real s[9*LANES];
     real o_ups[8*LANES];
-    H_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        H_legs_ups(m, LANES, leg, 0, s, 1, LANES, X, o_ups);
-        H_place_ups(LANES, LANES, o_ups, leg, 0, H, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        H_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            H_legs_ups(m, LANES, i, k, k, LANES, s, X, o_ups);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            H_place_ups(LANES, i, k, k, LANES, o_ups, H, t);
+        }
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, real *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        stage_V_X(w, k, V, &v);
-        /* (W_p) centripetal tensor of the platform */
-        const real omega_x = V[3*w + k];
-        const real omega_y = V[4*w + k];
-        const real W_p_xy = omega_x*omega_y;
-        const real omega_z = V[5*w + k];
-        const real W_p_xz = omega_x*omega_z;
-        const real W_p_yz = omega_y*omega_z;
-        /* (a_t) acceleration of the platform origin, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real t_ddot_x = A[0*w + k];
-        const real a_t_x = t_ddot_x - gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real t_ddot_y = A[1*w + k];
-        const real a_t_y = t_ddot_y - gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real t_ddot_z = A[2*w + k];
-        const real a_t_z = t_ddot_z - gravity_z;
-        const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
-        const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
-        const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
-        /* (f_p) inertia force of the platform less its weight */
-        const real f_p_t = omega_x*omega_x;
-        const real f_p_t_2 = omega_y*omega_y;
-        const real f_p_t_3 = omega_z*omega_z;
-        const real alpha_y = A[4*w + k];
-        const real alpha_z = A[5*w + k];
-        const real m_star = m->m_star;
-        const real f_p_x = a_t_x*m_star + v.h_star_y*(W_p_xy - alpha_z) + v.h_star_z*(W_p_xz +
-            alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
-        const real alpha_x = A[3*w + k];
-        const real f_p_y = a_t_y*m_star + v.h_star_x*(W_p_xy + alpha_z) + v.h_star_z*(W_p_yz -
-            alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
-        const real f_p_z = a_t_z*m_star + v.h_star_x*(W_p_xz - alpha_y) + v.h_star_y*(W_p_yz +
-            alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
-        /* (mu_p) inertia moment of the platform less that of its weight */
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real mu_p_t = J_star_in_platform_xx*v.omega_in_platform_x +
-            J_star_in_platform_xy*v.omega_in_platform_y +
-            J_star_in_platform_xz*v.omega_in_platform_z;
-        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real mu_p_t_2 = J_star_in_platform_xy*v.omega_in_platform_x +
-            J_star_in_platform_yy*v.omega_in_platform_y +
-            J_star_in_platform_yz*v.omega_in_platform_z;
-        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real mu_p_t_3 = J_star_in_platform_xz*v.omega_in_platform_x +
-            J_star_in_platform_yz*v.omega_in_platform_y +
-            J_star_in_platform_zz*v.omega_in_platform_z;
-        const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
-        const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
-        const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real mu_p_in_platform_x = J_star_in_platform_xx*alpha_in_platform_x +
-            J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z
-            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
-            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real mu_p_in_platform_y = J_star_in_platform_xy*alpha_in_platform_x +
-            J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z
-            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
-            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
-        const real mu_p_in_platform_z = J_star_in_platform_xz*alpha_in_platform_x +
-            J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z
-            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
-            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
-        const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
-            v.R_xz*mu_p_in_platform_z;
-        const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
-            v.R_yz*mu_p_in_platform_z;
-        const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
-            v.R_zz*mu_p_in_platform_z;
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = f_p_x;
-        s[10*w + k] = f_p_y;
-        s[11*w + k] = f_p_z;
-        s[12*w + k] = mu_p_x;
-        s[13*w + k] = mu_p_y;
-        s[14*w + k] = mu_p_z;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    stage_V_X(w, k, V, &v);
+    /* (W_p) centripetal tensor of the platform */
+    const real omega_x = V[3*w + k];
+    const real omega_y = V[4*w + k];
+    const real W_p_xy = omega_x*omega_y;
+    const real omega_z = V[5*w + k];
+    const real W_p_xz = omega_x*omega_z;
+    const real W_p_yz = omega_y*omega_z;
+    /* (a_t) acceleration of the platform origin, less gravity */
+    const real t_ddot_x = A[0*w + k];
+    const real a_t_x = t_ddot_x - m->gravity_x;
+    const real t_ddot_y = A[1*w + k];
+    const real a_t_y = t_ddot_y - m->gravity_y;
+    const real t_ddot_z = A[2*w + k];
+    const real a_t_z = t_ddot_z - m->gravity_z;
+    const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
+    const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
+    const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
+    /* (f_p) inertia force of the platform less its weight */
+    const real f_p_t = omega_x*omega_x;
+    const real f_p_t_2 = omega_y*omega_y;
+    const real f_p_t_3 = omega_z*omega_z;
+    const real alpha_y = A[4*w + k];
+    const real alpha_z = A[5*w + k];
+    const real f_p_x = a_t_x*m->m_star + v.h_star_y*(W_p_xy - alpha_z) + v.h_star_z*(W_p_xz +
+        alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+    const real alpha_x = A[3*w + k];
+    const real f_p_y = a_t_y*m->m_star + v.h_star_x*(W_p_xy + alpha_z) + v.h_star_z*(W_p_yz -
+        alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
+    const real f_p_z = a_t_z*m->m_star + v.h_star_x*(W_p_xz - alpha_y) + v.h_star_y*(W_p_yz +
+        alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
+    /* (mu_p) inertia moment of the platform less that of its weight */
+    const real mu_p_t = m->J_star_in_platform_xx*v.omega_in_platform_x +
+        m->J_star_in_platform_xy*v.omega_in_platform_y +
+        m->J_star_in_platform_xz*v.omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*v.omega_in_platform_x +
+        m->J_star_in_platform_yy*v.omega_in_platform_y +
+        m->J_star_in_platform_yz*v.omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*v.omega_in_platform_x +
+        m->J_star_in_platform_yz*v.omega_in_platform_y +
+        m->J_star_in_platform_zz*v.omega_in_platform_z;
+    const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
+    const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
+    const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+    const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
+        m->J_star_in_platform_xy*alpha_in_platform_y +
+        m->J_star_in_platform_xz*alpha_in_platform_z +
+        a_t_in_platform_z*m->h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
+        a_t_in_platform_y*m->h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+    const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
+        m->J_star_in_platform_yy*alpha_in_platform_y +
+        m->J_star_in_platform_yz*alpha_in_platform_z +
+        a_t_in_platform_x*m->h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
+        a_t_in_platform_z*m->h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
+    const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
+        m->J_star_in_platform_yz*alpha_in_platform_y +
+        m->J_star_in_platform_zz*alpha_in_platform_z +
+        a_t_in_platform_y*m->h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
+        a_t_in_platform_x*m->h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
+    const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
+        v.R_xz*mu_p_in_platform_z;
+    const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
+        v.R_yz*mu_p_in_platform_z;
+    const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
+        v.R_zz*mu_p_in_platform_z;
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = f_p_x;
+    s[10*w + k] = f_p_y;
+    s[11*w + k] = f_p_z;
+    s[12*w + k] = mu_p_x;
+    s[13*w + k] = mu_p_y;
+    s[14*w + k] = mu_p_z;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void required_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
-    *terms, real *o)
+INLINE void required_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, const real *V, const real *A, real *terms, real
+    *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_ups v;
-        stage_ups_X(m, w, i, j, s, X, &v);
-        stage_ups_A_X(w, j, A, &v);
-        stage_ups_V_X(w, j, V, &v);
-        stage_ups_A_V_X(w, j, V, &v);
-        stage_ups_legs_required(m, i, &v);
-        /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
-        const real ups_phi_3_t = v.ups_omega_1_in_axes2_y*v.ups_omega_1_in_axes2_y;
-        const real ups_phi_3_t_2 = v.ups_qd_2*v.ups_qd_2;
-        const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
-        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
-        const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
-        const real ups_phi_3_in_axes2_x = v.ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y +
-            ups_h_3_in_spec2_x*(-ups_phi_3_t - ups_phi_3_t_2) -
-            v.ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z;
-        /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
-        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
-        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
-        const real ups_Sigma_2_in_axes2_yy = m->ups_Sigma_2_in_axes2_yy[i];
-        const real ups_Sigma_2_in_axes2_zz = m->ups_Sigma_2_in_axes2_zz[i];
-        const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
-        const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
-        const real ups_mu_2_in_axes2_x = v.ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
-            v.ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_phi_3_t
-            - ups_phi_3_t_2) + ups_Sigma_2_in_axes2_zz*v.ups_alpha_1_in_axes2_x +
-            v.ups_g_in_axes2_y*ups_h_2_in_spec2_y + v.ups_g_in_axes2_z*ups_h_2_in_spec2_z -
-            v.ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
-            v.ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - v.ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z;
-        const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
-        const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
-        const real ups_mu_2_in_axes2_y = v.ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
-            ups_Sigma_2_in_axes2_zz*v.ups_alpha_1_in_axes2_y +
-            v.ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + v.ups_g_in_axes2_z*ups_h_2_in_spec2_x -
-            v.ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
-            v.ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
-            ups_J_group_2_in_axes2_xz*(v.ups_mu_2_t - ups_phi_3_t_2) -
-            v.ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x - v.ups_g_in_axes2_x*ups_h_2_in_spec2_y;
-        const real ups_mu_2_in_axes2_z = v.ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
-            ups_J_group_2_in_axes2_xy*(v.ups_mu_2_t - ups_phi_3_t) +
-            ups_J_group_2_in_axes2_xz*v.ups_alpha_1_in_axes2_x +
-            ups_J_group_2_in_axes2_yz*v.ups_alpha_1_in_axes2_y +
-            v.ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + v.ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x
-            - v.ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy -
-            v.ups_g_in_axes2_x*ups_h_2_in_spec2_z - v.ups_g_in_axes2_y*ups_h_2_in_spec2_x;
-        /* (ups-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real ups_c_in_axes2_y = v.ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y -
-            v.inv_ups_q_3*ups_mu_2_in_axes2_z - v.ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x -
-            ups_h_3_in_spec2_z*(v.ups_mu_2_t + ups_phi_3_t_2);
-        const real ups_c_in_axes2_z = v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
-            v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) + v.ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z +
-            ups_h_3_in_spec2_y*(v.ups_mu_2_t + ups_phi_3_t) -
-            v.ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x;
-        const real ups_c_x = v.axis_y_ups_axes2_x*ups_c_in_axes2_y +
-            v.axis_z_ups_axes2_x*ups_c_in_axes2_z - v.axis_x_ups_axes2_x*ups_phi_3_in_axes2_x;
-        const real ups_c_y = v.axis_y_ups_axes2_y*ups_c_in_axes2_y +
-            v.axis_z_ups_axes2_y*ups_c_in_axes2_z - v.axis_x_ups_axes2_y*ups_phi_3_in_axes2_x;
-        const real ups_c_z = v.axis_y_ups_axes2_z*ups_c_in_axes2_y +
-            v.axis_z_ups_axes2_z*ups_c_in_axes2_z - v.axis_x_ups_axes2_z*ups_phi_3_in_axes2_x;
-        /* (R_a) moment that actuators and external wrench must give */
-        const real ups_R_a_t = ups_c_y*v.ups_q_z - ups_c_z*v.ups_q_y;
-        const real ups_R_a_t_2 = ups_c_z*v.ups_q_x - ups_c_x*v.ups_q_z;
-        const real ups_R_a_t_3 = ups_c_x*v.ups_q_y - ups_c_y*v.ups_q_x;
-        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        const real ups_H_a_3_x = v.axis_x_ups_axes2_z*v.ups_q_y - v.axis_x_ups_axes2_y*v.ups_q_z;
-        const real ups_H_a_3_y = v.axis_x_ups_axes2_x*v.ups_q_z - v.axis_x_ups_axes2_z*v.ups_q_x;
-        const real ups_H_a_3_z = v.axis_x_ups_axes2_y*v.ups_q_x - v.axis_x_ups_axes2_x*v.ups_q_y;
-        /* (R_t) force that actuators and external wrench must give */
-        gather(&terms[0*count + k], add, ups_c_x);  /* R_t_x_of_legs */
-        gather(&terms[1*count + k], add, ups_c_y);  /* R_t_y_of_legs */
-        gather(&terms[2*count + k], add, ups_c_z);  /* R_t_z_of_legs */
-        /* (R_a) moment that actuators and external wrench must give */
-        gather(&terms[3*count + k], add, ups_R_a_t);  /* R_a_x_of_legs */
-        gather(&terms[4*count + k], add, ups_R_a_t_2);  /* R_a_y_of_legs */
-        gather(&terms[5*count + k], add, ups_R_a_t_3);  /* R_a_z_of_legs */
-        /* (ups-w_3) reciprocal vector 3 */
-        o[0*count + k] = v.axis_x_ups_axes2_x;
-        o[1*count + k] = v.axis_x_ups_axes2_y;
-        o[2*count + k] = v.axis_x_ups_axes2_z;
-        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        o[3*count + k] = ups_H_a_3_x;
-        o[4*count + k] = ups_H_a_3_y;
-        o[5*count + k] = ups_H_a_3_z;
-        o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
-    }
+    values_ups v;
+    stage_ups_X(m, w, i, j, s, X, &v);
+    stage_ups_A_X(w, j, A, &v);
+    stage_ups_V_X(w, j, V, &v);
+    stage_ups_A_V_X(w, j, V, &v);
+    stage_ups_legs_required(m, i, &v);
+    /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
+    const real ups_phi_3_t = v.ups_omega_1_in_axes2_y*v.ups_omega_1_in_axes2_y;
+    const real ups_phi_3_t_2 = v.ups_qd_2*v.ups_qd_2;
+    const real ups_phi_3_in_axes2_x = v.ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
+        m->ups_h_3_in_spec2_x[i]*(-ups_phi_3_t - ups_phi_3_t_2) -
+        v.ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i];
+    /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    const real ups_mu_2_in_axes2_x = v.ups_B_2_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
+        v.ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] +
+        m->ups_J_group_2_in_axes2_yz[i]*(ups_phi_3_t - ups_phi_3_t_2) +
+        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_x +
+        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] +
+        v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i] -
+        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_y[i] -
+        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_z[i];
+    const real ups_mu_2_in_axes2_y = v.ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] +
+        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_y +
+        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_y[i] +
+        v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
+        v.ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i] -
+        m->ups_J_group_2_in_axes2_xz[i]*(v.ups_mu_2_t - ups_phi_3_t_2) -
+        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_x[i] -
+        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i];
+    const real ups_mu_2_in_axes2_z = v.ups_B_2_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
+        m->ups_J_group_2_in_axes2_xy[i]*(v.ups_mu_2_t - ups_phi_3_t) +
+        m->ups_J_group_2_in_axes2_xz[i]*v.ups_alpha_1_in_axes2_x +
+        m->ups_J_group_2_in_axes2_yz[i]*v.ups_alpha_1_in_axes2_y +
+        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_z[i] +
+        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_x[i] -
+        v.ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] -
+        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] -
+        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i];
+    /* (ups-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real ups_c_in_axes2_y = v.ups_alpha_1_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
+        v.inv_ups_q_3*ups_mu_2_in_axes2_z - v.ups_B_2_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
+        m->ups_h_3_in_spec2_z[i]*(v.ups_mu_2_t + ups_phi_3_t_2);
+    const real ups_c_in_axes2_z = v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
+        v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) +
+        v.ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] +
+        m->ups_h_3_in_spec2_y[i]*(v.ups_mu_2_t + ups_phi_3_t) -
+        v.ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i];
+    const real ups_c_x = v.axis_y_ups_axes2_x*ups_c_in_axes2_y +
+        v.axis_z_ups_axes2_x*ups_c_in_axes2_z - v.axis_x_ups_axes2_x*ups_phi_3_in_axes2_x;
+    const real ups_c_y = v.axis_y_ups_axes2_y*ups_c_in_axes2_y +
+        v.axis_z_ups_axes2_y*ups_c_in_axes2_z - v.axis_x_ups_axes2_y*ups_phi_3_in_axes2_x;
+    const real ups_c_z = v.axis_y_ups_axes2_z*ups_c_in_axes2_y +
+        v.axis_z_ups_axes2_z*ups_c_in_axes2_z - v.axis_x_ups_axes2_z*ups_phi_3_in_axes2_x;
+    /* (R_a) moment that actuators and external wrench must give */
+    const real ups_R_a_t = ups_c_y*v.ups_q_z - ups_c_z*v.ups_q_y;
+    const real ups_R_a_t_2 = ups_c_z*v.ups_q_x - ups_c_x*v.ups_q_z;
+    const real ups_R_a_t_3 = ups_c_x*v.ups_q_y - ups_c_y*v.ups_q_x;
+    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
+    const real ups_H_a_3_x = v.axis_x_ups_axes2_z*v.ups_q_y - v.axis_x_ups_axes2_y*v.ups_q_z;
+    const real ups_H_a_3_y = v.axis_x_ups_axes2_x*v.ups_q_z - v.axis_x_ups_axes2_z*v.ups_q_x;
+    const real ups_H_a_3_z = v.axis_x_ups_axes2_y*v.ups_q_x - v.axis_x_ups_axes2_x*v.ups_q_y;
+    /* (R_t) force that actuators and external wrench must give */
+    gather(&terms[0*count + k], add, ups_c_x);  /* R_t_x_of_legs */
+    gather(&terms[1*count + k], add, ups_c_y);  /* R_t_y_of_legs */
+    gather(&terms[2*count + k], add, ups_c_z);  /* R_t_z_of_legs */
+    /* (R_a) */
+    gather(&terms[3*count + k], add, ups_R_a_t);  /* R_a_x_of_legs */
+    gather(&terms[4*count + k], add, ups_R_a_t_2);  /* R_a_y_of_legs */
+    gather(&terms[5*count + k], add, ups_R_a_t_3);  /* R_a_z_of_legs */
+    /* (ups-w_3) reciprocal vector 3 */
+    o[0*count + k] = v.axis_x_ups_axes2_x;
+    o[1*count + k] = v.axis_x_ups_axes2_y;
+    o[2*count + k] = v.axis_x_ups_axes2_z;
+    /* (ups-H_a_3) */
+    o[3*count + k] = ups_H_a_3_x;
+    o[4*count + k] = ups_H_a_3_y;
+    o[5*count + k] = ups_H_a_3_z;
+    o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void required_place_ups(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *H, verdict *t)
+INLINE void required_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real
+    *o, real *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        H[(3*NU + leg)*w + k] = o[3*count + first + k];
-        H[(4*NU + leg)*w + k] = o[4*count + first + k];
-        H[(5*NU + leg)*w + k] = o[5*count + first + k];
-        t->singular[k] += o[6*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    H[(3*NU + i)*w + k] = o[3*count + at];
+    H[(4*NU + i)*w + k] = o[4*count + at];
+    H[(5*NU + i)*w + k] = o[5*count + at];
+    t->singular[k] += o[6*count + at];
 }
 
-INLINE void required_after(size_t w, const real *s, const real *sums, real *required)
+INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (R_t) force that actuators and external wrench must give */
-        const real R_t_x_of_legs = sums[0*w + k];
-        const real f_p_x = s[9*w + k];
-        const real R_t_x = f_p_x - R_t_x_of_legs;
-        const real R_t_y_of_legs = sums[1*w + k];
-        const real f_p_y = s[10*w + k];
-        const real R_t_y = f_p_y - R_t_y_of_legs;
-        const real R_t_z_of_legs = sums[2*w + k];
-        const real f_p_z = s[11*w + k];
-        const real R_t_z = f_p_z - R_t_z_of_legs;
-        /* (R_a) moment that actuators and external wrench must give */
-        const real R_a_x_of_legs = sums[3*w + k];
-        const real mu_p_x = s[12*w + k];
-        const real R_a_x = R_a_x_of_legs + mu_p_x;
-        const real R_a_y_of_legs = sums[4*w + k];
-        const real mu_p_y = s[13*w + k];
-        const real R_a_y = R_a_y_of_legs + mu_p_y;
-        const real R_a_z_of_legs = sums[5*w + k];
-        const real mu_p_z = s[14*w + k];
-        const real R_a_z = R_a_z_of_legs + mu_p_z;
-        /* (R_t) force that actuators and external wrench must give */
-        required[0*w + k] = R_t_x;
-        required[1*w + k] = R_t_y;
-        required[2*w + k] = R_t_z;
-        /* (R_a) moment that actuators and external wrench must give */
-        required[3*w + k] = R_a_x;
-        required[4*w + k] = R_a_y;
-        required[5*w + k] = R_a_z;
-    }
+    /* (R_t) */
+    const real R_t_x_of_legs = sums[0*w + k];
+    const real f_p_x = s[9*w + k];
+    const real R_t_x = f_p_x - R_t_x_of_legs;
+    const real R_t_y_of_legs = sums[1*w + k];
+    const real f_p_y = s[10*w + k];
+    const real R_t_y = f_p_y - R_t_y_of_legs;
+    const real R_t_z_of_legs = sums[2*w + k];
+    const real f_p_z = s[11*w + k];
+    const real R_t_z = f_p_z - R_t_z_of_legs;
+    /* (R_a) */
+    const real R_a_x_of_legs = sums[3*w + k];
+    const real mu_p_x = s[12*w + k];
+    const real R_a_x = R_a_x_of_legs + mu_p_x;
+    const real R_a_y_of_legs = sums[4*w + k];
+    const real mu_p_y = s[13*w + k];
+    const real R_a_y = R_a_y_of_legs + mu_p_y;
+    const real R_a_z_of_legs = sums[5*w + k];
+    const real mu_p_z = s[14*w + k];
+    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    /* (R_t) */
+    required[0*w + k] = R_t_x;
+    required[1*w + k] = R_t_y;
+    required[2*w + k] = R_t_z;
+    /* (R_a) */
+    required[3*w + k] = R_a_x;
+    required[4*w + k] = R_a_y;
+    required[5*w + k] = R_a_z;
 }
 
-INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_ups[6*LEGS(LEGS_OF_ups)] = {0}, o_ups[7*LEGS(LEGS_OF_ups)] = {0};
-    required_before(m, 1, X, V, A, s, t);
-    required_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, X, V, A, terms_ups, o_ups);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        required_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, H, t);
+    required_before(m, 1, 0, X, V, A, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
+        required_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, V, A, terms_ups, o_ups);
+    }
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        required_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
-    required_after(1, s, sums, required);
+    required_after(1, 0, s, sums, required);
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, const real *X, real *s, verdict
-    *t)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, real
+    *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, const real *X, real *o)
+INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k,
+    size_t count, const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_ups v;
-        stage_ups_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-        /* (ups-q_1) displacement of joint 1 */
-        const real ups_q_1 = angle(v.inv_ups_root_1*v.ups_S_in_turn1_y,
-            v.inv_ups_root_1*v.ups_S_in_turn1_x);
-        /* (ups-q_2) displacement of joint 2 */
-        const real ups_q_2 = angle(-v.inv_ups_q_3*v.ups_S_in_turn1_z, v.inv_ups_q_3*v.ups_root_1);
-        /* (ups-q_1) displacement of joint 1 */
-        o[0*count + k] = ups_q_1;
-        /* (ups-q_2) displacement of joint 2 */
-        o[1*count + k] = ups_q_2;
-        /* (ups-q_3) displacement of joint 3 */
-        o[2*count + k] = v.ups_q_3;
-        o[4*count + k] = ups_q_1 + (ups_q_2 + v.ups_q_3);
-        o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1);
-    }
+    values_ups v;
+    stage_ups_inverse_kinematics_potential(m, w, i, j, s, X, &v);
+    /* (ups-q_1) displacement of joint 1 */
+    const real ups_q_1 = angle(v.inv_ups_root_1*v.ups_S_in_turn1_y,
+        v.inv_ups_root_1*v.ups_S_in_turn1_x);
+    /* (ups-q_2) displacement of joint 2 */
+    const real ups_q_2 = angle(-v.inv_ups_q_3*v.ups_S_in_turn1_z, v.inv_ups_q_3*v.ups_root_1);
+    /* (ups-q_1) */
+    o[0*count + k] = ups_q_1;
+    /* (ups-q_2) */
+    o[1*count + k] = ups_q_2;
+    /* (ups-q_3) displacement of joint 3 */
+    o[2*count + k] = v.ups_q_3;
+    o[4*count + k] = ups_q_1 + (ups_q_2 + v.ups_q_3);
+    o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1);
 }
 
-INLINE void inverse_kinematics_place_ups(size_t w, size_t count, const real *o, size_t leg, size_t
-    first, real *q, verdict *t)
+INLINE void inverse_kinematics_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count,
+    const real *o, real *q, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        q[3*leg*w + k] = o[0*count + first + k];
-        q[(1 + 3*leg)*w + k] = o[1*count + first + k];
-        q[(2 + 3*leg)*w + k] = o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
+    q[3*i*w + k] = o[0*count + at];
+    q[(1 + 3*i)*w + k] = o[1*count + at];
+    q[(2 + 3*i)*w + k] = o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
 }
 
-INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
+APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
     real s[9] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
-    inverse_kinematics_before(m, 1, X, s, t);
-    inverse_kinematics_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), X, o_ups);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        inverse_kinematics_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, q, t);
+    inverse_kinematics_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
+        inverse_kinematics_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, o_ups);
+    }
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        inverse_kinematics_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, q, t);
     }
 }
 
-INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
+INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
+    verdict *restrict t)
 {
     real s[9*LANES];
     real o_ups[5*LANES];
-    inverse_kinematics_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        inverse_kinematics_legs_ups(m, LANES, leg, 0, s, 1, LANES, X, o_ups);
-        inverse_kinematics_place_ups(LANES, LANES, o_ups, leg, 0, q, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        inverse_kinematics_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_legs_ups(m, LANES, i, k, k, LANES, s, X, o_ups);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_place_ups(LANES, i, k, k, LANES, o_ups, q, t);
+        }
     }
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, const real *X, const real *V, real *o)
+INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, const real *s, const real *X, const real *V, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_ups v;
-        stage_ups_X(m, w, i, j, s, X, &v);
-        /* (ups-S_dot) velocity of the connection point */
-        const real omega_y = V[4*w + j];
-        const real omega_z = V[5*w + j];
-        const real t_dot_x = V[0*w + j];
-        const real ups_S_dot_x = t_dot_x + omega_y*v.ups_q_z - omega_z*v.ups_q_y;
-        const real omega_x = V[3*w + j];
-        const real t_dot_y = V[1*w + j];
-        const real ups_S_dot_y = t_dot_y + omega_z*v.ups_q_x - omega_x*v.ups_q_z;
-        const real t_dot_z = V[2*w + j];
-        const real ups_S_dot_z = t_dot_z + omega_x*v.ups_q_y - omega_y*v.ups_q_x;
-        const real ups_S_dot_in_axes2_x = v.axis_x_ups_axes2_x*ups_S_dot_x +
-            v.axis_x_ups_axes2_y*ups_S_dot_y + v.axis_x_ups_axes2_z*ups_S_dot_z;
-        /* (ups-qd_1) rate of joint 1 */
-        const real ups_qd_1 = v.inv_ups_root_1*(v.axis_z_ups_axes2_x*ups_S_dot_x +
-            v.axis_z_ups_axes2_y*ups_S_dot_y + v.axis_z_ups_axes2_z*ups_S_dot_z);
-        /* (ups-qd_2) rate of joint 2 */
-        const real ups_qd_2 =
-            v.inv_ups_q_3*(ups_S_dot_x*(v.axis_x_ups_axes2_z*v.axis_z_ups_axes2_y -
-            v.axis_x_ups_axes2_y*v.axis_z_ups_axes2_z) +
-            ups_S_dot_y*(v.axis_x_ups_axes2_x*v.axis_z_ups_axes2_z -
-            v.axis_x_ups_axes2_z*v.axis_z_ups_axes2_x) +
-            ups_S_dot_z*(v.axis_x_ups_axes2_y*v.axis_z_ups_axes2_x -
-            v.axis_x_ups_axes2_x*v.axis_z_ups_axes2_y));
-        /* (ups-qd_1) rate of joint 1 */
-        o[0*count + k] = ups_qd_1;
-        /* (ups-qd_2) rate of joint 2 */
-        o[1*count + k] = ups_qd_2;
-        /* (ups-qd_3) rate of joint 3 */
-        o[2*count + k] = ups_S_dot_in_axes2_x;
-        o[4*count + k] = ups_qd_1 + (ups_qd_2 + ups_S_dot_in_axes2_x);
-        o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
-    }
+    values_ups v;
+    stage_ups_X(m, w, i, j, s, X, &v);
+    /* (ups-S_dot) velocity of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real t_dot_x = V[0*w + j];
+    const real ups_S_dot_x = t_dot_x + omega_y*v.ups_q_z - omega_z*v.ups_q_y;
+    const real omega_x = V[3*w + j];
+    const real t_dot_y = V[1*w + j];
+    const real ups_S_dot_y = t_dot_y + omega_z*v.ups_q_x - omega_x*v.ups_q_z;
+    const real t_dot_z = V[2*w + j];
+    const real ups_S_dot_z = t_dot_z + omega_x*v.ups_q_y - omega_y*v.ups_q_x;
+    const real ups_S_dot_in_axes2_x = v.axis_x_ups_axes2_x*ups_S_dot_x +
+        v.axis_x_ups_axes2_y*ups_S_dot_y + v.axis_x_ups_axes2_z*ups_S_dot_z;
+    /* (ups-qd_1) rate of joint 1 */
+    const real ups_qd_1 = v.inv_ups_root_1*(v.axis_z_ups_axes2_x*ups_S_dot_x +
+        v.axis_z_ups_axes2_y*ups_S_dot_y + v.axis_z_ups_axes2_z*ups_S_dot_z);
+    /* (ups-qd_2) rate of joint 2 */
+    const real ups_qd_2 =
+        v.inv_ups_q_3*(ups_S_dot_x*(v.axis_x_ups_axes2_z*v.axis_z_ups_axes2_y -
+        v.axis_x_ups_axes2_y*v.axis_z_ups_axes2_z) +
+        ups_S_dot_y*(v.axis_x_ups_axes2_x*v.axis_z_ups_axes2_z -
+        v.axis_x_ups_axes2_z*v.axis_z_ups_axes2_x) +
+        ups_S_dot_z*(v.axis_x_ups_axes2_y*v.axis_z_ups_axes2_x -
+        v.axis_x_ups_axes2_x*v.axis_z_ups_axes2_y));
+    /* (ups-qd_1) */
+    o[0*count + k] = ups_qd_1;
+    /* (ups-qd_2) */
+    o[1*count + k] = ups_qd_2;
+    /* (ups-qd_3) rate of joint 3 */
+    o[2*count + k] = ups_S_dot_in_axes2_x;
+    o[4*count + k] = ups_qd_1 + (ups_qd_2 + ups_S_dot_in_axes2_x);
+    o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void joint_rates_place_ups(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *qd, verdict *t)
+INLINE void joint_rates_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const
+    real *o, real *qd, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        qd[3*leg*w + k] = o[0*count + first + k];
-        qd[(1 + 3*leg)*w + k] = o[1*count + first + k];
-        qd[(2 + 3*leg)*w + k] = o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
+    qd[3*i*w + k] = o[0*count + at];
+    qd[(1 + 3*i)*w + k] = o[1*count + at];
+    qd[(2 + 3*i)*w + k] = o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
 }
 
-INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
     real s[9] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
-    joint_rates_before(m, 1, X, s, t);
-    joint_rates_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), X, V, o_ups);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        joint_rates_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, qd, t);
+    joint_rates_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
+        joint_rates_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, V, o_ups);
+    }
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        joint_rates_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, qd, t);
     }
 }
 
-INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
-    verdict *t)
+INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
+    qd, verdict *restrict t)
 {
     real s[9*LANES];
     real o_ups[5*LANES];
-    joint_rates_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        joint_rates_legs_ups(m, LANES, leg, 0, s, 1, LANES, X, V, o_ups);
-        joint_rates_place_ups(LANES, LANES, o_ups, leg, 0, qd, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        joint_rates_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_legs_ups(m, LANES, i, k, k, LANES, s, X, V, o_ups);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_place_ups(LANES, i, k, k, LANES, o_ups, qd, t);
+        }
     }
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, const real *X, real *s,
-    verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
+    *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
-    *o)
+INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t
+    k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_ups v;
-        stage_ups_X(m, w, i, j, s, X, &v);
-        stage_ups_A_X(w, j, A, &v);
-        stage_ups_V_X(w, j, V, &v);
-        stage_ups_A_V_X(w, j, V, &v);
-        /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_in_axes2_x = v.inv_ups_q_3*v.ups_S_in_turn1_z*v.ups_qd_1;
-        const real ups_omega_1_in_axes2_y = -v.inv_ups_q_3*v.ups_qd_1*v.ups_root_1;
-        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_in_axes2_z = 2*ups_omega_1_in_axes2_x*v.ups_q_3*v.ups_qd_2 -
-            v.ups_bias_t*ups_omega_1_in_axes2_y;
-        /* (ups-rel) acceleration of the connection point left to the joint accelerations */
-        const real ups_rel_in_axes2_x = v.axis_x_ups_axes2_x*v.ups_S_ddot_x +
-            v.axis_x_ups_axes2_y*v.ups_S_ddot_y + v.axis_x_ups_axes2_z*v.ups_S_ddot_z -
-            v.ups_q_3*(-ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y - v.ups_qd_2*v.ups_qd_2);
-        const real ups_rel_in_axes2_z = v.axis_z_ups_axes2_x*v.ups_S_ddot_x +
-            v.axis_z_ups_axes2_y*v.ups_S_ddot_y + v.axis_z_ups_axes2_z*v.ups_S_ddot_z -
-            ups_bias_in_axes2_z;
-        /* (ups-qdd_1) acceleration of joint 1 */
-        const real ups_qdd_1 = v.inv_ups_root_1*ups_rel_in_axes2_z;
-        /* (ups-qdd_2) acceleration of joint 2 */
-        const real ups_qdd_2 = v.inv_ups_q_3*(v.axis_y_ups_axes2_x*v.ups_S_ddot_x +
-            v.axis_y_ups_axes2_y*v.ups_S_ddot_y + v.axis_y_ups_axes2_z*v.ups_S_ddot_z -
-            v.ups_bias_t*v.ups_qd_2) - ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
-        /* (ups-qdd_1) acceleration of joint 1 */
-        o[0*count + k] = ups_qdd_1;
-        /* (ups-qdd_2) acceleration of joint 2 */
-        o[1*count + k] = ups_qdd_2;
-        /* (ups-qdd_3) acceleration of joint 3 */
-        o[2*count + k] = ups_rel_in_axes2_x;
-        o[4*count + k] = ups_qdd_1 + (ups_qdd_2 + ups_rel_in_axes2_x);
-        o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
-    }
+    values_ups v;
+    stage_ups_X(m, w, i, j, s, X, &v);
+    stage_ups_A_X(w, j, A, &v);
+    stage_ups_V_X(w, j, V, &v);
+    stage_ups_A_V_X(w, j, V, &v);
+    /* (ups-omega_1) angular velocity of link 1 */
+    const real ups_omega_1_in_axes2_x = v.inv_ups_q_3*v.ups_S_in_turn1_z*v.ups_qd_1;
+    const real ups_omega_1_in_axes2_y = -v.inv_ups_q_3*v.ups_qd_1*v.ups_root_1;
+    /* (ups-bias) acceleration of the connection point at zero joint accelerations */
+    const real ups_bias_in_axes2_z = 2*ups_omega_1_in_axes2_x*v.ups_q_3*v.ups_qd_2 -
+        v.ups_bias_t*ups_omega_1_in_axes2_y;
+    /* (ups-rel) acceleration of the connection point left to the joint accelerations */
+    const real ups_rel_in_axes2_x = v.axis_x_ups_axes2_x*v.ups_S_ddot_x +
+        v.axis_x_ups_axes2_y*v.ups_S_ddot_y + v.axis_x_ups_axes2_z*v.ups_S_ddot_z -
+        v.ups_q_3*(-ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y - v.ups_qd_2*v.ups_qd_2);
+    const real ups_rel_in_axes2_z = v.axis_z_ups_axes2_x*v.ups_S_ddot_x +
+        v.axis_z_ups_axes2_y*v.ups_S_ddot_y + v.axis_z_ups_axes2_z*v.ups_S_ddot_z -
+        ups_bias_in_axes2_z;
+    /* (ups-qdd_1) acceleration of joint 1 */
+    const real ups_qdd_1 = v.inv_ups_root_1*ups_rel_in_axes2_z;
+    /* (ups-qdd_2) acceleration of joint 2 */
+    const real ups_qdd_2 = v.inv_ups_q_3*(v.axis_y_ups_axes2_x*v.ups_S_ddot_x +
+        v.axis_y_ups_axes2_y*v.ups_S_ddot_y + v.axis_y_ups_axes2_z*v.ups_S_ddot_z -
+        v.ups_bias_t*v.ups_qd_2) - ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
+    /* (ups-qdd_1) */
+    o[0*count + k] = ups_qdd_1;
+    /* (ups-qdd_2) */
+    o[1*count + k] = ups_qdd_2;
+    /* (ups-qdd_3) acceleration of joint 3 */
+    o[2*count + k] = ups_rel_in_axes2_x;
+    o[4*count + k] = ups_qdd_1 + (ups_qdd_2 + ups_rel_in_axes2_x);
+    o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void joint_accelerations_place_ups(size_t w, size_t count, const real *o, size_t leg,
-    size_t first, real *qdd, verdict *t)
+INLINE void joint_accelerations_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count,
+    const real *o, real *qdd, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        qdd[3*leg*w + k] = o[0*count + first + k];
-        qdd[(1 + 3*leg)*w + k] = o[1*count + first + k];
-        qdd[(2 + 3*leg)*w + k] = o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
+    qdd[3*i*w + k] = o[0*count + at];
+    qdd[(1 + 3*i)*w + k] = o[1*count + at];
+    qdd[(2 + 3*i)*w + k] = o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
 }
 
-INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd, verdict *t)
+APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
+    real *qdd, verdict *t)
 {
     real s[9] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
-    joint_accelerations_before(m, 1, X, s, t);
-    joint_accelerations_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), X, V, A, o_ups);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        joint_accelerations_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, qdd, t);
+    joint_accelerations_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
+        joint_accelerations_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, V, A, o_ups);
+    }
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        joint_accelerations_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, qdd, t);
     }
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *qdd, verdict *t)
+    real *A, real *restrict qdd, verdict *restrict t)
 {
     real s[9*LANES];
     real o_ups[5*LANES];
-    joint_accelerations_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        joint_accelerations_legs_ups(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_ups);
-        joint_accelerations_place_ups(LANES, LANES, o_ups, leg, 0, qdd, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        joint_accelerations_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_legs_ups(m, LANES, i, k, k, LANES, s, X, V, A, o_ups);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_place_ups(LANES, i, k, k, LANES, o_ups, qdd, t);
+        }
     }
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void legs_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
+INLINE void legs_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    const real *s, const real *X, const real *V, const real *A, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_ups v;
-        stage_ups_X(m, w, i, j, s, X, &v);
-        stage_ups_A_X(w, j, A, &v);
-        stage_ups_V_X(w, j, V, &v);
-        stage_ups_A_V_X(w, j, V, &v);
-        stage_ups_legs_required(m, i, &v);
-        /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real ups_mu_2_t_2 = v.ups_omega_1_in_axes2_y*v.ups_omega_1_in_axes2_y;
-        const real ups_mu_2_t_3 = v.ups_qd_2*v.ups_qd_2;
-        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
-        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
-        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
-        const real ups_Sigma_2_in_axes2_yy = m->ups_Sigma_2_in_axes2_yy[i];
-        const real ups_Sigma_2_in_axes2_zz = m->ups_Sigma_2_in_axes2_zz[i];
-        const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
-        const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
-        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
-        const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
-        const real ups_mu_2_in_axes2_x = v.ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
-            v.ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
-            ups_J_group_2_in_axes2_yz*(ups_mu_2_t_2 - ups_mu_2_t_3) +
-            ups_Sigma_2_in_axes2_zz*v.ups_alpha_1_in_axes2_x +
-            v.ups_g_in_axes2_y*ups_h_2_in_spec2_y + v.ups_g_in_axes2_z*ups_h_2_in_spec2_z -
-            v.ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
-            v.ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - v.ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z;
-        const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
-        const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
-        const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
-        const real ups_mu_2_in_axes2_y = v.ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
-            ups_Sigma_2_in_axes2_zz*v.ups_alpha_1_in_axes2_y +
-            v.ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + v.ups_g_in_axes2_z*ups_h_2_in_spec2_x -
-            v.ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
-            v.ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
-            ups_J_group_2_in_axes2_xz*(v.ups_mu_2_t - ups_mu_2_t_3) -
-            v.ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x - v.ups_g_in_axes2_x*ups_h_2_in_spec2_y;
-        const real ups_mu_2_in_axes2_z = v.ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
-            ups_J_group_2_in_axes2_xy*(v.ups_mu_2_t - ups_mu_2_t_2) +
-            ups_J_group_2_in_axes2_xz*v.ups_alpha_1_in_axes2_x +
-            ups_J_group_2_in_axes2_yz*v.ups_alpha_1_in_axes2_y +
-            v.ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + v.ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x
-            - v.ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy -
-            v.ups_g_in_axes2_x*ups_h_2_in_spec2_z - v.ups_g_in_axes2_y*ups_h_2_in_spec2_x;
-        /* (ups-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real ups_c_in_axes2_y = v.ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y -
-            v.inv_ups_q_3*ups_mu_2_in_axes2_z - v.ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x -
-            ups_h_3_in_spec2_z*(v.ups_mu_2_t + ups_mu_2_t_3);
-        const real ups_c_in_axes2_z = v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
-            v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) + v.ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z +
-            ups_h_3_in_spec2_y*(v.ups_mu_2_t + ups_mu_2_t_2) -
-            v.ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x;
-        /* (ups-c_true) leg force on the platform without actuation, the last link's mass included */
-        const real ups_link3_mass = m->ups_link3_mass[i];
-        const real ups_c_true_in_axes2_x = v.ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z -
-            v.ups_acc_3_in_axes2_x*ups_link3_mass - v.ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y -
-            ups_h_3_in_spec2_x*(-ups_mu_2_t_2 - ups_mu_2_t_3);
-        const real ups_c_true_in_axes2_y = ups_c_in_axes2_y -
-            v.ups_acc_3_in_axes2_y*ups_link3_mass;
-        const real ups_c_true_in_axes2_z = ups_c_in_axes2_z -
-            v.ups_acc_3_in_axes2_z*ups_link3_mass;
-        const real ups_c_true_x = v.axis_x_ups_axes2_x*ups_c_true_in_axes2_x +
-            v.axis_y_ups_axes2_x*ups_c_true_in_axes2_y +
-            v.axis_z_ups_axes2_x*ups_c_true_in_axes2_z;
-        const real ups_c_true_y = v.axis_x_ups_axes2_y*ups_c_true_in_axes2_x +
-            v.axis_y_ups_axes2_y*ups_c_true_in_axes2_y +
-            v.axis_z_ups_axes2_y*ups_c_true_in_axes2_z;
-        const real ups_c_true_z = v.axis_x_ups_axes2_z*ups_c_true_in_axes2_x +
-            v.axis_y_ups_axes2_z*ups_c_true_in_axes2_y +
-            v.axis_z_ups_axes2_z*ups_c_true_in_axes2_z;
-        /* (ups-c_true) leg force on the platform without actuation, the last link's mass included */
-        o[0*count + k] = ups_c_true_x;
-        o[1*count + k] = ups_c_true_y;
-        o[2*count + k] = ups_c_true_z;
-        /* (ups-w_3) reciprocal vector 3 */
-        o[3*count + k] = v.axis_x_ups_axes2_x;
-        o[4*count + k] = v.axis_x_ups_axes2_y;
-        o[5*count + k] = v.axis_x_ups_axes2_z;
-        o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
-    }
+    values_ups v;
+    stage_ups_X(m, w, i, j, s, X, &v);
+    stage_ups_A_X(w, j, A, &v);
+    stage_ups_V_X(w, j, V, &v);
+    stage_ups_A_V_X(w, j, V, &v);
+    stage_ups_legs_required(m, i, &v);
+    /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    const real ups_mu_2_t_2 = v.ups_omega_1_in_axes2_y*v.ups_omega_1_in_axes2_y;
+    const real ups_mu_2_t_3 = v.ups_qd_2*v.ups_qd_2;
+    const real ups_mu_2_in_axes2_x = v.ups_B_2_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
+        v.ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] +
+        m->ups_J_group_2_in_axes2_yz[i]*(ups_mu_2_t_2 - ups_mu_2_t_3) +
+        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_x +
+        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] +
+        v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i] -
+        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_y[i] -
+        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_z[i];
+    const real ups_mu_2_in_axes2_y = v.ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] +
+        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_y +
+        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_y[i] +
+        v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
+        v.ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i] -
+        m->ups_J_group_2_in_axes2_xz[i]*(v.ups_mu_2_t - ups_mu_2_t_3) -
+        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_x[i] -
+        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i];
+    const real ups_mu_2_in_axes2_z = v.ups_B_2_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
+        m->ups_J_group_2_in_axes2_xy[i]*(v.ups_mu_2_t - ups_mu_2_t_2) +
+        m->ups_J_group_2_in_axes2_xz[i]*v.ups_alpha_1_in_axes2_x +
+        m->ups_J_group_2_in_axes2_yz[i]*v.ups_alpha_1_in_axes2_y +
+        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_z[i] +
+        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_x[i] -
+        v.ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] -
+        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] -
+        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i];
+    /* (ups-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real ups_c_in_axes2_y = v.ups_alpha_1_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
+        v.inv_ups_q_3*ups_mu_2_in_axes2_z - v.ups_B_2_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
+        m->ups_h_3_in_spec2_z[i]*(v.ups_mu_2_t + ups_mu_2_t_3);
+    const real ups_c_in_axes2_z = v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
+        v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) +
+        v.ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] +
+        m->ups_h_3_in_spec2_y[i]*(v.ups_mu_2_t + ups_mu_2_t_2) -
+        v.ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i];
+    /* (ups-c_true) leg force on the platform without actuation, the last link's mass included */
+    const real ups_c_true_in_axes2_x = v.ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i] -
+        v.ups_acc_3_in_axes2_x*m->ups_link3_mass[i] -
+        v.ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i] -
+        m->ups_h_3_in_spec2_x[i]*(-ups_mu_2_t_2 - ups_mu_2_t_3);
+    const real ups_c_true_in_axes2_y = ups_c_in_axes2_y -
+        v.ups_acc_3_in_axes2_y*m->ups_link3_mass[i];
+    const real ups_c_true_in_axes2_z = ups_c_in_axes2_z -
+        v.ups_acc_3_in_axes2_z*m->ups_link3_mass[i];
+    const real ups_c_true_x = v.axis_x_ups_axes2_x*ups_c_true_in_axes2_x +
+        v.axis_y_ups_axes2_x*ups_c_true_in_axes2_y +
+        v.axis_z_ups_axes2_x*ups_c_true_in_axes2_z;
+    const real ups_c_true_y = v.axis_x_ups_axes2_y*ups_c_true_in_axes2_x +
+        v.axis_y_ups_axes2_y*ups_c_true_in_axes2_y +
+        v.axis_z_ups_axes2_y*ups_c_true_in_axes2_z;
+    const real ups_c_true_z = v.axis_x_ups_axes2_z*ups_c_true_in_axes2_x +
+        v.axis_y_ups_axes2_z*ups_c_true_in_axes2_y +
+        v.axis_z_ups_axes2_z*ups_c_true_in_axes2_z;
+    /* (ups-c_true) */
+    o[0*count + k] = ups_c_true_x;
+    o[1*count + k] = ups_c_true_y;
+    o[2*count + k] = ups_c_true_z;
+    /* (ups-w_3) reciprocal vector 3 */
+    o[3*count + k] = v.axis_x_ups_axes2_x;
+    o[4*count + k] = v.axis_x_ups_axes2_y;
+    o[5*count + k] = v.axis_x_ups_axes2_z;
+    o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void legs_place_ups(size_t w, size_t count, const real *o, size_t leg, size_t first, real
-    *leg_force, real *actuator, verdict *t)
+INLINE void legs_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *leg_force, real *actuator, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        leg_force[3*leg*w + k] = o[0*count + first + k];
-        leg_force[(3*leg + 1)*w + k] = o[1*count + first + k];
-        leg_force[(3*leg + 2)*w + k] = o[2*count + first + k];
-        actuator[3*leg*w + k] = o[3*count + first + k];
-        actuator[(3*leg + 1)*w + k] = o[4*count + first + k];
-        actuator[(3*leg + 2)*w + k] = o[5*count + first + k];
-        t->singular[k] += o[6*count + first + k];
-    }
+    leg_force[3*i*w + k] = o[0*count + at];
+    leg_force[(3*i + 1)*w + k] = o[1*count + at];
+    leg_force[(3*i + 2)*w + k] = o[2*count + at];
+    actuator[3*i*w + k] = o[3*count + at];
+    actuator[(3*i + 1)*w + k] = o[4*count + at];
+    actuator[(3*i + 2)*w + k] = o[5*count + at];
+    t->singular[k] += o[6*count + at];
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
@@ -3681,256 +3605,218 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 {
     real s[9] = {0};
     real o_ups[7*LEGS(LEGS_OF_ups)] = {0};
-    legs_before(m, 1, X, s, t);
-    legs_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), X, V, A, o_ups);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        legs_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, leg_force, actuator, t);
+    legs_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
+        legs_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, V, A, o_ups);
+    }
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        legs_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, leg_force, actuator, t);
     }
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        /* (potential) potential energy */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real m_star = m->m_star;
-        const real t_x = X[0*w + k];
-        const real t_y = X[1*w + k];
-        const real t_z = X[2*w + k];
-        const real potential_t = gravity_x*(v.R_xx*h_star_in_platform_x +
-            v.R_xy*h_star_in_platform_y + v.R_xz*h_star_in_platform_z + m_star*t_x) +
-            gravity_y*(v.R_yx*h_star_in_platform_x + v.R_yy*h_star_in_platform_y +
-            v.R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(v.R_zx*h_star_in_platform_x +
-            v.R_zy*h_star_in_platform_y + v.R_zz*h_star_in_platform_z + m_star*t_z);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = potential_t;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    /* (potential) potential energy */
+    const real t_x = X[0*w + k];
+    const real t_y = X[1*w + k];
+    const real t_z = X[2*w + k];
+    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x +
+        v.R_xy*m->h_star_in_platform_y + v.R_xz*m->h_star_in_platform_z + m->m_star*t_x) +
+        m->gravity_y*(v.R_yx*m->h_star_in_platform_x + v.R_yy*m->h_star_in_platform_y +
+        v.R_yz*m->h_star_in_platform_z + m->m_star*t_y) +
+        m->gravity_z*(v.R_zx*m->h_star_in_platform_x + v.R_zy*m->h_star_in_platform_y +
+        v.R_zz*m->h_star_in_platform_z + m->m_star*t_z);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = potential_t;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void potential_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void potential_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_ups v;
-        stage_ups_inverse_kinematics_potential(m, w, i, j, s, X, &v);
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real ups_c_1 = v.inv_ups_root_1*v.ups_S_in_turn1_x;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = v.inv_ups_root_1*v.ups_S_in_turn1_y;
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real ups_c_2 = v.inv_ups_q_3*v.ups_root_1;
-        /* (potential) potential energy */
-        const real ups_e_1_in_axes2_x = v.inv_ups_q_3*v.ups_S_in_turn1_z;
-        const real ups_acc_3_t = m->ups_acc_3_t[i];
-        const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
-        const real ups_potential_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1;
-        const real ups_potential_t = m->ups_potential_t[i];
-        const real ups_potential_t_2 = m->ups_potential_t_2[i];
-        const real ups_potential_t_5 = ups_c_1*ups_potential_t + ups_potential_t_2*ups_s_1;
-        const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
-        const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
-        const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
-        const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
-        const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
-        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
-        const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
-        const real ups_link2_mass = m->ups_link2_mass[i];
-        const real ups_potential_t_3 = m->ups_potential_t_3[i];
-        const real ups_potential_t_6 = (ups_e_1_in_axes2_x*ups_potential_t_4 -
-            ups_acc_3_t_3*ups_c_2)*(ups_h_2_in_spec2_z + ups_h_3_in_spec2_z -
-            ups_link2_mass*(ups_e_1_in_axes2_x*ups_potential_t_5 - ups_c_2*ups_potential_t_3)) -
-            (ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1)*(ups_h_2_in_spec2_y + ups_h_3_in_spec2_y
-            + ups_link2_mass*(ups_c_1*ups_potential_t_2 - ups_potential_t*ups_s_1)) -
-            (ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_c_2*ups_potential_t_4)*(ups_h_2_in_spec2_x +
-            ups_h_3_in_spec2_x + ups_link2_mass*(ups_c_2*ups_potential_t_5 +
-            ups_e_1_in_axes2_x*ups_potential_t_3));
-        /* (potential) potential energy */
-        gather(&terms[0*count + k], add, ups_potential_t_6);  /* potential_of_legs */
-        o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1);
-    }
+    values_ups v;
+    stage_ups_inverse_kinematics_potential(m, w, i, j, s, X, &v);
+    /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real ups_c_1 = v.inv_ups_root_1*v.ups_S_in_turn1_x;
+    /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+    const real ups_s_1 = v.inv_ups_root_1*v.ups_S_in_turn1_y;
+    /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real ups_c_2 = v.inv_ups_q_3*v.ups_root_1;
+    /* (potential) */
+    const real ups_e_1_in_axes2_x = v.inv_ups_q_3*v.ups_S_in_turn1_z;
+    const real ups_potential_t_4 = m->ups_acc_3_t[i]*ups_c_1 + m->ups_acc_3_t_2[i]*ups_s_1;
+    const real ups_potential_t_5 = ups_c_1*m->ups_potential_t[i] +
+        m->ups_potential_t_2[i]*ups_s_1;
+    const real ups_potential_t_6 = (ups_e_1_in_axes2_x*ups_potential_t_4 -
+        m->ups_acc_3_t_3[i]*ups_c_2)*(m->ups_h_2_in_spec2_z[i] + m->ups_h_3_in_spec2_z[i] -
+        m->ups_link2_mass[i]*(ups_e_1_in_axes2_x*ups_potential_t_5 -
+        ups_c_2*m->ups_potential_t_3[i])) - (m->ups_acc_3_t_2[i]*ups_c_1 -
+        m->ups_acc_3_t[i]*ups_s_1)*(m->ups_h_2_in_spec2_y[i] + m->ups_h_3_in_spec2_y[i] +
+        m->ups_link2_mass[i]*(ups_c_1*m->ups_potential_t_2[i] -
+        m->ups_potential_t[i]*ups_s_1)) - (m->ups_acc_3_t_3[i]*ups_e_1_in_axes2_x +
+        ups_c_2*ups_potential_t_4)*(m->ups_h_2_in_spec2_x[i] + m->ups_h_3_in_spec2_x[i] +
+        m->ups_link2_mass[i]*(ups_c_2*ups_potential_t_5 +
+        ups_e_1_in_axes2_x*m->ups_potential_t_3[i]));
+    /* (potential) */
+    gather(&terms[0*count + k], add, ups_potential_t_6);  /* potential_of_legs */
+    o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1);
 }
 
-INLINE void potential_place_ups(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void potential_place_ups(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o[0*count + first + k];
-    }
+    t->singular[k] += o[0*count + at];
 }
 
-INLINE void potential_after(size_t w, const real *s, const real *sums, real *potential)
+INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (potential) potential energy */
-        const real potential_of_legs = sums[0*w + k];
-        const real potential_t = s[9*w + k];
-        const real potential_ = potential_of_legs - potential_t;
-        /* (potential) potential energy */
-        potential[0*w + k] = potential_;
-    }
+    /* (potential) */
+    const real potential_of_legs = sums[0*w + k];
+    const real potential_t = s[9*w + k];
+    const real potential_ = potential_of_legs - potential_t;
+    /* (potential) */
+    potential[0*w + k] = potential_;
 }
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
     real s[10] = {0}, sums[1] = {0};
     real terms_ups[LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
-    potential_before(m, 1, X, s, t);
-    potential_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, X, terms_ups, o_ups);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        potential_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, t);
+    potential_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
+        potential_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, terms_ups, o_ups);
+    }
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        potential_place_ups(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
-    potential_after(1, s, sums, potential);
+    potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
-    verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
+    *lengths, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        const real legs_size = m->legs_size;
-        lengths[1*w + k] = legs_size;
-        t->total[k] += legs_size;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    lengths[1*w + k] = m->legs_size;
+    t->total[k] += m->legs_size;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void condition_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void condition_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_ups v;
-        stage_ups_X(m, w, i, j, s, X, &v);
-        /* (ups-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real ups_pivot_size = magnitude(v.ups_root_1_t);
-        const real ups_pivot_size_2 = magnitude(v.ups_q_3_t);
-        const real ups_pivot_size_3 = magnitude(v.ups_root_1);
-        const real ups_pivot_size_4 = magnitude(v.ups_q_3);
-        const real ups_least_pivots = lesser(lesser(lesser(R(1.25)*root(ups_pivot_size),
-            R(1.25)*root(ups_pivot_size_2)), R(1.25)*ups_pivot_size_3), R(1.25)*ups_pivot_size_4);
-        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        const real ups_H_a_3_x = v.ups_q_y*v.ups_w_3_z - v.ups_q_z*v.ups_w_3_y;
-        const real ups_H_a_3_y = v.ups_q_z*v.ups_w_3_x - v.ups_q_x*v.ups_w_3_z;
-        const real ups_H_a_3_z = v.ups_q_x*v.ups_w_3_y - v.ups_q_y*v.ups_w_3_x;
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_in_platform_x = m->b_c_in_platform_x;
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_spread_t = b_c_in_platform_x - ups_platform_point_x;
-        const real b_c_in_platform_y = m->b_c_in_platform_y;
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_spread_t_2 = b_c_in_platform_y - ups_platform_point_y;
-        const real b_c_in_platform_z = m->b_c_in_platform_z;
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_spread_t_3 = b_c_in_platform_z - ups_platform_point_z;
-        const real ups_spread_t_4 = ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 +
-            ups_spread_t_3*ups_spread_t_3;
-        /* (spread) rms distance of the platform points from their centroid */
-        gather(&terms[0*count + k], add, ups_spread_t_4);  /* spread_ups */
-        /* (ups-w_3) reciprocal vector 3 */
-        o[0*count + k] = v.ups_w_3_x;
-        o[1*count + k] = v.ups_w_3_y;
-        o[2*count + k] = v.ups_w_3_z;
-        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        o[3*count + k] = ups_H_a_3_x;
-        o[4*count + k] = ups_H_a_3_y;
-        o[5*count + k] = ups_H_a_3_z;
-        /* (ups-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        o[6*count + k] = ups_least_pivots;
-        o[8*count + k] = (v.ups_w_3_x + (v.ups_w_3_y + v.ups_w_3_z)) + ((ups_H_a_3_x +
-            ups_H_a_3_y) + (ups_H_a_3_z + ups_least_pivots));
-        o[7*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
-    }
+    values_ups v;
+    stage_ups_X(m, w, i, j, s, X, &v);
+    /* (ups-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real ups_pivot_size = magnitude(v.ups_root_1_t);
+    const real ups_pivot_size_2 = magnitude(v.ups_q_3_t);
+    const real ups_pivot_size_3 = magnitude(v.ups_root_1);
+    const real ups_pivot_size_4 = magnitude(v.ups_q_3);
+    const real ups_least_pivots = lesser(lesser(lesser(R(1.25)*root(ups_pivot_size),
+        R(1.25)*root(ups_pivot_size_2)), R(1.25)*ups_pivot_size_3), R(1.25)*ups_pivot_size_4);
+    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
+    const real ups_H_a_3_x = v.ups_q_y*v.ups_w_3_z - v.ups_q_z*v.ups_w_3_y;
+    const real ups_H_a_3_y = v.ups_q_z*v.ups_w_3_x - v.ups_q_x*v.ups_w_3_z;
+    const real ups_H_a_3_z = v.ups_q_x*v.ups_w_3_y - v.ups_q_y*v.ups_w_3_x;
+    /* (spread) rms distance of the platform points from their centroid */
+    const real ups_spread_t = m->b_c_in_platform_x - m->ups_platform_point_x[i];
+    const real ups_spread_t_2 = m->b_c_in_platform_y - m->ups_platform_point_y[i];
+    const real ups_spread_t_3 = m->b_c_in_platform_z - m->ups_platform_point_z[i];
+    const real ups_spread_t_4 = ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 +
+        ups_spread_t_3*ups_spread_t_3;
+    /* (spread) */
+    gather(&terms[0*count + k], add, ups_spread_t_4);  /* spread_ups */
+    /* (ups-w_3) reciprocal vector 3 */
+    o[0*count + k] = v.ups_w_3_x;
+    o[1*count + k] = v.ups_w_3_y;
+    o[2*count + k] = v.ups_w_3_z;
+    /* (ups-H_a_3) */
+    o[3*count + k] = ups_H_a_3_x;
+    o[4*count + k] = ups_H_a_3_y;
+    o[5*count + k] = ups_H_a_3_z;
+    /* (ups-G) */
+    o[6*count + k] = ups_least_pivots;
+    o[8*count + k] = (v.ups_w_3_x + (v.ups_w_3_y + v.ups_w_3_z)) + ((ups_H_a_3_x +
+        ups_H_a_3_y) + (ups_H_a_3_z + ups_least_pivots));
+    o[7*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void condition_place_ups(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *H, real *pivots, verdict *t)
+INLINE void condition_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real
+    *o, real *H, real *pivots, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        H[(3*NU + leg)*w + k] = o[3*count + first + k];
-        H[(4*NU + leg)*w + k] = o[4*count + first + k];
-        H[(5*NU + leg)*w + k] = o[5*count + first + k];
-        pivots[leg*w + k] = o[6*count + first + k];
-        t->singular[k] += o[7*count + first + k];
-        t->total[k] += o[8*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    H[(3*NU + i)*w + k] = o[3*count + at];
+    H[(4*NU + i)*w + k] = o[4*count + at];
+    H[(5*NU + i)*w + k] = o[5*count + at];
+    pivots[i*w + k] = o[6*count + at];
+    t->singular[k] += o[7*count + at];
+    t->total[k] += o[8*count + at];
 }
 
-INLINE void condition_after(const prepared *m, size_t w, const real *sums, real *lengths, verdict
-    *t)
+INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
+    *lengths, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (spread) rms distance of the platform points from their centroid */
-        const real spread_t = m->spread_t;
-        const real spread_ups = sums[0*w + k];
-        const real spread_ = spread_t*root(spread_ups);
-        /* (spread) rms distance of the platform points from their centroid */
-        lengths[0*w + k] = spread_;
-        t->total[k] += spread_;
-    }
+    /* (spread) */
+    const real spread_ups = sums[0*w + k];
+    const real spread_ = m->spread_t*root(spread_ups);
+    /* (spread) */
+    lengths[0*w + k] = spread_;
+    t->total[k] += spread_;
 }
 
-INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
+APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, verdict *t)
 {
     real s[9] = {0}, sums[1] = {0};
     real terms_ups[LEGS(LEGS_OF_ups)] = {0}, o_ups[9*LEGS(LEGS_OF_ups)] = {0};
     clear(reach, NL);
-    condition_before(m, 1, X, s, lengths, t);
-    condition_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, X, terms_ups, o_ups);
-    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        condition_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, H, pivots, t);
+    condition_before(m, 1, 0, X, s, lengths, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
+        condition_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, terms_ups, o_ups);
+    }
+    for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        condition_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, pivots, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
-    condition_after(m, 1, sums, lengths, t);
+    condition_after(m, 1, 0, sums, lengths, t);
 }
 
 /* ---- what users call, as steps over these ---- */
 
-INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
+int stewart_7ups_M(const prepared *m, const real *X, real *M_out)
 {
     verdict why;
     start(1, &why);
@@ -3939,9 +3825,11 @@ INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NV, M_out);
     }
+    return code;
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -3955,7 +3843,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
     deliver(NV*NV, M, M_out);
 }
 
-INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
+int stewart_7ups_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     verdict why;
     start(1, &why);
@@ -3968,9 +3856,11 @@ INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, 
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, Z_out);
     }
+    return code;
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -3985,7 +3875,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
     deliver(NV, Z, Z_out);
 }
 
-INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
+int stewart_7ups_H(const prepared *m, const real *X, real *H_out)
 {
     verdict why;
     start(1, &why);
@@ -3994,9 +3884,11 @@ INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NU, H_out);
     }
+    return code;
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -4010,7 +3902,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
     deliver(NV*NU, H, H_out);
 }
 
-INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out, int *code)
+int stewart_7ups_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
     verdict why;
     start(1, &why);
@@ -4019,9 +3911,11 @@ INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, q_out);
     }
+    return code;
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -4035,8 +3929,7 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
     deliver(NJ, q, q_out);
 }
 
-INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
-    *code)
+int stewart_7ups_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     verdict why;
     start(1, &why);
@@ -4049,9 +3942,11 @@ INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, rea
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, qd_out);
     }
+    return code;
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -4067,8 +3962,8 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
     deliver(NJ, qd, qd_out);
 }
 
-INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out, int *code)
+int stewart_7ups_joint_accelerations(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out)
 {
     verdict why;
     start(1, &why);
@@ -4082,9 +3977,11 @@ INLINE void joint_accelerations_one(const prepared *m, const real *X, const real
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, qdd_out);
     }
+    return code;
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4101,8 +3998,8 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
     deliver(NJ, qdd, qdd_out);
 }
 
-INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
-    *Z_out, real *H_out, int *code)
+int stewart_7ups_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out)
 {
     verdict why;
     start(1, &why);
@@ -4117,11 +4014,13 @@ INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NV, M_out);
         refuse(NV, Z_out);
         refuse(NV*NU, H_out);
     }
+    return code;
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -4139,8 +4038,8 @@ INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real
     deliver(NV*NU, H, H_out);
 }
 
-static void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, const real *weights, real *tau_out, int *code)
+static int inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, const real *weights, real *tau_out)
 {
     real wrench_in[NW], weights_in[NU], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0},
         inverse_root_1[NU] = {0}, scale_columns_1[NV*NU] = {0}, least_norm_1[NU] = {0}, tau[NU] = {0};
@@ -4171,9 +4070,11 @@ static void inverse_dynamics_one(const prepared *m, const real *X, const real *V
     }
     check(NU, 1, tau, why.overflow);
     copy(NU, tau, tau_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, tau_out);
     }
+    return code;
 }
 
 INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real *sizes, const
@@ -4349,8 +4250,8 @@ INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real
 static const size_t order_A[] = {0, 1, 2, 3, 4, 5};
 static const real sizes_A[] = {16.0, 16.0, 16.0, 1.0, 1.0, 1.0};
 
-INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
-    const real *wrench, real *A_out, int *code)
+int stewart_7ups_forward_dynamics(const prepared *m, const real *X, const real *V, const real
+    *tau, const real *wrench, real *A_out)
 {
     real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] =
         {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
@@ -4380,9 +4281,11 @@ INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, A_out);
     }
+    return code;
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4410,21 +4313,28 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     deliver(NV, A, A_out);
 }
 
-INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
+int stewart_7ups_complete_acceleration(const prepared *m, const real *X, const real *V, const real
+    *A, const real *wrench, real *completed_out)
 {
+    (void)m;
+    (void)X;
+    (void)V;
+    (void)wrench;
     verdict why;
     start(1, &why);
     check(NV, 1, A, why.invalid);
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, completed_out);
     }
+    return code;
 }
 
-INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces_out, int *code)
+int stewart_7ups_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *forces_out)
 {
     static const size_t places_forces[] = {0, 1, 2, 3, 4, 5, 6};
     real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, least_norm_1[NU] =
@@ -4450,13 +4360,15 @@ INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, c
     add_forces(NL, 3, 1, places_forces, least_norm_1, actuator, forces);
     check(3*NL, 1, forces, why.overflow);
     copy(3*NL, forces, forces_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(3*NL, forces_out);
     }
+    return code;
 }
 
-INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
-    *potential_out, int *code)
+int stewart_7ups_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
+    *potential_out)
 {
     real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
@@ -4474,13 +4386,15 @@ INLINE void energy_one(const prepared *m, const real *X, const real *V, real *ki
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, kinetic_out);
         refuse(1, potential_out);
     }
+    return code;
 }
 
-INLINE void null_space_one(const prepared *m, const real *X, real *basis_out, int *code)
+int stewart_7ups_null_space(const prepared *m, const real *X, real *basis_out)
 {
     real H[NV*NU] = {0}, basis[NU] = {0};
     verdict why;
@@ -4490,14 +4404,16 @@ INLINE void null_space_one(const prepared *m, const real *X, real *basis_out, in
     null_basis(NV, NU, NV, H, basis);
     check(NU, 1, basis, why.overflow);
     copy(NU, basis, basis_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, basis_out);
     }
+    return code;
 }
 
-INLINE void condition_one(const prepared *m, const real *X, const real *length, real *sigma_out,
-    real *legs_out, int *code)
+int stewart_7ups_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
+    const real *length = NULL;
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real length_in[1], H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
         choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
@@ -4523,14 +4439,16 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, sigma_out);
         refuse(NL, legs_out);
     }
+    return code;
 }
 
-INLINE void manipulability_one(const prepared *m, const real *X, real *measure_out, real
-    *isotropy_out, int *code)
+int stewart_7ups_manipulability(const prepared *m, const real *X, real *measure_out, real
+    *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
@@ -4560,14 +4478,16 @@ INLINE void manipulability_one(const prepared *m, const real *X, real *measure_o
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, measure_out);
         refuse(1, isotropy_out);
     }
+    return code;
 }
 
-INLINE void singularity_distance_one(const prepared *m, const real *X, real *actuators_out, real
-    *legs_out, int *code)
+int stewart_7ups_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
+    *legs_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
@@ -4597,15 +4517,17 @@ INLINE void singularity_distance_one(const prepared *m, const real *X, real *act
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, actuators_out);
         refuse(1, legs_out);
     }
+    return code;
 }
 
-INLINE void force_distribution_one(const prepared *m, const real *X, const real *V, const real *A,
-    const real *tau_min, const real *tau_max, const real *wrench, const real *reference, real
-    *tau_out, int *code)
+int stewart_7ups_force_distribution(const prepared *m, const real *X, const real *V, const real
+    *A, const real *tau_min, const real *tau_max, const real *wrench, const real *reference, real
+    *tau_out)
 {
     real wrench_in[NW], reference_in[NU], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0},
         least_norm_1[NU] = {0}, null_basis_1[NU] = {0}, transposed_1[NU] = {0}, product_1[NU*NU] =
@@ -4638,13 +4560,14 @@ INLINE void force_distribution_one(const prepared *m, const real *X, const real 
     nearest_within(NU, add_1, product_1, tau_min, tau_max, tau, why.unreachable, why.overflow);
     check(NU, 1, tau, why.overflow);
     copy(NU, tau, tau_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, tau_out);
     }
+    return code;
 }
 
-static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
-    int *code)
+static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
 {
     real q[NJ] = {0}, q_of_inverse_kinematics_from_2[7] = {0}, gap[NU] = {0};
     verdict why;
@@ -4661,12 +4584,14 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
     }
     check(NU, 1, gap, why.overflow);
     copy(NU, gap, gap_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, gap_out);
     }
+    return code;
 }
 
-static void slope_one(const prepared *m, const real *X, real *slope_out, int *code)
+static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     verdict why;
     start(1, &why);
@@ -4675,9 +4600,11 @@ static void slope_one(const prepared *m, const real *X, real *slope_out, int *co
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NU, slope_out);
     }
+    return code;
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -4688,12 +4615,12 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    mismatch_one(m, found, q_actuated, gap, &code);
+    code = mismatch_one(m, found, q_actuated, gap);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        slope_one(m, found, slope, &code);
+        code = slope_one(m, found, slope);
         if (code != OK) {
             break;
         }
@@ -4707,7 +4634,7 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            mismatch_one(m, trial, q_actuated, next, &tried);
+            tried = mismatch_one(m, trial, q_actuated, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -4725,8 +4652,8 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 }
 
 
-INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
-    *X_out, int *code)
+int stewart_7ups_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0,
+    real *X_out)
 {
     real X[NQ] = {0};
     verdict why;
@@ -4739,13 +4666,18 @@ INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, co
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
-INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
+int stewart_7ups_dissipation(const prepared *m, const real *X, const real *V, real
+    *dissipation_out)
 {
+    (void)m;
+    (void)X;
     real subtract_1[NV] = {0};
     verdict why;
     start(1, &why);
@@ -4756,13 +4688,14 @@ INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, dissipation_out);
     }
+    return code;
 }
 
-INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
-    *code)
+int stewart_7ups_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
     real M[NV*NV] = {0}, momentum[NV] = {0};
     verdict why;
@@ -4776,27 +4709,14 @@ INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, momentum_out);
     }
+    return code;
 }
 
-INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
-    int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], momentum[NV*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    M_run_lanes(m, X, M, &why);
-    product(NV, NV, 1, LANES, M, V, momentum);
-    add_up(NV, momentum, why.total);
-    suspect(&why, code);
-    deliver(NV, momentum, momentum_out);
-}
-
-INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
+int stewart_7ups_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16,
         17, 18, 19, 20};
@@ -4810,29 +4730,14 @@ INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_ou
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, margins_out);
     }
+    return code;
 }
 
-INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
-{
-    static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16,
-        17, 18, 19, 20};
-    real X_in[NQ*LANES], q[NJ*LANES], margins[NJ*LANES];
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < NJ*LANES; ++i) {
-        margins[i] = q[i];
-    }
-    unlimited(NJ, NJ, LANES, places_margins, margins, why.invalid);
-    suspect(&why, code);
-    deliver(NJ, margins, margins_out);
-}
-
-INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
+int stewart_7ups_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
     verdict why;
@@ -4845,28 +4750,14 @@ INLINE void within_limits_one(const prepared *m, const real *X, real *within_out
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, within_out);
     }
+    return code;
 }
 
-INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
-{
-    real X_in[NQ*LANES], q[NJ*LANES], subtract_1[NJ*LANES], within[LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < NJ*LANES; ++i) {
-        subtract_1[i] = q[i] - q[i];
-    }
-    not_negative(NJ, LANES, subtract_1, within, why.invalid);
-    add_up(1, within, why.total);
-    suspect(&why, code);
-    deliver(1, within, within_out);
-}
-
-INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
+int stewart_7ups_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
     verdict why;
@@ -4876,26 +4767,14 @@ INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out
     take(NU, 1, stewart_7ups_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, q_out);
     }
+    return code;
 }
 
-INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
-{
-    real X_in[NQ*LANES], q_of_inverse_kinematics[NJ*LANES], q[NU*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
-    take(NU, LANES, stewart_7ups_ACTUATED, q_of_inverse_kinematics, q);
-    add_up(NU, q, why.total);
-    suspect(&why, code);
-    deliver(NU, q, q_out);
-}
-
-INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
-    *code)
+int stewart_7ups_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
     verdict why;
@@ -4909,28 +4788,15 @@ INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, 
     take(NU, 1, stewart_7ups_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, qd_out);
     }
+    return code;
 }
 
-INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
-    int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], qd_of_joint_rates[NJ*LANES], qd[NU*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
-    take(NU, LANES, stewart_7ups_ACTUATED, qd_of_joint_rates, qd);
-    add_up(NU, qd, why.total);
-    suspect(&why, code);
-    deliver(NU, qd, qd_out);
-}
-
-INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out, int *code)
+int stewart_7ups_actuator_accelerations(const prepared *m, const real *X, const real *V, const
+    real *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
     verdict why;
@@ -4945,30 +4811,15 @@ INLINE void actuator_accelerations_one(const prepared *m, const real *X, const r
     take(NU, 1, stewart_7ups_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, qdd_out);
     }
+    return code;
 }
 
-INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *qdd_out, int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd_of_joint_accelerations[NJ*LANES],
-        qdd[NU*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    A = side_by_side(NV, A, A_in, why.total);
-    joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
-    take(NU, LANES, stewart_7ups_ACTUATED, qdd_of_joint_accelerations, qdd);
-    add_up(NU, qdd, why.total);
-    suspect(&why, code);
-    deliver(NU, qdd, qdd_out);
-}
-
-INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out, int *code)
+int stewart_7ups_power(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out)
 {
     real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
     verdict why;
@@ -4984,30 +4835,14 @@ INLINE void power_one(const prepared *m, const real *X, const real *V, const rea
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, power_out);
     }
+    return code;
 }
 
-INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out, int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0},
-        power[LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    tau = side_by_side(NU, tau, tau_in, why.total);
-    H_run_lanes(m, X, H, &why);
-    product(NV, NU, 1, LANES, H, tau, times_1);
-    inner(NV, LANES, times_1, V, power);
-    add_up(1, power, why.total);
-    suspect(&why, code);
-    deliver(1, power, power_out);
-}
-
-INLINE void rotation_one(const real *X, real *R_out, int *code)
+int stewart_7ups_rotation(const real *X, real *R_out)
 {
     real R[9] = {0};
     verdict why;
@@ -5017,12 +4852,14 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     copy(9, R, R_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(9, R_out);
     }
+    return code;
 }
 
-INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
+int stewart_7ups_pose(const real *t, const real *R, real *X_out)
 {
     real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0};
     verdict why;
@@ -5037,12 +4874,14 @@ INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
-INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
+int stewart_7ups_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     real quaternion_rate_1[4] = {0}, X_dot[NQ] = {0};
     verdict why;
@@ -5059,12 +4898,14 @@ INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
     beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_dot_out);
     }
+    return code;
 }
 
-INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *code)
+int stewart_7ups_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
     real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0};
     verdict why;
@@ -5079,12 +4920,14 @@ INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
-INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
+int stewart_7ups_retract(const real *X, const real *step, real *X_moved_out)
 {
     real turn_quaternion_1[4] = {0}, add_1[3] = {0}, X_moved[NQ] = {0};
     verdict why;
@@ -5105,12 +4948,14 @@ INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int 
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_moved_out);
     }
+    return code;
 }
 
-INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
+int stewart_7ups_difference(const real *X0, const real *X1, real *step_out)
 {
     real turn_between_1[3] = {0}, subtract_1[3] = {0}, step[NV] = {0};
     verdict why;
@@ -5131,12 +4976,14 @@ INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, step_out);
     }
+    return code;
 }
 
-INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
+int stewart_7ups_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     real turn_between_1[3] = {0}, subtract_1[3] = {0}, join_1[6] = {0}, scale_1[6] = {0},
         turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
@@ -5171,783 +5018,238 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
 /* ---- one state, and batches ---- */
 
-int stewart_7ups_M(const prepared *model, const real *X, real *M)
+size_t stewart_7ups_M_batch(const prepared *m, size_t n, const real *X, real *M, int *status)
 {
-    int code;
-    M_one(model, X, M, &code);
-    return code;
+    SIDE_BY_SIDE(M_lanes(m, X + NQ*i, M + NV*NV*i, codes), stewart_7ups_M(m, X + NQ*j, M + NV*NV*j));
 }
 
-size_t stewart_7ups_M_batch(const prepared *model, size_t n, const real *X, real *M, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = stewart_7ups_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int stewart_7ups_Z(const prepared *model, const real *X, const real *V, real *Z)
-{
-    int code;
-    Z_one(model, X, V, Z, &code);
-    return code;
-}
-
-size_t stewart_7ups_Z_batch(const prepared *model, size_t n, const real *X, const real *V, real
-    *Z, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = stewart_7ups_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int stewart_7ups_H(const prepared *model, const real *X, real *H)
-{
-    int code;
-    H_one(model, X, H, &code);
-    return code;
-}
-
-size_t stewart_7ups_H_batch(const prepared *model, size_t n, const real *X, real *H, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = stewart_7ups_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int stewart_7ups_inverse_kinematics(const prepared *model, const real *X, real *q)
-{
-    int code;
-    inverse_kinematics_one(model, X, q, &code);
-    return code;
-}
-
-size_t stewart_7ups_inverse_kinematics_batch(const prepared *model, size_t n, const real *X, real
-    *q, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = stewart_7ups_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int stewart_7ups_joint_rates(const prepared *model, const real *X, const real *V, real *rates)
-{
-    int code;
-    joint_rates_one(model, X, V, rates, &code);
-    return code;
-}
-
-size_t stewart_7ups_joint_rates_batch(const prepared *model, size_t n, const real *X, const real
-    *V, real *rates, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = stewart_7ups_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int stewart_7ups_joint_accelerations(const prepared *model, const real *X, const real *V, const
-    real *A, real *accelerations)
-{
-    int code;
-    joint_accelerations_one(model, X, V, A, accelerations, &code);
-    return code;
-}
-
-size_t stewart_7ups_joint_accelerations_batch(const prepared *model, size_t n, const real *X,
-    const real *V, const real *A, real *accelerations, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = stewart_7ups_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
-                    accelerations + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int stewart_7ups_dynamics(const prepared *model, const real *X, const real *V, real *M, real *Z,
-    real *H)
-{
-    int code;
-    dynamics_one(model, X, V, M, Z, H, &code);
-    return code;
-}
-
-size_t stewart_7ups_dynamics_batch(const prepared *model, size_t n, const real *X, const real *V,
-    real *M, real *Z, real *H, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = stewart_7ups_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z +
-                    NV*(i + k), H + NV*NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int stewart_7ups_inverse_dynamics(const prepared *model, const real *X, const real *V, const real
-    *A, const real *wrench, real *tau)
-{
-    int code;
-    inverse_dynamics_one(model, X, V, A, wrench, NULL, tau, &code);
-    return code;
-}
-
-size_t stewart_7ups_inverse_dynamics_batch(const prepared *model, size_t n, const real *X, const
-    real *V, const real *A, const real *wrench, real *tau, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = stewart_7ups_inverse_dynamics(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
-            wrench + NW*i : NULL, tau + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int stewart_7ups_inverse_dynamics_weighted(const prepared *model, const real *X, const real *V,
-    const real *A, const real *wrench, const real *weights, real *tau)
-{
-    int code;
-    inverse_dynamics_one(model, X, V, A, wrench, weights, tau, &code);
-    return code;
-}
-
-size_t stewart_7ups_inverse_dynamics_weighted_batch(const prepared *model, size_t n, const real
-    *X, const real *V, const real *A, const real *wrench, const real *weights, real *tau, int
-    *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = stewart_7ups_inverse_dynamics_weighted(model, X + NQ*i, V + NV*i, A + NV*i,
-            wrench ? wrench + NW*i : NULL, weights + NU*i, tau + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int stewart_7ups_forward_dynamics(const prepared *model, const real *X, const real *V, const real
-    *tau, const real *wrench, real *A)
-{
-    int code;
-    forward_dynamics_one(model, X, V, tau, wrench, A, &code);
-    return code;
-}
-
-size_t stewart_7ups_forward_dynamics_batch(const prepared *model, size_t n, const real *X, const
-    real *V, const real *tau, const real *wrench, real *A, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
-                NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = stewart_7ups_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k),
-                    wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int stewart_7ups_complete_acceleration(const prepared *model, const real *X, const real *V, const
-    real *A, const real *wrench, real *completed)
-{
-    int code;
-    (void)model, (void)X, (void)V, (void)wrench;
-    complete_acceleration_one(A, completed, &code);
-    return code;
-}
-
-size_t stewart_7ups_complete_acceleration_batch(const prepared *model, size_t n, const real *X,
-    const real *V, const real *A, const real *wrench, real *completed, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = stewart_7ups_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
-            wrench + NW*i : NULL, completed + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int stewart_7ups_leg_reactions(const prepared *model, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces)
-{
-    int code;
-    leg_reactions_one(model, X, V, A, wrench, forces, &code);
-    return code;
-}
-
-size_t stewart_7ups_leg_reactions_batch(const prepared *model, size_t n, const real *X, const real
-    *V, const real *A, const real *wrench, real *forces, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = stewart_7ups_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench +
-            NW*i : NULL, forces + 21*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int stewart_7ups_energy(const prepared *model, const real *X, const real *V, real *kinetic, real
-    *potential)
-{
-    int code;
-    energy_one(model, X, V, kinetic, potential, &code);
-    return code;
-}
-
-size_t stewart_7ups_energy_batch(const prepared *model, size_t n, const real *X, const real *V,
-    real *kinetic, real *potential, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = stewart_7ups_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int stewart_7ups_null_space(const prepared *model, const real *X, real *basis)
-{
-    int code;
-    null_space_one(model, X, basis, &code);
-    return code;
-}
-
-size_t stewart_7ups_null_space_batch(const prepared *model, size_t n, const real *X, real *basis,
+size_t stewart_7ups_Z_batch(const prepared *m, size_t n, const real *X, const real *V, real *Z,
     int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = stewart_7ups_null_space(model, X + NQ*i, basis + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(Z_lanes(m, X + NQ*i, V + NV*i, Z + NV*i, codes), stewart_7ups_Z(m, X + NQ*j, V +
+        NV*j, Z + NV*j));
 }
 
-int stewart_7ups_condition(const prepared *model, const real *X, real *sigma, real *legs)
+size_t stewart_7ups_H_batch(const prepared *m, size_t n, const real *X, real *H, int *status)
 {
-    int code;
-    condition_one(model, X, NULL, sigma, legs, &code);
-    return code;
+    SIDE_BY_SIDE(H_lanes(m, X + NQ*i, H + NV*NU*i, codes), stewart_7ups_H(m, X + NQ*j, H + NV*NU*j));
 }
 
-size_t stewart_7ups_condition_batch(const prepared *model, size_t n, const real *X, real *sigma,
-    real *legs, int *status)
+size_t stewart_7ups_inverse_kinematics_batch(const prepared *m, size_t n, const real *X, real *q,
+    int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = stewart_7ups_condition(model, X + NQ*i, sigma + 6*i, legs + 7*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(inverse_kinematics_lanes(m, X + NQ*i, q + NJ*i, codes),
+        stewart_7ups_inverse_kinematics(m, X + NQ*j, q + NJ*j));
 }
 
-int stewart_7ups_manipulability(const prepared *model, const real *X, real *measure, real
-    *isotropy)
+size_t stewart_7ups_joint_rates_batch(const prepared *m, size_t n, const real *X, const real *V,
+    real *rates, int *status)
 {
-    int code;
-    manipulability_one(model, X, measure, isotropy, &code);
-    return code;
+    SIDE_BY_SIDE(joint_rates_lanes(m, X + NQ*i, V + NV*i, rates + NJ*i, codes),
+        stewart_7ups_joint_rates(m, X + NQ*j, V + NV*j, rates + NJ*j));
 }
 
-size_t stewart_7ups_manipulability_batch(const prepared *model, size_t n, const real *X, real
+size_t stewart_7ups_joint_accelerations_batch(const prepared *m, size_t n, const real *X, const
+    real *V, const real *A, real *accelerations, int *status)
+{
+    SIDE_BY_SIDE(joint_accelerations_lanes(m, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i,
+        codes), stewart_7ups_joint_accelerations(m, X + NQ*j, V + NV*j, A + NV*j, accelerations +
+        NJ*j));
+}
+
+size_t stewart_7ups_dynamics_batch(const prepared *m, size_t n, const real *X, const real *V, real
+    *M, real *Z, real *H, int *status)
+{
+    SIDE_BY_SIDE(dynamics_lanes(m, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes),
+        stewart_7ups_dynamics(m, X + NQ*j, V + NV*j, M + NV*NV*j, Z + NV*j, H + NV*NU*j));
+}
+
+int stewart_7ups_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau)
+{
+    return inverse_dynamics_one(m, X, V, A, wrench, NULL, tau);
+}
+
+size_t stewart_7ups_inverse_dynamics_batch(const prepared *m, size_t n, const real *X, const real
+    *V, const real *A, const real *wrench, real *tau, int *status)
+{
+    ONE_BY_ONE(stewart_7ups_inverse_dynamics(m, X + NQ*j, V + NV*j, A + NV*j, wrench ? wrench + NW*j :
+        NULL, tau + NU*j));
+}
+
+int stewart_7ups_inverse_dynamics_weighted(const prepared *m, const real *X, const real *V, const
+    real *A, const real *wrench, const real *weights, real *tau)
+{
+    return inverse_dynamics_one(m, X, V, A, wrench, weights, tau);
+}
+
+size_t stewart_7ups_inverse_dynamics_weighted_batch(const prepared *m, size_t n, const real *X,
+    const real *V, const real *A, const real *wrench, const real *weights, real *tau, int *status)
+{
+    ONE_BY_ONE(stewart_7ups_inverse_dynamics_weighted(m, X + NQ*j, V + NV*j, A + NV*j, wrench ? wrench
+        + NW*j : NULL, weights + NU*j, tau + NU*j));
+}
+
+size_t stewart_7ups_forward_dynamics_batch(const prepared *m, size_t n, const real *X, const real
+    *V, const real *tau, const real *wrench, real *A, int *status)
+{
+    SIDE_BY_SIDE(forward_dynamics_lanes(m, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i :
+        NULL, A + NV*i, codes), stewart_7ups_forward_dynamics(m, X + NQ*j, V + NV*j, tau + NU*j,
+        wrench ? wrench + NW*j : NULL, A + NV*j));
+}
+
+size_t stewart_7ups_complete_acceleration_batch(const prepared *m, size_t n, const real *X, const
+    real *V, const real *A, const real *wrench, real *completed, int *status)
+{
+    ONE_BY_ONE(stewart_7ups_complete_acceleration(m, X + NQ*j, V + NV*j, A + NV*j, wrench ? wrench +
+        NW*j : NULL, completed + NV*j));
+}
+
+size_t stewart_7ups_leg_reactions_batch(const prepared *m, size_t n, const real *X, const real *V,
+    const real *A, const real *wrench, real *forces, int *status)
+{
+    ONE_BY_ONE(stewart_7ups_leg_reactions(m, X + NQ*j, V + NV*j, A + NV*j, wrench ? wrench + NW*j :
+        NULL, forces + 21*j));
+}
+
+size_t stewart_7ups_energy_batch(const prepared *m, size_t n, const real *X, const real *V, real
+    *kinetic, real *potential, int *status)
+{
+    ONE_BY_ONE(stewart_7ups_energy(m, X + NQ*j, V + NV*j, kinetic + j, potential + j));
+}
+
+size_t stewart_7ups_null_space_batch(const prepared *m, size_t n, const real *X, real *basis, int
+    *status)
+{
+    ONE_BY_ONE(stewart_7ups_null_space(m, X + NQ*j, basis + NU*j));
+}
+
+size_t stewart_7ups_condition_batch(const prepared *m, size_t n, const real *X, real *sigma, real
+    *legs, int *status)
+{
+    ONE_BY_ONE(stewart_7ups_condition(m, X + NQ*j, sigma + 6*j, legs + 7*j));
+}
+
+size_t stewart_7ups_manipulability_batch(const prepared *m, size_t n, const real *X, real
     *measure, real *isotropy, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = stewart_7ups_manipulability(model, X + NQ*i, measure + i, isotropy + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(stewart_7ups_manipulability(m, X + NQ*j, measure + j, isotropy + j));
 }
 
-int stewart_7ups_singularity_distance(const prepared *model, const real *X, real *actuators, real
-    *legs)
+size_t stewart_7ups_singularity_distance_batch(const prepared *m, size_t n, const real *X, real
+    *actuators, real *legs, int *status)
 {
-    int code;
-    singularity_distance_one(model, X, actuators, legs, &code);
-    return code;
+    ONE_BY_ONE(stewart_7ups_singularity_distance(m, X + NQ*j, actuators + j, legs + j));
 }
 
-size_t stewart_7ups_singularity_distance_batch(const prepared *model, size_t n, const real *X,
-    real *actuators, real *legs, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = stewart_7ups_singularity_distance(model, X + NQ*i, actuators + i, legs + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int stewart_7ups_force_distribution(const prepared *model, const real *X, const real *V, const
-    real *A, const real *tau_min, const real *tau_max, const real *wrench, const real *reference,
-    real *tau)
-{
-    int code;
-    force_distribution_one(model, X, V, A, tau_min, tau_max, wrench, reference, tau, &code);
-    return code;
-}
-
-size_t stewart_7ups_force_distribution_batch(const prepared *model, size_t n, const real *X, const
+size_t stewart_7ups_force_distribution_batch(const prepared *m, size_t n, const real *X, const
     real *V, const real *A, const real *tau_min, const real *tau_max, const real *wrench, const
     real *reference, real *tau, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = stewart_7ups_force_distribution(model, X + NQ*i, V + NV*i, A + NV*i, tau_min +
-            NU*i, tau_max + NU*i, wrench ? wrench + NW*i : NULL, reference ? reference + NU*i : NULL, tau
-            + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(stewart_7ups_force_distribution(m, X + NQ*j, V + NV*j, A + NV*j, tau_min + NU*j,
+        tau_max + NU*j, wrench ? wrench + NW*j : NULL, reference ? reference + NU*j : NULL, tau +
+        NU*j));
 }
 
-int stewart_7ups_forward_kinematics(const prepared *model, const real *q_actuated, const real *X0,
-    real *X)
+size_t stewart_7ups_forward_kinematics_batch(const prepared *m, size_t n, const real *q_actuated,
+    const real *X0, real *X, int *status)
 {
-    int code;
-    forward_kinematics_one(model, q_actuated, X0, X, &code);
-    return code;
+    ONE_BY_ONE(stewart_7ups_forward_kinematics(m, q_actuated + NU*j, X0 + NQ*j, X + NQ*j));
 }
 
-size_t stewart_7ups_forward_kinematics_batch(const prepared *model, size_t n, const real
-    *q_actuated, const real *X0, real *X, int *status)
+size_t stewart_7ups_dissipation_batch(const prepared *m, size_t n, const real *X, const real *V,
+    real *dissipation, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = stewart_7ups_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(stewart_7ups_dissipation(m, X + NQ*j, V + NV*j, dissipation + j));
 }
 
-int stewart_7ups_dissipation(const prepared *model, const real *X, const real *V, real
-    *dissipation)
+size_t stewart_7ups_momentum_batch(const prepared *m, size_t n, const real *X, const real *V, real
+    *momentum, int *status)
 {
-    int code;
-    (void)model, (void)X;
-    dissipation_one(V, dissipation, &code);
-    return code;
+    ONE_BY_ONE(stewart_7ups_momentum(m, X + NQ*j, V + NV*j, momentum + NV*j));
 }
 
-size_t stewart_7ups_dissipation_batch(const prepared *model, size_t n, const real *X, const real
-    *V, real *dissipation, int *status)
+size_t stewart_7ups_joint_margins_batch(const prepared *m, size_t n, const real *X, real *margins,
+    int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = stewart_7ups_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(stewart_7ups_joint_margins(m, X + NQ*j, margins + NJ*j));
 }
 
-int stewart_7ups_momentum(const prepared *model, const real *X, const real *V, real *momentum)
+size_t stewart_7ups_within_limits_batch(const prepared *m, size_t n, const real *X, real *within,
+    int *status)
 {
-    int code;
-    momentum_one(model, X, V, momentum, &code);
-    return code;
+    ONE_BY_ONE(stewart_7ups_within_limits(m, X + NQ*j, within + j));
 }
 
-size_t stewart_7ups_momentum_batch(const prepared *model, size_t n, const real *X, const real *V,
-    real *momentum, int *status)
+size_t stewart_7ups_actuator_positions_batch(const prepared *m, size_t n, const real *X, real *q,
+    int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = stewart_7ups_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(stewart_7ups_actuator_positions(m, X + NQ*j, q + NU*j));
 }
 
-int stewart_7ups_joint_margins(const prepared *model, const real *X, real *margins)
+size_t stewart_7ups_actuator_rates_batch(const prepared *m, size_t n, const real *X, const real
+    *V, real *rates, int *status)
 {
-    int code;
-    joint_margins_one(model, X, margins, &code);
-    return code;
+    ONE_BY_ONE(stewart_7ups_actuator_rates(m, X + NQ*j, V + NV*j, rates + NU*j));
 }
 
-size_t stewart_7ups_joint_margins_batch(const prepared *model, size_t n, const real *X, real
-    *margins, int *status)
+size_t stewart_7ups_actuator_accelerations_batch(const prepared *m, size_t n, const real *X, const
+    real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = stewart_7ups_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(stewart_7ups_actuator_accelerations(m, X + NQ*j, V + NV*j, A + NV*j, accelerations +
+        NU*j));
 }
 
-int stewart_7ups_within_limits(const prepared *model, const real *X, real *within)
+size_t stewart_7ups_power_batch(const prepared *m, size_t n, const real *X, const real *V, const
+    real *tau, real *power, int *status)
 {
-    int code;
-    within_limits_one(model, X, within, &code);
-    return code;
-}
-
-size_t stewart_7ups_within_limits_batch(const prepared *model, size_t n, const real *X, real
-    *within, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            within_limits_lanes(model, X + NQ*i, within + i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = stewart_7ups_within_limits(model, X + NQ*(i + k), within + (i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int stewart_7ups_actuator_positions(const prepared *model, const real *X, real *q)
-{
-    int code;
-    actuator_positions_one(model, X, q, &code);
-    return code;
-}
-
-size_t stewart_7ups_actuator_positions_batch(const prepared *model, size_t n, const real *X, real
-    *q, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = stewart_7ups_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int stewart_7ups_actuator_rates(const prepared *model, const real *X, const real *V, real *rates)
-{
-    int code;
-    actuator_rates_one(model, X, V, rates, &code);
-    return code;
-}
-
-size_t stewart_7ups_actuator_rates_batch(const prepared *model, size_t n, const real *X, const
-    real *V, real *rates, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = stewart_7ups_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int stewart_7ups_actuator_accelerations(const prepared *model, const real *X, const real *V, const
-    real *A, real *accelerations)
-{
-    int code;
-    actuator_accelerations_one(model, X, V, A, accelerations, &code);
-    return code;
-}
-
-size_t stewart_7ups_actuator_accelerations_batch(const prepared *model, size_t n, const real *X,
-    const real *V, const real *A, real *accelerations, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = stewart_7ups_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
-                    k), accelerations + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int stewart_7ups_power(const prepared *model, const real *X, const real *V, const real *tau, real
-    *power)
-{
-    int code;
-    power_one(model, X, V, tau, power, &code);
-    return code;
-}
-
-size_t stewart_7ups_power_batch(const prepared *model, size_t n, const real *X, const real *V,
-    const real *tau, real *power, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = stewart_7ups_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power + (i
-                    + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int stewart_7ups_rotation(const real *X, real *R)
-{
-    int code;
-    rotation_one(X, R, &code);
-    return code;
+    ONE_BY_ONE(stewart_7ups_power(m, X + NQ*j, V + NV*j, tau + NU*j, power + j));
 }
 
 size_t stewart_7ups_rotation_batch(size_t n, const real *X, real *R, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = stewart_7ups_rotation(X + NQ*i, R + 9*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int stewart_7ups_pose(const real *t, const real *R, real *X)
-{
-    int code;
-    pose_one(t, R, X, &code);
-    return code;
+    ONE_BY_ONE(stewart_7ups_rotation(X + NQ*j, R + 9*j));
 }
 
 size_t stewart_7ups_pose_batch(size_t n, const real *t, const real *R, real *X, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = stewart_7ups_pose(t + 3*i, R + 9*i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int stewart_7ups_X_dot(const real *X, const real *V, real *X_dot)
-{
-    int code;
-    X_dot_one(X, V, X_dot, &code);
-    return code;
+    ONE_BY_ONE(stewart_7ups_pose(t + 3*j, R + 9*j, X + NQ*j));
 }
 
 size_t stewart_7ups_X_dot_batch(size_t n, const real *X, const real *V, real *X_dot, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = stewart_7ups_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int stewart_7ups_pose_from_rpy(const real *t, const real *rpy, real *X)
-{
-    int code;
-    pose_from_rpy_one(t, rpy, X, &code);
-    return code;
+    ONE_BY_ONE(stewart_7ups_X_dot(X + NQ*j, V + NV*j, X_dot + NQ*j));
 }
 
 size_t stewart_7ups_pose_from_rpy_batch(size_t n, const real *t, const real *rpy, real *X, int
     *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = stewart_7ups_pose_from_rpy(t + 3*i, rpy + 3*i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int stewart_7ups_retract(const real *X, const real *step, real *X_moved)
-{
-    int code;
-    retract_one(X, step, X_moved, &code);
-    return code;
+    ONE_BY_ONE(stewart_7ups_pose_from_rpy(t + 3*j, rpy + 3*j, X + NQ*j));
 }
 
 size_t stewart_7ups_retract_batch(size_t n, const real *X, const real *step, real *X_moved, int
     *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = stewart_7ups_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int stewart_7ups_difference(const real *X0, const real *X1, real *step)
-{
-    int code;
-    difference_one(X0, X1, step, &code);
-    return code;
+    ONE_BY_ONE(stewart_7ups_retract(X + NQ*j, step + NV*j, X_moved + NQ*j));
 }
 
 size_t stewart_7ups_difference_batch(size_t n, const real *X0, const real *X1, real *step, int
     *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = stewart_7ups_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int stewart_7ups_interpolate(const real *X0, const real *X1, const real *s, real *X)
-{
-    int code;
-    interpolate_one(X0, X1, s, X, &code);
-    return code;
+    ONE_BY_ONE(stewart_7ups_difference(X0 + NQ*j, X1 + NQ*j, step + NV*j));
 }
 
 size_t stewart_7ups_interpolate_batch(size_t n, const real *X0, const real *X1, const real *s,
     real *X, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = stewart_7ups_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(stewart_7ups_interpolate(X0 + NQ*j, X1 + NQ*j, s + j, X + NQ*j));
 }

@@ -184,13 +184,27 @@ INLINE int sum_is_finite(const real *x, size_t n)
     return is_finite(total(sum, LANES));
 }
 
+/* How many of some numbers are not finite. */
+APART real not_finite(size_t n, const real *x)
+{
+    real count = 0;
+    if (!sum_is_finite(x, n)) {
+        for (size_t i = 0; i < n; ++i) {
+            count += UNLESS(is_finite(x[i]));
+        }
+    }
+    return count;
+}
+
 /* Flag the states with entries that are not finite; the states stand side by side. */
 INLINE void check(size_t size, size_t w, const real *x, real *flags)
 {
-    if (!sum_is_finite(x, size*w)) {
-        for (size_t i = 0; i < size*w; ++i) {
-            flags[i%w] += UNLESS(is_finite(x[i]));
-        }
+    if (w == 1) {
+        flags[0] += not_finite(size, x);
+        return;
+    }
+    for (size_t i = 0; i < size*w; ++i) {
+        flags[i%w] += UNLESS(is_finite(x[i]));
     }
 }
 
@@ -245,18 +259,17 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE int judge(const verdict *t, int *code)
+INLINE int judge(const verdict *t)
 {
-    *code = t->invalid[0] > 0 ? INVALID
+    return t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
         : t->unreachable[0] > 0 ? UNREACHABLE
         : t->singular[0] > 0 ? SINGULAR
         : t->overflow[0] > 0 ? INVALID : OK;
-    return *code;
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
-INLINE void suspect(const verdict *t, int *code)
+APART void suspect(const verdict *t, int *code)
 {
     real flags[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -278,7 +291,7 @@ INLINE void blame(int code, verdict *t)
 }
 
 /* Outputs of an impossible state. */
-INLINE void refuse(size_t size, real *out)
+APART void refuse(size_t size, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
@@ -314,6 +327,32 @@ INLINE size_t record(const int *code, size_t w, int *status)
     }
     return failed;
 }
+
+/* Bodies of batches.  lanes: settles the states from number i on, side by side, in codes; one: settles
+   state j, what fails and what is left too. */
+#define SIDE_BY_SIDE(lanes, one) \
+    size_t failed = 0, w; \
+    for (size_t i = 0; i < n; i += w) { \
+        int codes[LANES] = {INVALID}; \
+        w = LANES > 1 && i + LANES <= n ? LANES : 1; \
+        if (w > 1) { \
+            lanes; \
+        } \
+        for (size_t j = i; j < i + w; ++j) { \
+            if (codes[j - i] != OK) { \
+                codes[j - i] = one; \
+            } \
+        } \
+        failed += record(codes, w, status ? status + i : NULL); \
+    } \
+    return failed
+#define ONE_BY_ONE(one) \
+    size_t failed = 0; \
+    for (size_t j = 0; j < n; ++j) { \
+        const int code = one; \
+        failed += record(&code, 1, status ? status + j : NULL); \
+    } \
+    return failed
 
 /* What the reader of specifications allows; floats have less to offer. */
 #define ROUNDED BY_TYPE(1e-5, 1e-06, 1e-06)  /* lengths and products of unit vectors */
@@ -1442,15 +1481,12 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real R_zy = quaternion_wx + quaternion_yz;
     const real R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (h_star) first moment about the platform origin */
-    const real h_star_in_platform_x = m->h_star_in_platform_x;
-    const real h_star_in_platform_y = m->h_star_in_platform_y;
-    const real h_star_in_platform_z = m->h_star_in_platform_z;
-    const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-        R_xz*h_star_in_platform_z;
-    const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-        R_yz*h_star_in_platform_z;
-    const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-        R_zz*h_star_in_platform_z;
+    const real h_star_x = R_xx*m->h_star_in_platform_x + R_xy*m->h_star_in_platform_y +
+        R_xz*m->h_star_in_platform_z;
+    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yy*m->h_star_in_platform_y +
+        R_yz*m->h_star_in_platform_z;
+    const real h_star_z = R_zx*m->h_star_in_platform_x + R_zy*m->h_star_in_platform_y +
+        R_zz*m->h_star_in_platform_z;
     v->quaternion_scale = quaternion_scale;
     v->R_xx = R_xx;
     v->R_xy = R_xy;
@@ -1483,33 +1519,27 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
 INLINE void stage_M_dynamics(const prepared *m, values *v)
 {
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-    const real J_star_t_6 = m->J_star_t_6;
-    const real J_star_t = J_star_in_platform_xy*v->R_xx + J_star_in_platform_yz*v->R_xz -
-        J_star_t_6*v->R_xy;
-    const real J_star_t_2 = J_star_in_platform_xy*v->R_yx + J_star_in_platform_yz*v->R_yz -
-        J_star_t_6*v->R_yy;
-    const real J_star_t_3 = J_star_in_platform_xy*v->R_zx + J_star_in_platform_yz*v->R_zz -
-        J_star_t_6*v->R_zy;
-    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-    const real J_star_t_8 = m->J_star_t_8;
-    const real J_star_t_4 = J_star_t_8*v->R_xz - J_star_in_platform_xz*v->R_xx;
-    const real J_star_t_5 = J_star_t_8*v->R_yz - J_star_in_platform_xz*v->R_yx;
-    const real J_star_t_7 = J_star_t_8*v->R_zz - J_star_in_platform_xz*v->R_zx;
+    const real J_star_t = m->J_star_in_platform_xy*v->R_xx + m->J_star_in_platform_yz*v->R_xz
+        - m->J_star_t_6*v->R_xy;
+    const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
+        m->J_star_in_platform_yz*v->R_yz - m->J_star_t_6*v->R_yy;
+    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx +
+        m->J_star_in_platform_yz*v->R_zz - m->J_star_t_6*v->R_zy;
+    const real J_star_t_4 = m->J_star_t_8*v->R_xz - m->J_star_in_platform_xz*v->R_xx;
+    const real J_star_t_5 = m->J_star_t_8*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
+    const real J_star_t_7 = m->J_star_t_8*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_9 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
-    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-    const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_9;
+    const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_9;
     const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
         J_star_t_5*v->R_xz;
     const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_7*v->R_xz;
     const real J_star_t_10 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
-    const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_10;
+    const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_10;
     const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
         J_star_t_7*v->R_yz;
     const real J_star_t_11 = J_star_t_3*v->R_zy - J_star_t_7*v->R_zz;
-    const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_11;
+    const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_11;
     v->J_star_xx = J_star_xx;
     v->J_star_xy = J_star_xy;
     v->J_star_xz = J_star_xz;
@@ -1527,46 +1557,34 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real omega_x = V[3*w + k];
     const real Z_p_t_5 = v->h_star_x*omega_z - v->h_star_z*omega_x;
     const real Z_p_t_6 = v->h_star_y*omega_x - v->h_star_x*omega_y;
-    const real Z_p_t = m->Z_p_t;
-    const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-    const real Z_p_t_2 = m->Z_p_t_2;
-    const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-    const real Z_p_t_3 = m->Z_p_t_3;
-    const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
+    const real Z_p_x = Z_p_t_6*omega_y - m->Z_p_t - Z_p_t_5*omega_z;
+    const real Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
+    const real Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real gravity_x = m->gravity_x;
-    const real gravity_y = m->gravity_y;
-    const real gravity_z = m->gravity_z;
-    const real g_in_platform_x = v->R_xx*gravity_x + v->R_yx*gravity_y + v->R_zx*gravity_z;
-    const real g_in_platform_y = v->R_xy*gravity_x + v->R_yy*gravity_y + v->R_zy*gravity_z;
-    const real g_in_platform_z = v->R_xz*gravity_x + v->R_yz*gravity_y + v->R_zz*gravity_z;
-    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-    const real Z_q_t = J_star_in_platform_xx*v->omega_in_platform_x +
-        J_star_in_platform_xy*v->omega_in_platform_y +
-        J_star_in_platform_xz*v->omega_in_platform_z;
-    const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-    const real Z_q_t_2 = J_star_in_platform_xy*v->omega_in_platform_x +
-        J_star_in_platform_yy*v->omega_in_platform_y +
-        J_star_in_platform_yz*v->omega_in_platform_z;
-    const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-    const real Z_q_t_3 = J_star_in_platform_xz*v->omega_in_platform_x +
-        J_star_in_platform_yz*v->omega_in_platform_y +
-        J_star_in_platform_zz*v->omega_in_platform_z;
-    const real h_star_in_platform_y = m->h_star_in_platform_y;
-    const real h_star_in_platform_z = m->h_star_in_platform_z;
+    const real g_in_platform_x = v->R_xx*m->gravity_x + v->R_yx*m->gravity_y +
+        v->R_zx*m->gravity_z;
+    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_yy*m->gravity_y +
+        v->R_zy*m->gravity_z;
+    const real g_in_platform_z = v->R_xz*m->gravity_x + v->R_yz*m->gravity_y +
+        v->R_zz*m->gravity_z;
+    const real Z_q_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
+        m->J_star_in_platform_xy*v->omega_in_platform_y +
+        m->J_star_in_platform_xz*v->omega_in_platform_z;
+    const real Z_q_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
+        m->J_star_in_platform_yy*v->omega_in_platform_y +
+        m->J_star_in_platform_yz*v->omega_in_platform_z;
+    const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
+        m->J_star_in_platform_yz*v->omega_in_platform_y +
+        m->J_star_in_platform_zz*v->omega_in_platform_z;
     const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
-        g_in_platform_y*h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
-        g_in_platform_z*h_star_in_platform_y;
-    const real h_star_in_platform_x = m->h_star_in_platform_x;
+        g_in_platform_y*m->h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
+        g_in_platform_z*m->h_star_in_platform_y;
     const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
-        g_in_platform_z*h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
-        g_in_platform_x*h_star_in_platform_z;
+        g_in_platform_z*m->h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
+        g_in_platform_x*m->h_star_in_platform_z;
     const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
-        g_in_platform_x*h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
-        g_in_platform_y*h_star_in_platform_x;
+        g_in_platform_x*m->h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
+        g_in_platform_y*m->h_star_in_platform_x;
     const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
         v->R_xz*Z_q_in_platform_z;
     const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
@@ -1602,77 +1620,69 @@ INLINE void stage_prs_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real prs_platform_point_x = m->prs_platform_point_x[i];
-    const real prs_platform_point_y = m->prs_platform_point_y[i];
-    const real prs_platform_point_z = m->prs_platform_point_z[i];
-    const real prs_q_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
-        R_xz*prs_platform_point_z;
+    const real prs_q_x = R_xx*m->prs_platform_point_x[i] + R_xy*m->prs_platform_point_y[i] +
+        R_xz*m->prs_platform_point_z[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real prs_q_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
-        R_yz*prs_platform_point_z;
+    const real prs_q_y = R_yx*m->prs_platform_point_x[i] + R_yy*m->prs_platform_point_y[i] +
+        R_yz*m->prs_platform_point_z[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
-    const real prs_q_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
-        R_zz*prs_platform_point_z;
-    const real prs_base_point_x = m->prs_base_point_x[i];
+    const real prs_q_z = R_zx*m->prs_platform_point_x[i] + R_zy*m->prs_platform_point_y[i] +
+        R_zz*m->prs_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real prs_S_x = prs_q_x + t_x - prs_base_point_x;
-    const real prs_base_point_y = m->prs_base_point_y[i];
+    const real prs_S_x = prs_q_x + t_x - m->prs_base_point_x[i];
     const real t_y = X[1*w + j];
-    const real prs_S_y = prs_q_y + t_y - prs_base_point_y;
-    const real prs_base_point_z = m->prs_base_point_z[i];
+    const real prs_S_y = prs_q_y + t_y - m->prs_base_point_y[i];
     const real t_z = X[2*w + j];
-    const real prs_S_z = prs_q_z + t_z - prs_base_point_z;
-    const real prs_base_frame_xx = m->prs_base_frame_xx[i];
-    const real prs_base_frame_yx = m->prs_base_frame_yx[i];
-    const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-    const real prs_S_in_axes0_x = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
-        prs_S_z*prs_base_frame_zx;
-    const real prs_base_frame_xy = m->prs_base_frame_xy[i];
-    const real prs_base_frame_yy = m->prs_base_frame_yy[i];
-    const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-    const real prs_S_in_axes0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
-        prs_S_z*prs_base_frame_zy;
-    const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-    const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-    const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-    const real prs_S_in_axes0_z = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
-        prs_S_z*prs_base_frame_zz;
+    const real prs_S_z = prs_q_z + t_z - m->prs_base_point_z[i];
+    const real prs_S_in_axes0_x = prs_S_x*m->prs_base_frame_xx[i] +
+        prs_S_y*m->prs_base_frame_yx[i] + prs_S_z*m->prs_base_frame_zx[i];
+    const real prs_S_in_axes0_y = prs_S_x*m->prs_base_frame_xy[i] +
+        prs_S_y*m->prs_base_frame_yy[i] + prs_S_z*m->prs_base_frame_zy[i];
+    const real prs_S_in_axes0_z = prs_S_x*m->prs_base_frame_xz[i] +
+        prs_S_y*m->prs_base_frame_yz[i] + prs_S_z*m->prs_base_frame_zz[i];
     /* (prs-disc_1) discriminant of the distance equation */
     const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
-    const real prs_size_t = m->prs_size_t[i];
     const real prs_disc_1 = prs_S_in_axes0_x*prs_S_in_axes0_x +
-        prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t - prs_disc_1_t;
+        prs_S_in_axes0_z*prs_S_in_axes0_z + m->prs_size_t[i] - prs_disc_1_t;
     /* (prs-rho2_2) squared amplitude */
-    const real prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1);
+    const real prs_rho2_2 = m->prs_size_t[i]*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1);
     /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
     const real prs_c_2_t = 1/(root(prs_rho2_2));
-    const real prs_branch_1 = m->prs_branch_1[i];
-    const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
-    const real prs_c_2 = -prs_branch_1*prs_c_2_t*root(prs_disc_1)*prs_platform_joint_offset_x;
+    const real prs_c_2 =
+        -m->prs_branch_1[i]*prs_c_2_t*root(prs_disc_1)*m->prs_platform_joint_offset_x[i];
     /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
-    const real prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x;
+    const real prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*m->prs_platform_joint_offset_x[i];
     /* (prs-v_2) velocity of the connection point per rate of joint 2 */
-    const real prs_v_2_in_axes0_x = -prs_platform_joint_offset_x*prs_s_2;
-    const real prs_v_2_in_axes0_y = prs_c_2*prs_platform_joint_offset_x;
+    const real prs_v_2_in_axes0_x = -m->prs_platform_joint_offset_x[i]*prs_s_2;
+    const real prs_v_2_in_axes0_y = prs_c_2*m->prs_platform_joint_offset_x[i];
     /* (prs-w_1) reciprocal vector 1 */
-    const real axis_y_prs_axes2_x = prs_base_frame_xy*prs_c_2 - prs_base_frame_xx*prs_s_2;
-    const real axis_y_prs_axes2_y = prs_base_frame_yy*prs_c_2 - prs_base_frame_yx*prs_s_2;
-    const real axis_y_prs_axes2_z = prs_base_frame_zy*prs_c_2 - prs_base_frame_zx*prs_s_2;
-    const real axis_x_prs_axes2_x = prs_base_frame_xx*prs_c_2 + prs_base_frame_xy*prs_s_2;
-    const real axis_x_prs_axes2_y = prs_base_frame_yx*prs_c_2 + prs_base_frame_yy*prs_s_2;
-    const real axis_x_prs_axes2_z = prs_base_frame_zx*prs_c_2 + prs_base_frame_zy*prs_s_2;
+    const real axis_y_prs_axes2_x = m->prs_base_frame_xy[i]*prs_c_2 -
+        m->prs_base_frame_xx[i]*prs_s_2;
+    const real axis_y_prs_axes2_y = m->prs_base_frame_yy[i]*prs_c_2 -
+        m->prs_base_frame_yx[i]*prs_s_2;
+    const real axis_y_prs_axes2_z = m->prs_base_frame_zy[i]*prs_c_2 -
+        m->prs_base_frame_zx[i]*prs_s_2;
+    const real axis_x_prs_axes2_x = m->prs_base_frame_xx[i]*prs_c_2 +
+        m->prs_base_frame_xy[i]*prs_s_2;
+    const real axis_x_prs_axes2_y = m->prs_base_frame_yx[i]*prs_c_2 +
+        m->prs_base_frame_yy[i]*prs_s_2;
+    const real axis_x_prs_axes2_z = m->prs_base_frame_zx[i]*prs_c_2 +
+        m->prs_base_frame_zy[i]*prs_s_2;
     const real prs_w_1_t = -1/prs_v_2_in_axes0_y;
     const real prs_w_1_t_2 = prs_v_2_in_axes0_x*prs_w_1_t;
     const real prs_w_1_in_axes2_x = prs_c_2 + prs_s_2*prs_w_1_t_2;
     const real prs_w_1_in_axes2_y = prs_c_2*prs_w_1_t_2 - prs_s_2;
     /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
-    const real prs_Hk_a_1_x = prs_base_frame_zz*prs_q_y - prs_base_frame_yz*prs_q_z;
-    const real prs_Hk_a_1_y = prs_base_frame_xz*prs_q_z - prs_base_frame_zz*prs_q_x;
-    const real prs_Hk_a_1_z = prs_base_frame_yz*prs_q_x - prs_base_frame_xz*prs_q_y;
+    const real prs_Hk_a_1_x = m->prs_base_frame_zz[i]*prs_q_y -
+        m->prs_base_frame_yz[i]*prs_q_z;
+    const real prs_Hk_a_1_y = m->prs_base_frame_xz[i]*prs_q_z -
+        m->prs_base_frame_zz[i]*prs_q_x;
+    const real prs_Hk_a_1_z = m->prs_base_frame_yz[i]*prs_q_x -
+        m->prs_base_frame_xz[i]*prs_q_y;
     v->prs_q_x = prs_q_x;
     v->prs_q_y = prs_q_y;
     v->prs_q_z = prs_q_z;
@@ -1731,11 +1741,8 @@ INLINE void stage_prs_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real t_dot_z = V[2*w + j];
     const real prs_S_dot_z = prs_S_dot_t_3 + t_dot_z;
     /* (prs-qd_2) rate of joint 2 */
-    const real prs_base_frame_xy = m->prs_base_frame_xy[i];
-    const real prs_base_frame_yy = m->prs_base_frame_yy[i];
-    const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-    const real prs_qd_2_t = v->prs_w_1_t*(prs_S_dot_x*prs_base_frame_xy +
-        prs_S_dot_y*prs_base_frame_yy + prs_S_dot_z*prs_base_frame_zy);
+    const real prs_qd_2_t = v->prs_w_1_t*(prs_S_dot_x*m->prs_base_frame_xy[i] +
+        prs_S_dot_y*m->prs_base_frame_yy[i] + prs_S_dot_z*m->prs_base_frame_zy[i]);
     /* (prs-W_2) centripetal tensor of link 2 */
     const real prs_W_2_t = prs_qd_2_t*prs_qd_2_t;
     v->prs_S_dot_t = prs_S_dot_t;
@@ -1761,16 +1768,10 @@ INLINE void stage_prs_A_V_X(const prepared *m, size_t w, size_t i, size_t j, con
         omega_x*v->prs_S_dot_t_3;
     const real prs_S_ddot_z = v->prs_a_p_z + omega_x*v->prs_S_dot_t_2 -
         omega_y*v->prs_S_dot_t;
-    const real prs_base_frame_xx = m->prs_base_frame_xx[i];
-    const real prs_base_frame_yx = m->prs_base_frame_yx[i];
-    const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-    const real prs_S_ddot_t = prs_S_ddot_x*prs_base_frame_xx + prs_S_ddot_y*prs_base_frame_yx
-        + prs_S_ddot_z*prs_base_frame_zx;
-    const real prs_base_frame_xy = m->prs_base_frame_xy[i];
-    const real prs_base_frame_yy = m->prs_base_frame_yy[i];
-    const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-    const real prs_S_ddot_t_2 = prs_S_ddot_x*prs_base_frame_xy +
-        prs_S_ddot_y*prs_base_frame_yy + prs_S_ddot_z*prs_base_frame_zy;
+    const real prs_S_ddot_t = prs_S_ddot_x*m->prs_base_frame_xx[i] +
+        prs_S_ddot_y*m->prs_base_frame_yx[i] + prs_S_ddot_z*m->prs_base_frame_zx[i];
+    const real prs_S_ddot_t_2 = prs_S_ddot_x*m->prs_base_frame_xy[i] +
+        prs_S_ddot_y*m->prs_base_frame_yy[i] + prs_S_ddot_z*m->prs_base_frame_zy[i];
     const real prs_S_ddot_in_axes2_y = prs_S_ddot_t_2*v->prs_c_2 - prs_S_ddot_t*v->prs_s_2;
     v->prs_S_ddot_t = prs_S_ddot_t;
     v->prs_S_ddot_t_2 = prs_S_ddot_t_2;
@@ -1780,25 +1781,21 @@ INLINE void stage_prs_A_V_X(const prepared *m, size_t w, size_t i, size_t j, con
 INLINE void stage_prs_H_condition(const prepared *m, size_t i, values_prs *v)
 {
     /* (prs-w_1) reciprocal vector 1 */
-    const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
-    const real prs_w_1_t = prs_platform_joint_offset_x*v->prs_s_2/v->prs_v_2_in_axes0_y;
+    const real prs_w_1_t = m->prs_platform_joint_offset_x[i]*v->prs_s_2/v->prs_v_2_in_axes0_y;
     const real prs_w_1_in_axes2_x = v->prs_c_2 + v->prs_s_2*prs_w_1_t;
     const real prs_w_1_in_axes2_y = v->prs_c_2*prs_w_1_t - v->prs_s_2;
-    const real prs_base_frame_xx = m->prs_base_frame_xx[i];
-    const real prs_base_frame_xy = m->prs_base_frame_xy[i];
-    const real prs_w_1_x = prs_w_1_in_axes2_x*(prs_base_frame_xx*v->prs_c_2 +
-        prs_base_frame_xy*v->prs_s_2) + prs_w_1_in_axes2_y*(prs_base_frame_xy*v->prs_c_2 -
-        prs_base_frame_xx*v->prs_s_2);
-    const real prs_base_frame_yx = m->prs_base_frame_yx[i];
-    const real prs_base_frame_yy = m->prs_base_frame_yy[i];
-    const real prs_w_1_y = prs_w_1_in_axes2_x*(prs_base_frame_yx*v->prs_c_2 +
-        prs_base_frame_yy*v->prs_s_2) + prs_w_1_in_axes2_y*(prs_base_frame_yy*v->prs_c_2 -
-        prs_base_frame_yx*v->prs_s_2);
-    const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-    const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-    const real prs_w_1_z = prs_w_1_in_axes2_x*(prs_base_frame_zx*v->prs_c_2 +
-        prs_base_frame_zy*v->prs_s_2) + prs_w_1_in_axes2_y*(prs_base_frame_zy*v->prs_c_2 -
-        prs_base_frame_zx*v->prs_s_2);
+    const real prs_w_1_x = prs_w_1_in_axes2_x*(m->prs_base_frame_xx[i]*v->prs_c_2 +
+        m->prs_base_frame_xy[i]*v->prs_s_2) +
+        prs_w_1_in_axes2_y*(m->prs_base_frame_xy[i]*v->prs_c_2 -
+        m->prs_base_frame_xx[i]*v->prs_s_2);
+    const real prs_w_1_y = prs_w_1_in_axes2_x*(m->prs_base_frame_yx[i]*v->prs_c_2 +
+        m->prs_base_frame_yy[i]*v->prs_s_2) +
+        prs_w_1_in_axes2_y*(m->prs_base_frame_yy[i]*v->prs_c_2 -
+        m->prs_base_frame_yx[i]*v->prs_s_2);
+    const real prs_w_1_z = prs_w_1_in_axes2_x*(m->prs_base_frame_zx[i]*v->prs_c_2 +
+        m->prs_base_frame_zy[i]*v->prs_s_2) +
+        prs_w_1_in_axes2_y*(m->prs_base_frame_zy[i]*v->prs_c_2 -
+        m->prs_base_frame_zx[i]*v->prs_s_2);
     /* (prs-H_a_1) moment of the column's unit force about the platform origin */
     const real prs_H_a_1_x = v->prs_q_y*prs_w_1_z - v->prs_q_z*prs_w_1_y;
     const real prs_H_a_1_y = v->prs_q_z*prs_w_1_x - v->prs_q_x*prs_w_1_z;
@@ -1817,14 +1814,11 @@ INLINE void stage_prs_M_dynamics(const prepared *m, size_t i, values_prs *v)
     const real prs_w_2_t = v->prs_s_2*v->prs_w_1_t;
     const real prs_w_2_in_axes2_y = -v->prs_c_2*v->prs_w_1_t;
     /* (prs-P_c_2) force that accelerates joint 2, per unit */
-    const real prs_h_2_in_spec2_x = m->prs_h_2_in_spec2_x[i];
-    const real prs_h_2_in_spec2_y = m->prs_h_2_in_spec2_y[i];
-    const real prs_P_c_2_in_axes0_x = -v->prs_c_2*prs_h_2_in_spec2_y -
-        prs_h_2_in_spec2_x*v->prs_s_2;
+    const real prs_P_c_2_in_axes0_x = -v->prs_c_2*m->prs_h_2_in_spec2_y[i] -
+        m->prs_h_2_in_spec2_x[i]*v->prs_s_2;
     /* (prs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
        inertia and weight */
-    const real prs_J_2_in_spec2_zz = m->prs_J_2_in_spec2_zz[i];
-    const real prs_d_Gamma_2_t = v->prs_w_1_t*(prs_J_2_in_spec2_zz -
+    const real prs_d_Gamma_2_t = v->prs_w_1_t*(m->prs_J_2_in_spec2_zz[i] -
         prs_P_c_2_in_axes0_x*v->prs_v_2_in_axes0_x);
     const real prs_d_Gamma_2_in_axes2_x = prs_P_c_2_in_axes0_x*v->prs_c_2 -
         prs_d_Gamma_2_t*v->prs_s_2;
@@ -1832,12 +1826,11 @@ INLINE void stage_prs_M_dynamics(const prepared *m, size_t i, values_prs *v)
         v->prs_c_2*prs_d_Gamma_2_t;
     /* (prs-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
        inertia and weight */
-    const real prs_P_c_1_in_axes0_x = m->prs_P_c_1_in_axes0_x[i];
     const real prs_d_Gamma_1_t = v->prs_w_1_t*(prs_P_c_2_in_axes0_x -
-        prs_P_c_1_in_axes0_x*v->prs_v_2_in_axes0_x);
-    const real prs_d_Gamma_1_in_axes2_x = prs_P_c_1_in_axes0_x*v->prs_c_2 -
+        m->prs_P_c_1_in_axes0_x[i]*v->prs_v_2_in_axes0_x);
+    const real prs_d_Gamma_1_in_axes2_x = m->prs_P_c_1_in_axes0_x[i]*v->prs_c_2 -
         prs_d_Gamma_1_t*v->prs_s_2;
-    const real prs_d_Gamma_1_in_axes2_y = -prs_P_c_1_in_axes0_x*v->prs_s_2 -
+    const real prs_d_Gamma_1_in_axes2_y = -m->prs_P_c_1_in_axes0_x[i]*v->prs_s_2 -
         v->prs_c_2*prs_d_Gamma_1_t;
     /* (prs-d_G) coefficient of the acceleration in: force at the connection point that balances the
        leg's inertia and weight along all degrees of freedom */
@@ -1940,48 +1933,37 @@ INLINE void stage_prs_legs_required(const prepared *m, size_t i, values_prs *v)
         v->prs_s_2*v->prs_w_1_in_axes2_y;
     const real prs_w_1_t_4 = v->prs_c_2*v->prs_w_1_in_axes2_y +
         v->prs_s_2*v->prs_w_1_in_axes2_x;
-    const real prs_base_frame_xx = m->prs_base_frame_xx[i];
-    const real prs_base_frame_xy = m->prs_base_frame_xy[i];
-    const real prs_w_1_x = prs_base_frame_xx*prs_w_1_t_3 + prs_base_frame_xy*prs_w_1_t_4;
-    const real prs_base_frame_yx = m->prs_base_frame_yx[i];
-    const real prs_base_frame_yy = m->prs_base_frame_yy[i];
-    const real prs_w_1_y = prs_base_frame_yx*prs_w_1_t_3 + prs_base_frame_yy*prs_w_1_t_4;
-    const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-    const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-    const real prs_w_1_z = prs_base_frame_zx*prs_w_1_t_3 + prs_base_frame_zy*prs_w_1_t_4;
+    const real prs_w_1_x = m->prs_base_frame_xx[i]*prs_w_1_t_3 +
+        m->prs_base_frame_xy[i]*prs_w_1_t_4;
+    const real prs_w_1_y = m->prs_base_frame_yx[i]*prs_w_1_t_3 +
+        m->prs_base_frame_yy[i]*prs_w_1_t_4;
+    const real prs_w_1_z = m->prs_base_frame_zx[i]*prs_w_1_t_3 +
+        m->prs_base_frame_zy[i]*prs_w_1_t_4;
     /* (prs-rel) acceleration of the connection point left to the joint accelerations */
-    const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
     const real prs_rel_in_axes2_x = v->prs_S_ddot_t*v->prs_c_2 + v->prs_S_ddot_t_2*v->prs_s_2
-        + prs_platform_joint_offset_x*v->prs_qd_2_t*v->prs_qd_2_t;
+        + m->prs_platform_joint_offset_x[i]*v->prs_qd_2_t*v->prs_qd_2_t;
     /* (prs-qdd_1) acceleration of joint 1 */
     const real prs_qdd_1_t = v->prs_w_1_t*(v->prs_S_ddot_in_axes2_y*v->prs_c_2 +
         prs_rel_in_axes2_x*v->prs_s_2);
     const real prs_qdd_1 = v->prs_c_2*prs_rel_in_axes2_x + prs_qdd_1_t*v->prs_v_2_in_axes0_x -
         v->prs_S_ddot_in_axes2_y*v->prs_s_2;
     /* (prs-acc_1) acceleration of the reference point of link 1, less gravity */
-    const real prs_g_in_axes0_x = m->prs_g_in_axes0_x[i];
-    const real prs_acc_1_in_axes0_x = prs_qdd_1 - prs_g_in_axes0_x;
+    const real prs_acc_1_in_axes0_x = prs_qdd_1 - m->prs_g_in_axes0_x[i];
     /* (prs-acc_2) acceleration of the reference point of link 2, less gravity */
-    const real prs_g_in_axes0_y = m->prs_g_in_axes0_y[i];
-    const real prs_acc_2_in_axes2_x = v->prs_c_2*prs_qdd_1 - v->prs_c_2*prs_g_in_axes0_x -
-        prs_g_in_axes0_y*v->prs_s_2;
-    const real prs_acc_2_in_axes2_y = prs_g_in_axes0_x*v->prs_s_2 -
-        v->prs_c_2*prs_g_in_axes0_y - prs_qdd_1*v->prs_s_2;
+    const real prs_acc_2_in_axes2_x = v->prs_c_2*prs_qdd_1 - v->prs_c_2*m->prs_g_in_axes0_x[i]
+        - m->prs_g_in_axes0_y[i]*v->prs_s_2;
+    const real prs_acc_2_in_axes2_y = m->prs_g_in_axes0_x[i]*v->prs_s_2 -
+        v->prs_c_2*m->prs_g_in_axes0_y[i] - prs_qdd_1*v->prs_s_2;
     /* (prs-f_2) inertia force of link 2 less its weight */
-    const real prs_h_2_in_spec2_x = m->prs_h_2_in_spec2_x[i];
-    const real prs_h_2_in_spec2_y = m->prs_h_2_in_spec2_y[i];
-    const real prs_link2_mass = m->prs_link2_mass[i];
-    const real prs_f_2_in_axes2_x = prs_acc_2_in_axes2_x*prs_link2_mass +
-        prs_h_2_in_spec2_y*prs_qdd_1_t - v->prs_W_2_t*prs_h_2_in_spec2_x;
-    const real prs_f_2_in_axes2_y = prs_acc_2_in_axes2_y*prs_link2_mass -
-        v->prs_W_2_t*prs_h_2_in_spec2_y - prs_h_2_in_spec2_x*prs_qdd_1_t;
+    const real prs_f_2_in_axes2_x = prs_acc_2_in_axes2_x*m->prs_link2_mass[i] +
+        m->prs_h_2_in_spec2_y[i]*prs_qdd_1_t - v->prs_W_2_t*m->prs_h_2_in_spec2_x[i];
+    const real prs_f_2_in_axes2_y = prs_acc_2_in_axes2_y*m->prs_link2_mass[i] -
+        v->prs_W_2_t*m->prs_h_2_in_spec2_y[i] - m->prs_h_2_in_spec2_x[i]*prs_qdd_1_t;
     /* (prs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real prs_J_2_in_spec2_zz = m->prs_J_2_in_spec2_zz[i];
-    const real prs_mu_2_in_axes2_z = prs_acc_2_in_axes2_y*prs_h_2_in_spec2_x -
-        prs_J_2_in_spec2_zz*prs_qdd_1_t - prs_acc_2_in_axes2_x*prs_h_2_in_spec2_y;
+    const real prs_mu_2_in_axes2_z = prs_acc_2_in_axes2_y*m->prs_h_2_in_spec2_x[i] -
+        m->prs_J_2_in_spec2_zz[i]*prs_qdd_1_t - prs_acc_2_in_axes2_x*m->prs_h_2_in_spec2_y[i];
     /* (prs-T_1) inertia force of the links from 1 outwards, the last link left out */
-    const real prs_link1_mass = m->prs_link1_mass[i];
-    const real prs_T_1_in_axes0_x = prs_acc_1_in_axes0_x*prs_link1_mass +
+    const real prs_T_1_in_axes0_x = prs_acc_1_in_axes0_x*m->prs_link1_mass[i] +
         v->prs_c_2*prs_f_2_in_axes2_x - prs_f_2_in_axes2_y*v->prs_s_2;
     /* (prs-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
@@ -1993,9 +1975,9 @@ INLINE void stage_prs_legs_required(const prepared *m, size_t i, values_prs *v)
        point */
     const real prs_c_t = prs_G_in_axes2_y*v->prs_s_2 - prs_G_in_axes2_x*v->prs_c_2;
     const real prs_c_t_2 = -prs_G_in_axes2_x*v->prs_s_2 - prs_G_in_axes2_y*v->prs_c_2;
-    const real prs_c_x = prs_base_frame_xx*prs_c_t + prs_base_frame_xy*prs_c_t_2;
-    const real prs_c_y = prs_base_frame_yx*prs_c_t + prs_base_frame_yy*prs_c_t_2;
-    const real prs_c_z = prs_base_frame_zx*prs_c_t + prs_base_frame_zy*prs_c_t_2;
+    const real prs_c_x = m->prs_base_frame_xx[i]*prs_c_t + m->prs_base_frame_xy[i]*prs_c_t_2;
+    const real prs_c_y = m->prs_base_frame_yx[i]*prs_c_t + m->prs_base_frame_yy[i]*prs_c_t_2;
+    const real prs_c_z = m->prs_base_frame_zx[i]*prs_c_t + m->prs_base_frame_zy[i]*prs_c_t_2;
     v->prs_w_1_x = prs_w_1_x;
     v->prs_w_1_y = prs_w_1_y;
     v->prs_w_1_z = prs_w_1_z;
@@ -2007,978 +1989,938 @@ INLINE void stage_prs_legs_required(const prepared *m, size_t i, values_prs *v)
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s,
-    verdict *t)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        stage_V_X(w, k, V, &v);
-        stage_M_dynamics(m, &v);
-        stage_Z_dynamics(m, w, k, V, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = v.h_star_x;
-        s[10*w + k] = v.h_star_y;
-        s[11*w + k] = v.h_star_z;
-        s[12*w + k] = v.J_star_xx;
-        s[13*w + k] = v.J_star_xy;
-        s[14*w + k] = v.J_star_xz;
-        s[15*w + k] = v.J_star_yy;
-        s[16*w + k] = v.J_star_yz;
-        s[17*w + k] = v.J_star_zz;
-        s[18*w + k] = v.Z_p_x;
-        s[19*w + k] = v.Z_p_y;
-        s[20*w + k] = v.Z_p_z;
-        s[21*w + k] = v.Z_q_x;
-        s[22*w + k] = v.Z_q_y;
-        s[23*w + k] = v.Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    stage_V_X(w, k, V, &v);
+    stage_M_dynamics(m, &v);
+    stage_Z_dynamics(m, w, k, V, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = v.h_star_x;
+    s[10*w + k] = v.h_star_y;
+    s[11*w + k] = v.h_star_z;
+    s[12*w + k] = v.J_star_xx;
+    s[13*w + k] = v.J_star_xy;
+    s[14*w + k] = v.J_star_xz;
+    s[15*w + k] = v.J_star_yy;
+    s[16*w + k] = v.J_star_yz;
+    s[17*w + k] = v.J_star_zz;
+    s[18*w + k] = v.Z_p_x;
+    s[19*w + k] = v.Z_p_y;
+    s[20*w + k] = v.Z_p_z;
+    s[21*w + k] = v.Z_q_x;
+    s[22*w + k] = v.Z_q_y;
+    s[23*w + k] = v.Z_q_z;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void dynamics_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
+INLINE void dynamics_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_prs v;
-        stage_prs_X(m, w, i, j, s, X, &v);
-        stage_prs_V_X(m, w, i, j, V, &v);
-        stage_prs_M_dynamics(m, i, &v);
-        stage_prs_Z_dynamics(w, j, V, &v);
-        /* (prs-w_1) reciprocal vector 1 */
-        const real prs_w_1_x = v.axis_x_prs_axes2_x*v.prs_w_1_in_axes2_x +
-            v.axis_y_prs_axes2_x*v.prs_w_1_in_axes2_y;
-        const real prs_w_1_y = v.axis_x_prs_axes2_y*v.prs_w_1_in_axes2_x +
-            v.axis_y_prs_axes2_y*v.prs_w_1_in_axes2_y;
-        const real prs_w_1_z = v.axis_x_prs_axes2_z*v.prs_w_1_in_axes2_x +
-            v.axis_y_prs_axes2_z*v.prs_w_1_in_axes2_y;
-        /* (prs-u_1) centripetal acceleration of the connection point */
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_u_1_in_axes2_z = prs_base_frame_xz*v.prs_u_1_x +
-            prs_base_frame_yz*v.prs_u_1_y + prs_base_frame_zz*v.prs_u_1_z;
-        /* (prs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-           */
-        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
-        const real prs_rel_o_in_axes2_x = v.axis_x_prs_axes2_x*v.prs_u_1_x +
-            v.axis_x_prs_axes2_y*v.prs_u_1_y + v.axis_x_prs_axes2_z*v.prs_u_1_z +
-            prs_platform_joint_offset_x*v.prs_qd_2_t*v.prs_qd_2_t;
-        /* (prs-qdd_1_o) remainder of: acceleration of joint 1 */
-        const real prs_qdd_1_o_t = v.prs_w_1_t*(v.prs_c_2*v.prs_u_1_in_axes2_y +
-            prs_rel_o_in_axes2_x*v.prs_s_2);
-        const real prs_qdd_1_o = v.prs_c_2*prs_rel_o_in_axes2_x +
-            prs_qdd_1_o_t*v.prs_v_2_in_axes0_x - v.prs_s_2*v.prs_u_1_in_axes2_y;
-        /* (prs-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
-        const real prs_g_in_axes0_x = m->prs_g_in_axes0_x[i];
-        const real prs_acc_1_o_in_axes0_x = prs_qdd_1_o - prs_g_in_axes0_x;
-        /* (prs-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-        const real prs_g_in_axes0_y = m->prs_g_in_axes0_y[i];
-        const real prs_acc_2_o_in_axes2_x = v.prs_c_2*prs_qdd_1_o - v.prs_c_2*prs_g_in_axes0_x -
-            prs_g_in_axes0_y*v.prs_s_2;
-        const real prs_acc_2_o_in_axes2_y = prs_g_in_axes0_x*v.prs_s_2 -
-            v.prs_c_2*prs_g_in_axes0_y - prs_qdd_1_o*v.prs_s_2;
-        /* (prs-f_2_o) remainder of: inertia force of link 2 less its weight */
-        const real prs_h_2_in_spec2_x = m->prs_h_2_in_spec2_x[i];
-        const real prs_h_2_in_spec2_y = m->prs_h_2_in_spec2_y[i];
-        const real prs_link2_mass = m->prs_link2_mass[i];
-        const real prs_f_2_o_in_axes2_x = prs_acc_2_o_in_axes2_x*prs_link2_mass +
-            prs_h_2_in_spec2_y*prs_qdd_1_o_t - v.prs_W_2_t*prs_h_2_in_spec2_x;
-        const real prs_f_2_o_in_axes2_y = prs_acc_2_o_in_axes2_y*prs_link2_mass -
-            v.prs_W_2_t*prs_h_2_in_spec2_y - prs_h_2_in_spec2_x*prs_qdd_1_o_t;
-        /* (prs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-           reference points */
-        const real prs_J_2_in_spec2_zz = m->prs_J_2_in_spec2_zz[i];
-        const real prs_mu_2_o_in_axes2_z = prs_acc_2_o_in_axes2_y*prs_h_2_in_spec2_x -
-            prs_J_2_in_spec2_zz*prs_qdd_1_o_t - prs_acc_2_o_in_axes2_x*prs_h_2_in_spec2_y;
-        /* (prs-T_1_o) remainder of: inertia force of the links from 1 outwards, the last link left out */
-        const real prs_link1_mass = m->prs_link1_mass[i];
-        const real prs_T_1_o_in_axes0_x = prs_acc_1_o_in_axes0_x*prs_link1_mass +
-            v.prs_c_2*prs_f_2_o_in_axes2_x - prs_f_2_o_in_axes2_y*v.prs_s_2;
-        /* (prs-G_o) remainder of: force at the connection point that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real prs_G_o_t = v.prs_w_1_t*(prs_mu_2_o_in_axes2_z -
-            prs_T_1_o_in_axes0_x*v.prs_v_2_in_axes0_x);
-        const real prs_G_o_in_axes2_x = prs_T_1_o_in_axes0_x*v.prs_c_2 - prs_G_o_t*v.prs_s_2;
-        const real prs_G_o_in_axes2_y = -prs_G_o_t*v.prs_c_2 - prs_T_1_o_in_axes0_x*v.prs_s_2;
-        /* (prs-U) velocity and gravity terms of the leg force */
-        const real prs_U_x = v.axis_x_prs_axes2_x*prs_G_o_in_axes2_x +
-            v.axis_y_prs_axes2_x*prs_G_o_in_axes2_y;
-        const real prs_U_y = v.axis_x_prs_axes2_y*prs_G_o_in_axes2_x +
-            v.axis_y_prs_axes2_y*prs_G_o_in_axes2_y;
-        const real prs_U_z = v.axis_x_prs_axes2_z*prs_G_o_in_axes2_x +
-            v.axis_y_prs_axes2_z*prs_G_o_in_axes2_y;
-        /* (Z_a) rotational part of Z */
-        const real prs_Z_a_t = prs_U_z*v.prs_q_y - prs_U_y*v.prs_q_z;
-        const real prs_Z_a_t_2 = prs_U_x*v.prs_q_z - prs_U_z*v.prs_q_x;
-        const real prs_Z_a_t_3 = prs_U_y*v.prs_q_x - prs_U_x*v.prs_q_y;
-        /* (prs-H_a_1) moment of the column's unit force about the platform origin */
-        const real prs_H_a_1_x = v.prs_q_y*prs_w_1_z - v.prs_q_z*prs_w_1_y;
-        const real prs_H_a_1_y = v.prs_q_z*prs_w_1_x - v.prs_q_x*prs_w_1_z;
-        const real prs_H_a_1_z = v.prs_q_x*prs_w_1_y - v.prs_q_y*prs_w_1_x;
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, v.prs_d_c_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, v.prs_d_c_xy);  /* M_tt_t_2 */
-        gather(&terms[2*count + k], add, v.prs_d_c_xz);  /* M_tt_t_3 */
-        gather(&terms[3*count + k], add, v.prs_d_c_yy);  /* M_tt_yy_of_legs */
-        gather(&terms[4*count + k], add, v.prs_d_c_yz);  /* M_tt_t_5 */
-        gather(&terms[5*count + k], add, v.prs_d_c_zz);  /* M_tt_zz_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[6*count + k], add, v.prs_M_ta_t_3);  /* M_ta_xx */
-        gather(&terms[7*count + k], add, -v.prs_M_ta_t_4);  /* M_ta_xy_of_legs */
-        gather(&terms[8*count + k], add, v.prs_M_ta_t_5);  /* M_ta_xz_of_legs */
-        gather(&terms[9*count + k], add, v.prs_M_ta_t_6);  /* M_ta_yx_of_legs */
-        gather(&terms[10*count + k], add, v.prs_M_ta_t_8);  /* M_ta_yy */
-        gather(&terms[11*count + k], add, v.prs_M_ta_t_9);  /* M_ta_yz_of_legs */
-        gather(&terms[12*count + k], add, v.prs_M_ta_t_10);  /* M_ta_zx_of_legs */
-        gather(&terms[13*count + k], add, v.prs_M_ta_t_11);  /* M_ta_zy_of_legs */
-        gather(&terms[14*count + k], add, v.prs_M_ta_t_12);  /* M_ta_zz */
-        /* (M_aa) rotational block of M */
-        gather(&terms[15*count + k], add, v.prs_M_aa_t);  /* M_aa_xx_of_legs */
-        gather(&terms[16*count + k], add, v.prs_M_aa_t_2);  /* M_aa_xy_of_legs */
-        gather(&terms[17*count + k], add, v.prs_M_aa_t_3);  /* M_aa_xz_of_legs */
-        gather(&terms[18*count + k], add, v.prs_M_aa_t_4);  /* M_aa_yy_of_legs */
-        gather(&terms[19*count + k], add, v.prs_M_aa_t_5);  /* M_aa_yz_of_legs */
-        gather(&terms[20*count + k], add, v.prs_M_aa_t_6);  /* M_aa_zz_of_legs */
-        /* (Z_t) translational part of Z */
-        gather(&terms[21*count + k], add, prs_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[22*count + k], add, prs_U_y);  /* Z_t_y_of_legs */
-        gather(&terms[23*count + k], add, prs_U_z);  /* Z_t_z_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[24*count + k], add, prs_Z_a_t);  /* Z_a_x_of_legs */
-        gather(&terms[25*count + k], add, prs_Z_a_t_2);  /* Z_a_y_of_legs */
-        gather(&terms[26*count + k], add, prs_Z_a_t_3);  /* Z_a_z_of_legs */
-        /* (prs-w_1) reciprocal vector 1 */
-        o[0*count + k] = prs_w_1_x;
-        o[1*count + k] = prs_w_1_y;
-        o[2*count + k] = prs_w_1_z;
-        /* (prs-H_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = prs_H_a_1_x;
-        o[4*count + k] = prs_H_a_1_y;
-        o[5*count + k] = prs_H_a_1_z;
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        o[6*count + k] = prs_base_frame_xz;
-        o[7*count + k] = prs_base_frame_yz;
-        o[8*count + k] = prs_base_frame_zz;
-        /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[9*count + k] = v.prs_Hk_a_1_x;
-        o[10*count + k] = v.prs_Hk_a_1_y;
-        o[11*count + k] = v.prs_Hk_a_1_z;
-        /* (prs-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-           */
-        o[12*count + k] = prs_u_1_in_axes2_z;
-        o[15*count + k] = ((prs_w_1_x + (prs_w_1_y + prs_w_1_z)) + (prs_H_a_1_x + (prs_H_a_1_y +
-            prs_H_a_1_z))) + ((prs_base_frame_xz + (prs_base_frame_yz + prs_base_frame_zz)) +
-            ((v.prs_Hk_a_1_x + v.prs_Hk_a_1_y) + (v.prs_Hk_a_1_z + prs_u_1_in_axes2_z)));
-        const real prs_root_2_t = m->prs_root_2_t[i];
-        const real prs_size = m->prs_size[i];
-        o[13*count + k] = UNLESS(v.prs_disc_1 >= 0);
-        o[14*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
-            UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*prs_size);
-    }
+    values_prs v;
+    stage_prs_X(m, w, i, j, s, X, &v);
+    stage_prs_V_X(m, w, i, j, V, &v);
+    stage_prs_M_dynamics(m, i, &v);
+    stage_prs_Z_dynamics(w, j, V, &v);
+    /* (prs-w_1) reciprocal vector 1 */
+    const real prs_w_1_x = v.axis_x_prs_axes2_x*v.prs_w_1_in_axes2_x +
+        v.axis_y_prs_axes2_x*v.prs_w_1_in_axes2_y;
+    const real prs_w_1_y = v.axis_x_prs_axes2_y*v.prs_w_1_in_axes2_x +
+        v.axis_y_prs_axes2_y*v.prs_w_1_in_axes2_y;
+    const real prs_w_1_z = v.axis_x_prs_axes2_z*v.prs_w_1_in_axes2_x +
+        v.axis_y_prs_axes2_z*v.prs_w_1_in_axes2_y;
+    /* (prs-u_1) centripetal acceleration of the connection point */
+    const real prs_u_1_in_axes2_z = m->prs_base_frame_xz[i]*v.prs_u_1_x +
+        m->prs_base_frame_yz[i]*v.prs_u_1_y + m->prs_base_frame_zz[i]*v.prs_u_1_z;
+    /* (prs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real prs_rel_o_in_axes2_x = v.axis_x_prs_axes2_x*v.prs_u_1_x +
+        v.axis_x_prs_axes2_y*v.prs_u_1_y + v.axis_x_prs_axes2_z*v.prs_u_1_z +
+        m->prs_platform_joint_offset_x[i]*v.prs_qd_2_t*v.prs_qd_2_t;
+    /* (prs-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real prs_qdd_1_o_t = v.prs_w_1_t*(v.prs_c_2*v.prs_u_1_in_axes2_y +
+        prs_rel_o_in_axes2_x*v.prs_s_2);
+    const real prs_qdd_1_o = v.prs_c_2*prs_rel_o_in_axes2_x +
+        prs_qdd_1_o_t*v.prs_v_2_in_axes0_x - v.prs_s_2*v.prs_u_1_in_axes2_y;
+    /* (prs-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
+    const real prs_acc_1_o_in_axes0_x = prs_qdd_1_o - m->prs_g_in_axes0_x[i];
+    /* (prs-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
+    const real prs_acc_2_o_in_axes2_x = v.prs_c_2*prs_qdd_1_o -
+        v.prs_c_2*m->prs_g_in_axes0_x[i] - m->prs_g_in_axes0_y[i]*v.prs_s_2;
+    const real prs_acc_2_o_in_axes2_y = m->prs_g_in_axes0_x[i]*v.prs_s_2 -
+        v.prs_c_2*m->prs_g_in_axes0_y[i] - prs_qdd_1_o*v.prs_s_2;
+    /* (prs-f_2_o) remainder of: inertia force of link 2 less its weight */
+    const real prs_f_2_o_in_axes2_x = prs_acc_2_o_in_axes2_x*m->prs_link2_mass[i] +
+        m->prs_h_2_in_spec2_y[i]*prs_qdd_1_o_t - v.prs_W_2_t*m->prs_h_2_in_spec2_x[i];
+    const real prs_f_2_o_in_axes2_y = prs_acc_2_o_in_axes2_y*m->prs_link2_mass[i] -
+        v.prs_W_2_t*m->prs_h_2_in_spec2_y[i] - m->prs_h_2_in_spec2_x[i]*prs_qdd_1_o_t;
+    /* (prs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real prs_mu_2_o_in_axes2_z = prs_acc_2_o_in_axes2_y*m->prs_h_2_in_spec2_x[i] -
+        m->prs_J_2_in_spec2_zz[i]*prs_qdd_1_o_t -
+        prs_acc_2_o_in_axes2_x*m->prs_h_2_in_spec2_y[i];
+    /* (prs-T_1_o) remainder of: inertia force of the links from 1 outwards, the last link left out */
+    const real prs_T_1_o_in_axes0_x = prs_acc_1_o_in_axes0_x*m->prs_link1_mass[i] +
+        v.prs_c_2*prs_f_2_o_in_axes2_x - prs_f_2_o_in_axes2_y*v.prs_s_2;
+    /* (prs-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real prs_G_o_t = v.prs_w_1_t*(prs_mu_2_o_in_axes2_z -
+        prs_T_1_o_in_axes0_x*v.prs_v_2_in_axes0_x);
+    const real prs_G_o_in_axes2_x = prs_T_1_o_in_axes0_x*v.prs_c_2 - prs_G_o_t*v.prs_s_2;
+    const real prs_G_o_in_axes2_y = -prs_G_o_t*v.prs_c_2 - prs_T_1_o_in_axes0_x*v.prs_s_2;
+    /* (prs-U) velocity and gravity terms of the leg force */
+    const real prs_U_x = v.axis_x_prs_axes2_x*prs_G_o_in_axes2_x +
+        v.axis_y_prs_axes2_x*prs_G_o_in_axes2_y;
+    const real prs_U_y = v.axis_x_prs_axes2_y*prs_G_o_in_axes2_x +
+        v.axis_y_prs_axes2_y*prs_G_o_in_axes2_y;
+    const real prs_U_z = v.axis_x_prs_axes2_z*prs_G_o_in_axes2_x +
+        v.axis_y_prs_axes2_z*prs_G_o_in_axes2_y;
+    /* (Z_a) rotational part of Z */
+    const real prs_Z_a_t = prs_U_z*v.prs_q_y - prs_U_y*v.prs_q_z;
+    const real prs_Z_a_t_2 = prs_U_x*v.prs_q_z - prs_U_z*v.prs_q_x;
+    const real prs_Z_a_t_3 = prs_U_y*v.prs_q_x - prs_U_x*v.prs_q_y;
+    /* (prs-H_a_1) moment of the column's unit force about the platform origin */
+    const real prs_H_a_1_x = v.prs_q_y*prs_w_1_z - v.prs_q_z*prs_w_1_y;
+    const real prs_H_a_1_y = v.prs_q_z*prs_w_1_x - v.prs_q_x*prs_w_1_z;
+    const real prs_H_a_1_z = v.prs_q_x*prs_w_1_y - v.prs_q_y*prs_w_1_x;
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v.prs_d_c_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.prs_d_c_xy);  /* M_tt_t_2 */
+    gather(&terms[2*count + k], add, v.prs_d_c_xz);  /* M_tt_t_3 */
+    gather(&terms[3*count + k], add, v.prs_d_c_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v.prs_d_c_yz);  /* M_tt_t_5 */
+    gather(&terms[5*count + k], add, v.prs_d_c_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[6*count + k], add, v.prs_M_ta_t_3);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, -v.prs_M_ta_t_4);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, v.prs_M_ta_t_5);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, v.prs_M_ta_t_6);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, v.prs_M_ta_t_8);  /* M_ta_yy */
+    gather(&terms[11*count + k], add, v.prs_M_ta_t_9);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.prs_M_ta_t_10);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.prs_M_ta_t_11);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, v.prs_M_ta_t_12);  /* M_ta_zz */
+    /* (M_aa) rotational block of M */
+    gather(&terms[15*count + k], add, v.prs_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, v.prs_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, v.prs_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, v.prs_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, v.prs_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, v.prs_M_aa_t_6);  /* M_aa_zz_of_legs */
+    /* (Z_t) translational part of Z */
+    gather(&terms[21*count + k], add, prs_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[22*count + k], add, prs_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[23*count + k], add, prs_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) */
+    gather(&terms[24*count + k], add, prs_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[25*count + k], add, prs_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[26*count + k], add, prs_Z_a_t_3);  /* Z_a_z_of_legs */
+    /* (prs-w_1) */
+    o[0*count + k] = prs_w_1_x;
+    o[1*count + k] = prs_w_1_y;
+    o[2*count + k] = prs_w_1_z;
+    /* (prs-H_a_1) */
+    o[3*count + k] = prs_H_a_1_x;
+    o[4*count + k] = prs_H_a_1_y;
+    o[5*count + k] = prs_H_a_1_z;
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    o[6*count + k] = m->prs_base_frame_xz[i];
+    o[7*count + k] = m->prs_base_frame_yz[i];
+    o[8*count + k] = m->prs_base_frame_zz[i];
+    /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
+    o[9*count + k] = v.prs_Hk_a_1_x;
+    o[10*count + k] = v.prs_Hk_a_1_y;
+    o[11*count + k] = v.prs_Hk_a_1_z;
+    /* (prs-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+       */
+    o[12*count + k] = prs_u_1_in_axes2_z;
+    o[15*count + k] = ((prs_w_1_x + (prs_w_1_y + prs_w_1_z)) + (prs_H_a_1_x + (prs_H_a_1_y +
+        prs_H_a_1_z))) + ((m->prs_base_frame_xz[i] + (m->prs_base_frame_yz[i] +
+        m->prs_base_frame_zz[i])) + ((v.prs_Hk_a_1_x + v.prs_Hk_a_1_y) + (v.prs_Hk_a_1_z +
+        prs_u_1_in_axes2_z)));
+    o[13*count + k] = UNLESS(v.prs_disc_1 >= 0);
+    o[14*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i])
+        + UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*m->prs_size[i]);
 }
 
-INLINE void dynamics_place_prs(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *H, real *Hk, real *constraint_bias, verdict *t)
+INLINE void dynamics_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count, const real
+    *o, real *H, real *Hk, real *constraint_bias, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        H[(3*NU + leg)*w + k] = o[3*count + first + k];
-        H[(4*NU + leg)*w + k] = o[4*count + first + k];
-        H[(5*NU + leg)*w + k] = o[5*count + first + k];
-        Hk[leg*w + k] = o[6*count + first + k];
-        Hk[(NC + leg)*w + k] = o[7*count + first + k];
-        Hk[(2*NC + leg)*w + k] = o[8*count + first + k];
-        Hk[(3*NC + leg)*w + k] = o[9*count + first + k];
-        Hk[(4*NC + leg)*w + k] = o[10*count + first + k];
-        Hk[(5*NC + leg)*w + k] = o[11*count + first + k];
-        constraint_bias[leg*w + k] = o[12*count + first + k];
-        t->unreachable[k] += o[13*count + first + k];
-        t->singular[k] += o[14*count + first + k];
-        t->total[k] += o[15*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    H[(3*NU + i)*w + k] = o[3*count + at];
+    H[(4*NU + i)*w + k] = o[4*count + at];
+    H[(5*NU + i)*w + k] = o[5*count + at];
+    Hk[i*w + k] = o[6*count + at];
+    Hk[(NC + i)*w + k] = o[7*count + at];
+    Hk[(2*NC + i)*w + k] = o[8*count + at];
+    Hk[(3*NC + i)*w + k] = o[9*count + at];
+    Hk[(4*NC + i)*w + k] = o[10*count + at];
+    Hk[(5*NC + i)*w + k] = o[11*count + at];
+    constraint_bias[i*w + k] = o[12*count + at];
+    t->unreachable[k] += o[13*count + at];
+    t->singular[k] += o[14*count + at];
+    t->total[k] += o[15*count + at];
 }
 
-INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const real *sums, real *M,
-    real *Z, verdict *t)
+INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
+    real *M, real *Z, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (M_tt) translational block of M */
-        const real M_tt_xx_of_legs = sums[0*w + k];
-        const real platform_mass = m->platform_mass;
-        const real M_tt_xx = platform_mass - M_tt_xx_of_legs;
-        const real M_tt_yy_of_legs = sums[3*w + k];
-        const real M_tt_yy = platform_mass - M_tt_yy_of_legs;
-        const real M_tt_zz_of_legs = sums[5*w + k];
-        const real M_tt_zz = platform_mass - M_tt_zz_of_legs;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[11*w + k];
-        const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
-        const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[10*w + k];
-        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-        const real M_ta_yx_of_legs = sums[9*w + k];
-        const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-        const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[9*w + k];
-        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
-        const real M_ta_zx_of_legs = sums[12*w + k];
-        const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
-        const real M_ta_zy_of_legs = sums[13*w + k];
-        const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-        /* (M_aa) rotational block of M */
-        const real J_star_xx = s[12*w + k];
-        const real M_aa_xx_of_legs = sums[15*w + k];
-        const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[13*w + k];
-        const real M_aa_xy_of_legs = sums[16*w + k];
-        const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[14*w + k];
-        const real M_aa_xz_of_legs = sums[17*w + k];
-        const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[15*w + k];
-        const real M_aa_yy_of_legs = sums[18*w + k];
-        const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
-        const real J_star_yz = s[16*w + k];
-        const real M_aa_yz_of_legs = sums[19*w + k];
-        const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[17*w + k];
-        const real M_aa_zz_of_legs = sums[20*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-        /* (Z_t) translational part of Z */
-        const real Z_p_x = s[18*w + k];
-        const real Z_t_x_of_legs = sums[21*w + k];
-        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[19*w + k];
-        const real Z_t_y_of_legs = sums[22*w + k];
-        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[20*w + k];
-        const real Z_t_z_of_legs = sums[23*w + k];
-        const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-        /* (Z_a) rotational part of Z */
-        const real Z_a_x_of_legs = sums[24*w + k];
-        const real Z_q_x = s[21*w + k];
-        const real Z_a_x = Z_a_x_of_legs + Z_q_x;
-        const real Z_a_y_of_legs = sums[25*w + k];
-        const real Z_q_y = s[22*w + k];
-        const real Z_a_y = Z_a_y_of_legs + Z_q_y;
-        const real Z_a_z_of_legs = sums[26*w + k];
-        const real Z_q_z = s[23*w + k];
-        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
-        /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        const real M_tt_t_2 = sums[1*w + k];
-        M[1*w + k] = -M_tt_t_2;
-        M[NV*w + k] = -M_tt_t_2;
-        const real M_tt_t_3 = sums[2*w + k];
-        M[2*w + k] = -M_tt_t_3;
-        M[2*NV*w + k] = -M_tt_t_3;
-        M[(NV + 1)*w + k] = M_tt_yy;
-        const real M_tt_t_5 = sums[4*w + k];
-        M[(NV + 2)*w + k] = -M_tt_t_5;
-        M[(2*NV + 1)*w + k] = -M_tt_t_5;
-        M[(2*NV + 2)*w + k] = M_tt_zz;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xx = sums[6*w + k];
-        M[3*w + k] = M_ta_xx;
-        M[3*NV*w + k] = M_ta_xx;
-        M[4*w + k] = M_ta_xy;
-        M[4*NV*w + k] = M_ta_xy;
-        M[5*w + k] = M_ta_xz;
-        M[5*NV*w + k] = M_ta_xz;
-        M[(NV + 3)*w + k] = M_ta_yx;
-        M[(3*NV + 1)*w + k] = M_ta_yx;
-        const real M_ta_yy = sums[10*w + k];
-        M[(NV + 4)*w + k] = M_ta_yy;
-        M[(4*NV + 1)*w + k] = M_ta_yy;
-        M[(NV + 5)*w + k] = M_ta_yz;
-        M[(5*NV + 1)*w + k] = M_ta_yz;
-        M[(2*NV + 3)*w + k] = M_ta_zx;
-        M[(3*NV + 2)*w + k] = M_ta_zx;
-        M[(2*NV + 4)*w + k] = M_ta_zy;
-        M[(4*NV + 2)*w + k] = M_ta_zy;
-        const real M_ta_zz = sums[14*w + k];
-        M[(2*NV + 5)*w + k] = M_ta_zz;
-        M[(5*NV + 2)*w + k] = M_ta_zz;
-        /* (M_aa) rotational block of M */
-        M[(3*NV + 3)*w + k] = M_aa_xx;
-        M[(3*NV + 4)*w + k] = M_aa_xy;
-        M[(4*NV + 3)*w + k] = M_aa_xy;
-        M[(3*NV + 5)*w + k] = M_aa_xz;
-        M[(5*NV + 3)*w + k] = M_aa_xz;
-        M[(4*NV + 4)*w + k] = M_aa_yy;
-        M[(4*NV + 5)*w + k] = M_aa_yz;
-        M[(5*NV + 4)*w + k] = M_aa_yz;
-        M[(5*NV + 5)*w + k] = M_aa_zz;
-        /* (Z_t) translational part of Z */
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-        Z[2*w + k] = Z_t_z;
-        /* (Z_a) rotational part of Z */
-        Z[3*w + k] = Z_a_x;
-        Z[4*w + k] = Z_a_y;
-        Z[5*w + k] = Z_a_z;
-        t->total[k] += (((M_tt_xx + (M_tt_t_2 + M_tt_t_3)) + (M_tt_yy + (M_tt_t_5 + M_tt_zz))) +
-            ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
-            (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
-            ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
-    }
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = m->platform_mass - M_tt_xx_of_legs;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = m->platform_mass - M_tt_yy_of_legs;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = m->platform_mass - M_tt_zz_of_legs;
+    /* (M_ta) */
+    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real h_star_z = s[11*w + k];
+    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real h_star_y = s[10*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yx_of_legs = sums[9*w + k];
+    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_yz_of_legs = sums[11*w + k];
+    const real h_star_x = s[9*w + k];
+    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_zx_of_legs = sums[12*w + k];
+    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zy_of_legs = sums[13*w + k];
+    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    /* (M_aa) */
+    const real J_star_xx = s[12*w + k];
+    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
+    const real J_star_xy = s[13*w + k];
+    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
+    const real J_star_xz = s[14*w + k];
+    const real M_aa_xz_of_legs = sums[17*w + k];
+    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
+    const real J_star_yy = s[15*w + k];
+    const real M_aa_yy_of_legs = sums[18*w + k];
+    const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
+    const real J_star_yz = s[16*w + k];
+    const real M_aa_yz_of_legs = sums[19*w + k];
+    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
+    const real J_star_zz = s[17*w + k];
+    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
+    /* (Z_t) */
+    const real Z_p_x = s[18*w + k];
+    const real Z_t_x_of_legs = sums[21*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[19*w + k];
+    const real Z_t_y_of_legs = sums[22*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    const real Z_p_z = s[20*w + k];
+    const real Z_t_z_of_legs = sums[23*w + k];
+    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
+    /* (Z_a) */
+    const real Z_a_x_of_legs = sums[24*w + k];
+    const real Z_q_x = s[21*w + k];
+    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_y_of_legs = sums[25*w + k];
+    const real Z_q_y = s[22*w + k];
+    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_z_of_legs = sums[26*w + k];
+    const real Z_q_z = s[23*w + k];
+    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_t_2 = sums[1*w + k];
+    M[1*w + k] = -M_tt_t_2;
+    M[NV*w + k] = -M_tt_t_2;
+    const real M_tt_t_3 = sums[2*w + k];
+    M[2*w + k] = -M_tt_t_3;
+    M[2*NV*w + k] = -M_tt_t_3;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_t_5 = sums[4*w + k];
+    M[(NV + 2)*w + k] = -M_tt_t_5;
+    M[(2*NV + 1)*w + k] = -M_tt_t_5;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    /* (M_ta) */
+    const real M_ta_xx = sums[6*w + k];
+    M[3*w + k] = M_ta_xx;
+    M[3*NV*w + k] = M_ta_xx;
+    M[4*w + k] = M_ta_xy;
+    M[4*NV*w + k] = M_ta_xy;
+    M[5*w + k] = M_ta_xz;
+    M[5*NV*w + k] = M_ta_xz;
+    M[(NV + 3)*w + k] = M_ta_yx;
+    M[(3*NV + 1)*w + k] = M_ta_yx;
+    const real M_ta_yy = sums[10*w + k];
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
+    M[(NV + 5)*w + k] = M_ta_yz;
+    M[(5*NV + 1)*w + k] = M_ta_yz;
+    M[(2*NV + 3)*w + k] = M_ta_zx;
+    M[(3*NV + 2)*w + k] = M_ta_zx;
+    M[(2*NV + 4)*w + k] = M_ta_zy;
+    M[(4*NV + 2)*w + k] = M_ta_zy;
+    const real M_ta_zz = sums[14*w + k];
+    M[(2*NV + 5)*w + k] = M_ta_zz;
+    M[(5*NV + 2)*w + k] = M_ta_zz;
+    /* (M_aa) */
+    M[(3*NV + 3)*w + k] = M_aa_xx;
+    M[(3*NV + 4)*w + k] = M_aa_xy;
+    M[(4*NV + 3)*w + k] = M_aa_xy;
+    M[(3*NV + 5)*w + k] = M_aa_xz;
+    M[(5*NV + 3)*w + k] = M_aa_xz;
+    M[(4*NV + 4)*w + k] = M_aa_yy;
+    M[(4*NV + 5)*w + k] = M_aa_yz;
+    M[(5*NV + 4)*w + k] = M_aa_yz;
+    M[(5*NV + 5)*w + k] = M_aa_zz;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    /* (Z_a) */
+    Z[3*w + k] = Z_a_x;
+    Z[4*w + k] = Z_a_y;
+    Z[5*w + k] = Z_a_z;
+    t->total[k] += (((M_tt_xx + (M_tt_t_2 + M_tt_t_3)) + (M_tt_yy + (M_tt_t_5 + M_tt_zz))) +
+        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
+        (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
+        ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
 }
 
-INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
+APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, real *Hk, real *constraint_bias, verdict *t)
 {
     real s[24] = {0}, sums[27] = {0};
     real terms_prs[27*LEGS(LEGS_OF_prs)] = {0}, o_prs[16*LEGS(LEGS_OF_prs)] = {0};
-    dynamics_before(m, 1, X, V, s, t);
-    dynamics_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), 0, X, V, terms_prs, o_prs);
-    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        dynamics_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, H, Hk, constraint_bias, t);
+    dynamics_before(m, 1, 0, X, V, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
+        dynamics_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), 0, s, X, V, terms_prs, o_prs);
+    }
+    for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        dynamics_place_prs(1, i, 0, i, LEGS(LEGS_OF_prs), o_prs, H, Hk, constraint_bias, t);
     }
     for (size_t n = 0; n < 27; ++n) {
         sums[n] = total(terms_prs + n*LEGS(LEGS_OF_prs), LEGS_OF_prs);
     }
-    dynamics_after(m, 1, s, sums, M, Z, t);
+    dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
-INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
-    real *H, real *Hk, real *constraint_bias, verdict *t)
+APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
+    real *restrict Z, real *restrict H, real *restrict Hk, real *restrict constraint_bias, verdict
+    *restrict t)
 {
     real s[24*LANES], sums[27*LANES];
     real o_prs[16*LANES];
-    dynamics_before(m, LANES, X, V, s, t);
-    clear(sums, 27*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        dynamics_legs_prs(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_prs);
-        dynamics_place_prs(LANES, LANES, o_prs, leg, 0, H, Hk, constraint_bias, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        dynamics_before(m, LANES, k, X, V, s, t);
     }
-    dynamics_after(m, LANES, s, sums, M, Z, t);
+    clear(sums, 27*LANES);
+    for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_legs_prs(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_prs);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_place_prs(LANES, i, k, k, LANES, o_prs, H, Hk, constraint_bias, t);
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        dynamics_after(m, LANES, k, s, sums, M, Z, t);
+    }
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        stage_M_dynamics(m, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = v.h_star_x;
-        s[10*w + k] = v.h_star_y;
-        s[11*w + k] = v.h_star_z;
-        s[12*w + k] = v.J_star_xx;
-        s[13*w + k] = v.J_star_xy;
-        s[14*w + k] = v.J_star_xz;
-        s[15*w + k] = v.J_star_yy;
-        s[16*w + k] = v.J_star_yz;
-        s[17*w + k] = v.J_star_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    stage_M_dynamics(m, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = v.h_star_x;
+    s[10*w + k] = v.h_star_y;
+    s[11*w + k] = v.h_star_z;
+    s[12*w + k] = v.J_star_xx;
+    s[13*w + k] = v.J_star_xy;
+    s[14*w + k] = v.J_star_xz;
+    s[15*w + k] = v.J_star_yy;
+    s[16*w + k] = v.J_star_yz;
+    s[17*w + k] = v.J_star_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void M_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void M_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_prs v;
-        stage_prs_X(m, w, i, j, s, X, &v);
-        stage_prs_M_dynamics(m, i, &v);
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, v.prs_d_c_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, v.prs_d_c_xy);  /* M_tt_t_2 */
-        gather(&terms[2*count + k], add, v.prs_d_c_xz);  /* M_tt_t_3 */
-        gather(&terms[3*count + k], add, v.prs_d_c_yy);  /* M_tt_yy_of_legs */
-        gather(&terms[4*count + k], add, v.prs_d_c_yz);  /* M_tt_t_5 */
-        gather(&terms[5*count + k], add, v.prs_d_c_zz);  /* M_tt_zz_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[6*count + k], add, v.prs_M_ta_t_3);  /* M_ta_xx */
-        gather(&terms[7*count + k], add, -v.prs_M_ta_t_4);  /* M_ta_xy_of_legs */
-        gather(&terms[8*count + k], add, v.prs_M_ta_t_5);  /* M_ta_xz_of_legs */
-        gather(&terms[9*count + k], add, v.prs_M_ta_t_6);  /* M_ta_yx_of_legs */
-        gather(&terms[10*count + k], add, v.prs_M_ta_t_8);  /* M_ta_yy */
-        gather(&terms[11*count + k], add, v.prs_M_ta_t_9);  /* M_ta_yz_of_legs */
-        gather(&terms[12*count + k], add, v.prs_M_ta_t_10);  /* M_ta_zx_of_legs */
-        gather(&terms[13*count + k], add, v.prs_M_ta_t_11);  /* M_ta_zy_of_legs */
-        gather(&terms[14*count + k], add, v.prs_M_ta_t_12);  /* M_ta_zz */
-        /* (M_aa) rotational block of M */
-        gather(&terms[15*count + k], add, v.prs_M_aa_t);  /* M_aa_xx_of_legs */
-        gather(&terms[16*count + k], add, v.prs_M_aa_t_2);  /* M_aa_xy_of_legs */
-        gather(&terms[17*count + k], add, v.prs_M_aa_t_3);  /* M_aa_xz_of_legs */
-        gather(&terms[18*count + k], add, v.prs_M_aa_t_4);  /* M_aa_yy_of_legs */
-        gather(&terms[19*count + k], add, v.prs_M_aa_t_5);  /* M_aa_yz_of_legs */
-        gather(&terms[20*count + k], add, v.prs_M_aa_t_6);  /* M_aa_zz_of_legs */
-        const real prs_root_2_t = m->prs_root_2_t[i];
-        const real prs_size = m->prs_size[i];
-        o[0*count + k] = UNLESS(v.prs_disc_1 >= 0);
-        o[1*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
-            UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*prs_size);
-    }
+    values_prs v;
+    stage_prs_X(m, w, i, j, s, X, &v);
+    stage_prs_M_dynamics(m, i, &v);
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v.prs_d_c_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.prs_d_c_xy);  /* M_tt_t_2 */
+    gather(&terms[2*count + k], add, v.prs_d_c_xz);  /* M_tt_t_3 */
+    gather(&terms[3*count + k], add, v.prs_d_c_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v.prs_d_c_yz);  /* M_tt_t_5 */
+    gather(&terms[5*count + k], add, v.prs_d_c_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[6*count + k], add, v.prs_M_ta_t_3);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, -v.prs_M_ta_t_4);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, v.prs_M_ta_t_5);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, v.prs_M_ta_t_6);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, v.prs_M_ta_t_8);  /* M_ta_yy */
+    gather(&terms[11*count + k], add, v.prs_M_ta_t_9);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.prs_M_ta_t_10);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.prs_M_ta_t_11);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, v.prs_M_ta_t_12);  /* M_ta_zz */
+    /* (M_aa) rotational block of M */
+    gather(&terms[15*count + k], add, v.prs_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, v.prs_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, v.prs_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, v.prs_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, v.prs_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, v.prs_M_aa_t_6);  /* M_aa_zz_of_legs */
+    o[0*count + k] = UNLESS(v.prs_disc_1 >= 0);
+    o[1*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i])
+        + UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*m->prs_size[i]);
 }
 
-INLINE void M_place_prs(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void M_place_prs(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o[0*count + first + k];
-        t->singular[k] += o[1*count + first + k];
-    }
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
 }
 
-INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums, real *M, verdict
-    *t)
+INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
+    *M, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (M_tt) translational block of M */
-        const real M_tt_xx_of_legs = sums[0*w + k];
-        const real platform_mass = m->platform_mass;
-        const real M_tt_xx = platform_mass - M_tt_xx_of_legs;
-        const real M_tt_yy_of_legs = sums[3*w + k];
-        const real M_tt_yy = platform_mass - M_tt_yy_of_legs;
-        const real M_tt_zz_of_legs = sums[5*w + k];
-        const real M_tt_zz = platform_mass - M_tt_zz_of_legs;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[11*w + k];
-        const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
-        const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[10*w + k];
-        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-        const real M_ta_yx_of_legs = sums[9*w + k];
-        const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-        const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[9*w + k];
-        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
-        const real M_ta_zx_of_legs = sums[12*w + k];
-        const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
-        const real M_ta_zy_of_legs = sums[13*w + k];
-        const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-        /* (M_aa) rotational block of M */
-        const real J_star_xx = s[12*w + k];
-        const real M_aa_xx_of_legs = sums[15*w + k];
-        const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[13*w + k];
-        const real M_aa_xy_of_legs = sums[16*w + k];
-        const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[14*w + k];
-        const real M_aa_xz_of_legs = sums[17*w + k];
-        const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[15*w + k];
-        const real M_aa_yy_of_legs = sums[18*w + k];
-        const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
-        const real J_star_yz = s[16*w + k];
-        const real M_aa_yz_of_legs = sums[19*w + k];
-        const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[17*w + k];
-        const real M_aa_zz_of_legs = sums[20*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-        /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        const real M_tt_t_2 = sums[1*w + k];
-        M[1*w + k] = -M_tt_t_2;
-        M[NV*w + k] = -M_tt_t_2;
-        const real M_tt_t_3 = sums[2*w + k];
-        M[2*w + k] = -M_tt_t_3;
-        M[2*NV*w + k] = -M_tt_t_3;
-        M[(NV + 1)*w + k] = M_tt_yy;
-        const real M_tt_t_5 = sums[4*w + k];
-        M[(NV + 2)*w + k] = -M_tt_t_5;
-        M[(2*NV + 1)*w + k] = -M_tt_t_5;
-        M[(2*NV + 2)*w + k] = M_tt_zz;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xx = sums[6*w + k];
-        M[3*w + k] = M_ta_xx;
-        M[3*NV*w + k] = M_ta_xx;
-        M[4*w + k] = M_ta_xy;
-        M[4*NV*w + k] = M_ta_xy;
-        M[5*w + k] = M_ta_xz;
-        M[5*NV*w + k] = M_ta_xz;
-        M[(NV + 3)*w + k] = M_ta_yx;
-        M[(3*NV + 1)*w + k] = M_ta_yx;
-        const real M_ta_yy = sums[10*w + k];
-        M[(NV + 4)*w + k] = M_ta_yy;
-        M[(4*NV + 1)*w + k] = M_ta_yy;
-        M[(NV + 5)*w + k] = M_ta_yz;
-        M[(5*NV + 1)*w + k] = M_ta_yz;
-        M[(2*NV + 3)*w + k] = M_ta_zx;
-        M[(3*NV + 2)*w + k] = M_ta_zx;
-        M[(2*NV + 4)*w + k] = M_ta_zy;
-        M[(4*NV + 2)*w + k] = M_ta_zy;
-        const real M_ta_zz = sums[14*w + k];
-        M[(2*NV + 5)*w + k] = M_ta_zz;
-        M[(5*NV + 2)*w + k] = M_ta_zz;
-        /* (M_aa) rotational block of M */
-        M[(3*NV + 3)*w + k] = M_aa_xx;
-        M[(3*NV + 4)*w + k] = M_aa_xy;
-        M[(4*NV + 3)*w + k] = M_aa_xy;
-        M[(3*NV + 5)*w + k] = M_aa_xz;
-        M[(5*NV + 3)*w + k] = M_aa_xz;
-        M[(4*NV + 4)*w + k] = M_aa_yy;
-        M[(4*NV + 5)*w + k] = M_aa_yz;
-        M[(5*NV + 4)*w + k] = M_aa_yz;
-        M[(5*NV + 5)*w + k] = M_aa_zz;
-        t->total[k] += (((M_tt_xx + M_tt_t_2) + (M_tt_t_3 + (M_tt_yy + M_tt_t_5))) + ((M_tt_zz +
-            M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
-            (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
-            M_aa_zz))));
-    }
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = m->platform_mass - M_tt_xx_of_legs;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = m->platform_mass - M_tt_yy_of_legs;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = m->platform_mass - M_tt_zz_of_legs;
+    /* (M_ta) */
+    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real h_star_z = s[11*w + k];
+    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real h_star_y = s[10*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yx_of_legs = sums[9*w + k];
+    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_yz_of_legs = sums[11*w + k];
+    const real h_star_x = s[9*w + k];
+    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_zx_of_legs = sums[12*w + k];
+    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zy_of_legs = sums[13*w + k];
+    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    /* (M_aa) */
+    const real J_star_xx = s[12*w + k];
+    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
+    const real J_star_xy = s[13*w + k];
+    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
+    const real J_star_xz = s[14*w + k];
+    const real M_aa_xz_of_legs = sums[17*w + k];
+    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
+    const real J_star_yy = s[15*w + k];
+    const real M_aa_yy_of_legs = sums[18*w + k];
+    const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
+    const real J_star_yz = s[16*w + k];
+    const real M_aa_yz_of_legs = sums[19*w + k];
+    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
+    const real J_star_zz = s[17*w + k];
+    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_t_2 = sums[1*w + k];
+    M[1*w + k] = -M_tt_t_2;
+    M[NV*w + k] = -M_tt_t_2;
+    const real M_tt_t_3 = sums[2*w + k];
+    M[2*w + k] = -M_tt_t_3;
+    M[2*NV*w + k] = -M_tt_t_3;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_t_5 = sums[4*w + k];
+    M[(NV + 2)*w + k] = -M_tt_t_5;
+    M[(2*NV + 1)*w + k] = -M_tt_t_5;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    /* (M_ta) */
+    const real M_ta_xx = sums[6*w + k];
+    M[3*w + k] = M_ta_xx;
+    M[3*NV*w + k] = M_ta_xx;
+    M[4*w + k] = M_ta_xy;
+    M[4*NV*w + k] = M_ta_xy;
+    M[5*w + k] = M_ta_xz;
+    M[5*NV*w + k] = M_ta_xz;
+    M[(NV + 3)*w + k] = M_ta_yx;
+    M[(3*NV + 1)*w + k] = M_ta_yx;
+    const real M_ta_yy = sums[10*w + k];
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
+    M[(NV + 5)*w + k] = M_ta_yz;
+    M[(5*NV + 1)*w + k] = M_ta_yz;
+    M[(2*NV + 3)*w + k] = M_ta_zx;
+    M[(3*NV + 2)*w + k] = M_ta_zx;
+    M[(2*NV + 4)*w + k] = M_ta_zy;
+    M[(4*NV + 2)*w + k] = M_ta_zy;
+    const real M_ta_zz = sums[14*w + k];
+    M[(2*NV + 5)*w + k] = M_ta_zz;
+    M[(5*NV + 2)*w + k] = M_ta_zz;
+    /* (M_aa) */
+    M[(3*NV + 3)*w + k] = M_aa_xx;
+    M[(3*NV + 4)*w + k] = M_aa_xy;
+    M[(4*NV + 3)*w + k] = M_aa_xy;
+    M[(3*NV + 5)*w + k] = M_aa_xz;
+    M[(5*NV + 3)*w + k] = M_aa_xz;
+    M[(4*NV + 4)*w + k] = M_aa_yy;
+    M[(4*NV + 5)*w + k] = M_aa_yz;
+    M[(5*NV + 4)*w + k] = M_aa_yz;
+    M[(5*NV + 5)*w + k] = M_aa_zz;
+    t->total[k] += (((M_tt_xx + M_tt_t_2) + (M_tt_t_3 + (M_tt_yy + M_tt_t_5))) + ((M_tt_zz +
+        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
+        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+        M_aa_zz))));
 }
 
-INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
+APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
     real s[18] = {0}, sums[21] = {0};
     real terms_prs[21*LEGS(LEGS_OF_prs)] = {0}, o_prs[2*LEGS(LEGS_OF_prs)] = {0};
-    M_before(m, 1, X, s, t);
-    M_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), 0, X, terms_prs, o_prs);
-    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        M_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, t);
+    M_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
+        M_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), 0, s, X, terms_prs, o_prs);
+    }
+    for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        M_place_prs(0, i, LEGS(LEGS_OF_prs), o_prs, t);
     }
     for (size_t n = 0; n < 21; ++n) {
         sums[n] = total(terms_prs + n*LEGS(LEGS_OF_prs), LEGS_OF_prs);
     }
-    M_after(m, 1, s, sums, M, t);
+    M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
+INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verdict *restrict t)
 {
     real s[18*LANES], sums[21*LANES];
     real o_prs[2*LANES];
-    M_before(m, LANES, X, s, t);
-    clear(sums, 21*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        M_legs_prs(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_prs);
-        M_place_prs(LANES, LANES, o_prs, 0, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        M_before(m, LANES, k, X, s, t);
     }
-    M_after(m, LANES, s, sums, M, t);
+    clear(sums, 21*LANES);
+    for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            M_legs_prs(m, LANES, i, k, k, LANES, 1, s, X, sums, o_prs);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            M_place_prs(k, k, LANES, o_prs, t);
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        M_after(m, LANES, k, s, sums, M, t);
+    }
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s, verdict
-    *t)
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        stage_V_X(w, k, V, &v);
-        stage_Z_dynamics(m, w, k, V, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = v.Z_p_x;
-        s[10*w + k] = v.Z_p_y;
-        s[11*w + k] = v.Z_p_z;
-        s[12*w + k] = v.Z_q_x;
-        s[13*w + k] = v.Z_q_y;
-        s[14*w + k] = v.Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    stage_V_X(w, k, V, &v);
+    stage_Z_dynamics(m, w, k, V, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = v.Z_p_x;
+    s[10*w + k] = v.Z_p_y;
+    s[11*w + k] = v.Z_p_z;
+    s[12*w + k] = v.Z_q_x;
+    s[13*w + k] = v.Z_q_y;
+    s[14*w + k] = v.Z_q_z;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void Z_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
+INLINE void Z_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_prs v;
-        stage_prs_X(m, w, i, j, s, X, &v);
-        stage_prs_V_X(m, w, i, j, V, &v);
-        stage_prs_Z_dynamics(w, j, V, &v);
-        /* (prs-qd_2) rate of joint 2 */
-        const real prs_qd_2_t = -1/v.prs_v_2_in_axes0_y;
-        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
-        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
-        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_qd_2_t_2 = prs_qd_2_t*(v.prs_S_dot_x*prs_base_frame_xy +
-            v.prs_S_dot_y*prs_base_frame_yy + v.prs_S_dot_z*prs_base_frame_zy);
-        /* (prs-W_2) centripetal tensor of link 2 */
-        const real prs_W_2_t = prs_qd_2_t_2*prs_qd_2_t_2;
-        /* (prs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-           */
-        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
-        const real prs_rel_o_in_axes2_x = v.axis_x_prs_axes2_x*v.prs_u_1_x +
-            v.axis_x_prs_axes2_y*v.prs_u_1_y + v.axis_x_prs_axes2_z*v.prs_u_1_z +
-            prs_platform_joint_offset_x*prs_qd_2_t_2*prs_qd_2_t_2;
-        /* (prs-qdd_1_o) remainder of: acceleration of joint 1 */
-        const real prs_qdd_1_o_t = prs_qd_2_t*(v.prs_c_2*v.prs_u_1_in_axes2_y +
-            prs_rel_o_in_axes2_x*v.prs_s_2);
-        const real prs_qdd_1_o = v.prs_c_2*prs_rel_o_in_axes2_x +
-            prs_qdd_1_o_t*v.prs_v_2_in_axes0_x - v.prs_s_2*v.prs_u_1_in_axes2_y;
-        /* (prs-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
-        const real prs_g_in_axes0_x = m->prs_g_in_axes0_x[i];
-        const real prs_acc_1_o_in_axes0_x = prs_qdd_1_o - prs_g_in_axes0_x;
-        /* (prs-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-        const real prs_g_in_axes0_y = m->prs_g_in_axes0_y[i];
-        const real prs_acc_2_o_in_axes2_x = v.prs_c_2*prs_qdd_1_o - v.prs_c_2*prs_g_in_axes0_x -
-            prs_g_in_axes0_y*v.prs_s_2;
-        const real prs_acc_2_o_in_axes2_y = prs_g_in_axes0_x*v.prs_s_2 -
-            v.prs_c_2*prs_g_in_axes0_y - prs_qdd_1_o*v.prs_s_2;
-        /* (prs-f_2_o) remainder of: inertia force of link 2 less its weight */
-        const real prs_h_2_in_spec2_x = m->prs_h_2_in_spec2_x[i];
-        const real prs_h_2_in_spec2_y = m->prs_h_2_in_spec2_y[i];
-        const real prs_link2_mass = m->prs_link2_mass[i];
-        const real prs_f_2_o_in_axes2_x = prs_acc_2_o_in_axes2_x*prs_link2_mass +
-            prs_h_2_in_spec2_y*prs_qdd_1_o_t - prs_W_2_t*prs_h_2_in_spec2_x;
-        const real prs_f_2_o_in_axes2_y = prs_acc_2_o_in_axes2_y*prs_link2_mass -
-            prs_W_2_t*prs_h_2_in_spec2_y - prs_h_2_in_spec2_x*prs_qdd_1_o_t;
-        /* (prs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-           reference points */
-        const real prs_J_2_in_spec2_zz = m->prs_J_2_in_spec2_zz[i];
-        const real prs_mu_2_o_in_axes2_z = prs_acc_2_o_in_axes2_y*prs_h_2_in_spec2_x -
-            prs_J_2_in_spec2_zz*prs_qdd_1_o_t - prs_acc_2_o_in_axes2_x*prs_h_2_in_spec2_y;
-        /* (prs-T_1_o) remainder of: inertia force of the links from 1 outwards, the last link left out */
-        const real prs_link1_mass = m->prs_link1_mass[i];
-        const real prs_T_1_o_in_axes0_x = prs_acc_1_o_in_axes0_x*prs_link1_mass +
-            v.prs_c_2*prs_f_2_o_in_axes2_x - prs_f_2_o_in_axes2_y*v.prs_s_2;
-        /* (prs-G_o) remainder of: force at the connection point that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real prs_G_o_t = prs_qd_2_t*(prs_mu_2_o_in_axes2_z -
-            prs_T_1_o_in_axes0_x*v.prs_v_2_in_axes0_x);
-        const real prs_G_o_in_axes2_x = prs_T_1_o_in_axes0_x*v.prs_c_2 - prs_G_o_t*v.prs_s_2;
-        const real prs_G_o_in_axes2_y = -prs_G_o_t*v.prs_c_2 - prs_T_1_o_in_axes0_x*v.prs_s_2;
-        /* (prs-U) velocity and gravity terms of the leg force */
-        const real prs_U_x = v.axis_x_prs_axes2_x*prs_G_o_in_axes2_x +
-            v.axis_y_prs_axes2_x*prs_G_o_in_axes2_y;
-        const real prs_U_y = v.axis_x_prs_axes2_y*prs_G_o_in_axes2_x +
-            v.axis_y_prs_axes2_y*prs_G_o_in_axes2_y;
-        const real prs_U_z = v.axis_x_prs_axes2_z*prs_G_o_in_axes2_x +
-            v.axis_y_prs_axes2_z*prs_G_o_in_axes2_y;
-        /* (Z_a) rotational part of Z */
-        const real prs_Z_a_t = prs_U_z*v.prs_q_y - prs_U_y*v.prs_q_z;
-        const real prs_Z_a_t_2 = prs_U_x*v.prs_q_z - prs_U_z*v.prs_q_x;
-        const real prs_Z_a_t_3 = prs_U_y*v.prs_q_x - prs_U_x*v.prs_q_y;
-        /* (Z_t) translational part of Z */
-        gather(&terms[0*count + k], add, prs_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[1*count + k], add, prs_U_y);  /* Z_t_y_of_legs */
-        gather(&terms[2*count + k], add, prs_U_z);  /* Z_t_z_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[3*count + k], add, prs_Z_a_t);  /* Z_a_x_of_legs */
-        gather(&terms[4*count + k], add, prs_Z_a_t_2);  /* Z_a_y_of_legs */
-        gather(&terms[5*count + k], add, prs_Z_a_t_3);  /* Z_a_z_of_legs */
-        const real prs_root_2_t = m->prs_root_2_t[i];
-        const real prs_size = m->prs_size[i];
-        o[0*count + k] = UNLESS(v.prs_disc_1 >= 0);
-        o[1*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
-            UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*prs_size);
-    }
+    values_prs v;
+    stage_prs_X(m, w, i, j, s, X, &v);
+    stage_prs_V_X(m, w, i, j, V, &v);
+    stage_prs_Z_dynamics(w, j, V, &v);
+    /* (prs-qd_2) rate of joint 2 */
+    const real prs_qd_2_t = -1/v.prs_v_2_in_axes0_y;
+    const real prs_qd_2_t_2 = prs_qd_2_t*(v.prs_S_dot_x*m->prs_base_frame_xy[i] +
+        v.prs_S_dot_y*m->prs_base_frame_yy[i] + v.prs_S_dot_z*m->prs_base_frame_zy[i]);
+    /* (prs-W_2) centripetal tensor of link 2 */
+    const real prs_W_2_t = prs_qd_2_t_2*prs_qd_2_t_2;
+    /* (prs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real prs_rel_o_in_axes2_x = v.axis_x_prs_axes2_x*v.prs_u_1_x +
+        v.axis_x_prs_axes2_y*v.prs_u_1_y + v.axis_x_prs_axes2_z*v.prs_u_1_z +
+        m->prs_platform_joint_offset_x[i]*prs_qd_2_t_2*prs_qd_2_t_2;
+    /* (prs-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real prs_qdd_1_o_t = prs_qd_2_t*(v.prs_c_2*v.prs_u_1_in_axes2_y +
+        prs_rel_o_in_axes2_x*v.prs_s_2);
+    const real prs_qdd_1_o = v.prs_c_2*prs_rel_o_in_axes2_x +
+        prs_qdd_1_o_t*v.prs_v_2_in_axes0_x - v.prs_s_2*v.prs_u_1_in_axes2_y;
+    /* (prs-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
+    const real prs_acc_1_o_in_axes0_x = prs_qdd_1_o - m->prs_g_in_axes0_x[i];
+    /* (prs-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
+    const real prs_acc_2_o_in_axes2_x = v.prs_c_2*prs_qdd_1_o -
+        v.prs_c_2*m->prs_g_in_axes0_x[i] - m->prs_g_in_axes0_y[i]*v.prs_s_2;
+    const real prs_acc_2_o_in_axes2_y = m->prs_g_in_axes0_x[i]*v.prs_s_2 -
+        v.prs_c_2*m->prs_g_in_axes0_y[i] - prs_qdd_1_o*v.prs_s_2;
+    /* (prs-f_2_o) remainder of: inertia force of link 2 less its weight */
+    const real prs_f_2_o_in_axes2_x = prs_acc_2_o_in_axes2_x*m->prs_link2_mass[i] +
+        m->prs_h_2_in_spec2_y[i]*prs_qdd_1_o_t - prs_W_2_t*m->prs_h_2_in_spec2_x[i];
+    const real prs_f_2_o_in_axes2_y = prs_acc_2_o_in_axes2_y*m->prs_link2_mass[i] -
+        prs_W_2_t*m->prs_h_2_in_spec2_y[i] - m->prs_h_2_in_spec2_x[i]*prs_qdd_1_o_t;
+    /* (prs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real prs_mu_2_o_in_axes2_z = prs_acc_2_o_in_axes2_y*m->prs_h_2_in_spec2_x[i] -
+        m->prs_J_2_in_spec2_zz[i]*prs_qdd_1_o_t -
+        prs_acc_2_o_in_axes2_x*m->prs_h_2_in_spec2_y[i];
+    /* (prs-T_1_o) remainder of: inertia force of the links from 1 outwards, the last link left out */
+    const real prs_T_1_o_in_axes0_x = prs_acc_1_o_in_axes0_x*m->prs_link1_mass[i] +
+        v.prs_c_2*prs_f_2_o_in_axes2_x - prs_f_2_o_in_axes2_y*v.prs_s_2;
+    /* (prs-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real prs_G_o_t = prs_qd_2_t*(prs_mu_2_o_in_axes2_z -
+        prs_T_1_o_in_axes0_x*v.prs_v_2_in_axes0_x);
+    const real prs_G_o_in_axes2_x = prs_T_1_o_in_axes0_x*v.prs_c_2 - prs_G_o_t*v.prs_s_2;
+    const real prs_G_o_in_axes2_y = -prs_G_o_t*v.prs_c_2 - prs_T_1_o_in_axes0_x*v.prs_s_2;
+    /* (prs-U) velocity and gravity terms of the leg force */
+    const real prs_U_x = v.axis_x_prs_axes2_x*prs_G_o_in_axes2_x +
+        v.axis_y_prs_axes2_x*prs_G_o_in_axes2_y;
+    const real prs_U_y = v.axis_x_prs_axes2_y*prs_G_o_in_axes2_x +
+        v.axis_y_prs_axes2_y*prs_G_o_in_axes2_y;
+    const real prs_U_z = v.axis_x_prs_axes2_z*prs_G_o_in_axes2_x +
+        v.axis_y_prs_axes2_z*prs_G_o_in_axes2_y;
+    /* (Z_a) rotational part of Z */
+    const real prs_Z_a_t = prs_U_z*v.prs_q_y - prs_U_y*v.prs_q_z;
+    const real prs_Z_a_t_2 = prs_U_x*v.prs_q_z - prs_U_z*v.prs_q_x;
+    const real prs_Z_a_t_3 = prs_U_y*v.prs_q_x - prs_U_x*v.prs_q_y;
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, prs_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, prs_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, prs_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) */
+    gather(&terms[3*count + k], add, prs_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[4*count + k], add, prs_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[5*count + k], add, prs_Z_a_t_3);  /* Z_a_z_of_legs */
+    o[0*count + k] = UNLESS(v.prs_disc_1 >= 0);
+    o[1*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i])
+        + UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*m->prs_size[i]);
 }
 
-INLINE void Z_place_prs(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void Z_place_prs(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o[0*count + first + k];
-        t->singular[k] += o[1*count + first + k];
-    }
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
 }
 
-INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict *t)
+INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (Z_t) translational part of Z */
-        const real Z_p_x = s[9*w + k];
-        const real Z_t_x_of_legs = sums[0*w + k];
-        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[10*w + k];
-        const real Z_t_y_of_legs = sums[1*w + k];
-        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[11*w + k];
-        const real Z_t_z_of_legs = sums[2*w + k];
-        const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-        /* (Z_a) rotational part of Z */
-        const real Z_a_x_of_legs = sums[3*w + k];
-        const real Z_q_x = s[12*w + k];
-        const real Z_a_x = Z_a_x_of_legs + Z_q_x;
-        const real Z_a_y_of_legs = sums[4*w + k];
-        const real Z_q_y = s[13*w + k];
-        const real Z_a_y = Z_a_y_of_legs + Z_q_y;
-        const real Z_a_z_of_legs = sums[5*w + k];
-        const real Z_q_z = s[14*w + k];
-        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
-        /* (Z_t) translational part of Z */
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-        Z[2*w + k] = Z_t_z;
-        /* (Z_a) rotational part of Z */
-        Z[3*w + k] = Z_a_x;
-        Z[4*w + k] = Z_a_y;
-        Z[5*w + k] = Z_a_z;
-        t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
-    }
+    /* (Z_t) */
+    const real Z_p_x = s[9*w + k];
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[10*w + k];
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    const real Z_p_z = s[11*w + k];
+    const real Z_t_z_of_legs = sums[2*w + k];
+    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
+    /* (Z_a) */
+    const real Z_a_x_of_legs = sums[3*w + k];
+    const real Z_q_x = s[12*w + k];
+    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_y_of_legs = sums[4*w + k];
+    const real Z_q_y = s[13*w + k];
+    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_z_of_legs = sums[5*w + k];
+    const real Z_q_z = s[14*w + k];
+    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    /* (Z_a) */
+    Z[3*w + k] = Z_a_x;
+    Z[4*w + k] = Z_a_y;
+    Z[5*w + k] = Z_a_z;
+    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_prs[6*LEGS(LEGS_OF_prs)] = {0}, o_prs[2*LEGS(LEGS_OF_prs)] = {0};
-    Z_before(m, 1, X, V, s, t);
-    Z_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), 0, X, V, terms_prs, o_prs);
-    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        Z_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, t);
+    Z_before(m, 1, 0, X, V, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
+        Z_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), 0, s, X, V, terms_prs, o_prs);
+    }
+    for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        Z_place_prs(0, i, LEGS(LEGS_OF_prs), o_prs, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_prs + n*LEGS(LEGS_OF_prs), LEGS_OF_prs);
     }
-    Z_after(1, s, sums, Z, t);
+    Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z, verdict
+    *restrict t)
 {
     real s[15*LANES], sums[6*LANES];
     real o_prs[2*LANES];
-    Z_before(m, LANES, X, V, s, t);
-    clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        Z_legs_prs(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_prs);
-        Z_place_prs(LANES, LANES, o_prs, 0, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        Z_before(m, LANES, k, X, V, s, t);
     }
-    Z_after(LANES, s, sums, Z, t);
+    clear(sums, 6*LANES);
+    for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_legs_prs(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_prs);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_place_prs(k, k, LANES, o_prs, t);
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        Z_after(LANES, k, s, sums, Z, t);
+    }
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void H_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, const real *X, real *o)
+INLINE void H_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_prs v;
-        stage_prs_X(m, w, i, j, s, X, &v);
-        stage_prs_H_condition(m, i, &v);
-        /* (prs-w_1) reciprocal vector 1 */
-        o[0*count + k] = v.prs_w_1_x;
-        o[1*count + k] = v.prs_w_1_y;
-        o[2*count + k] = v.prs_w_1_z;
-        /* (prs-H_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = v.prs_H_a_1_x;
-        o[4*count + k] = v.prs_H_a_1_y;
-        o[5*count + k] = v.prs_H_a_1_z;
-        o[8*count + k] = (v.prs_w_1_x + (v.prs_w_1_y + v.prs_w_1_z)) + (v.prs_H_a_1_x +
-            (v.prs_H_a_1_y + v.prs_H_a_1_z));
-        const real prs_root_2_t = m->prs_root_2_t[i];
-        const real prs_size = m->prs_size[i];
-        o[6*count + k] = UNLESS(v.prs_disc_1 >= 0);
-        o[7*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
-            UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*prs_size);
-    }
+    values_prs v;
+    stage_prs_X(m, w, i, j, s, X, &v);
+    stage_prs_H_condition(m, i, &v);
+    /* (prs-w_1) reciprocal vector 1 */
+    o[0*count + k] = v.prs_w_1_x;
+    o[1*count + k] = v.prs_w_1_y;
+    o[2*count + k] = v.prs_w_1_z;
+    /* (prs-H_a_1) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.prs_H_a_1_x;
+    o[4*count + k] = v.prs_H_a_1_y;
+    o[5*count + k] = v.prs_H_a_1_z;
+    o[8*count + k] = (v.prs_w_1_x + (v.prs_w_1_y + v.prs_w_1_z)) + (v.prs_H_a_1_x +
+        (v.prs_H_a_1_y + v.prs_H_a_1_z));
+    o[6*count + k] = UNLESS(v.prs_disc_1 >= 0);
+    o[7*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i])
+        + UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*m->prs_size[i]);
 }
 
-INLINE void H_place_prs(size_t w, size_t count, const real *o, size_t leg, size_t first, real *H,
-    verdict *t)
+INLINE void H_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
+    *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        H[(3*NU + leg)*w + k] = o[3*count + first + k];
-        H[(4*NU + leg)*w + k] = o[4*count + first + k];
-        H[(5*NU + leg)*w + k] = o[5*count + first + k];
-        t->unreachable[k] += o[6*count + first + k];
-        t->singular[k] += o[7*count + first + k];
-        t->total[k] += o[8*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    H[(3*NU + i)*w + k] = o[3*count + at];
+    H[(4*NU + i)*w + k] = o[4*count + at];
+    H[(5*NU + i)*w + k] = o[5*count + at];
+    t->unreachable[k] += o[6*count + at];
+    t->singular[k] += o[7*count + at];
+    t->total[k] += o[8*count + at];
 }
 
-INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
+APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
     real s[9] = {0};
     real o_prs[9*LEGS(LEGS_OF_prs)] = {0};
-    H_before(m, 1, X, s, t);
-    H_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), X, o_prs);
-    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        H_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, H, t);
+    H_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
+        H_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, o_prs);
+    }
+    for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        H_place_prs(1, i, 0, i, LEGS(LEGS_OF_prs), o_prs, H, t);
     }
 }
 
-INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
+INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verdict *restrict t)
 {
     real s[9*LANES];
     real o_prs[9*LANES];
-    H_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        H_legs_prs(m, LANES, leg, 0, s, 1, LANES, X, o_prs);
-        H_place_prs(LANES, LANES, o_prs, leg, 0, H, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        H_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            H_legs_prs(m, LANES, i, k, k, LANES, s, X, o_prs);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            H_place_prs(LANES, i, k, k, LANES, o_prs, H, t);
+        }
     }
 }
 
 /* ---- Hk ---- */
-INLINE void Hk_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void Hk_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void Hk_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, const real *X, real *o)
+INLINE void Hk_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_prs v;
-        stage_prs_X(m, w, i, j, s, X, &v);
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        o[0*count + k] = prs_base_frame_xz;
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        o[1*count + k] = prs_base_frame_yz;
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        o[2*count + k] = prs_base_frame_zz;
-        /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = v.prs_Hk_a_1_x;
-        o[4*count + k] = v.prs_Hk_a_1_y;
-        o[5*count + k] = v.prs_Hk_a_1_z;
-        o[6*count + k] = (prs_base_frame_xz + (prs_base_frame_yz + prs_base_frame_zz)) +
-            (v.prs_Hk_a_1_x + (v.prs_Hk_a_1_y + v.prs_Hk_a_1_z));
-    }
+    values_prs v;
+    stage_prs_X(m, w, i, j, s, X, &v);
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    o[0*count + k] = m->prs_base_frame_xz[i];
+    o[1*count + k] = m->prs_base_frame_yz[i];
+    o[2*count + k] = m->prs_base_frame_zz[i];
+    /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.prs_Hk_a_1_x;
+    o[4*count + k] = v.prs_Hk_a_1_y;
+    o[5*count + k] = v.prs_Hk_a_1_z;
+    o[6*count + k] = (m->prs_base_frame_xz[i] + (m->prs_base_frame_yz[i] +
+        m->prs_base_frame_zz[i])) + (v.prs_Hk_a_1_x + (v.prs_Hk_a_1_y + v.prs_Hk_a_1_z));
 }
 
-INLINE void Hk_place_prs(size_t w, size_t count, const real *o, size_t leg, size_t first, real
-    *Hk, verdict *t)
+INLINE void Hk_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *Hk, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        Hk[leg*w + k] = o[0*count + first + k];
-        Hk[(NC + leg)*w + k] = o[1*count + first + k];
-        Hk[(2*NC + leg)*w + k] = o[2*count + first + k];
-        Hk[(3*NC + leg)*w + k] = o[3*count + first + k];
-        Hk[(4*NC + leg)*w + k] = o[4*count + first + k];
-        Hk[(5*NC + leg)*w + k] = o[5*count + first + k];
-        t->total[k] += o[6*count + first + k];
-    }
+    Hk[i*w + k] = o[0*count + at];
+    Hk[(NC + i)*w + k] = o[1*count + at];
+    Hk[(2*NC + i)*w + k] = o[2*count + at];
+    Hk[(3*NC + i)*w + k] = o[3*count + at];
+    Hk[(4*NC + i)*w + k] = o[4*count + at];
+    Hk[(5*NC + i)*w + k] = o[5*count + at];
+    t->total[k] += o[6*count + at];
 }
 
-INLINE void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
+APART void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
 {
     real s[9] = {0};
     real o_prs[7*LEGS(LEGS_OF_prs)] = {0};
-    Hk_before(m, 1, X, s, t);
-    Hk_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), X, o_prs);
-    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        Hk_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, Hk, t);
+    Hk_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
+        Hk_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, o_prs);
+    }
+    for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        Hk_place_prs(1, i, 0, i, LEGS(LEGS_OF_prs), o_prs, Hk, t);
     }
 }
 
-INLINE void Hk_run_lanes(const prepared *m, const real *X, real *Hk, verdict *t)
+INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, verdict *restrict t)
 {
     real s[9*LANES];
     real o_prs[7*LANES];
-    Hk_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        Hk_legs_prs(m, LANES, leg, 0, s, 1, LANES, X, o_prs);
-        Hk_place_prs(LANES, LANES, o_prs, leg, 0, Hk, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        Hk_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            Hk_legs_prs(m, LANES, i, k, k, LANES, s, X, o_prs);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            Hk_place_prs(LANES, i, k, k, LANES, o_prs, Hk, t);
+        }
     }
 }
 
 /* ---- constraint_bias ---- */
-INLINE void constraint_bias_before(const prepared *m, size_t w, const real *X, real *s, verdict
-    *t)
+INLINE void constraint_bias_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void constraint_bias_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const
-    real *s, size_t states, size_t count, const real *X, const real *V, real *o)
+INLINE void constraint_bias_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k,
+    size_t count, const real *s, const real *X, const real *V, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_prs v;
-        stage_prs_X(m, w, i, j, s, X, &v);
-        /* (prs-u_1) centripetal acceleration of the connection point */
-        const real omega_y = V[4*w + j];
-        const real omega_z = V[5*w + j];
-        const real prs_u_1_t = omega_y*v.prs_q_z - omega_z*v.prs_q_y;
-        const real omega_x = V[3*w + j];
-        const real prs_u_1_t_2 = omega_z*v.prs_q_x - omega_x*v.prs_q_z;
-        const real prs_u_1_t_3 = omega_x*v.prs_q_y - omega_y*v.prs_q_x;
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_u_1_in_axes2_z = prs_base_frame_xz*(omega_y*prs_u_1_t_3 -
-            omega_z*prs_u_1_t_2) + prs_base_frame_yz*(omega_z*prs_u_1_t - omega_x*prs_u_1_t_3) +
-            prs_base_frame_zz*(omega_x*prs_u_1_t_2 - omega_y*prs_u_1_t);
-        /* (prs-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-           */
-        o[0*count + k] = prs_u_1_in_axes2_z;
-        o[1*count + k] = prs_u_1_in_axes2_z;
-    }
+    values_prs v;
+    stage_prs_X(m, w, i, j, s, X, &v);
+    /* (prs-u_1) centripetal acceleration of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real prs_u_1_t = omega_y*v.prs_q_z - omega_z*v.prs_q_y;
+    const real omega_x = V[3*w + j];
+    const real prs_u_1_t_2 = omega_z*v.prs_q_x - omega_x*v.prs_q_z;
+    const real prs_u_1_t_3 = omega_x*v.prs_q_y - omega_y*v.prs_q_x;
+    const real prs_u_1_in_axes2_z = m->prs_base_frame_xz[i]*(omega_y*prs_u_1_t_3 -
+        omega_z*prs_u_1_t_2) + m->prs_base_frame_yz[i]*(omega_z*prs_u_1_t -
+        omega_x*prs_u_1_t_3) + m->prs_base_frame_zz[i]*(omega_x*prs_u_1_t_2 -
+        omega_y*prs_u_1_t);
+    /* (prs-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+       */
+    o[0*count + k] = prs_u_1_in_axes2_z;
+    o[1*count + k] = prs_u_1_in_axes2_z;
 }
 
-INLINE void constraint_bias_place_prs(size_t w, size_t count, const real *o, size_t leg, size_t
-    first, real *constraint_bias, verdict *t)
+INLINE void constraint_bias_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count, const
+    real *o, real *constraint_bias, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        constraint_bias[leg*w + k] = o[0*count + first + k];
-        t->total[k] += o[1*count + first + k];
-    }
+    constraint_bias[i*w + k] = o[0*count + at];
+    t->total[k] += o[1*count + at];
 }
 
 INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V, real
@@ -2986,757 +2928,703 @@ INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V,
 {
     real s[9] = {0};
     real o_prs[2*LEGS(LEGS_OF_prs)] = {0};
-    constraint_bias_before(m, 1, X, s, t);
-    constraint_bias_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), X, V, o_prs);
-    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        constraint_bias_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, constraint_bias, t);
+    constraint_bias_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
+        constraint_bias_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, V, o_prs);
+    }
+    for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        constraint_bias_place_prs(1, i, 0, i, LEGS(LEGS_OF_prs), o_prs, constraint_bias, t);
     }
 }
 
 INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const real *V, real
-    *constraint_bias, verdict *t)
+    *restrict constraint_bias, verdict *restrict t)
 {
     real s[9*LANES];
     real o_prs[2*LANES];
-    constraint_bias_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        constraint_bias_legs_prs(m, LANES, leg, 0, s, 1, LANES, X, V, o_prs);
-        constraint_bias_place_prs(LANES, LANES, o_prs, leg, 0, constraint_bias, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        constraint_bias_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            constraint_bias_legs_prs(m, LANES, i, k, k, LANES, s, X, V, o_prs);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            constraint_bias_place_prs(LANES, i, k, k, LANES, o_prs, constraint_bias, t);
+        }
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, real *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        stage_V_X(w, k, V, &v);
-        /* (W_p) centripetal tensor of the platform */
-        const real omega_x = V[3*w + k];
-        const real omega_y = V[4*w + k];
-        const real W_p_xy = omega_x*omega_y;
-        const real omega_z = V[5*w + k];
-        const real W_p_xz = omega_x*omega_z;
-        const real W_p_yz = omega_y*omega_z;
-        /* (a_t) acceleration of the platform origin, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real t_ddot_x = A[0*w + k];
-        const real a_t_x = t_ddot_x - gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real t_ddot_y = A[1*w + k];
-        const real a_t_y = t_ddot_y - gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real t_ddot_z = A[2*w + k];
-        const real a_t_z = t_ddot_z - gravity_z;
-        const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
-        const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
-        const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
-        /* (f_p) inertia force of the platform less its weight */
-        const real f_p_t = omega_x*omega_x;
-        const real f_p_t_2 = omega_y*omega_y;
-        const real f_p_t_3 = omega_z*omega_z;
-        const real alpha_y = A[4*w + k];
-        const real alpha_z = A[5*w + k];
-        const real platform_mass = m->platform_mass;
-        const real f_p_x = a_t_x*platform_mass + v.h_star_y*(W_p_xy - alpha_z) +
-            v.h_star_z*(W_p_xz + alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
-        const real alpha_x = A[3*w + k];
-        const real f_p_y = a_t_y*platform_mass + v.h_star_x*(W_p_xy + alpha_z) +
-            v.h_star_z*(W_p_yz - alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
-        const real f_p_z = a_t_z*platform_mass + v.h_star_x*(W_p_xz - alpha_y) +
-            v.h_star_y*(W_p_yz + alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
-        /* (mu_p) inertia moment of the platform less that of its weight */
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real mu_p_t = J_star_in_platform_xx*v.omega_in_platform_x +
-            J_star_in_platform_xy*v.omega_in_platform_y +
-            J_star_in_platform_xz*v.omega_in_platform_z;
-        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real mu_p_t_2 = J_star_in_platform_xy*v.omega_in_platform_x +
-            J_star_in_platform_yy*v.omega_in_platform_y +
-            J_star_in_platform_yz*v.omega_in_platform_z;
-        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real mu_p_t_3 = J_star_in_platform_xz*v.omega_in_platform_x +
-            J_star_in_platform_yz*v.omega_in_platform_y +
-            J_star_in_platform_zz*v.omega_in_platform_z;
-        const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
-        const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
-        const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real mu_p_in_platform_x = J_star_in_platform_xx*alpha_in_platform_x +
-            J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z
-            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
-            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real mu_p_in_platform_y = J_star_in_platform_xy*alpha_in_platform_x +
-            J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z
-            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
-            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
-        const real mu_p_in_platform_z = J_star_in_platform_xz*alpha_in_platform_x +
-            J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z
-            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
-            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
-        const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
-            v.R_xz*mu_p_in_platform_z;
-        const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
-            v.R_yz*mu_p_in_platform_z;
-        const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
-            v.R_zz*mu_p_in_platform_z;
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = f_p_x;
-        s[10*w + k] = f_p_y;
-        s[11*w + k] = f_p_z;
-        s[12*w + k] = mu_p_x;
-        s[13*w + k] = mu_p_y;
-        s[14*w + k] = mu_p_z;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    stage_V_X(w, k, V, &v);
+    /* (W_p) centripetal tensor of the platform */
+    const real omega_x = V[3*w + k];
+    const real omega_y = V[4*w + k];
+    const real W_p_xy = omega_x*omega_y;
+    const real omega_z = V[5*w + k];
+    const real W_p_xz = omega_x*omega_z;
+    const real W_p_yz = omega_y*omega_z;
+    /* (a_t) acceleration of the platform origin, less gravity */
+    const real t_ddot_x = A[0*w + k];
+    const real a_t_x = t_ddot_x - m->gravity_x;
+    const real t_ddot_y = A[1*w + k];
+    const real a_t_y = t_ddot_y - m->gravity_y;
+    const real t_ddot_z = A[2*w + k];
+    const real a_t_z = t_ddot_z - m->gravity_z;
+    const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
+    const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
+    const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
+    /* (f_p) inertia force of the platform less its weight */
+    const real f_p_t = omega_x*omega_x;
+    const real f_p_t_2 = omega_y*omega_y;
+    const real f_p_t_3 = omega_z*omega_z;
+    const real alpha_y = A[4*w + k];
+    const real alpha_z = A[5*w + k];
+    const real f_p_x = a_t_x*m->platform_mass + v.h_star_y*(W_p_xy - alpha_z) +
+        v.h_star_z*(W_p_xz + alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+    const real alpha_x = A[3*w + k];
+    const real f_p_y = a_t_y*m->platform_mass + v.h_star_x*(W_p_xy + alpha_z) +
+        v.h_star_z*(W_p_yz - alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
+    const real f_p_z = a_t_z*m->platform_mass + v.h_star_x*(W_p_xz - alpha_y) +
+        v.h_star_y*(W_p_yz + alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
+    /* (mu_p) inertia moment of the platform less that of its weight */
+    const real mu_p_t = m->J_star_in_platform_xx*v.omega_in_platform_x +
+        m->J_star_in_platform_xy*v.omega_in_platform_y +
+        m->J_star_in_platform_xz*v.omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*v.omega_in_platform_x +
+        m->J_star_in_platform_yy*v.omega_in_platform_y +
+        m->J_star_in_platform_yz*v.omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*v.omega_in_platform_x +
+        m->J_star_in_platform_yz*v.omega_in_platform_y +
+        m->J_star_in_platform_zz*v.omega_in_platform_z;
+    const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
+    const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
+    const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+    const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
+        m->J_star_in_platform_xy*alpha_in_platform_y +
+        m->J_star_in_platform_xz*alpha_in_platform_z +
+        a_t_in_platform_z*m->h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
+        a_t_in_platform_y*m->h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+    const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
+        m->J_star_in_platform_yy*alpha_in_platform_y +
+        m->J_star_in_platform_yz*alpha_in_platform_z +
+        a_t_in_platform_x*m->h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
+        a_t_in_platform_z*m->h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
+    const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
+        m->J_star_in_platform_yz*alpha_in_platform_y +
+        m->J_star_in_platform_zz*alpha_in_platform_z +
+        a_t_in_platform_y*m->h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
+        a_t_in_platform_x*m->h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
+    const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
+        v.R_xz*mu_p_in_platform_z;
+    const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
+        v.R_yz*mu_p_in_platform_z;
+    const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
+        v.R_zz*mu_p_in_platform_z;
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = f_p_x;
+    s[10*w + k] = f_p_y;
+    s[11*w + k] = f_p_z;
+    s[12*w + k] = mu_p_x;
+    s[13*w + k] = mu_p_y;
+    s[14*w + k] = mu_p_z;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void required_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
-    *terms, real *o)
+INLINE void required_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, const real *V, const real *A, real *terms, real
+    *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_prs v;
-        stage_prs_X(m, w, i, j, s, X, &v);
-        stage_prs_A_X(w, j, A, &v);
-        stage_prs_V_X(m, w, i, j, V, &v);
-        stage_prs_A_V_X(m, w, i, j, V, &v);
-        stage_prs_legs_required(m, i, &v);
-        /* (R_a) moment that actuators and external wrench must give */
-        const real prs_R_a_t = v.prs_c_y*v.prs_q_z - v.prs_c_z*v.prs_q_y;
-        const real prs_R_a_t_2 = v.prs_c_z*v.prs_q_x - v.prs_c_x*v.prs_q_z;
-        const real prs_R_a_t_3 = v.prs_c_x*v.prs_q_y - v.prs_c_y*v.prs_q_x;
-        /* (prs-H_a_1) moment of the column's unit force about the platform origin */
-        const real prs_H_a_1_x = v.prs_q_y*v.prs_w_1_z - v.prs_q_z*v.prs_w_1_y;
-        const real prs_H_a_1_y = v.prs_q_z*v.prs_w_1_x - v.prs_q_x*v.prs_w_1_z;
-        const real prs_H_a_1_z = v.prs_q_x*v.prs_w_1_y - v.prs_q_y*v.prs_w_1_x;
-        /* (R_t) force that actuators and external wrench must give */
-        gather(&terms[0*count + k], add, v.prs_c_x);  /* R_t_x_of_legs */
-        gather(&terms[1*count + k], add, v.prs_c_y);  /* R_t_y_of_legs */
-        gather(&terms[2*count + k], add, v.prs_c_z);  /* R_t_z_of_legs */
-        /* (R_a) moment that actuators and external wrench must give */
-        gather(&terms[3*count + k], add, prs_R_a_t);  /* R_a_x_of_legs */
-        gather(&terms[4*count + k], add, prs_R_a_t_2);  /* R_a_y_of_legs */
-        gather(&terms[5*count + k], add, prs_R_a_t_3);  /* R_a_z_of_legs */
-        /* (prs-w_1) reciprocal vector 1 */
-        o[0*count + k] = v.prs_w_1_x;
-        o[1*count + k] = v.prs_w_1_y;
-        o[2*count + k] = v.prs_w_1_z;
-        /* (prs-H_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = prs_H_a_1_x;
-        o[4*count + k] = prs_H_a_1_y;
-        o[5*count + k] = prs_H_a_1_z;
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        o[6*count + k] = prs_base_frame_xz;
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        o[7*count + k] = prs_base_frame_yz;
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        o[8*count + k] = prs_base_frame_zz;
-        /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[9*count + k] = v.prs_Hk_a_1_x;
-        o[10*count + k] = v.prs_Hk_a_1_y;
-        o[11*count + k] = v.prs_Hk_a_1_z;
-        const real prs_root_2_t = m->prs_root_2_t[i];
-        const real prs_size = m->prs_size[i];
-        o[12*count + k] = UNLESS(v.prs_disc_1 >= 0);
-        o[13*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
-            UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*prs_size);
-    }
+    values_prs v;
+    stage_prs_X(m, w, i, j, s, X, &v);
+    stage_prs_A_X(w, j, A, &v);
+    stage_prs_V_X(m, w, i, j, V, &v);
+    stage_prs_A_V_X(m, w, i, j, V, &v);
+    stage_prs_legs_required(m, i, &v);
+    /* (R_a) moment that actuators and external wrench must give */
+    const real prs_R_a_t = v.prs_c_y*v.prs_q_z - v.prs_c_z*v.prs_q_y;
+    const real prs_R_a_t_2 = v.prs_c_z*v.prs_q_x - v.prs_c_x*v.prs_q_z;
+    const real prs_R_a_t_3 = v.prs_c_x*v.prs_q_y - v.prs_c_y*v.prs_q_x;
+    /* (prs-H_a_1) moment of the column's unit force about the platform origin */
+    const real prs_H_a_1_x = v.prs_q_y*v.prs_w_1_z - v.prs_q_z*v.prs_w_1_y;
+    const real prs_H_a_1_y = v.prs_q_z*v.prs_w_1_x - v.prs_q_x*v.prs_w_1_z;
+    const real prs_H_a_1_z = v.prs_q_x*v.prs_w_1_y - v.prs_q_y*v.prs_w_1_x;
+    /* (R_t) force that actuators and external wrench must give */
+    gather(&terms[0*count + k], add, v.prs_c_x);  /* R_t_x_of_legs */
+    gather(&terms[1*count + k], add, v.prs_c_y);  /* R_t_y_of_legs */
+    gather(&terms[2*count + k], add, v.prs_c_z);  /* R_t_z_of_legs */
+    /* (R_a) */
+    gather(&terms[3*count + k], add, prs_R_a_t);  /* R_a_x_of_legs */
+    gather(&terms[4*count + k], add, prs_R_a_t_2);  /* R_a_y_of_legs */
+    gather(&terms[5*count + k], add, prs_R_a_t_3);  /* R_a_z_of_legs */
+    /* (prs-w_1) reciprocal vector 1 */
+    o[0*count + k] = v.prs_w_1_x;
+    o[1*count + k] = v.prs_w_1_y;
+    o[2*count + k] = v.prs_w_1_z;
+    /* (prs-H_a_1) */
+    o[3*count + k] = prs_H_a_1_x;
+    o[4*count + k] = prs_H_a_1_y;
+    o[5*count + k] = prs_H_a_1_z;
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    o[6*count + k] = m->prs_base_frame_xz[i];
+    o[7*count + k] = m->prs_base_frame_yz[i];
+    o[8*count + k] = m->prs_base_frame_zz[i];
+    /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
+    o[9*count + k] = v.prs_Hk_a_1_x;
+    o[10*count + k] = v.prs_Hk_a_1_y;
+    o[11*count + k] = v.prs_Hk_a_1_z;
+    o[12*count + k] = UNLESS(v.prs_disc_1 >= 0);
+    o[13*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i])
+        + UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*m->prs_size[i]);
 }
 
-INLINE void required_place_prs(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *H, real *Hk, verdict *t)
+INLINE void required_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count, const real
+    *o, real *H, real *Hk, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        H[(3*NU + leg)*w + k] = o[3*count + first + k];
-        H[(4*NU + leg)*w + k] = o[4*count + first + k];
-        H[(5*NU + leg)*w + k] = o[5*count + first + k];
-        Hk[leg*w + k] = o[6*count + first + k];
-        Hk[(NC + leg)*w + k] = o[7*count + first + k];
-        Hk[(2*NC + leg)*w + k] = o[8*count + first + k];
-        Hk[(3*NC + leg)*w + k] = o[9*count + first + k];
-        Hk[(4*NC + leg)*w + k] = o[10*count + first + k];
-        Hk[(5*NC + leg)*w + k] = o[11*count + first + k];
-        t->unreachable[k] += o[12*count + first + k];
-        t->singular[k] += o[13*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    H[(3*NU + i)*w + k] = o[3*count + at];
+    H[(4*NU + i)*w + k] = o[4*count + at];
+    H[(5*NU + i)*w + k] = o[5*count + at];
+    Hk[i*w + k] = o[6*count + at];
+    Hk[(NC + i)*w + k] = o[7*count + at];
+    Hk[(2*NC + i)*w + k] = o[8*count + at];
+    Hk[(3*NC + i)*w + k] = o[9*count + at];
+    Hk[(4*NC + i)*w + k] = o[10*count + at];
+    Hk[(5*NC + i)*w + k] = o[11*count + at];
+    t->unreachable[k] += o[12*count + at];
+    t->singular[k] += o[13*count + at];
 }
 
-INLINE void required_after(size_t w, const real *s, const real *sums, real *required)
+INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (R_t) force that actuators and external wrench must give */
-        const real R_t_x_of_legs = sums[0*w + k];
-        const real f_p_x = s[9*w + k];
-        const real R_t_x = f_p_x - R_t_x_of_legs;
-        const real R_t_y_of_legs = sums[1*w + k];
-        const real f_p_y = s[10*w + k];
-        const real R_t_y = f_p_y - R_t_y_of_legs;
-        const real R_t_z_of_legs = sums[2*w + k];
-        const real f_p_z = s[11*w + k];
-        const real R_t_z = f_p_z - R_t_z_of_legs;
-        /* (R_a) moment that actuators and external wrench must give */
-        const real R_a_x_of_legs = sums[3*w + k];
-        const real mu_p_x = s[12*w + k];
-        const real R_a_x = R_a_x_of_legs + mu_p_x;
-        const real R_a_y_of_legs = sums[4*w + k];
-        const real mu_p_y = s[13*w + k];
-        const real R_a_y = R_a_y_of_legs + mu_p_y;
-        const real R_a_z_of_legs = sums[5*w + k];
-        const real mu_p_z = s[14*w + k];
-        const real R_a_z = R_a_z_of_legs + mu_p_z;
-        /* (R_t) force that actuators and external wrench must give */
-        required[0*w + k] = R_t_x;
-        required[1*w + k] = R_t_y;
-        required[2*w + k] = R_t_z;
-        /* (R_a) moment that actuators and external wrench must give */
-        required[3*w + k] = R_a_x;
-        required[4*w + k] = R_a_y;
-        required[5*w + k] = R_a_z;
-    }
+    /* (R_t) */
+    const real R_t_x_of_legs = sums[0*w + k];
+    const real f_p_x = s[9*w + k];
+    const real R_t_x = f_p_x - R_t_x_of_legs;
+    const real R_t_y_of_legs = sums[1*w + k];
+    const real f_p_y = s[10*w + k];
+    const real R_t_y = f_p_y - R_t_y_of_legs;
+    const real R_t_z_of_legs = sums[2*w + k];
+    const real f_p_z = s[11*w + k];
+    const real R_t_z = f_p_z - R_t_z_of_legs;
+    /* (R_a) */
+    const real R_a_x_of_legs = sums[3*w + k];
+    const real mu_p_x = s[12*w + k];
+    const real R_a_x = R_a_x_of_legs + mu_p_x;
+    const real R_a_y_of_legs = sums[4*w + k];
+    const real mu_p_y = s[13*w + k];
+    const real R_a_y = R_a_y_of_legs + mu_p_y;
+    const real R_a_z_of_legs = sums[5*w + k];
+    const real mu_p_z = s[14*w + k];
+    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    /* (R_t) */
+    required[0*w + k] = R_t_x;
+    required[1*w + k] = R_t_y;
+    required[2*w + k] = R_t_z;
+    /* (R_a) */
+    required[3*w + k] = R_a_x;
+    required[4*w + k] = R_a_y;
+    required[5*w + k] = R_a_z;
 }
 
-INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, real *Hk, verdict *t)
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_prs[6*LEGS(LEGS_OF_prs)] = {0}, o_prs[14*LEGS(LEGS_OF_prs)] = {0};
-    required_before(m, 1, X, V, A, s, t);
-    required_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), 0, X, V, A, terms_prs, o_prs);
-    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        required_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, H, Hk, t);
+    required_before(m, 1, 0, X, V, A, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
+        required_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), 0, s, X, V, A, terms_prs, o_prs);
+    }
+    for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        required_place_prs(1, i, 0, i, LEGS(LEGS_OF_prs), o_prs, H, Hk, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_prs + n*LEGS(LEGS_OF_prs), LEGS_OF_prs);
     }
-    required_after(1, s, sums, required);
+    required_after(1, 0, s, sums, required);
 }
 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *required, real *H, real *Hk, verdict *t)
+    real *restrict required, real *restrict H, real *restrict Hk, verdict *restrict t)
 {
     real s[15*LANES], sums[6*LANES];
     real o_prs[14*LANES];
-    required_before(m, LANES, X, V, A, s, t);
-    clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        required_legs_prs(m, LANES, leg, 0, s, 1, LANES, 1, X, V, A, sums, o_prs);
-        required_place_prs(LANES, LANES, o_prs, leg, 0, H, Hk, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        required_before(m, LANES, k, X, V, A, s, t);
     }
-    required_after(LANES, s, sums, required);
+    clear(sums, 6*LANES);
+    for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            required_legs_prs(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_prs);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            required_place_prs(LANES, i, k, k, LANES, o_prs, H, Hk, t);
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        required_after(LANES, k, s, sums, required);
+    }
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, const real *X, real *s, verdict
-    *t)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, real
+    *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void inverse_kinematics_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, const real *X, real *o)
+INLINE void inverse_kinematics_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k,
+    size_t count, const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        /* (prs-S) from the base point to the connection point */
-        const real R_xx = s[0*w + j];
-        const real R_xy = s[1*w + j];
-        const real R_xz = s[2*w + j];
-        const real prs_base_point_x = m->prs_base_point_x[i];
-        const real prs_platform_point_x = m->prs_platform_point_x[i];
-        const real prs_platform_point_y = m->prs_platform_point_y[i];
-        const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real t_x = X[0*w + j];
-        const real prs_S_x = t_x + R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
-            R_xz*prs_platform_point_z - prs_base_point_x;
-        const real R_yx = s[3*w + j];
-        const real R_yy = s[4*w + j];
-        const real R_yz = s[5*w + j];
-        const real prs_base_point_y = m->prs_base_point_y[i];
-        const real t_y = X[1*w + j];
-        const real prs_S_y = t_y + R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
-            R_yz*prs_platform_point_z - prs_base_point_y;
-        const real R_zx = s[6*w + j];
-        const real R_zy = s[7*w + j];
-        const real R_zz = s[8*w + j];
-        const real prs_base_point_z = m->prs_base_point_z[i];
-        const real t_z = X[2*w + j];
-        const real prs_S_z = t_z + R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
-            R_zz*prs_platform_point_z - prs_base_point_z;
-        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
-        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
-        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_S_in_axes0_x = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
-            prs_S_z*prs_base_frame_zx;
-        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
-        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
-        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_S_in_axes0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
-            prs_S_z*prs_base_frame_zy;
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_S_in_axes0_z = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
-            prs_S_z*prs_base_frame_zz;
-        /* (prs-disc_1) discriminant of the distance equation */
-        const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
-        const real prs_size_t = m->prs_size_t[i];
-        const real prs_disc_1 = prs_S_in_axes0_x*prs_S_in_axes0_x +
-            prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t - prs_disc_1_t;
-        /* (prs-q_1) displacement of joint 1 */
-        const real prs_branch_1 = m->prs_branch_1[i];
-        const real prs_q_1_t = -prs_branch_1*root(prs_disc_1);
-        const real prs_q_1 = prs_S_in_axes0_x - prs_q_1_t;
-        /* (prs-rho2_2) squared amplitude */
-        const real prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1);
-        /* (prs-q_2) displacement of joint 2 */
-        const real prs_q_2_t = 1/(root(prs_rho2_2));
-        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
-        const real prs_q_2 = angle(prs_S_in_axes0_y*prs_platform_joint_offset_x*prs_q_2_t,
-            prs_platform_joint_offset_x*prs_q_1_t*prs_q_2_t);
-        /* (prs-q_1) displacement of joint 1 */
-        o[0*count + k] = prs_q_1;
-        /* (prs-q_2) displacement of joint 2 */
-        o[1*count + k] = prs_q_2;
-        o[4*count + k] = prs_q_1 + prs_q_2;
-        const real prs_root_2_t = m->prs_root_2_t[i];
-        o[2*count + k] = UNLESS(prs_disc_1 >= 0);
-        o[3*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t);
-    }
+    /* (prs-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real t_x = X[0*w + j];
+    const real prs_S_x = t_x + R_xx*m->prs_platform_point_x[i] +
+        R_xy*m->prs_platform_point_y[i] + R_xz*m->prs_platform_point_z[i] -
+        m->prs_base_point_x[i];
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real t_y = X[1*w + j];
+    const real prs_S_y = t_y + R_yx*m->prs_platform_point_x[i] +
+        R_yy*m->prs_platform_point_y[i] + R_yz*m->prs_platform_point_z[i] -
+        m->prs_base_point_y[i];
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real t_z = X[2*w + j];
+    const real prs_S_z = t_z + R_zx*m->prs_platform_point_x[i] +
+        R_zy*m->prs_platform_point_y[i] + R_zz*m->prs_platform_point_z[i] -
+        m->prs_base_point_z[i];
+    const real prs_S_in_axes0_x = prs_S_x*m->prs_base_frame_xx[i] +
+        prs_S_y*m->prs_base_frame_yx[i] + prs_S_z*m->prs_base_frame_zx[i];
+    const real prs_S_in_axes0_y = prs_S_x*m->prs_base_frame_xy[i] +
+        prs_S_y*m->prs_base_frame_yy[i] + prs_S_z*m->prs_base_frame_zy[i];
+    const real prs_S_in_axes0_z = prs_S_x*m->prs_base_frame_xz[i] +
+        prs_S_y*m->prs_base_frame_yz[i] + prs_S_z*m->prs_base_frame_zz[i];
+    /* (prs-disc_1) discriminant of the distance equation */
+    const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
+    const real prs_disc_1 = prs_S_in_axes0_x*prs_S_in_axes0_x +
+        prs_S_in_axes0_z*prs_S_in_axes0_z + m->prs_size_t[i] - prs_disc_1_t;
+    /* (prs-q_1) displacement of joint 1 */
+    const real prs_q_1_t = -m->prs_branch_1[i]*root(prs_disc_1);
+    const real prs_q_1 = prs_S_in_axes0_x - prs_q_1_t;
+    /* (prs-rho2_2) squared amplitude */
+    const real prs_rho2_2 = m->prs_size_t[i]*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1);
+    /* (prs-q_2) displacement of joint 2 */
+    const real prs_q_2_t = 1/(root(prs_rho2_2));
+    const real prs_q_2 = angle(prs_S_in_axes0_y*m->prs_platform_joint_offset_x[i]*prs_q_2_t,
+        m->prs_platform_joint_offset_x[i]*prs_q_1_t*prs_q_2_t);
+    /* (prs-q_1) */
+    o[0*count + k] = prs_q_1;
+    /* (prs-q_2) */
+    o[1*count + k] = prs_q_2;
+    o[4*count + k] = prs_q_1 + prs_q_2;
+    o[2*count + k] = UNLESS(prs_disc_1 >= 0);
+    o[3*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i]);
 }
 
-INLINE void inverse_kinematics_place_prs(size_t w, size_t count, const real *o, size_t leg, size_t
-    first, real *q, verdict *t)
+INLINE void inverse_kinematics_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count,
+    const real *o, real *q, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        q[2*leg*w + k] = o[0*count + first + k];
-        q[(1 + 2*leg)*w + k] = o[1*count + first + k];
-        t->unreachable[k] += o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
+    q[2*i*w + k] = o[0*count + at];
+    q[(1 + 2*i)*w + k] = o[1*count + at];
+    t->unreachable[k] += o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
 }
 
-INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
+APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
     real s[9] = {0};
     real o_prs[5*LEGS(LEGS_OF_prs)] = {0};
-    inverse_kinematics_before(m, 1, X, s, t);
-    inverse_kinematics_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), X, o_prs);
-    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        inverse_kinematics_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, q, t);
+    inverse_kinematics_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
+        inverse_kinematics_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, o_prs);
+    }
+    for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        inverse_kinematics_place_prs(1, i, 0, i, LEGS(LEGS_OF_prs), o_prs, q, t);
     }
 }
 
-INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
+INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
+    verdict *restrict t)
 {
     real s[9*LANES];
     real o_prs[5*LANES];
-    inverse_kinematics_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        inverse_kinematics_legs_prs(m, LANES, leg, 0, s, 1, LANES, X, o_prs);
-        inverse_kinematics_place_prs(LANES, LANES, o_prs, leg, 0, q, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        inverse_kinematics_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_legs_prs(m, LANES, i, k, k, LANES, s, X, o_prs);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_place_prs(LANES, i, k, k, LANES, o_prs, q, t);
+        }
     }
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void joint_rates_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, const real *X, const real *V, real *o)
+INLINE void joint_rates_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, const real *s, const real *X, const real *V, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_prs v;
-        stage_prs_X(m, w, i, j, s, X, &v);
-        /* (prs-S_dot) velocity of the connection point */
-        const real omega_y = V[4*w + j];
-        const real omega_z = V[5*w + j];
-        const real t_dot_x = V[0*w + j];
-        const real prs_S_dot_x = t_dot_x + omega_y*v.prs_q_z - omega_z*v.prs_q_y;
-        const real omega_x = V[3*w + j];
-        const real t_dot_y = V[1*w + j];
-        const real prs_S_dot_y = t_dot_y + omega_z*v.prs_q_x - omega_x*v.prs_q_z;
-        const real t_dot_z = V[2*w + j];
-        const real prs_S_dot_z = t_dot_z + omega_x*v.prs_q_y - omega_y*v.prs_q_x;
-        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
-        const real prs_v_2_t = 1/(root(v.prs_rho2_2));
-        const real prs_branch_1 = m->prs_branch_1[i];
-        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
-        const real prs_v_2_in_axes0_y =
-            -prs_branch_1*root(v.prs_disc_1)*prs_platform_joint_offset_x*prs_platform_joint_offset_x*prs_v_2_t;
-        /* (prs-qd_1) rate of joint 1 */
-        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
-        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
-        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_qd_1_t = -(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
-            prs_S_dot_z*prs_base_frame_zy)/prs_v_2_in_axes0_y;
-        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
-        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
-        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_qd_1 = prs_S_dot_x*prs_base_frame_xx + prs_S_dot_y*prs_base_frame_yx +
-            prs_S_dot_z*prs_base_frame_zx -
-            v.prs_S_in_axes0_y*prs_platform_joint_offset_x*prs_platform_joint_offset_x*prs_qd_1_t*prs_v_2_t;
-        /* (prs-qd_1) rate of joint 1 */
-        o[0*count + k] = prs_qd_1;
-        /* (prs-qd_2) rate of joint 2 */
-        o[1*count + k] = -prs_qd_1_t;
-        o[4*count + k] = prs_qd_1 + prs_qd_1_t;
-        const real prs_root_2_t = m->prs_root_2_t[i];
-        const real prs_size = m->prs_size[i];
-        o[2*count + k] = UNLESS(v.prs_disc_1 >= 0);
-        o[3*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
-            UNLESS(magnitude(prs_v_2_in_axes0_y) > TOLERANCE*prs_size);
-    }
+    values_prs v;
+    stage_prs_X(m, w, i, j, s, X, &v);
+    /* (prs-S_dot) velocity of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real t_dot_x = V[0*w + j];
+    const real prs_S_dot_x = t_dot_x + omega_y*v.prs_q_z - omega_z*v.prs_q_y;
+    const real omega_x = V[3*w + j];
+    const real t_dot_y = V[1*w + j];
+    const real prs_S_dot_y = t_dot_y + omega_z*v.prs_q_x - omega_x*v.prs_q_z;
+    const real t_dot_z = V[2*w + j];
+    const real prs_S_dot_z = t_dot_z + omega_x*v.prs_q_y - omega_y*v.prs_q_x;
+    /* (prs-v_2) velocity of the connection point per rate of joint 2 */
+    const real prs_v_2_t = 1/(root(v.prs_rho2_2));
+    const real prs_v_2_in_axes0_y =
+        -m->prs_branch_1[i]*root(v.prs_disc_1)*m->prs_platform_joint_offset_x[i]*m->prs_platform_joint_offset_x[i]*prs_v_2_t;
+    /* (prs-qd_1) rate of joint 1 */
+    const real prs_qd_1_t = -(prs_S_dot_x*m->prs_base_frame_xy[i] +
+        prs_S_dot_y*m->prs_base_frame_yy[i] +
+        prs_S_dot_z*m->prs_base_frame_zy[i])/prs_v_2_in_axes0_y;
+    const real prs_qd_1 = prs_S_dot_x*m->prs_base_frame_xx[i] +
+        prs_S_dot_y*m->prs_base_frame_yx[i] + prs_S_dot_z*m->prs_base_frame_zx[i] -
+        v.prs_S_in_axes0_y*m->prs_platform_joint_offset_x[i]*m->prs_platform_joint_offset_x[i]*prs_qd_1_t*prs_v_2_t;
+    /* (prs-qd_1) */
+    o[0*count + k] = prs_qd_1;
+    /* (prs-qd_2) rate of joint 2 */
+    o[1*count + k] = -prs_qd_1_t;
+    o[4*count + k] = prs_qd_1 + prs_qd_1_t;
+    o[2*count + k] = UNLESS(v.prs_disc_1 >= 0);
+    o[3*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i])
+        + UNLESS(magnitude(prs_v_2_in_axes0_y) > TOLERANCE*m->prs_size[i]);
 }
 
-INLINE void joint_rates_place_prs(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *qd, verdict *t)
+INLINE void joint_rates_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count, const
+    real *o, real *qd, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        qd[2*leg*w + k] = o[0*count + first + k];
-        qd[(1 + 2*leg)*w + k] = o[1*count + first + k];
-        t->unreachable[k] += o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
+    qd[2*i*w + k] = o[0*count + at];
+    qd[(1 + 2*i)*w + k] = o[1*count + at];
+    t->unreachable[k] += o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
 }
 
-INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
     real s[9] = {0};
     real o_prs[5*LEGS(LEGS_OF_prs)] = {0};
-    joint_rates_before(m, 1, X, s, t);
-    joint_rates_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), X, V, o_prs);
-    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        joint_rates_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, qd, t);
+    joint_rates_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
+        joint_rates_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, V, o_prs);
+    }
+    for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        joint_rates_place_prs(1, i, 0, i, LEGS(LEGS_OF_prs), o_prs, qd, t);
     }
 }
 
-INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
-    verdict *t)
+INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
+    qd, verdict *restrict t)
 {
     real s[9*LANES];
     real o_prs[5*LANES];
-    joint_rates_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        joint_rates_legs_prs(m, LANES, leg, 0, s, 1, LANES, X, V, o_prs);
-        joint_rates_place_prs(LANES, LANES, o_prs, leg, 0, qd, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        joint_rates_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_legs_prs(m, LANES, i, k, k, LANES, s, X, V, o_prs);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_place_prs(LANES, i, k, k, LANES, o_prs, qd, t);
+        }
     }
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, const real *X, real *s,
-    verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
+    *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void joint_accelerations_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
-    *o)
+INLINE void joint_accelerations_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t
+    k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_prs v;
-        stage_prs_X(m, w, i, j, s, X, &v);
-        stage_prs_A_X(w, j, A, &v);
-        stage_prs_V_X(m, w, i, j, V, &v);
-        stage_prs_A_V_X(m, w, i, j, V, &v);
-        /* (prs-qd_2) rate of joint 2 */
-        const real prs_qd_2_t = -1/v.prs_v_2_in_axes0_y;
-        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
-        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
-        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_qd_2_t_2 = prs_qd_2_t*(v.prs_S_dot_x*prs_base_frame_xy +
-            v.prs_S_dot_y*prs_base_frame_yy + v.prs_S_dot_z*prs_base_frame_zy);
-        /* (prs-rel) acceleration of the connection point left to the joint accelerations */
-        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
-        const real prs_rel_in_axes2_x = v.prs_S_ddot_t*v.prs_c_2 + v.prs_S_ddot_t_2*v.prs_s_2 +
-            prs_platform_joint_offset_x*prs_qd_2_t_2*prs_qd_2_t_2;
-        /* (prs-qdd_1) acceleration of joint 1 */
-        const real prs_qdd_1_t = prs_qd_2_t*(v.prs_S_ddot_in_axes2_y*v.prs_c_2 +
-            prs_rel_in_axes2_x*v.prs_s_2);
-        const real prs_qdd_1 = v.prs_c_2*prs_rel_in_axes2_x - v.prs_S_ddot_in_axes2_y*v.prs_s_2 -
-            prs_platform_joint_offset_x*prs_qdd_1_t*v.prs_s_2;
-        /* (prs-qdd_1) acceleration of joint 1 */
-        o[0*count + k] = prs_qdd_1;
-        /* (prs-qdd_2) acceleration of joint 2 */
-        o[1*count + k] = -prs_qdd_1_t;
-        o[4*count + k] = prs_qdd_1 + prs_qdd_1_t;
-        const real prs_root_2_t = m->prs_root_2_t[i];
-        const real prs_size = m->prs_size[i];
-        o[2*count + k] = UNLESS(v.prs_disc_1 >= 0);
-        o[3*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
-            UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*prs_size);
-    }
+    values_prs v;
+    stage_prs_X(m, w, i, j, s, X, &v);
+    stage_prs_A_X(w, j, A, &v);
+    stage_prs_V_X(m, w, i, j, V, &v);
+    stage_prs_A_V_X(m, w, i, j, V, &v);
+    /* (prs-qd_2) rate of joint 2 */
+    const real prs_qd_2_t = -1/v.prs_v_2_in_axes0_y;
+    const real prs_qd_2_t_2 = prs_qd_2_t*(v.prs_S_dot_x*m->prs_base_frame_xy[i] +
+        v.prs_S_dot_y*m->prs_base_frame_yy[i] + v.prs_S_dot_z*m->prs_base_frame_zy[i]);
+    /* (prs-rel) acceleration of the connection point left to the joint accelerations */
+    const real prs_rel_in_axes2_x = v.prs_S_ddot_t*v.prs_c_2 + v.prs_S_ddot_t_2*v.prs_s_2 +
+        m->prs_platform_joint_offset_x[i]*prs_qd_2_t_2*prs_qd_2_t_2;
+    /* (prs-qdd_1) acceleration of joint 1 */
+    const real prs_qdd_1_t = prs_qd_2_t*(v.prs_S_ddot_in_axes2_y*v.prs_c_2 +
+        prs_rel_in_axes2_x*v.prs_s_2);
+    const real prs_qdd_1 = v.prs_c_2*prs_rel_in_axes2_x - v.prs_S_ddot_in_axes2_y*v.prs_s_2 -
+        m->prs_platform_joint_offset_x[i]*prs_qdd_1_t*v.prs_s_2;
+    /* (prs-qdd_1) */
+    o[0*count + k] = prs_qdd_1;
+    /* (prs-qdd_2) acceleration of joint 2 */
+    o[1*count + k] = -prs_qdd_1_t;
+    o[4*count + k] = prs_qdd_1 + prs_qdd_1_t;
+    o[2*count + k] = UNLESS(v.prs_disc_1 >= 0);
+    o[3*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i])
+        + UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*m->prs_size[i]);
 }
 
-INLINE void joint_accelerations_place_prs(size_t w, size_t count, const real *o, size_t leg,
-    size_t first, real *qdd, verdict *t)
+INLINE void joint_accelerations_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count,
+    const real *o, real *qdd, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        qdd[2*leg*w + k] = o[0*count + first + k];
-        qdd[(1 + 2*leg)*w + k] = o[1*count + first + k];
-        t->unreachable[k] += o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
+    qdd[2*i*w + k] = o[0*count + at];
+    qdd[(1 + 2*i)*w + k] = o[1*count + at];
+    t->unreachable[k] += o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
 }
 
-INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd, verdict *t)
+APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
+    real *qdd, verdict *t)
 {
     real s[9] = {0};
     real o_prs[5*LEGS(LEGS_OF_prs)] = {0};
-    joint_accelerations_before(m, 1, X, s, t);
-    joint_accelerations_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), X, V, A, o_prs);
-    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        joint_accelerations_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, qdd, t);
+    joint_accelerations_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
+        joint_accelerations_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, V, A, o_prs);
+    }
+    for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        joint_accelerations_place_prs(1, i, 0, i, LEGS(LEGS_OF_prs), o_prs, qdd, t);
     }
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *qdd, verdict *t)
+    real *A, real *restrict qdd, verdict *restrict t)
 {
     real s[9*LANES];
     real o_prs[5*LANES];
-    joint_accelerations_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        joint_accelerations_legs_prs(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_prs);
-        joint_accelerations_place_prs(LANES, LANES, o_prs, leg, 0, qdd, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        joint_accelerations_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_legs_prs(m, LANES, i, k, k, LANES, s, X, V, A, o_prs);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_place_prs(LANES, i, k, k, LANES, o_prs, qdd, t);
+        }
     }
 }
 
 /* ---- constraints ---- */
-INLINE void constraints_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void constraints_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void constraints_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, const real *X, real *o)
+INLINE void constraints_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        /* (prs-S) from the base point to the connection point */
-        const real R_xx = s[0*w + j];
-        const real R_xy = s[1*w + j];
-        const real R_xz = s[2*w + j];
-        const real prs_base_point_x = m->prs_base_point_x[i];
-        const real prs_platform_point_x = m->prs_platform_point_x[i];
-        const real prs_platform_point_y = m->prs_platform_point_y[i];
-        const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real t_x = X[0*w + j];
-        const real prs_S_x = t_x + R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
-            R_xz*prs_platform_point_z - prs_base_point_x;
-        const real R_yx = s[3*w + j];
-        const real R_yy = s[4*w + j];
-        const real R_yz = s[5*w + j];
-        const real prs_base_point_y = m->prs_base_point_y[i];
-        const real t_y = X[1*w + j];
-        const real prs_S_y = t_y + R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
-            R_yz*prs_platform_point_z - prs_base_point_y;
-        const real R_zx = s[6*w + j];
-        const real R_zy = s[7*w + j];
-        const real R_zz = s[8*w + j];
-        const real prs_base_point_z = m->prs_base_point_z[i];
-        const real t_z = X[2*w + j];
-        const real prs_S_z = t_z + R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
-            R_zz*prs_platform_point_z - prs_base_point_z;
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_S_in_axes0_z = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
-            prs_S_z*prs_base_frame_zz;
-        /* (prs-phi_c1) loop-closure residual along the constraint force */
-        o[0*count + k] = prs_S_in_axes0_z;
-        o[1*count + k] = prs_S_in_axes0_z;
-    }
+    /* (prs-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real t_x = X[0*w + j];
+    const real prs_S_x = t_x + R_xx*m->prs_platform_point_x[i] +
+        R_xy*m->prs_platform_point_y[i] + R_xz*m->prs_platform_point_z[i] -
+        m->prs_base_point_x[i];
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real t_y = X[1*w + j];
+    const real prs_S_y = t_y + R_yx*m->prs_platform_point_x[i] +
+        R_yy*m->prs_platform_point_y[i] + R_yz*m->prs_platform_point_z[i] -
+        m->prs_base_point_y[i];
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real t_z = X[2*w + j];
+    const real prs_S_z = t_z + R_zx*m->prs_platform_point_x[i] +
+        R_zy*m->prs_platform_point_y[i] + R_zz*m->prs_platform_point_z[i] -
+        m->prs_base_point_z[i];
+    const real prs_S_in_axes0_z = prs_S_x*m->prs_base_frame_xz[i] +
+        prs_S_y*m->prs_base_frame_yz[i] + prs_S_z*m->prs_base_frame_zz[i];
+    /* (prs-phi_c1) loop-closure residual along the constraint force */
+    o[0*count + k] = prs_S_in_axes0_z;
+    o[1*count + k] = prs_S_in_axes0_z;
 }
 
-INLINE void constraints_place_prs(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *constraints, verdict *t)
+INLINE void constraints_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count, const
+    real *o, real *constraints, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        constraints[leg*w + k] = o[0*count + first + k];
-        t->total[k] += o[1*count + first + k];
-    }
+    constraints[i*w + k] = o[0*count + at];
+    t->total[k] += o[1*count + at];
 }
 
-INLINE void constraints_run(const prepared *m, const real *X, real *constraints, verdict *t)
+APART void constraints_run(const prepared *m, const real *X, real *constraints, verdict *t)
 {
     real s[9] = {0};
     real o_prs[2*LEGS(LEGS_OF_prs)] = {0};
-    constraints_before(m, 1, X, s, t);
-    constraints_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), X, o_prs);
-    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        constraints_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, constraints, t);
+    constraints_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
+        constraints_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, o_prs);
+    }
+    for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        constraints_place_prs(1, i, 0, i, LEGS(LEGS_OF_prs), o_prs, constraints, t);
     }
 }
 
-INLINE void constraints_run_lanes(const prepared *m, const real *X, real *constraints, verdict *t)
+INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restrict constraints,
+    verdict *restrict t)
 {
     real s[9*LANES];
     real o_prs[2*LANES];
-    constraints_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        constraints_legs_prs(m, LANES, leg, 0, s, 1, LANES, X, o_prs);
-        constraints_place_prs(LANES, LANES, o_prs, leg, 0, constraints, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        constraints_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            constraints_legs_prs(m, LANES, i, k, k, LANES, s, X, o_prs);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            constraints_place_prs(LANES, i, k, k, LANES, o_prs, constraints, t);
+        }
     }
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void legs_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
+INLINE void legs_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    const real *s, const real *X, const real *V, const real *A, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_prs v;
-        stage_prs_X(m, w, i, j, s, X, &v);
-        stage_prs_A_X(w, j, A, &v);
-        stage_prs_V_X(m, w, i, j, V, &v);
-        stage_prs_A_V_X(m, w, i, j, V, &v);
-        stage_prs_legs_required(m, i, &v);
-        /* (prs-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        o[0*count + k] = v.prs_c_x;
-        o[1*count + k] = v.prs_c_y;
-        o[2*count + k] = v.prs_c_z;
-        /* (prs-w_1) reciprocal vector 1 */
-        o[3*count + k] = v.prs_w_1_x;
-        o[4*count + k] = v.prs_w_1_y;
-        o[5*count + k] = v.prs_w_1_z;
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        o[6*count + k] = prs_base_frame_xz;
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        o[7*count + k] = prs_base_frame_yz;
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        o[8*count + k] = prs_base_frame_zz;
-        const real prs_root_2_t = m->prs_root_2_t[i];
-        const real prs_size = m->prs_size[i];
-        o[9*count + k] = UNLESS(v.prs_disc_1 >= 0);
-        o[10*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
-            UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*prs_size);
-    }
+    values_prs v;
+    stage_prs_X(m, w, i, j, s, X, &v);
+    stage_prs_A_X(w, j, A, &v);
+    stage_prs_V_X(m, w, i, j, V, &v);
+    stage_prs_A_V_X(m, w, i, j, V, &v);
+    stage_prs_legs_required(m, i, &v);
+    /* (prs-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    o[0*count + k] = v.prs_c_x;
+    o[1*count + k] = v.prs_c_y;
+    o[2*count + k] = v.prs_c_z;
+    /* (prs-w_1) reciprocal vector 1 */
+    o[3*count + k] = v.prs_w_1_x;
+    o[4*count + k] = v.prs_w_1_y;
+    o[5*count + k] = v.prs_w_1_z;
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    o[6*count + k] = m->prs_base_frame_xz[i];
+    o[7*count + k] = m->prs_base_frame_yz[i];
+    o[8*count + k] = m->prs_base_frame_zz[i];
+    o[9*count + k] = UNLESS(v.prs_disc_1 >= 0);
+    o[10*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i])
+        + UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*m->prs_size[i]);
 }
 
-INLINE void legs_place_prs(size_t w, size_t count, const real *o, size_t leg, size_t first, real
-    *leg_force, real *actuator, real *constraint_direction, verdict *t)
+INLINE void legs_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *leg_force, real *actuator, real *constraint_direction, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        leg_force[3*leg*w + k] = o[0*count + first + k];
-        leg_force[(3*leg + 1)*w + k] = o[1*count + first + k];
-        leg_force[(3*leg + 2)*w + k] = o[2*count + first + k];
-        actuator[3*leg*w + k] = o[3*count + first + k];
-        actuator[(3*leg + 1)*w + k] = o[4*count + first + k];
-        actuator[(3*leg + 2)*w + k] = o[5*count + first + k];
-        constraint_direction[3*leg*w + k] = o[6*count + first + k];
-        constraint_direction[(3*leg + 1)*w + k] = o[7*count + first + k];
-        constraint_direction[(3*leg + 2)*w + k] = o[8*count + first + k];
-        t->unreachable[k] += o[9*count + first + k];
-        t->singular[k] += o[10*count + first + k];
-    }
+    leg_force[3*i*w + k] = o[0*count + at];
+    leg_force[(3*i + 1)*w + k] = o[1*count + at];
+    leg_force[(3*i + 2)*w + k] = o[2*count + at];
+    actuator[3*i*w + k] = o[3*count + at];
+    actuator[(3*i + 1)*w + k] = o[4*count + at];
+    actuator[(3*i + 2)*w + k] = o[5*count + at];
+    constraint_direction[3*i*w + k] = o[6*count + at];
+    constraint_direction[(3*i + 1)*w + k] = o[7*count + at];
+    constraint_direction[(3*i + 2)*w + k] = o[8*count + at];
+    t->unreachable[k] += o[9*count + at];
+    t->singular[k] += o[10*count + at];
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
@@ -3744,322 +3632,260 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 {
     real s[9] = {0};
     real o_prs[11*LEGS(LEGS_OF_prs)] = {0};
-    legs_before(m, 1, X, s, t);
-    legs_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), X, V, A, o_prs);
-    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        legs_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, leg_force, actuator, constraint_direction, t);
+    legs_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
+        legs_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, V, A, o_prs);
+    }
+    for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        legs_place_prs(1, i, 0, i, LEGS(LEGS_OF_prs), o_prs, leg_force, actuator, constraint_direction, t);
     }
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        /* (potential) potential energy */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real platform_mass = m->platform_mass;
-        const real t_x = X[0*w + k];
-        const real t_y = X[1*w + k];
-        const real t_z = X[2*w + k];
-        const real potential_t = gravity_x*(v.R_xx*h_star_in_platform_x +
-            v.R_xy*h_star_in_platform_y + v.R_xz*h_star_in_platform_z + platform_mass*t_x) +
-            gravity_y*(v.R_yx*h_star_in_platform_x + v.R_yy*h_star_in_platform_y +
-            v.R_yz*h_star_in_platform_z + platform_mass*t_y) +
-            gravity_z*(v.R_zx*h_star_in_platform_x + v.R_zy*h_star_in_platform_y +
-            v.R_zz*h_star_in_platform_z + platform_mass*t_z);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = potential_t;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    /* (potential) potential energy */
+    const real t_x = X[0*w + k];
+    const real t_y = X[1*w + k];
+    const real t_z = X[2*w + k];
+    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x +
+        v.R_xy*m->h_star_in_platform_y + v.R_xz*m->h_star_in_platform_z +
+        m->platform_mass*t_x) + m->gravity_y*(v.R_yx*m->h_star_in_platform_x +
+        v.R_yy*m->h_star_in_platform_y + v.R_yz*m->h_star_in_platform_z +
+        m->platform_mass*t_y) + m->gravity_z*(v.R_zx*m->h_star_in_platform_x +
+        v.R_zy*m->h_star_in_platform_y + v.R_zz*m->h_star_in_platform_z +
+        m->platform_mass*t_z);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = potential_t;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void potential_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void potential_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        /* (prs-S) from the base point to the connection point */
-        const real R_xx = s[0*w + j];
-        const real R_xy = s[1*w + j];
-        const real R_xz = s[2*w + j];
-        const real prs_base_point_x = m->prs_base_point_x[i];
-        const real prs_platform_point_x = m->prs_platform_point_x[i];
-        const real prs_platform_point_y = m->prs_platform_point_y[i];
-        const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real t_x = X[0*w + j];
-        const real prs_S_x = t_x + R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
-            R_xz*prs_platform_point_z - prs_base_point_x;
-        const real R_yx = s[3*w + j];
-        const real R_yy = s[4*w + j];
-        const real R_yz = s[5*w + j];
-        const real prs_base_point_y = m->prs_base_point_y[i];
-        const real t_y = X[1*w + j];
-        const real prs_S_y = t_y + R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
-            R_yz*prs_platform_point_z - prs_base_point_y;
-        const real R_zx = s[6*w + j];
-        const real R_zy = s[7*w + j];
-        const real R_zz = s[8*w + j];
-        const real prs_base_point_z = m->prs_base_point_z[i];
-        const real t_z = X[2*w + j];
-        const real prs_S_z = t_z + R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
-            R_zz*prs_platform_point_z - prs_base_point_z;
-        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
-        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
-        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_S_in_axes0_x = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
-            prs_S_z*prs_base_frame_zx;
-        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
-        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
-        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_S_in_axes0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
-            prs_S_z*prs_base_frame_zy;
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_S_in_axes0_z = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
-            prs_S_z*prs_base_frame_zz;
-        /* (prs-disc_1) discriminant of the distance equation */
-        const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
-        const real prs_size_t = m->prs_size_t[i];
-        const real prs_disc_1 = prs_S_in_axes0_x*prs_S_in_axes0_x +
-            prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t - prs_disc_1_t;
-        /* (prs-q_1) displacement of joint 1 */
-        const real prs_branch_1 = m->prs_branch_1[i];
-        const real prs_q_1_t = -prs_branch_1*root(prs_disc_1);
-        const real prs_q_1 = prs_S_in_axes0_x - prs_q_1_t;
-        /* (prs-rho2_2) squared amplitude */
-        const real prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1);
-        /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real prs_c_2_t = 1/(root(prs_rho2_2));
-        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
-        const real prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_q_1_t;
-        /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x;
-        /* (potential) potential energy */
-        const real prs_b_in_axes0_x = m->prs_b_in_axes0_x[i];
-        const real prs_potential_t_4 = prs_b_in_axes0_x + prs_q_1;
-        const real prs_g_in_axes0_x = m->prs_g_in_axes0_x[i];
-        const real prs_g_in_axes0_y = m->prs_g_in_axes0_y[i];
-        const real prs_h_1_in_spec0_x = m->prs_h_1_in_spec0_x[i];
-        const real prs_h_1_in_spec0_y = m->prs_h_1_in_spec0_y[i];
-        const real prs_h_2_in_spec2_x = m->prs_h_2_in_spec2_x[i];
-        const real prs_h_2_in_spec2_y = m->prs_h_2_in_spec2_y[i];
-        const real prs_link1_mass = m->prs_link1_mass[i];
-        const real prs_link2_mass = m->prs_link2_mass[i];
-        const real prs_potential_t = m->prs_potential_t[i];
-        const real prs_potential_t_2 = m->prs_potential_t_2[i];
-        const real prs_potential_t_3 = m->prs_potential_t_3[i];
-        const real prs_potential_t_5 = prs_potential_t_3 + prs_g_in_axes0_x*(prs_h_1_in_spec0_x +
-            prs_c_2*prs_h_2_in_spec2_x + prs_link1_mass*prs_potential_t_4 +
-            prs_link2_mass*prs_potential_t_4 - prs_h_2_in_spec2_y*prs_s_2) +
-            prs_g_in_axes0_y*(prs_h_1_in_spec0_y + prs_potential_t + prs_potential_t_2 +
-            prs_c_2*prs_h_2_in_spec2_y + prs_h_2_in_spec2_x*prs_s_2);
-        /* (potential) potential energy */
-        gather(&terms[0*count + k], add, prs_potential_t_5);  /* potential_of_legs */
-        const real prs_root_2_t = m->prs_root_2_t[i];
-        o[0*count + k] = UNLESS(prs_disc_1 >= 0);
-        o[1*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t);
-    }
+    /* (prs-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real t_x = X[0*w + j];
+    const real prs_S_x = t_x + R_xx*m->prs_platform_point_x[i] +
+        R_xy*m->prs_platform_point_y[i] + R_xz*m->prs_platform_point_z[i] -
+        m->prs_base_point_x[i];
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real t_y = X[1*w + j];
+    const real prs_S_y = t_y + R_yx*m->prs_platform_point_x[i] +
+        R_yy*m->prs_platform_point_y[i] + R_yz*m->prs_platform_point_z[i] -
+        m->prs_base_point_y[i];
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real t_z = X[2*w + j];
+    const real prs_S_z = t_z + R_zx*m->prs_platform_point_x[i] +
+        R_zy*m->prs_platform_point_y[i] + R_zz*m->prs_platform_point_z[i] -
+        m->prs_base_point_z[i];
+    const real prs_S_in_axes0_x = prs_S_x*m->prs_base_frame_xx[i] +
+        prs_S_y*m->prs_base_frame_yx[i] + prs_S_z*m->prs_base_frame_zx[i];
+    const real prs_S_in_axes0_y = prs_S_x*m->prs_base_frame_xy[i] +
+        prs_S_y*m->prs_base_frame_yy[i] + prs_S_z*m->prs_base_frame_zy[i];
+    const real prs_S_in_axes0_z = prs_S_x*m->prs_base_frame_xz[i] +
+        prs_S_y*m->prs_base_frame_yz[i] + prs_S_z*m->prs_base_frame_zz[i];
+    /* (prs-disc_1) discriminant of the distance equation */
+    const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
+    const real prs_disc_1 = prs_S_in_axes0_x*prs_S_in_axes0_x +
+        prs_S_in_axes0_z*prs_S_in_axes0_z + m->prs_size_t[i] - prs_disc_1_t;
+    /* (prs-q_1) displacement of joint 1 */
+    const real prs_q_1_t = -m->prs_branch_1[i]*root(prs_disc_1);
+    const real prs_q_1 = prs_S_in_axes0_x - prs_q_1_t;
+    /* (prs-rho2_2) squared amplitude */
+    const real prs_rho2_2 = m->prs_size_t[i]*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1);
+    /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real prs_c_2_t = 1/(root(prs_rho2_2));
+    const real prs_c_2 = prs_c_2_t*m->prs_platform_joint_offset_x[i]*prs_q_1_t;
+    /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
+    const real prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*m->prs_platform_joint_offset_x[i];
+    /* (potential) */
+    const real prs_potential_t_4 = m->prs_b_in_axes0_x[i] + prs_q_1;
+    const real prs_potential_t_5 = m->prs_potential_t_3[i] +
+        m->prs_g_in_axes0_x[i]*(m->prs_h_1_in_spec0_x[i] + prs_c_2*m->prs_h_2_in_spec2_x[i] +
+        m->prs_link1_mass[i]*prs_potential_t_4 + m->prs_link2_mass[i]*prs_potential_t_4 -
+        m->prs_h_2_in_spec2_y[i]*prs_s_2) + m->prs_g_in_axes0_y[i]*(m->prs_h_1_in_spec0_y[i] +
+        m->prs_potential_t[i] + m->prs_potential_t_2[i] + prs_c_2*m->prs_h_2_in_spec2_y[i] +
+        m->prs_h_2_in_spec2_x[i]*prs_s_2);
+    /* (potential) */
+    gather(&terms[0*count + k], add, prs_potential_t_5);  /* potential_of_legs */
+    o[0*count + k] = UNLESS(prs_disc_1 >= 0);
+    o[1*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i]);
 }
 
-INLINE void potential_place_prs(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void potential_place_prs(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->unreachable[k] += o[0*count + first + k];
-        t->singular[k] += o[1*count + first + k];
-    }
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
 }
 
-INLINE void potential_after(size_t w, const real *s, const real *sums, real *potential)
+INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (potential) potential energy */
-        const real potential_of_legs = sums[0*w + k];
-        const real potential_t = s[9*w + k];
-        const real potential_ = -potential_of_legs - potential_t;
-        /* (potential) potential energy */
-        potential[0*w + k] = potential_;
-    }
+    /* (potential) */
+    const real potential_of_legs = sums[0*w + k];
+    const real potential_t = s[9*w + k];
+    const real potential_ = -potential_of_legs - potential_t;
+    /* (potential) */
+    potential[0*w + k] = potential_;
 }
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
     real s[10] = {0}, sums[1] = {0};
     real terms_prs[LEGS(LEGS_OF_prs)] = {0}, o_prs[2*LEGS(LEGS_OF_prs)] = {0};
-    potential_before(m, 1, X, s, t);
-    potential_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), 0, X, terms_prs, o_prs);
-    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        potential_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, t);
+    potential_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
+        potential_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), 0, s, X, terms_prs, o_prs);
+    }
+    for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        potential_place_prs(0, i, LEGS(LEGS_OF_prs), o_prs, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_prs + n*LEGS(LEGS_OF_prs), LEGS_OF_prs);
     }
-    potential_after(1, s, sums, potential);
+    potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
-    verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
+    *lengths, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        const real legs_size = m->legs_size;
-        lengths[1*w + k] = legs_size;
-        t->total[k] += legs_size;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    lengths[1*w + k] = m->legs_size;
+    t->total[k] += m->legs_size;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void condition_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void condition_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_prs v;
-        stage_prs_X(m, w, i, j, s, X, &v);
-        stage_prs_H_condition(m, i, &v);
-        /* (prs-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real prs_pivot_size = magnitude(v.prs_rho2_2);
-        const real prs_pivot_size_2 = magnitude(v.prs_v_2_in_axes0_y);
-        const real inv_prs_root_2_t = m->inv_prs_root_2_t[i];
-        const real inv_prs_size = m->inv_prs_size[i];
-        const real prs_least_pivots = lesser(root(inv_prs_root_2_t*prs_pivot_size),
-            inv_prs_size*prs_pivot_size_2);
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_in_platform_x = m->b_c_in_platform_x;
-        const real prs_platform_point_x = m->prs_platform_point_x[i];
-        const real prs_spread_t = b_c_in_platform_x - prs_platform_point_x;
-        const real b_c_in_platform_y = m->b_c_in_platform_y;
-        const real prs_platform_point_y = m->prs_platform_point_y[i];
-        const real prs_spread_t_2 = b_c_in_platform_y - prs_platform_point_y;
-        const real b_c_in_platform_z = m->b_c_in_platform_z;
-        const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real prs_spread_t_3 = b_c_in_platform_z - prs_platform_point_z;
-        const real prs_spread_t_4 = prs_spread_t*prs_spread_t + prs_spread_t_2*prs_spread_t_2 +
-            prs_spread_t_3*prs_spread_t_3;
-        /* (spread) rms distance of the platform points from their centroid */
-        gather(&terms[0*count + k], add, prs_spread_t_4);  /* spread_prs */
-        /* (prs-w_1) reciprocal vector 1 */
-        o[0*count + k] = v.prs_w_1_x;
-        o[1*count + k] = v.prs_w_1_y;
-        o[2*count + k] = v.prs_w_1_z;
-        /* (prs-H_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = v.prs_H_a_1_x;
-        o[4*count + k] = v.prs_H_a_1_y;
-        o[5*count + k] = v.prs_H_a_1_z;
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        o[6*count + k] = prs_base_frame_xz;
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        o[7*count + k] = prs_base_frame_yz;
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        o[8*count + k] = prs_base_frame_zz;
-        /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[9*count + k] = v.prs_Hk_a_1_x;
-        o[10*count + k] = v.prs_Hk_a_1_y;
-        o[11*count + k] = v.prs_Hk_a_1_z;
-        /* (prs-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        o[12*count + k] = prs_least_pivots;
-        o[13*count + k] = v.prs_disc_1;
-        o[16*count + k] = ((v.prs_w_1_x + (v.prs_w_1_y + v.prs_w_1_z)) + ((v.prs_H_a_1_x +
-            v.prs_H_a_1_y) + (v.prs_H_a_1_z + prs_base_frame_xz))) + ((prs_base_frame_yz +
-            (prs_base_frame_zz + v.prs_Hk_a_1_x)) + ((v.prs_Hk_a_1_y + v.prs_Hk_a_1_z) +
-            (prs_least_pivots + v.prs_disc_1)));
-        const real prs_root_2_t = m->prs_root_2_t[i];
-        const real prs_size = m->prs_size[i];
-        o[14*count + k] = UNLESS(v.prs_disc_1 >= 0);
-        o[15*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
-            UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*prs_size);
-    }
+    values_prs v;
+    stage_prs_X(m, w, i, j, s, X, &v);
+    stage_prs_H_condition(m, i, &v);
+    /* (prs-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real prs_pivot_size = magnitude(v.prs_rho2_2);
+    const real prs_pivot_size_2 = magnitude(v.prs_v_2_in_axes0_y);
+    const real prs_least_pivots = lesser(root(m->inv_prs_root_2_t[i]*prs_pivot_size),
+        m->inv_prs_size[i]*prs_pivot_size_2);
+    /* (spread) rms distance of the platform points from their centroid */
+    const real prs_spread_t = m->b_c_in_platform_x - m->prs_platform_point_x[i];
+    const real prs_spread_t_2 = m->b_c_in_platform_y - m->prs_platform_point_y[i];
+    const real prs_spread_t_3 = m->b_c_in_platform_z - m->prs_platform_point_z[i];
+    const real prs_spread_t_4 = prs_spread_t*prs_spread_t + prs_spread_t_2*prs_spread_t_2 +
+        prs_spread_t_3*prs_spread_t_3;
+    /* (spread) */
+    gather(&terms[0*count + k], add, prs_spread_t_4);  /* spread_prs */
+    /* (prs-w_1) reciprocal vector 1 */
+    o[0*count + k] = v.prs_w_1_x;
+    o[1*count + k] = v.prs_w_1_y;
+    o[2*count + k] = v.prs_w_1_z;
+    /* (prs-H_a_1) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.prs_H_a_1_x;
+    o[4*count + k] = v.prs_H_a_1_y;
+    o[5*count + k] = v.prs_H_a_1_z;
+    /* (legs_size) */
+    o[6*count + k] = m->prs_base_frame_xz[i];
+    o[7*count + k] = m->prs_base_frame_yz[i];
+    o[8*count + k] = m->prs_base_frame_zz[i];
+    /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
+    o[9*count + k] = v.prs_Hk_a_1_x;
+    o[10*count + k] = v.prs_Hk_a_1_y;
+    o[11*count + k] = v.prs_Hk_a_1_z;
+    /* (prs-G) */
+    o[12*count + k] = prs_least_pivots;
+    o[13*count + k] = v.prs_disc_1;
+    o[16*count + k] = ((v.prs_w_1_x + (v.prs_w_1_y + v.prs_w_1_z)) + ((v.prs_H_a_1_x +
+        v.prs_H_a_1_y) + (v.prs_H_a_1_z + m->prs_base_frame_xz[i]))) +
+        ((m->prs_base_frame_yz[i] + (m->prs_base_frame_zz[i] + v.prs_Hk_a_1_x)) +
+        ((v.prs_Hk_a_1_y + v.prs_Hk_a_1_z) + (prs_least_pivots + v.prs_disc_1)));
+    o[14*count + k] = UNLESS(v.prs_disc_1 >= 0);
+    o[15*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i])
+        + UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*m->prs_size[i]);
 }
 
-INLINE void condition_place_prs(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *H, real *Hk, real *pivots, real *reach, verdict *t)
+INLINE void condition_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count, const real
+    *o, real *H, real *Hk, real *pivots, real *reach, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        H[(3*NU + leg)*w + k] = o[3*count + first + k];
-        H[(4*NU + leg)*w + k] = o[4*count + first + k];
-        H[(5*NU + leg)*w + k] = o[5*count + first + k];
-        Hk[leg*w + k] = o[6*count + first + k];
-        Hk[(NC + leg)*w + k] = o[7*count + first + k];
-        Hk[(2*NC + leg)*w + k] = o[8*count + first + k];
-        Hk[(3*NC + leg)*w + k] = o[9*count + first + k];
-        Hk[(4*NC + leg)*w + k] = o[10*count + first + k];
-        Hk[(5*NC + leg)*w + k] = o[11*count + first + k];
-        pivots[leg*w + k] = o[12*count + first + k];
-        reach[leg*w + k] = o[13*count + first + k];
-        t->unreachable[k] += o[14*count + first + k];
-        t->singular[k] += o[15*count + first + k];
-        t->total[k] += o[16*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    H[(3*NU + i)*w + k] = o[3*count + at];
+    H[(4*NU + i)*w + k] = o[4*count + at];
+    H[(5*NU + i)*w + k] = o[5*count + at];
+    Hk[i*w + k] = o[6*count + at];
+    Hk[(NC + i)*w + k] = o[7*count + at];
+    Hk[(2*NC + i)*w + k] = o[8*count + at];
+    Hk[(3*NC + i)*w + k] = o[9*count + at];
+    Hk[(4*NC + i)*w + k] = o[10*count + at];
+    Hk[(5*NC + i)*w + k] = o[11*count + at];
+    pivots[i*w + k] = o[12*count + at];
+    reach[i*w + k] = o[13*count + at];
+    t->unreachable[k] += o[14*count + at];
+    t->singular[k] += o[15*count + at];
+    t->total[k] += o[16*count + at];
 }
 
-INLINE void condition_after(const prepared *m, size_t w, const real *sums, real *lengths, verdict
-    *t)
+INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
+    *lengths, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (spread) rms distance of the platform points from their centroid */
-        const real spread_prs = sums[0*w + k];
-        const real spread_t = m->spread_t;
-        const real spread_ = root(spread_prs)*spread_t;
-        /* (spread) rms distance of the platform points from their centroid */
-        lengths[0*w + k] = spread_;
-        t->total[k] += spread_;
-    }
+    /* (spread) */
+    const real spread_prs = sums[0*w + k];
+    const real spread_ = root(spread_prs)*m->spread_t;
+    /* (spread) */
+    lengths[0*w + k] = spread_;
+    t->total[k] += spread_;
 }
 
-INLINE void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
+APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
     *pivots, real *reach, verdict *t)
 {
     real s[9] = {0}, sums[1] = {0};
     real terms_prs[LEGS(LEGS_OF_prs)] = {0}, o_prs[17*LEGS(LEGS_OF_prs)] = {0};
-    condition_before(m, 1, X, s, lengths, t);
-    condition_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), 0, X, terms_prs, o_prs);
-    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        condition_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, H, Hk, pivots, reach, t);
+    condition_before(m, 1, 0, X, s, lengths, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
+        condition_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), 0, s, X, terms_prs, o_prs);
+    }
+    for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        condition_place_prs(1, i, 0, i, LEGS(LEGS_OF_prs), o_prs, H, Hk, pivots, reach, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_prs + n*LEGS(LEGS_OF_prs), LEGS_OF_prs);
     }
-    condition_after(m, 1, sums, lengths, t);
+    condition_after(m, 1, 0, sums, lengths, t);
 }
 
 /* ---- what users call, as steps over these ---- */
 
-INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
+int tripod_3prs_M(const prepared *m, const real *X, real *M_out)
 {
     verdict why;
     start(1, &why);
@@ -4068,9 +3894,11 @@ INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NV, M_out);
     }
+    return code;
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -4084,7 +3912,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
     deliver(NV*NV, M, M_out);
 }
 
-INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
+int tripod_3prs_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     verdict why;
     start(1, &why);
@@ -4097,9 +3925,11 @@ INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, 
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, Z_out);
     }
+    return code;
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -4114,7 +3944,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
     deliver(NV, Z, Z_out);
 }
 
-INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
+int tripod_3prs_H(const prepared *m, const real *X, real *H_out)
 {
     verdict why;
     start(1, &why);
@@ -4123,9 +3953,11 @@ INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NU, H_out);
     }
+    return code;
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -4139,7 +3971,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
     deliver(NV*NU, H, H_out);
 }
 
-INLINE void Hk_one(const prepared *m, const real *X, real *Hk_out, int *code)
+int tripod_3prs_Hk(const prepared *m, const real *X, real *Hk_out)
 {
     verdict why;
     start(1, &why);
@@ -4148,9 +3980,11 @@ INLINE void Hk_one(const prepared *m, const real *X, real *Hk_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NC, 1, Hk_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NC, Hk_out);
     }
+    return code;
 }
 
 INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
@@ -4164,7 +3998,7 @@ INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
     deliver(NV*NC, Hk, Hk_out);
 }
 
-INLINE void constraints_one(const prepared *m, const real *X, real *constraints_out, int *code)
+int tripod_3prs_constraints(const prepared *m, const real *X, real *constraints_out)
 {
     verdict why;
     start(1, &why);
@@ -4173,9 +4007,11 @@ INLINE void constraints_one(const prepared *m, const real *X, real *constraints_
     if (!is_finite(why.total[0])) {
         check(3, 1, constraints_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(3, constraints_out);
     }
+    return code;
 }
 
 INLINE void constraints_lanes(const prepared *m, const real *X, real *constraints_out, int *code)
@@ -4189,8 +4025,8 @@ INLINE void constraints_lanes(const prepared *m, const real *X, real *constraint
     deliver(3, constraints, constraints_out);
 }
 
-INLINE void constraint_bias_one(const prepared *m, const real *X, const real *V, real
-    *constraint_bias_out, int *code)
+int tripod_3prs_constraint_bias(const prepared *m, const real *X, const real *V, real
+    *constraint_bias_out)
 {
     verdict why;
     start(1, &why);
@@ -4203,9 +4039,11 @@ INLINE void constraint_bias_one(const prepared *m, const real *X, const real *V,
     if (!is_finite(why.total[0])) {
         check(3, 1, constraint_bias_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(3, constraint_bias_out);
     }
+    return code;
 }
 
 INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *V, real
@@ -4221,7 +4059,7 @@ INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *
     deliver(3, constraint_bias, constraint_bias_out);
 }
 
-INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out, int *code)
+int tripod_3prs_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
     verdict why;
     start(1, &why);
@@ -4230,9 +4068,11 @@ INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, q_out);
     }
+    return code;
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -4246,8 +4086,7 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
     deliver(NJ, q, q_out);
 }
 
-INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
-    *code)
+int tripod_3prs_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     verdict why;
     start(1, &why);
@@ -4260,9 +4099,11 @@ INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, rea
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, qd_out);
     }
+    return code;
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -4278,8 +4119,8 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
     deliver(NJ, qd, qd_out);
 }
 
-INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out, int *code)
+int tripod_3prs_joint_accelerations(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out)
 {
     verdict why;
     start(1, &why);
@@ -4293,9 +4134,11 @@ INLINE void joint_accelerations_one(const prepared *m, const real *X, const real
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, qdd_out);
     }
+    return code;
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4312,8 +4155,8 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
     deliver(NJ, qdd, qdd_out);
 }
 
-INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
-    *Z_out, real *H_out, int *code)
+int tripod_3prs_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out)
 {
     real Hk[NV*NC] = {0}, constraint_bias[3] = {0};
     verdict why;
@@ -4331,11 +4174,13 @@ INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *
     }
     check(NV*NC, 1, Hk, why.overflow);
     check(3, 1, constraint_bias, why.overflow);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NV, M_out);
         refuse(NV, Z_out);
         refuse(NV*NU, H_out);
     }
+    return code;
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -4529,8 +4374,8 @@ INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real
 static const size_t order_solve_1[] = {2, 4, 3, 5, 1, 0};
 static const real sizes_solve_1[] = {1.0, 0.25, 0.25, 0.25, 1.0, 1.0};
 
-INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *tau_out, real *lambda_out, int *code)
+int tripod_3prs_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau_out, real *lambda_out)
 {
     real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0},
         beside_1[NV*NV] = {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, work[NV*PADDED(NV)];
@@ -4560,10 +4405,12 @@ INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V
     check(NC, 1, lambda_, why.overflow);
     copy(NU, tau, tau_out);
     copy(NC, lambda_, lambda_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, tau_out);
         refuse(NC, lambda_out);
     }
+    return code;
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -4593,8 +4440,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
     deliver(NC, lambda_, lambda_out);
 }
 
-INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
-    const real *wrench, real *A_out, real *lambda_out, int *code)
+int tripod_3prs_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau,
+    const real *wrench, real *A_out, real *lambda_out)
 {
     real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0},
         constraint_bias[3] = {0}, times_1[NV] = {0}, add_1[NV] = {0}, subtract_1[NV] = {0},
@@ -4629,10 +4476,12 @@ INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V
     check(NC, 1, lambda_, why.overflow);
     copy(NV, A, A_out);
     copy(NC, lambda_, lambda_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, A_out);
         refuse(NC, lambda_out);
     }
+    return code;
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4671,21 +4520,28 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     deliver(NC, lambda_, lambda_out);
 }
 
-INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
+int tripod_3prs_complete_acceleration(const prepared *m, const real *X, const real *V, const real
+    *A, const real *wrench, real *completed_out)
 {
+    (void)m;
+    (void)X;
+    (void)V;
+    (void)wrench;
     verdict why;
     start(1, &why);
     check(NV, 1, A, why.invalid);
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, completed_out);
     }
+    return code;
 }
 
-INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces_out, int *code)
+int tripod_3prs_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *forces_out)
 {
     static const size_t places_add_forces_1[] = {0, 1, 2};
     static const size_t places_forces[] = {0, 1, 2};
@@ -4726,13 +4582,15 @@ INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, c
     add_forces(NL, NL, 1, places_forces, split_2, constraint_direction, forces);
     check(NL*NL, 1, forces, why.overflow);
     copy(NL*NL, forces, forces_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NL*NL, forces_out);
     }
+    return code;
 }
 
-INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
-    *potential_out, int *code)
+int tripod_3prs_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
+    *potential_out)
 {
     real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
@@ -4750,15 +4608,17 @@ INLINE void energy_one(const prepared *m, const real *X, const real *V, real *ki
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, kinetic_out);
         refuse(1, potential_out);
     }
+    return code;
 }
 
-INLINE void condition_one(const prepared *m, const real *X, const real *length, real *sigma_out,
-    real *legs_out, int *code)
+int tripod_3prs_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
+    const real *length = NULL;
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real length_in[1], H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] =
         {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NU] = {0};
@@ -4785,15 +4645,18 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
     check(NL, 1, reach, why.overflow);
     copy(NU, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, sigma_out);
         refuse(NL, legs_out);
     }
+    return code;
 }
 
-INLINE void condition_constrained_one(const prepared *m, const real *X, const real *length, real
-    *sigma_out, real *legs_out, int *code)
+int tripod_3prs_condition_constrained(const prepared *m, const real *X, real *sigma_out, real
+    *legs_out)
 {
+    const real *length = NULL;
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real length_in[1], H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] =
         {0}, beside_1[NV*NV] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] = {0}, sigma[NV] =
@@ -4821,14 +4684,16 @@ INLINE void condition_constrained_one(const prepared *m, const real *X, const re
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, sigma_out);
         refuse(NL, legs_out);
     }
+    return code;
 }
 
-INLINE void manipulability_one(const prepared *m, const real *X, real *measure_out, real
-    *isotropy_out, int *code)
+int tripod_3prs_manipulability(const prepared *m, const real *X, real *measure_out, real
+    *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     static const size_t places_divide_rows_2[] = {3, 4, 5};
@@ -4877,14 +4742,16 @@ INLINE void manipulability_one(const prepared *m, const real *X, real *measure_o
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, measure_out);
         refuse(1, isotropy_out);
     }
+    return code;
 }
 
-INLINE void singularity_distance_one(const prepared *m, const real *X, real *actuators_out, real
-    *legs_out, int *code)
+int tripod_3prs_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
+    *legs_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
@@ -4915,14 +4782,15 @@ INLINE void singularity_distance_one(const prepared *m, const real *X, real *act
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, actuators_out);
         refuse(1, legs_out);
     }
+    return code;
 }
 
-static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
-    int *code)
+static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
 {
     real q[NJ] = {0}, q_of_inverse_kinematics_from_0[3] = {0}, subtract_1[NU] = {0}, constraints[3] =
         {0}, negative_1[3] = {0}, gap[6] = {0};
@@ -4945,12 +4813,14 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
     beside(1, NU, 3, subtract_1, negative_1, gap);
     check(6, 1, gap, why.overflow);
     copy(6, gap, gap_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(6, gap_out);
     }
+    return code;
 }
 
-static void slope_one(const prepared *m, const real *X, real *slope_out, int *code)
+static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     real H[NV*NU] = {0}, Hk[NV*NC] = {0}, slope[NV*NV] = {0};
     verdict why;
@@ -4961,9 +4831,11 @@ static void slope_one(const prepared *m, const real *X, real *slope_out, int *co
     beside(NV, NU, NC, H, Hk, slope);
     check(NV*NV, 1, slope, why.overflow);
     copy(NV*NV, slope, slope_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NV, slope_out);
     }
+    return code;
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -4974,12 +4846,12 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    mismatch_one(m, found, q_actuated, gap, &code);
+    code = mismatch_one(m, found, q_actuated, gap);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        slope_one(m, found, slope, &code);
+        code = slope_one(m, found, slope);
         if (code != OK) {
             break;
         }
@@ -4993,7 +4865,7 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            mismatch_one(m, trial, q_actuated, next, &tried);
+            tried = mismatch_one(m, trial, q_actuated, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -5011,8 +4883,8 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 }
 
 
-INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
-    *X_out, int *code)
+int tripod_3prs_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real
+    *X_out)
 {
     real X[NQ] = {0};
     verdict why;
@@ -5025,12 +4897,14 @@ INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, co
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
-static void constraint_gap_one(const prepared *m, const real *X, real *gap_out, int *code)
+static int constraint_gap_one(const prepared *m, const real *X, real *gap_out)
 {
     real constraints[3] = {0}, gap[NC] = {0};
     verdict why;
@@ -5042,12 +4916,14 @@ static void constraint_gap_one(const prepared *m, const real *X, real *gap_out, 
     }
     check(NC, 1, gap, why.overflow);
     copy(NC, gap, gap_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NC, gap_out);
     }
+    return code;
 }
 
-static void constraint_slope_one(const prepared *m, const real *X, real *slope_out, int *code)
+static int constraint_slope_one(const prepared *m, const real *X, real *slope_out)
 {
     verdict why;
     start(1, &why);
@@ -5056,9 +4932,11 @@ static void constraint_slope_one(const prepared *m, const real *X, real *slope_o
     if (!is_finite(why.total[0])) {
         check(NV*NC, 1, slope_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NC, slope_out);
     }
+    return code;
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -5069,12 +4947,12 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    constraint_gap_one(m, found, gap, &code);
+    code = constraint_gap_one(m, found, gap);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > MET; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        constraint_slope_one(m, found, slope, &code);
+        code = constraint_slope_one(m, found, slope);
         if (code != OK) {
             break;
         }
@@ -5088,7 +4966,7 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            constraint_gap_one(m, trial, next, &tried);
+            tried = constraint_gap_one(m, trial, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -5106,7 +4984,7 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
 }
 
 
-INLINE void project_one(const prepared *m, const real *X, real *projected_out, int *code)
+int tripod_3prs_project(const prepared *m, const real *X, real *projected_out)
 {
     real projected[NQ] = {0};
     verdict why;
@@ -5115,13 +4993,18 @@ INLINE void project_one(const prepared *m, const real *X, real *projected_out, i
     blame(search_constraint_gap(m, X, projected), &why);
     check(NQ, 1, projected, why.overflow);
     copy(NQ, projected, projected_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, projected_out);
     }
+    return code;
 }
 
-INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
+int tripod_3prs_dissipation(const prepared *m, const real *X, const real *V, real
+    *dissipation_out)
 {
+    (void)m;
+    (void)X;
     real subtract_1[NV] = {0};
     verdict why;
     start(1, &why);
@@ -5132,13 +5015,14 @@ INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, dissipation_out);
     }
+    return code;
 }
 
-INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
-    *code)
+int tripod_3prs_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
     real M[NV*NV] = {0}, momentum[NV] = {0};
     verdict why;
@@ -5152,27 +5036,14 @@ INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, momentum_out);
     }
+    return code;
 }
 
-INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
-    int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], momentum[NV*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    M_run_lanes(m, X, M, &why);
-    product(NV, NV, 1, LANES, M, V, momentum);
-    add_up(NV, momentum, why.total);
-    suspect(&why, code);
-    deliver(NV, momentum, momentum_out);
-}
-
-INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
+int tripod_3prs_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5};
     real q[NJ] = {0}, margins[NJ] = {0};
@@ -5185,28 +5056,14 @@ INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_ou
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, margins_out);
     }
+    return code;
 }
 
-INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
-{
-    static const size_t places_margins[] = {0, 1, 2, 3, 4, 5};
-    real X_in[NQ*LANES], q[NJ*LANES], margins[NJ*LANES];
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < NJ*LANES; ++i) {
-        margins[i] = q[i];
-    }
-    unlimited(NJ, NJ, LANES, places_margins, margins, why.invalid);
-    suspect(&why, code);
-    deliver(NJ, margins, margins_out);
-}
-
-INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
+int tripod_3prs_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
     verdict why;
@@ -5219,28 +5076,14 @@ INLINE void within_limits_one(const prepared *m, const real *X, real *within_out
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, within_out);
     }
+    return code;
 }
 
-INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
-{
-    real X_in[NQ*LANES], q[NJ*LANES], subtract_1[NJ*LANES], within[LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < NJ*LANES; ++i) {
-        subtract_1[i] = q[i] - q[i];
-    }
-    not_negative(NJ, LANES, subtract_1, within, why.invalid);
-    add_up(1, within, why.total);
-    suspect(&why, code);
-    deliver(1, within, within_out);
-}
-
-INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
+int tripod_3prs_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
     verdict why;
@@ -5250,26 +5093,14 @@ INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out
     take(NU, 1, tripod_3prs_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, q_out);
     }
+    return code;
 }
 
-INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
-{
-    real X_in[NQ*LANES], q_of_inverse_kinematics[NJ*LANES], q[NU*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
-    take(NU, LANES, tripod_3prs_ACTUATED, q_of_inverse_kinematics, q);
-    add_up(NU, q, why.total);
-    suspect(&why, code);
-    deliver(NU, q, q_out);
-}
-
-INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
-    *code)
+int tripod_3prs_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
     verdict why;
@@ -5283,28 +5114,15 @@ INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, 
     take(NU, 1, tripod_3prs_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, qd_out);
     }
+    return code;
 }
 
-INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
-    int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], qd_of_joint_rates[NJ*LANES], qd[NU*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
-    take(NU, LANES, tripod_3prs_ACTUATED, qd_of_joint_rates, qd);
-    add_up(NU, qd, why.total);
-    suspect(&why, code);
-    deliver(NU, qd, qd_out);
-}
-
-INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out, int *code)
+int tripod_3prs_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
     verdict why;
@@ -5319,30 +5137,15 @@ INLINE void actuator_accelerations_one(const prepared *m, const real *X, const r
     take(NU, 1, tripod_3prs_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, qdd_out);
     }
+    return code;
 }
 
-INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *qdd_out, int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd_of_joint_accelerations[NJ*LANES],
-        qdd[NU*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    A = side_by_side(NV, A, A_in, why.total);
-    joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
-    take(NU, LANES, tripod_3prs_ACTUATED, qdd_of_joint_accelerations, qdd);
-    add_up(NU, qdd, why.total);
-    suspect(&why, code);
-    deliver(NU, qdd, qdd_out);
-}
-
-INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out, int *code)
+int tripod_3prs_power(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out)
 {
     real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
     verdict why;
@@ -5358,30 +5161,14 @@ INLINE void power_one(const prepared *m, const real *X, const real *V, const rea
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, power_out);
     }
+    return code;
 }
 
-INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out, int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0},
-        power[LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    tau = side_by_side(NU, tau, tau_in, why.total);
-    H_run_lanes(m, X, H, &why);
-    product(NV, NU, 1, LANES, H, tau, times_1);
-    inner(NV, LANES, times_1, V, power);
-    add_up(1, power, why.total);
-    suspect(&why, code);
-    deliver(1, power, power_out);
-}
-
-INLINE void rotation_one(const real *X, real *R_out, int *code)
+int tripod_3prs_rotation(const real *X, real *R_out)
 {
     real R[9] = {0};
     verdict why;
@@ -5391,12 +5178,14 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     copy(9, R, R_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(9, R_out);
     }
+    return code;
 }
 
-INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
+int tripod_3prs_pose(const real *t, const real *R, real *X_out)
 {
     real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0};
     verdict why;
@@ -5411,12 +5200,14 @@ INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
-INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
+int tripod_3prs_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     real quaternion_rate_1[4] = {0}, X_dot[NQ] = {0};
     verdict why;
@@ -5433,12 +5224,14 @@ INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
     beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_dot_out);
     }
+    return code;
 }
 
-INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *code)
+int tripod_3prs_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
     real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0};
     verdict why;
@@ -5453,12 +5246,14 @@ INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
-INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
+int tripod_3prs_retract(const real *X, const real *step, real *X_moved_out)
 {
     real turn_quaternion_1[4] = {0}, add_1[3] = {0}, X_moved[NQ] = {0};
     verdict why;
@@ -5479,12 +5274,14 @@ INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int 
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_moved_out);
     }
+    return code;
 }
 
-INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
+int tripod_3prs_difference(const real *X0, const real *X1, real *step_out)
 {
     real turn_between_1[3] = {0}, subtract_1[3] = {0}, step[NV] = {0};
     verdict why;
@@ -5505,12 +5302,14 @@ INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, step_out);
     }
+    return code;
 }
 
-INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
+int tripod_3prs_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     real turn_between_1[3] = {0}, subtract_1[3] = {0}, join_1[6] = {0}, scale_1[6] = {0},
         turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
@@ -5545,848 +5344,237 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
 /* ---- one state, and batches ---- */
 
-int tripod_3prs_M(const prepared *model, const real *X, real *M)
+size_t tripod_3prs_M_batch(const prepared *m, size_t n, const real *X, real *M, int *status)
 {
-    int code;
-    M_one(model, X, M, &code);
-    return code;
+    SIDE_BY_SIDE(M_lanes(m, X + NQ*i, M + NV*NV*i, codes), tripod_3prs_M(m, X + NQ*j, M + NV*NV*j));
 }
 
-size_t tripod_3prs_M_batch(const prepared *model, size_t n, const real *X, real *M, int *status)
+size_t tripod_3prs_Z_batch(const prepared *m, size_t n, const real *X, const real *V, real *Z, int
+    *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3prs_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(Z_lanes(m, X + NQ*i, V + NV*i, Z + NV*i, codes), tripod_3prs_Z(m, X + NQ*j, V + NV*j,
+        Z + NV*j));
 }
 
-int tripod_3prs_Z(const prepared *model, const real *X, const real *V, real *Z)
+size_t tripod_3prs_H_batch(const prepared *m, size_t n, const real *X, real *H, int *status)
 {
-    int code;
-    Z_one(model, X, V, Z, &code);
-    return code;
+    SIDE_BY_SIDE(H_lanes(m, X + NQ*i, H + NV*NU*i, codes), tripod_3prs_H(m, X + NQ*j, H + NV*NU*j));
 }
 
-size_t tripod_3prs_Z_batch(const prepared *model, size_t n, const real *X, const real *V, real *Z,
+size_t tripod_3prs_Hk_batch(const prepared *m, size_t n, const real *X, real *Hk, int *status)
+{
+    SIDE_BY_SIDE(Hk_lanes(m, X + NQ*i, Hk + NV*NC*i, codes), tripod_3prs_Hk(m, X + NQ*j, Hk +
+        NV*NC*j));
+}
+
+size_t tripod_3prs_constraints_batch(const prepared *m, size_t n, const real *X, real *residual,
     int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3prs_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(constraints_lanes(m, X + NQ*i, residual + NC*i, codes), tripod_3prs_constraints(m, X
+        + NQ*j, residual + NC*j));
 }
 
-int tripod_3prs_H(const prepared *model, const real *X, real *H)
+size_t tripod_3prs_constraint_bias_batch(const prepared *m, size_t n, const real *X, const real
+    *V, real *bias, int *status)
 {
-    int code;
-    H_one(model, X, H, &code);
-    return code;
+    SIDE_BY_SIDE(constraint_bias_lanes(m, X + NQ*i, V + NV*i, bias + NC*i, codes),
+        tripod_3prs_constraint_bias(m, X + NQ*j, V + NV*j, bias + NC*j));
 }
 
-size_t tripod_3prs_H_batch(const prepared *model, size_t n, const real *X, real *H, int *status)
+size_t tripod_3prs_inverse_kinematics_batch(const prepared *m, size_t n, const real *X, real *q,
+    int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3prs_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(inverse_kinematics_lanes(m, X + NQ*i, q + NJ*i, codes),
+        tripod_3prs_inverse_kinematics(m, X + NQ*j, q + NJ*j));
 }
 
-int tripod_3prs_Hk(const prepared *model, const real *X, real *Hk)
+size_t tripod_3prs_joint_rates_batch(const prepared *m, size_t n, const real *X, const real *V,
+    real *rates, int *status)
 {
-    int code;
-    Hk_one(model, X, Hk, &code);
-    return code;
+    SIDE_BY_SIDE(joint_rates_lanes(m, X + NQ*i, V + NV*i, rates + NJ*i, codes),
+        tripod_3prs_joint_rates(m, X + NQ*j, V + NV*j, rates + NJ*j));
 }
 
-size_t tripod_3prs_Hk_batch(const prepared *model, size_t n, const real *X, real *Hk, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            Hk_lanes(model, X + NQ*i, Hk + NV*NC*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3prs_Hk(model, X + NQ*(i + k), Hk + NV*NC*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3prs_constraints(const prepared *model, const real *X, real *residual)
-{
-    int code;
-    constraints_one(model, X, residual, &code);
-    return code;
-}
-
-size_t tripod_3prs_constraints_batch(const prepared *model, size_t n, const real *X, real
-    *residual, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            constraints_lanes(model, X + NQ*i, residual + NC*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3prs_constraints(model, X + NQ*(i + k), residual + NC*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3prs_constraint_bias(const prepared *model, const real *X, const real *V, real *bias)
-{
-    int code;
-    constraint_bias_one(model, X, V, bias, &code);
-    return code;
-}
-
-size_t tripod_3prs_constraint_bias_batch(const prepared *model, size_t n, const real *X, const
-    real *V, real *bias, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            constraint_bias_lanes(model, X + NQ*i, V + NV*i, bias + NC*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3prs_constraint_bias(model, X + NQ*(i + k), V + NV*(i + k), bias + NC*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3prs_inverse_kinematics(const prepared *model, const real *X, real *q)
-{
-    int code;
-    inverse_kinematics_one(model, X, q, &code);
-    return code;
-}
-
-size_t tripod_3prs_inverse_kinematics_batch(const prepared *model, size_t n, const real *X, real
-    *q, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3prs_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3prs_joint_rates(const prepared *model, const real *X, const real *V, real *rates)
-{
-    int code;
-    joint_rates_one(model, X, V, rates, &code);
-    return code;
-}
-
-size_t tripod_3prs_joint_rates_batch(const prepared *model, size_t n, const real *X, const real
-    *V, real *rates, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3prs_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3prs_joint_accelerations(const prepared *model, const real *X, const real *V, const
-    real *A, real *accelerations)
-{
-    int code;
-    joint_accelerations_one(model, X, V, A, accelerations, &code);
-    return code;
-}
-
-size_t tripod_3prs_joint_accelerations_batch(const prepared *model, size_t n, const real *X, const
+size_t tripod_3prs_joint_accelerations_batch(const prepared *m, size_t n, const real *X, const
     real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3prs_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
-                    accelerations + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(joint_accelerations_lanes(m, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i,
+        codes), tripod_3prs_joint_accelerations(m, X + NQ*j, V + NV*j, A + NV*j, accelerations +
+        NJ*j));
 }
 
-int tripod_3prs_dynamics(const prepared *model, const real *X, const real *V, real *M, real *Z,
-    real *H)
+size_t tripod_3prs_dynamics_batch(const prepared *m, size_t n, const real *X, const real *V, real
+    *M, real *Z, real *H, int *status)
 {
-    int code;
-    dynamics_one(model, X, V, M, Z, H, &code);
-    return code;
+    SIDE_BY_SIDE(dynamics_lanes(m, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes),
+        tripod_3prs_dynamics(m, X + NQ*j, V + NV*j, M + NV*NV*j, Z + NV*j, H + NV*NU*j));
 }
 
-size_t tripod_3prs_dynamics_batch(const prepared *model, size_t n, const real *X, const real *V,
-    real *M, real *Z, real *H, int *status)
+size_t tripod_3prs_inverse_dynamics_batch(const prepared *m, size_t n, const real *X, const real
+    *V, const real *A, const real *wrench, real *tau, real *lambda, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3prs_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z +
-                    NV*(i + k), H + NV*NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(inverse_dynamics_lanes(m, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i :
+        NULL, tau + NU*i, lambda + NC*i, codes), tripod_3prs_inverse_dynamics(m, X + NQ*j, V + NV*j, A
+        + NV*j, wrench ? wrench + NW*j : NULL, tau + NU*j, lambda + NC*j));
 }
 
-int tripod_3prs_inverse_dynamics(const prepared *model, const real *X, const real *V, const real
-    *A, const real *wrench, real *tau, real *lambda)
+size_t tripod_3prs_forward_dynamics_batch(const prepared *m, size_t n, const real *X, const real
+    *V, const real *tau, const real *wrench, real *A, real *lambda, int *status)
 {
-    int code;
-    inverse_dynamics_one(model, X, V, A, wrench, tau, lambda, &code);
-    return code;
+    SIDE_BY_SIDE(forward_dynamics_lanes(m, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i :
+        NULL, A + NV*i, lambda + NC*i, codes), tripod_3prs_forward_dynamics(m, X + NQ*j, V + NV*j, tau
+        + NU*j, wrench ? wrench + NW*j : NULL, A + NV*j, lambda + NC*j));
 }
 
-size_t tripod_3prs_inverse_dynamics_batch(const prepared *model, size_t n, const real *X, const
-    real *V, const real *A, const real *wrench, real *tau, real *lambda, int *status)
+size_t tripod_3prs_complete_acceleration_batch(const prepared *m, size_t n, const real *X, const
+    real *V, const real *A, const real *wrench, real *completed, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
-                NU*i, lambda + NC*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3prs_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
-                    wrench ? wrench + NW*(i + k) : NULL, tau + NU*(i + k), lambda + NC*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(tripod_3prs_complete_acceleration(m, X + NQ*j, V + NV*j, A + NV*j, wrench ? wrench +
+        NW*j : NULL, completed + NV*j));
 }
 
-int tripod_3prs_forward_dynamics(const prepared *model, const real *X, const real *V, const real
-    *tau, const real *wrench, real *A, real *lambda)
+size_t tripod_3prs_leg_reactions_batch(const prepared *m, size_t n, const real *X, const real *V,
+    const real *A, const real *wrench, real *forces, int *status)
 {
-    int code;
-    forward_dynamics_one(model, X, V, tau, wrench, A, lambda, &code);
-    return code;
+    ONE_BY_ONE(tripod_3prs_leg_reactions(m, X + NQ*j, V + NV*j, A + NV*j, wrench ? wrench + NW*j :
+        NULL, forces + 9*j));
 }
 
-size_t tripod_3prs_forward_dynamics_batch(const prepared *model, size_t n, const real *X, const
-    real *V, const real *tau, const real *wrench, real *A, real *lambda, int *status)
+size_t tripod_3prs_energy_batch(const prepared *m, size_t n, const real *X, const real *V, real
+    *kinetic, real *potential, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
-                NV*i, lambda + NC*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3prs_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k),
-                    wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k), lambda + NC*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(tripod_3prs_energy(m, X + NQ*j, V + NV*j, kinetic + j, potential + j));
 }
 
-int tripod_3prs_complete_acceleration(const prepared *model, const real *X, const real *V, const
-    real *A, const real *wrench, real *completed)
+size_t tripod_3prs_condition_batch(const prepared *m, size_t n, const real *X, real *sigma, real
+    *legs, int *status)
 {
-    int code;
-    (void)model, (void)X, (void)V, (void)wrench;
-    complete_acceleration_one(A, completed, &code);
-    return code;
+    ONE_BY_ONE(tripod_3prs_condition(m, X + NQ*j, sigma + 3*j, legs + 3*j));
 }
 
-size_t tripod_3prs_complete_acceleration_batch(const prepared *model, size_t n, const real *X,
-    const real *V, const real *A, const real *wrench, real *completed, int *status)
+size_t tripod_3prs_condition_constrained_batch(const prepared *m, size_t n, const real *X, real
+    *sigma, real *legs, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3prs_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
-            wrench + NW*i : NULL, completed + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(tripod_3prs_condition_constrained(m, X + NQ*j, sigma + 6*j, legs + 3*j));
 }
 
-int tripod_3prs_leg_reactions(const prepared *model, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces)
+size_t tripod_3prs_manipulability_batch(const prepared *m, size_t n, const real *X, real *measure,
+    real *isotropy, int *status)
 {
-    int code;
-    leg_reactions_one(model, X, V, A, wrench, forces, &code);
-    return code;
+    ONE_BY_ONE(tripod_3prs_manipulability(m, X + NQ*j, measure + j, isotropy + j));
 }
 
-size_t tripod_3prs_leg_reactions_batch(const prepared *model, size_t n, const real *X, const real
-    *V, const real *A, const real *wrench, real *forces, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3prs_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench +
-            NW*i : NULL, forces + 9*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3prs_energy(const prepared *model, const real *X, const real *V, real *kinetic, real
-    *potential)
-{
-    int code;
-    energy_one(model, X, V, kinetic, potential, &code);
-    return code;
-}
-
-size_t tripod_3prs_energy_batch(const prepared *model, size_t n, const real *X, const real *V,
-    real *kinetic, real *potential, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3prs_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3prs_condition(const prepared *model, const real *X, real *sigma, real *legs)
-{
-    int code;
-    condition_one(model, X, NULL, sigma, legs, &code);
-    return code;
-}
-
-size_t tripod_3prs_condition_batch(const prepared *model, size_t n, const real *X, real *sigma,
-    real *legs, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3prs_condition(model, X + NQ*i, sigma + 3*i, legs + 3*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3prs_condition_constrained(const prepared *model, const real *X, real *sigma, real
-    *legs)
-{
-    int code;
-    condition_constrained_one(model, X, NULL, sigma, legs, &code);
-    return code;
-}
-
-size_t tripod_3prs_condition_constrained_batch(const prepared *model, size_t n, const real *X,
-    real *sigma, real *legs, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3prs_condition_constrained(model, X + NQ*i, sigma + 6*i, legs + 3*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3prs_manipulability(const prepared *model, const real *X, real *measure, real
-    *isotropy)
-{
-    int code;
-    manipulability_one(model, X, measure, isotropy, &code);
-    return code;
-}
-
-size_t tripod_3prs_manipulability_batch(const prepared *model, size_t n, const real *X, real
-    *measure, real *isotropy, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3prs_manipulability(model, X + NQ*i, measure + i, isotropy + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3prs_singularity_distance(const prepared *model, const real *X, real *actuators, real
-    *legs)
-{
-    int code;
-    singularity_distance_one(model, X, actuators, legs, &code);
-    return code;
-}
-
-size_t tripod_3prs_singularity_distance_batch(const prepared *model, size_t n, const real *X, real
+size_t tripod_3prs_singularity_distance_batch(const prepared *m, size_t n, const real *X, real
     *actuators, real *legs, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3prs_singularity_distance(model, X + NQ*i, actuators + i, legs + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(tripod_3prs_singularity_distance(m, X + NQ*j, actuators + j, legs + j));
 }
 
-int tripod_3prs_forward_kinematics(const prepared *model, const real *q_actuated, const real *X0,
-    real *X)
+size_t tripod_3prs_forward_kinematics_batch(const prepared *m, size_t n, const real *q_actuated,
+    const real *X0, real *X, int *status)
 {
-    int code;
-    forward_kinematics_one(model, q_actuated, X0, X, &code);
-    return code;
+    ONE_BY_ONE(tripod_3prs_forward_kinematics(m, q_actuated + NU*j, X0 + NQ*j, X + NQ*j));
 }
 
-size_t tripod_3prs_forward_kinematics_batch(const prepared *model, size_t n, const real
-    *q_actuated, const real *X0, real *X, int *status)
+size_t tripod_3prs_project_batch(const prepared *m, size_t n, const real *X, real *projected, int
+    *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3prs_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(tripod_3prs_project(m, X + NQ*j, projected + NQ*j));
 }
 
-int tripod_3prs_project(const prepared *model, const real *X, real *projected)
+size_t tripod_3prs_dissipation_batch(const prepared *m, size_t n, const real *X, const real *V,
+    real *dissipation, int *status)
 {
-    int code;
-    project_one(model, X, projected, &code);
-    return code;
+    ONE_BY_ONE(tripod_3prs_dissipation(m, X + NQ*j, V + NV*j, dissipation + j));
 }
 
-size_t tripod_3prs_project_batch(const prepared *model, size_t n, const real *X, real *projected,
+size_t tripod_3prs_momentum_batch(const prepared *m, size_t n, const real *X, const real *V, real
+    *momentum, int *status)
+{
+    ONE_BY_ONE(tripod_3prs_momentum(m, X + NQ*j, V + NV*j, momentum + NV*j));
+}
+
+size_t tripod_3prs_joint_margins_batch(const prepared *m, size_t n, const real *X, real *margins,
     int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3prs_project(model, X + NQ*i, projected + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(tripod_3prs_joint_margins(m, X + NQ*j, margins + NJ*j));
 }
 
-int tripod_3prs_dissipation(const prepared *model, const real *X, const real *V, real
-    *dissipation)
+size_t tripod_3prs_within_limits_batch(const prepared *m, size_t n, const real *X, real *within,
+    int *status)
 {
-    int code;
-    (void)model, (void)X;
-    dissipation_one(V, dissipation, &code);
-    return code;
+    ONE_BY_ONE(tripod_3prs_within_limits(m, X + NQ*j, within + j));
 }
 
-size_t tripod_3prs_dissipation_batch(const prepared *model, size_t n, const real *X, const real
-    *V, real *dissipation, int *status)
+size_t tripod_3prs_actuator_positions_batch(const prepared *m, size_t n, const real *X, real *q,
+    int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3prs_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(tripod_3prs_actuator_positions(m, X + NQ*j, q + NU*j));
 }
 
-int tripod_3prs_momentum(const prepared *model, const real *X, const real *V, real *momentum)
+size_t tripod_3prs_actuator_rates_batch(const prepared *m, size_t n, const real *X, const real *V,
+    real *rates, int *status)
 {
-    int code;
-    momentum_one(model, X, V, momentum, &code);
-    return code;
+    ONE_BY_ONE(tripod_3prs_actuator_rates(m, X + NQ*j, V + NV*j, rates + NU*j));
 }
 
-size_t tripod_3prs_momentum_batch(const prepared *model, size_t n, const real *X, const real *V,
-    real *momentum, int *status)
+size_t tripod_3prs_actuator_accelerations_batch(const prepared *m, size_t n, const real *X, const
+    real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3prs_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(tripod_3prs_actuator_accelerations(m, X + NQ*j, V + NV*j, A + NV*j, accelerations +
+        NU*j));
 }
 
-int tripod_3prs_joint_margins(const prepared *model, const real *X, real *margins)
+size_t tripod_3prs_power_batch(const prepared *m, size_t n, const real *X, const real *V, const
+    real *tau, real *power, int *status)
 {
-    int code;
-    joint_margins_one(model, X, margins, &code);
-    return code;
-}
-
-size_t tripod_3prs_joint_margins_batch(const prepared *model, size_t n, const real *X, real
-    *margins, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3prs_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3prs_within_limits(const prepared *model, const real *X, real *within)
-{
-    int code;
-    within_limits_one(model, X, within, &code);
-    return code;
-}
-
-size_t tripod_3prs_within_limits_batch(const prepared *model, size_t n, const real *X, real
-    *within, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            within_limits_lanes(model, X + NQ*i, within + i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3prs_within_limits(model, X + NQ*(i + k), within + (i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3prs_actuator_positions(const prepared *model, const real *X, real *q)
-{
-    int code;
-    actuator_positions_one(model, X, q, &code);
-    return code;
-}
-
-size_t tripod_3prs_actuator_positions_batch(const prepared *model, size_t n, const real *X, real
-    *q, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3prs_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3prs_actuator_rates(const prepared *model, const real *X, const real *V, real *rates)
-{
-    int code;
-    actuator_rates_one(model, X, V, rates, &code);
-    return code;
-}
-
-size_t tripod_3prs_actuator_rates_batch(const prepared *model, size_t n, const real *X, const real
-    *V, real *rates, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3prs_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3prs_actuator_accelerations(const prepared *model, const real *X, const real *V, const
-    real *A, real *accelerations)
-{
-    int code;
-    actuator_accelerations_one(model, X, V, A, accelerations, &code);
-    return code;
-}
-
-size_t tripod_3prs_actuator_accelerations_batch(const prepared *model, size_t n, const real *X,
-    const real *V, const real *A, real *accelerations, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3prs_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
-                    k), accelerations + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3prs_power(const prepared *model, const real *X, const real *V, const real *tau, real
-    *power)
-{
-    int code;
-    power_one(model, X, V, tau, power, &code);
-    return code;
-}
-
-size_t tripod_3prs_power_batch(const prepared *model, size_t n, const real *X, const real *V,
-    const real *tau, real *power, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3prs_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power + (i +
-                    k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3prs_rotation(const real *X, real *R)
-{
-    int code;
-    rotation_one(X, R, &code);
-    return code;
+    ONE_BY_ONE(tripod_3prs_power(m, X + NQ*j, V + NV*j, tau + NU*j, power + j));
 }
 
 size_t tripod_3prs_rotation_batch(size_t n, const real *X, real *R, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3prs_rotation(X + NQ*i, R + 9*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3prs_pose(const real *t, const real *R, real *X)
-{
-    int code;
-    pose_one(t, R, X, &code);
-    return code;
+    ONE_BY_ONE(tripod_3prs_rotation(X + NQ*j, R + 9*j));
 }
 
 size_t tripod_3prs_pose_batch(size_t n, const real *t, const real *R, real *X, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3prs_pose(t + 3*i, R + 9*i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3prs_X_dot(const real *X, const real *V, real *X_dot)
-{
-    int code;
-    X_dot_one(X, V, X_dot, &code);
-    return code;
+    ONE_BY_ONE(tripod_3prs_pose(t + 3*j, R + 9*j, X + NQ*j));
 }
 
 size_t tripod_3prs_X_dot_batch(size_t n, const real *X, const real *V, real *X_dot, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3prs_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3prs_pose_from_rpy(const real *t, const real *rpy, real *X)
-{
-    int code;
-    pose_from_rpy_one(t, rpy, X, &code);
-    return code;
+    ONE_BY_ONE(tripod_3prs_X_dot(X + NQ*j, V + NV*j, X_dot + NQ*j));
 }
 
 size_t tripod_3prs_pose_from_rpy_batch(size_t n, const real *t, const real *rpy, real *X, int
     *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3prs_pose_from_rpy(t + 3*i, rpy + 3*i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3prs_retract(const real *X, const real *step, real *X_moved)
-{
-    int code;
-    retract_one(X, step, X_moved, &code);
-    return code;
+    ONE_BY_ONE(tripod_3prs_pose_from_rpy(t + 3*j, rpy + 3*j, X + NQ*j));
 }
 
 size_t tripod_3prs_retract_batch(size_t n, const real *X, const real *step, real *X_moved, int
     *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3prs_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3prs_difference(const real *X0, const real *X1, real *step)
-{
-    int code;
-    difference_one(X0, X1, step, &code);
-    return code;
+    ONE_BY_ONE(tripod_3prs_retract(X + NQ*j, step + NV*j, X_moved + NQ*j));
 }
 
 size_t tripod_3prs_difference_batch(size_t n, const real *X0, const real *X1, real *step, int
     *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3prs_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3prs_interpolate(const real *X0, const real *X1, const real *s, real *X)
-{
-    int code;
-    interpolate_one(X0, X1, s, X, &code);
-    return code;
+    ONE_BY_ONE(tripod_3prs_difference(X0 + NQ*j, X1 + NQ*j, step + NV*j));
 }
 
 size_t tripod_3prs_interpolate_batch(size_t n, const real *X0, const real *X1, const real *s, real
     *X, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3prs_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(tripod_3prs_interpolate(X0 + NQ*j, X1 + NQ*j, s + j, X + NQ*j));
 }

@@ -187,13 +187,27 @@ INLINE int sum_is_finite(const real *x, size_t n)
     return is_finite(total(sum, LANES));
 }
 
+/* How many of some numbers are not finite. */
+APART real not_finite(size_t n, const real *x)
+{
+    real count = 0;
+    if (!sum_is_finite(x, n)) {
+        for (size_t i = 0; i < n; ++i) {
+            count += UNLESS(is_finite(x[i]));
+        }
+    }
+    return count;
+}
+
 /* Flag the states with entries that are not finite; the states stand side by side. */
 INLINE void check(size_t size, size_t w, const real *x, real *flags)
 {
-    if (!sum_is_finite(x, size*w)) {
-        for (size_t i = 0; i < size*w; ++i) {
-            flags[i%w] += UNLESS(is_finite(x[i]));
-        }
+    if (w == 1) {
+        flags[0] += not_finite(size, x);
+        return;
+    }
+    for (size_t i = 0; i < size*w; ++i) {
+        flags[i%w] += UNLESS(is_finite(x[i]));
     }
 }
 
@@ -248,18 +262,17 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE int judge(const verdict *t, int *code)
+INLINE int judge(const verdict *t)
 {
-    *code = t->invalid[0] > 0 ? INVALID
+    return t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
         : t->unreachable[0] > 0 ? UNREACHABLE
         : t->singular[0] > 0 ? SINGULAR
         : t->overflow[0] > 0 ? INVALID : OK;
-    return *code;
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
-INLINE void suspect(const verdict *t, int *code)
+APART void suspect(const verdict *t, int *code)
 {
     real flags[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -281,7 +294,7 @@ INLINE void blame(int code, verdict *t)
 }
 
 /* Outputs of an impossible state. */
-INLINE void refuse(size_t size, real *out)
+APART void refuse(size_t size, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
@@ -317,6 +330,32 @@ INLINE size_t record(const int *code, size_t w, int *status)
     }
     return failed;
 }
+
+/* Bodies of batches.  lanes: settles the states from number i on, side by side, in codes; one: settles
+   state j, what fails and what is left too. */
+#define SIDE_BY_SIDE(lanes, one) \
+    size_t failed = 0, w; \
+    for (size_t i = 0; i < n; i += w) { \
+        int codes[LANES] = {INVALID}; \
+        w = LANES > 1 && i + LANES <= n ? LANES : 1; \
+        if (w > 1) { \
+            lanes; \
+        } \
+        for (size_t j = i; j < i + w; ++j) { \
+            if (codes[j - i] != OK) { \
+                codes[j - i] = one; \
+            } \
+        } \
+        failed += record(codes, w, status ? status + i : NULL); \
+    } \
+    return failed
+#define ONE_BY_ONE(one) \
+    size_t failed = 0; \
+    for (size_t j = 0; j < n; ++j) { \
+        const int code = one; \
+        failed += record(&code, 1, status ? status + j : NULL); \
+    } \
+    return failed
 
 /* What the reader of specifications allows; floats have less to offer. */
 #define ROUNDED BY_TYPE(1e-5, 1e-06, 1e-06)  /* lengths and products of unit vectors */
@@ -1409,15 +1448,12 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real R_zy = quaternion_wx + quaternion_yz;
     const real R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (h_star) first moment about the platform origin */
-    const real h_star_in_platform_x = m->h_star_in_platform_x;
-    const real h_star_in_platform_y = m->h_star_in_platform_y;
-    const real h_star_in_platform_z = m->h_star_in_platform_z;
-    const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-        R_xz*h_star_in_platform_z;
-    const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-        R_yz*h_star_in_platform_z;
-    const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-        R_zz*h_star_in_platform_z;
+    const real h_star_x = R_xx*m->h_star_in_platform_x + R_xy*m->h_star_in_platform_y +
+        R_xz*m->h_star_in_platform_z;
+    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yy*m->h_star_in_platform_y +
+        R_yz*m->h_star_in_platform_z;
+    const real h_star_z = R_zx*m->h_star_in_platform_x + R_zy*m->h_star_in_platform_y +
+        R_zz*m->h_star_in_platform_z;
     v->quaternion_scale = quaternion_scale;
     v->R_xx = R_xx;
     v->R_xy = R_xy;
@@ -1450,33 +1486,27 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
 INLINE void stage_M_dynamics(const prepared *m, values *v)
 {
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-    const real J_star_t_6 = m->J_star_t_6;
-    const real J_star_t = J_star_in_platform_xy*v->R_xx + J_star_in_platform_yz*v->R_xz -
-        J_star_t_6*v->R_xy;
-    const real J_star_t_2 = J_star_in_platform_xy*v->R_yx + J_star_in_platform_yz*v->R_yz -
-        J_star_t_6*v->R_yy;
-    const real J_star_t_3 = J_star_in_platform_xy*v->R_zx + J_star_in_platform_yz*v->R_zz -
-        J_star_t_6*v->R_zy;
-    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-    const real J_star_t_8 = m->J_star_t_8;
-    const real J_star_t_4 = J_star_t_8*v->R_xz - J_star_in_platform_xz*v->R_xx;
-    const real J_star_t_5 = J_star_t_8*v->R_yz - J_star_in_platform_xz*v->R_yx;
-    const real J_star_t_7 = J_star_t_8*v->R_zz - J_star_in_platform_xz*v->R_zx;
+    const real J_star_t = m->J_star_in_platform_xy*v->R_xx + m->J_star_in_platform_yz*v->R_xz
+        - m->J_star_t_6*v->R_xy;
+    const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
+        m->J_star_in_platform_yz*v->R_yz - m->J_star_t_6*v->R_yy;
+    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx +
+        m->J_star_in_platform_yz*v->R_zz - m->J_star_t_6*v->R_zy;
+    const real J_star_t_4 = m->J_star_t_8*v->R_xz - m->J_star_in_platform_xz*v->R_xx;
+    const real J_star_t_5 = m->J_star_t_8*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
+    const real J_star_t_7 = m->J_star_t_8*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_9 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
-    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-    const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_9;
+    const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_9;
     const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
         J_star_t_5*v->R_xz;
     const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_7*v->R_xz;
     const real J_star_t_10 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
-    const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_10;
+    const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_10;
     const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
         J_star_t_7*v->R_yz;
     const real J_star_t_11 = J_star_t_3*v->R_zy - J_star_t_7*v->R_zz;
-    const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_11;
+    const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_11;
     v->J_star_xx = J_star_xx;
     v->J_star_xy = J_star_xy;
     v->J_star_xz = J_star_xz;
@@ -1494,46 +1524,34 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real omega_x = V[3*w + k];
     const real Z_p_t_5 = v->h_star_x*omega_z - v->h_star_z*omega_x;
     const real Z_p_t_6 = v->h_star_y*omega_x - v->h_star_x*omega_y;
-    const real Z_p_t = m->Z_p_t;
-    const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-    const real Z_p_t_2 = m->Z_p_t_2;
-    const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-    const real Z_p_t_3 = m->Z_p_t_3;
-    const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
+    const real Z_p_x = Z_p_t_6*omega_y - m->Z_p_t - Z_p_t_5*omega_z;
+    const real Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
+    const real Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real gravity_x = m->gravity_x;
-    const real gravity_y = m->gravity_y;
-    const real gravity_z = m->gravity_z;
-    const real g_in_platform_x = v->R_xx*gravity_x + v->R_yx*gravity_y + v->R_zx*gravity_z;
-    const real g_in_platform_y = v->R_xy*gravity_x + v->R_yy*gravity_y + v->R_zy*gravity_z;
-    const real g_in_platform_z = v->R_xz*gravity_x + v->R_yz*gravity_y + v->R_zz*gravity_z;
-    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-    const real Z_q_t = J_star_in_platform_xx*v->omega_in_platform_x +
-        J_star_in_platform_xy*v->omega_in_platform_y +
-        J_star_in_platform_xz*v->omega_in_platform_z;
-    const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-    const real Z_q_t_2 = J_star_in_platform_xy*v->omega_in_platform_x +
-        J_star_in_platform_yy*v->omega_in_platform_y +
-        J_star_in_platform_yz*v->omega_in_platform_z;
-    const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-    const real Z_q_t_3 = J_star_in_platform_xz*v->omega_in_platform_x +
-        J_star_in_platform_yz*v->omega_in_platform_y +
-        J_star_in_platform_zz*v->omega_in_platform_z;
-    const real h_star_in_platform_y = m->h_star_in_platform_y;
-    const real h_star_in_platform_z = m->h_star_in_platform_z;
+    const real g_in_platform_x = v->R_xx*m->gravity_x + v->R_yx*m->gravity_y +
+        v->R_zx*m->gravity_z;
+    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_yy*m->gravity_y +
+        v->R_zy*m->gravity_z;
+    const real g_in_platform_z = v->R_xz*m->gravity_x + v->R_yz*m->gravity_y +
+        v->R_zz*m->gravity_z;
+    const real Z_q_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
+        m->J_star_in_platform_xy*v->omega_in_platform_y +
+        m->J_star_in_platform_xz*v->omega_in_platform_z;
+    const real Z_q_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
+        m->J_star_in_platform_yy*v->omega_in_platform_y +
+        m->J_star_in_platform_yz*v->omega_in_platform_z;
+    const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
+        m->J_star_in_platform_yz*v->omega_in_platform_y +
+        m->J_star_in_platform_zz*v->omega_in_platform_z;
     const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
-        g_in_platform_y*h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
-        g_in_platform_z*h_star_in_platform_y;
-    const real h_star_in_platform_x = m->h_star_in_platform_x;
+        g_in_platform_y*m->h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
+        g_in_platform_z*m->h_star_in_platform_y;
     const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
-        g_in_platform_z*h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
-        g_in_platform_x*h_star_in_platform_z;
+        g_in_platform_z*m->h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
+        g_in_platform_x*m->h_star_in_platform_z;
     const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
-        g_in_platform_x*h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
-        g_in_platform_y*h_star_in_platform_x;
+        g_in_platform_x*m->h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
+        g_in_platform_y*m->h_star_in_platform_x;
     const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
         v->R_xz*Z_q_in_platform_z;
     const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
@@ -1565,74 +1583,65 @@ INLINE void stage_rps_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real rps_platform_point_x = m->rps_platform_point_x[i];
-    const real rps_platform_point_y = m->rps_platform_point_y[i];
-    const real rps_platform_point_z = m->rps_platform_point_z[i];
-    const real rps_q_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
-        R_xz*rps_platform_point_z;
+    const real rps_q_x = R_xx*m->rps_platform_point_x[i] + R_xy*m->rps_platform_point_y[i] +
+        R_xz*m->rps_platform_point_z[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real rps_q_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
-        R_yz*rps_platform_point_z;
+    const real rps_q_y = R_yx*m->rps_platform_point_x[i] + R_yy*m->rps_platform_point_y[i] +
+        R_yz*m->rps_platform_point_z[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
-    const real rps_q_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
-        R_zz*rps_platform_point_z;
-    const real rps_base_point_x = m->rps_base_point_x[i];
+    const real rps_q_z = R_zx*m->rps_platform_point_x[i] + R_zy*m->rps_platform_point_y[i] +
+        R_zz*m->rps_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real rps_S_x = rps_q_x + t_x - rps_base_point_x;
-    const real rps_base_point_y = m->rps_base_point_y[i];
+    const real rps_S_x = rps_q_x + t_x - m->rps_base_point_x[i];
     const real t_y = X[1*w + j];
-    const real rps_S_y = rps_q_y + t_y - rps_base_point_y;
-    const real rps_base_point_z = m->rps_base_point_z[i];
+    const real rps_S_y = rps_q_y + t_y - m->rps_base_point_y[i];
     const real t_z = X[2*w + j];
-    const real rps_S_z = rps_q_z + t_z - rps_base_point_z;
-    const real rps_base_frame_xx = m->rps_base_frame_xx[i];
-    const real rps_base_frame_yx = m->rps_base_frame_yx[i];
-    const real rps_base_frame_zx = m->rps_base_frame_zx[i];
-    const real rps_S_in_turn1_x = rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx +
-        rps_S_z*rps_base_frame_zx;
-    const real rps_base_frame_xy = m->rps_base_frame_xy[i];
-    const real rps_base_frame_yy = m->rps_base_frame_yy[i];
-    const real rps_base_frame_zy = m->rps_base_frame_zy[i];
-    const real rps_S_in_turn1_y = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
-        rps_S_z*rps_base_frame_zy;
+    const real rps_S_z = rps_q_z + t_z - m->rps_base_point_z[i];
+    const real rps_S_in_turn1_x = rps_S_x*m->rps_base_frame_xx[i] +
+        rps_S_y*m->rps_base_frame_yx[i] + rps_S_z*m->rps_base_frame_zx[i];
+    const real rps_S_in_turn1_y = rps_S_x*m->rps_base_frame_xy[i] +
+        rps_S_y*m->rps_base_frame_yy[i] + rps_S_z*m->rps_base_frame_zy[i];
     /* (rps-q_2) displacement of joint 2 */
     const real rps_q_2_t = rps_S_in_turn1_x*rps_S_in_turn1_x +
         rps_S_in_turn1_y*rps_S_in_turn1_y;
-    const real rps_branch_1 = m->rps_branch_1[i];
-    const real rps_q_2 = rps_branch_1*root(rps_q_2_t);
+    const real rps_q_2 = m->rps_branch_1[i]*root(rps_q_2_t);
     /* (rps-c_1) cosine of the angle of joint 1 from its reference direction */
     const real inv_rps_q_2 = 1/rps_q_2;
     const real rps_c_1 = inv_rps_q_2*rps_S_in_turn1_x;
     /* (rps-s_1) sine of the angle of joint 1 from its reference direction */
     const real rps_s_1 = inv_rps_q_2*rps_S_in_turn1_y;
     /* (rps-S_dot) velocity of the connection point */
-    const real axis_x_rps_axes1_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1;
-    const real axis_x_rps_axes1_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1;
-    const real axis_x_rps_axes1_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1;
+    const real axis_x_rps_axes1_x = m->rps_base_frame_xx[i]*rps_c_1 +
+        m->rps_base_frame_xy[i]*rps_s_1;
+    const real axis_x_rps_axes1_y = m->rps_base_frame_yx[i]*rps_c_1 +
+        m->rps_base_frame_yy[i]*rps_s_1;
+    const real axis_x_rps_axes1_z = m->rps_base_frame_zx[i]*rps_c_1 +
+        m->rps_base_frame_zy[i]*rps_s_1;
     /* (rps-qd_1) rate of joint 1 */
-    const real axis_y_rps_axes1_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1;
-    const real axis_y_rps_axes1_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1;
-    const real axis_y_rps_axes1_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1;
+    const real axis_y_rps_axes1_x = m->rps_base_frame_xy[i]*rps_c_1 -
+        m->rps_base_frame_xx[i]*rps_s_1;
+    const real axis_y_rps_axes1_y = m->rps_base_frame_yy[i]*rps_c_1 -
+        m->rps_base_frame_yx[i]*rps_s_1;
+    const real axis_y_rps_axes1_z = m->rps_base_frame_zy[i]*rps_c_1 -
+        m->rps_base_frame_zx[i]*rps_s_1;
     /* (rps-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real rps_acc_2_t = m->rps_acc_2_t[i];
-    const real rps_acc_2_t_2 = m->rps_acc_2_t_2[i];
-    const real rps_g_in_axes1_x = rps_acc_2_t*rps_c_1 + rps_acc_2_t_2*rps_s_1;
-    const real rps_g_in_axes1_y = rps_acc_2_t_2*rps_c_1 - rps_acc_2_t*rps_s_1;
+    const real rps_g_in_axes1_x = m->rps_acc_2_t[i]*rps_c_1 + m->rps_acc_2_t_2[i]*rps_s_1;
+    const real rps_g_in_axes1_y = m->rps_acc_2_t_2[i]*rps_c_1 - m->rps_acc_2_t[i]*rps_s_1;
     /* (rps-Hk_a_1) moment of the column's unit force about the platform origin */
-    const real rps_base_frame_yz = m->rps_base_frame_yz[i];
-    const real rps_base_frame_zz = m->rps_base_frame_zz[i];
-    const real rps_Hk_a_1_x = rps_base_frame_zz*rps_q_y - rps_base_frame_yz*rps_q_z;
-    const real rps_base_frame_xz = m->rps_base_frame_xz[i];
-    const real rps_Hk_a_1_y = rps_base_frame_xz*rps_q_z - rps_base_frame_zz*rps_q_x;
-    const real rps_Hk_a_1_z = rps_base_frame_yz*rps_q_x - rps_base_frame_xz*rps_q_y;
+    const real rps_Hk_a_1_x = m->rps_base_frame_zz[i]*rps_q_y -
+        m->rps_base_frame_yz[i]*rps_q_z;
+    const real rps_Hk_a_1_y = m->rps_base_frame_xz[i]*rps_q_z -
+        m->rps_base_frame_zz[i]*rps_q_x;
+    const real rps_Hk_a_1_z = m->rps_base_frame_yz[i]*rps_q_x -
+        m->rps_base_frame_xz[i]*rps_q_y;
     /* (rps-w_2) reciprocal vector 2 */
-    const real rps_w_2_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1;
-    const real rps_w_2_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1;
-    const real rps_w_2_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1;
+    const real rps_w_2_x = m->rps_base_frame_xx[i]*rps_c_1 + m->rps_base_frame_xy[i]*rps_s_1;
+    const real rps_w_2_y = m->rps_base_frame_yx[i]*rps_c_1 + m->rps_base_frame_yy[i]*rps_s_1;
+    const real rps_w_2_z = m->rps_base_frame_zx[i]*rps_c_1 + m->rps_base_frame_zy[i]*rps_s_1;
     v->rps_q_x = rps_q_x;
     v->rps_q_y = rps_q_y;
     v->rps_q_z = rps_q_z;
@@ -1745,21 +1754,17 @@ INLINE void stage_rps_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
         v->rps_g_in_axes1_x;
     const real rps_acc_2_o_in_axes1_y = rps_u_1_in_axes1_y - v->rps_g_in_axes1_y;
     /* (rps-f_2_o) remainder of: inertia force of link 2 less its weight */
-    const real rps_h_2_in_spec1_x = m->rps_h_2_in_spec1_x[i];
-    const real rps_h_2_in_spec1_y = m->rps_h_2_in_spec1_y[i];
-    const real rps_link2_mass = m->rps_link2_mass[i];
-    const real rps_f_2_o_in_axes1_x = rps_acc_2_o_in_axes1_x*rps_link2_mass -
-        v->rps_W_1_t*rps_h_2_in_spec1_x - rps_h_2_in_spec1_y*rps_qdd_1_o;
-    const real rps_f_2_o_in_axes1_y = rps_acc_2_o_in_axes1_y*rps_link2_mass +
-        rps_h_2_in_spec1_x*rps_qdd_1_o - v->rps_W_1_t*rps_h_2_in_spec1_y;
+    const real rps_f_2_o_in_axes1_x = rps_acc_2_o_in_axes1_x*m->rps_link2_mass[i] -
+        v->rps_W_1_t*m->rps_h_2_in_spec1_x[i] - m->rps_h_2_in_spec1_y[i]*rps_qdd_1_o;
+    const real rps_f_2_o_in_axes1_y = rps_acc_2_o_in_axes1_y*m->rps_link2_mass[i] +
+        m->rps_h_2_in_spec1_x[i]*rps_qdd_1_o - v->rps_W_1_t*m->rps_h_2_in_spec1_y[i];
     /* (rps-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
-    const real rps_J_group_1_in_axes1_zz = m->rps_J_group_1_in_axes1_zz[i];
-    const real rps_h_1_in_spec1_x = m->rps_h_1_in_spec1_x[i];
-    const real rps_h_1_in_spec1_y = m->rps_h_1_in_spec1_y[i];
-    const real rps_mu_1_o_in_axes1_z = rps_J_group_1_in_axes1_zz*rps_qdd_1_o +
-        rps_acc_2_o_in_axes1_y*rps_h_2_in_spec1_x + v->rps_g_in_axes1_x*rps_h_1_in_spec1_y -
-        rps_acc_2_o_in_axes1_x*rps_h_2_in_spec1_y - v->rps_g_in_axes1_y*rps_h_1_in_spec1_x;
+    const real rps_mu_1_o_in_axes1_z = m->rps_J_group_1_in_axes1_zz[i]*rps_qdd_1_o +
+        rps_acc_2_o_in_axes1_y*m->rps_h_2_in_spec1_x[i] +
+        v->rps_g_in_axes1_x*m->rps_h_1_in_spec1_y[i] -
+        rps_acc_2_o_in_axes1_x*m->rps_h_2_in_spec1_y[i] -
+        v->rps_g_in_axes1_y*m->rps_h_1_in_spec1_x[i];
     /* (rps-G_o) remainder of: force at the connection point that balances the leg's inertia and
        weight along all degrees of freedom */
     const real rps_G_o_in_axes1_y = rps_f_2_o_in_axes1_y +
@@ -1802,20 +1807,16 @@ INLINE void stage_rps_legs_required(const prepared *m, size_t i, values_rps *v)
         v->rps_g_in_axes1_x;
     const real rps_acc_2_in_axes1_y = rps_S_ddot_in_axes1_y - v->rps_g_in_axes1_y;
     /* (rps-f_2) inertia force of link 2 less its weight */
-    const real rps_h_2_in_spec1_x = m->rps_h_2_in_spec1_x[i];
-    const real rps_h_2_in_spec1_y = m->rps_h_2_in_spec1_y[i];
-    const real rps_link2_mass = m->rps_link2_mass[i];
-    const real rps_f_2_in_axes1_x = rps_acc_2_in_axes1_x*rps_link2_mass -
-        v->rps_W_1_t*rps_h_2_in_spec1_x - rps_h_2_in_spec1_y*rps_qdd_1;
-    const real rps_f_2_in_axes1_y = rps_acc_2_in_axes1_y*rps_link2_mass +
-        rps_h_2_in_spec1_x*rps_qdd_1 - v->rps_W_1_t*rps_h_2_in_spec1_y;
+    const real rps_f_2_in_axes1_x = rps_acc_2_in_axes1_x*m->rps_link2_mass[i] -
+        v->rps_W_1_t*m->rps_h_2_in_spec1_x[i] - m->rps_h_2_in_spec1_y[i]*rps_qdd_1;
+    const real rps_f_2_in_axes1_y = rps_acc_2_in_axes1_y*m->rps_link2_mass[i] +
+        m->rps_h_2_in_spec1_x[i]*rps_qdd_1 - v->rps_W_1_t*m->rps_h_2_in_spec1_y[i];
     /* (rps-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-    const real rps_J_group_1_in_axes1_zz = m->rps_J_group_1_in_axes1_zz[i];
-    const real rps_h_1_in_spec1_x = m->rps_h_1_in_spec1_x[i];
-    const real rps_h_1_in_spec1_y = m->rps_h_1_in_spec1_y[i];
-    const real rps_mu_1_in_axes1_z = rps_J_group_1_in_axes1_zz*rps_qdd_1 +
-        rps_acc_2_in_axes1_y*rps_h_2_in_spec1_x + v->rps_g_in_axes1_x*rps_h_1_in_spec1_y -
-        rps_acc_2_in_axes1_x*rps_h_2_in_spec1_y - v->rps_g_in_axes1_y*rps_h_1_in_spec1_x;
+    const real rps_mu_1_in_axes1_z = m->rps_J_group_1_in_axes1_zz[i]*rps_qdd_1 +
+        rps_acc_2_in_axes1_y*m->rps_h_2_in_spec1_x[i] +
+        v->rps_g_in_axes1_x*m->rps_h_1_in_spec1_y[i] -
+        rps_acc_2_in_axes1_x*m->rps_h_2_in_spec1_y[i] -
+        v->rps_g_in_axes1_y*m->rps_h_1_in_spec1_x[i];
     /* (rps-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
     const real rps_G_in_axes1_y = rps_f_2_in_axes1_y + v->inv_rps_q_2*rps_mu_1_in_axes1_z;
@@ -1835,939 +1836,916 @@ INLINE void stage_rps_legs_required(const prepared *m, size_t i, values_rps *v)
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s,
-    verdict *t)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        stage_V_X(w, k, V, &v);
-        stage_M_dynamics(m, &v);
-        stage_Z_dynamics(m, w, k, V, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = v.h_star_x;
-        s[10*w + k] = v.h_star_y;
-        s[11*w + k] = v.h_star_z;
-        s[12*w + k] = v.J_star_xx;
-        s[13*w + k] = v.J_star_xy;
-        s[14*w + k] = v.J_star_xz;
-        s[15*w + k] = v.J_star_yy;
-        s[16*w + k] = v.J_star_yz;
-        s[17*w + k] = v.J_star_zz;
-        s[18*w + k] = v.Z_p_x;
-        s[19*w + k] = v.Z_p_y;
-        s[20*w + k] = v.Z_p_z;
-        s[21*w + k] = v.Z_q_x;
-        s[22*w + k] = v.Z_q_y;
-        s[23*w + k] = v.Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    stage_V_X(w, k, V, &v);
+    stage_M_dynamics(m, &v);
+    stage_Z_dynamics(m, w, k, V, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = v.h_star_x;
+    s[10*w + k] = v.h_star_y;
+    s[11*w + k] = v.h_star_z;
+    s[12*w + k] = v.J_star_xx;
+    s[13*w + k] = v.J_star_xy;
+    s[14*w + k] = v.J_star_xz;
+    s[15*w + k] = v.J_star_yy;
+    s[16*w + k] = v.J_star_yz;
+    s[17*w + k] = v.J_star_zz;
+    s[18*w + k] = v.Z_p_x;
+    s[19*w + k] = v.Z_p_y;
+    s[20*w + k] = v.Z_p_z;
+    s[21*w + k] = v.Z_q_x;
+    s[22*w + k] = v.Z_q_y;
+    s[23*w + k] = v.Z_q_z;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void dynamics_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
+INLINE void dynamics_legs_rps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rps v;
-        stage_rps_X(m, w, i, j, s, X, &v);
-        stage_rps_V_X(w, j, V, &v);
-        stage_rps_Z_dynamics(m, w, i, j, V, &v);
-        /* (rps-u_1) centripetal acceleration of the connection point */
-        const real rps_base_frame_xz = m->rps_base_frame_xz[i];
-        const real rps_base_frame_yz = m->rps_base_frame_yz[i];
-        const real rps_base_frame_zz = m->rps_base_frame_zz[i];
-        const real rps_u_1_in_axes1_z = rps_base_frame_xz*v.rps_u_1_x +
-            rps_base_frame_yz*v.rps_u_1_y + rps_base_frame_zz*v.rps_u_1_z;
-        /* (rps-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all degrees of freedom */
-        const real rps_J_group_1_in_axes1_zz = m->rps_J_group_1_in_axes1_zz[i];
-        const real rps_h_2_in_spec1_x = m->rps_h_2_in_spec1_x[i];
-        const real rps_link2_mass = m->rps_link2_mass[i];
-        const real rps_d_G_in_axes1_yy = v.inv_rps_q_2*(rps_h_2_in_spec1_x +
-            v.inv_rps_q_2*rps_J_group_1_in_axes1_zz + v.rps_q_2*(rps_link2_mass +
-            v.inv_rps_q_2*rps_h_2_in_spec1_x));
-        /* (rps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real rps_h_2_in_spec1_y = m->rps_h_2_in_spec1_y[i];
-        const real rps_d_c_in_axes1_xy = v.inv_rps_q_2*rps_h_2_in_spec1_y;
-        const real rps_d_c_t = v.axis_y_rps_axes1_x*rps_d_c_in_axes1_xy -
-            v.axis_x_rps_axes1_x*rps_link2_mass;
-        const real rps_d_c_t_2 = v.axis_y_rps_axes1_y*rps_d_c_in_axes1_xy -
-            v.axis_x_rps_axes1_y*rps_link2_mass;
-        const real rps_d_c_t_3 = v.axis_x_rps_axes1_x*rps_d_c_in_axes1_xy -
-            v.axis_y_rps_axes1_x*rps_d_G_in_axes1_yy;
-        const real rps_d_c_t_4 = v.axis_x_rps_axes1_y*rps_d_c_in_axes1_xy -
-            v.axis_y_rps_axes1_y*rps_d_G_in_axes1_yy;
-        const real rps_d_c_xx = v.axis_x_rps_axes1_x*rps_d_c_t + v.axis_y_rps_axes1_x*rps_d_c_t_3;
-        const real rps_d_c_xy = v.axis_x_rps_axes1_y*rps_d_c_t + v.axis_y_rps_axes1_y*rps_d_c_t_3;
-        const real rps_d_c_xz = v.axis_x_rps_axes1_z*rps_d_c_t + v.axis_y_rps_axes1_z*rps_d_c_t_3;
-        const real rps_d_c_yy = v.axis_x_rps_axes1_y*rps_d_c_t_2 +
-            v.axis_y_rps_axes1_y*rps_d_c_t_4;
-        const real rps_d_c_yz = v.axis_x_rps_axes1_z*rps_d_c_t_2 +
-            v.axis_y_rps_axes1_z*rps_d_c_t_4;
-        const real rps_d_c_zz = v.axis_x_rps_axes1_z*(v.axis_y_rps_axes1_z*rps_d_c_in_axes1_xy -
-            v.axis_x_rps_axes1_z*rps_link2_mass) +
-            v.axis_y_rps_axes1_z*(v.axis_x_rps_axes1_z*rps_d_c_in_axes1_xy -
-            v.axis_y_rps_axes1_z*rps_d_G_in_axes1_yy);
-        /* (M_ta) coupling block of M */
-        const real rps_M_ta_t = rps_d_c_xy*v.rps_q_z;
-        const real rps_M_ta_t_2 = rps_d_c_xz*v.rps_q_y;
-        const real rps_M_ta_t_3 = rps_M_ta_t - rps_M_ta_t_2;
-        const real rps_M_ta_t_4 = rps_d_c_xx*v.rps_q_z - rps_d_c_xz*v.rps_q_x;
-        const real rps_M_ta_t_5 = rps_d_c_xx*v.rps_q_y - rps_d_c_xy*v.rps_q_x;
-        const real rps_M_ta_t_6 = rps_d_c_yy*v.rps_q_z - rps_d_c_yz*v.rps_q_y;
-        const real rps_M_ta_t_7 = rps_d_c_yz*v.rps_q_x;
-        const real rps_M_ta_t_8 = rps_M_ta_t_7 - rps_M_ta_t;
-        const real rps_M_ta_t_9 = rps_d_c_xy*v.rps_q_y - rps_d_c_yy*v.rps_q_x;
-        const real rps_M_ta_t_10 = rps_d_c_yz*v.rps_q_z - rps_d_c_zz*v.rps_q_y;
-        const real rps_M_ta_t_11 = rps_d_c_zz*v.rps_q_x - rps_d_c_xz*v.rps_q_z;
-        const real rps_M_ta_t_12 = rps_M_ta_t_2 - rps_M_ta_t_7;
-        /* (M_aa) rotational block of M */
-        const real rps_M_aa_t = rps_M_ta_t_10*v.rps_q_y - rps_M_ta_t_6*v.rps_q_z;
-        const real rps_M_aa_t_2 = rps_M_ta_t_11*v.rps_q_y - rps_M_ta_t_8*v.rps_q_z;
-        const real rps_M_aa_t_3 = rps_M_ta_t_12*v.rps_q_y - rps_M_ta_t_9*v.rps_q_z;
-        const real rps_M_aa_t_4 = rps_M_ta_t_11*v.rps_q_x + rps_M_ta_t_4*v.rps_q_z;
-        const real rps_M_aa_t_5 = rps_M_ta_t_5*v.rps_q_z - rps_M_ta_t_12*v.rps_q_x;
-        const real rps_M_aa_t_6 = rps_M_ta_t_9*v.rps_q_x - rps_M_ta_t_5*v.rps_q_y;
-        /* (rps-H_a_2) moment of the column's unit force about the platform origin */
-        const real rps_H_a_2_x = v.axis_x_rps_axes1_z*v.rps_q_y - v.axis_x_rps_axes1_y*v.rps_q_z;
-        const real rps_H_a_2_y = v.axis_x_rps_axes1_x*v.rps_q_z - v.axis_x_rps_axes1_z*v.rps_q_x;
-        const real rps_H_a_2_z = v.axis_x_rps_axes1_y*v.rps_q_x - v.axis_x_rps_axes1_x*v.rps_q_y;
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, rps_d_c_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, rps_d_c_xy);  /* M_tt_t_2 */
-        gather(&terms[2*count + k], add, rps_d_c_xz);  /* M_tt_t_3 */
-        gather(&terms[3*count + k], add, rps_d_c_yy);  /* M_tt_yy_of_legs */
-        gather(&terms[4*count + k], add, rps_d_c_yz);  /* M_tt_t_5 */
-        gather(&terms[5*count + k], add, rps_d_c_zz);  /* M_tt_zz_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[6*count + k], add, rps_M_ta_t_3);  /* M_ta_xx */
-        gather(&terms[7*count + k], add, -rps_M_ta_t_4);  /* M_ta_xy_of_legs */
-        gather(&terms[8*count + k], add, rps_M_ta_t_5);  /* M_ta_xz_of_legs */
-        gather(&terms[9*count + k], add, rps_M_ta_t_6);  /* M_ta_yx_of_legs */
-        gather(&terms[10*count + k], add, rps_M_ta_t_8);  /* M_ta_yy */
-        gather(&terms[11*count + k], add, rps_M_ta_t_9);  /* M_ta_yz_of_legs */
-        gather(&terms[12*count + k], add, rps_M_ta_t_10);  /* M_ta_zx_of_legs */
-        gather(&terms[13*count + k], add, rps_M_ta_t_11);  /* M_ta_zy_of_legs */
-        gather(&terms[14*count + k], add, rps_M_ta_t_12);  /* M_ta_zz */
-        /* (M_aa) rotational block of M */
-        gather(&terms[15*count + k], add, rps_M_aa_t);  /* M_aa_xx_of_legs */
-        gather(&terms[16*count + k], add, rps_M_aa_t_2);  /* M_aa_xy_of_legs */
-        gather(&terms[17*count + k], add, rps_M_aa_t_3);  /* M_aa_xz_of_legs */
-        gather(&terms[18*count + k], add, rps_M_aa_t_4);  /* M_aa_yy_of_legs */
-        gather(&terms[19*count + k], add, rps_M_aa_t_5);  /* M_aa_yz_of_legs */
-        gather(&terms[20*count + k], add, rps_M_aa_t_6);  /* M_aa_zz_of_legs */
-        /* (Z_t) translational part of Z */
-        gather(&terms[21*count + k], add, v.rps_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[22*count + k], add, v.rps_U_y);  /* Z_t_y_of_legs */
-        gather(&terms[23*count + k], add, v.rps_U_z);  /* Z_t_z_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[24*count + k], add, v.rps_Z_a_t);  /* Z_a_x_of_legs */
-        gather(&terms[25*count + k], add, v.rps_Z_a_t_2);  /* Z_a_y_of_legs */
-        gather(&terms[26*count + k], add, v.rps_Z_a_t_3);  /* Z_a_z_of_legs */
-        /* (rps-w_2) reciprocal vector 2 */
-        o[0*count + k] = v.axis_x_rps_axes1_x;
-        o[1*count + k] = v.axis_x_rps_axes1_y;
-        o[2*count + k] = v.axis_x_rps_axes1_z;
-        /* (rps-H_a_2) moment of the column's unit force about the platform origin */
-        o[3*count + k] = rps_H_a_2_x;
-        o[4*count + k] = rps_H_a_2_y;
-        o[5*count + k] = rps_H_a_2_z;
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        o[6*count + k] = rps_base_frame_xz;
-        o[7*count + k] = rps_base_frame_yz;
-        o[8*count + k] = rps_base_frame_zz;
-        /* (rps-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[9*count + k] = v.rps_Hk_a_1_x;
-        o[10*count + k] = v.rps_Hk_a_1_y;
-        o[11*count + k] = v.rps_Hk_a_1_z;
-        /* (rps-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-           */
-        o[12*count + k] = rps_u_1_in_axes1_z;
-        o[14*count + k] = ((v.axis_x_rps_axes1_x + (v.axis_x_rps_axes1_y + v.axis_x_rps_axes1_z))
-            + (rps_H_a_2_x + (rps_H_a_2_y + rps_H_a_2_z))) + ((rps_base_frame_xz +
-            (rps_base_frame_yz + rps_base_frame_zz)) + ((v.rps_Hk_a_1_x + v.rps_Hk_a_1_y) +
-            (v.rps_Hk_a_1_z + rps_u_1_in_axes1_z)));
-        o[13*count + k] = UNLESS(magnitude(v.rps_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rps_q_2) >
-            LEAST_2);
-    }
+    values_rps v;
+    stage_rps_X(m, w, i, j, s, X, &v);
+    stage_rps_V_X(w, j, V, &v);
+    stage_rps_Z_dynamics(m, w, i, j, V, &v);
+    /* (rps-u_1) centripetal acceleration of the connection point */
+    const real rps_u_1_in_axes1_z = m->rps_base_frame_xz[i]*v.rps_u_1_x +
+        m->rps_base_frame_yz[i]*v.rps_u_1_y + m->rps_base_frame_zz[i]*v.rps_u_1_z;
+    /* (rps-d_G) coefficient of the acceleration in: force at the connection point that balances the
+       leg's inertia and weight along all degrees of freedom */
+    const real rps_d_G_in_axes1_yy = v.inv_rps_q_2*(m->rps_h_2_in_spec1_x[i] +
+        v.inv_rps_q_2*m->rps_J_group_1_in_axes1_zz[i] + v.rps_q_2*(m->rps_link2_mass[i] +
+        v.inv_rps_q_2*m->rps_h_2_in_spec1_x[i]));
+    /* (rps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real rps_d_c_in_axes1_xy = v.inv_rps_q_2*m->rps_h_2_in_spec1_y[i];
+    const real rps_d_c_t = v.axis_y_rps_axes1_x*rps_d_c_in_axes1_xy -
+        v.axis_x_rps_axes1_x*m->rps_link2_mass[i];
+    const real rps_d_c_t_2 = v.axis_y_rps_axes1_y*rps_d_c_in_axes1_xy -
+        v.axis_x_rps_axes1_y*m->rps_link2_mass[i];
+    const real rps_d_c_t_3 = v.axis_x_rps_axes1_x*rps_d_c_in_axes1_xy -
+        v.axis_y_rps_axes1_x*rps_d_G_in_axes1_yy;
+    const real rps_d_c_t_4 = v.axis_x_rps_axes1_y*rps_d_c_in_axes1_xy -
+        v.axis_y_rps_axes1_y*rps_d_G_in_axes1_yy;
+    const real rps_d_c_xx = v.axis_x_rps_axes1_x*rps_d_c_t + v.axis_y_rps_axes1_x*rps_d_c_t_3;
+    const real rps_d_c_xy = v.axis_x_rps_axes1_y*rps_d_c_t + v.axis_y_rps_axes1_y*rps_d_c_t_3;
+    const real rps_d_c_xz = v.axis_x_rps_axes1_z*rps_d_c_t + v.axis_y_rps_axes1_z*rps_d_c_t_3;
+    const real rps_d_c_yy = v.axis_x_rps_axes1_y*rps_d_c_t_2 +
+        v.axis_y_rps_axes1_y*rps_d_c_t_4;
+    const real rps_d_c_yz = v.axis_x_rps_axes1_z*rps_d_c_t_2 +
+        v.axis_y_rps_axes1_z*rps_d_c_t_4;
+    const real rps_d_c_zz = v.axis_x_rps_axes1_z*(v.axis_y_rps_axes1_z*rps_d_c_in_axes1_xy -
+        v.axis_x_rps_axes1_z*m->rps_link2_mass[i]) +
+        v.axis_y_rps_axes1_z*(v.axis_x_rps_axes1_z*rps_d_c_in_axes1_xy -
+        v.axis_y_rps_axes1_z*rps_d_G_in_axes1_yy);
+    /* (M_ta) coupling block of M */
+    const real rps_M_ta_t = rps_d_c_xy*v.rps_q_z;
+    const real rps_M_ta_t_2 = rps_d_c_xz*v.rps_q_y;
+    const real rps_M_ta_t_3 = rps_M_ta_t - rps_M_ta_t_2;
+    const real rps_M_ta_t_4 = rps_d_c_xx*v.rps_q_z - rps_d_c_xz*v.rps_q_x;
+    const real rps_M_ta_t_5 = rps_d_c_xx*v.rps_q_y - rps_d_c_xy*v.rps_q_x;
+    const real rps_M_ta_t_6 = rps_d_c_yy*v.rps_q_z - rps_d_c_yz*v.rps_q_y;
+    const real rps_M_ta_t_7 = rps_d_c_yz*v.rps_q_x;
+    const real rps_M_ta_t_8 = rps_M_ta_t_7 - rps_M_ta_t;
+    const real rps_M_ta_t_9 = rps_d_c_xy*v.rps_q_y - rps_d_c_yy*v.rps_q_x;
+    const real rps_M_ta_t_10 = rps_d_c_yz*v.rps_q_z - rps_d_c_zz*v.rps_q_y;
+    const real rps_M_ta_t_11 = rps_d_c_zz*v.rps_q_x - rps_d_c_xz*v.rps_q_z;
+    const real rps_M_ta_t_12 = rps_M_ta_t_2 - rps_M_ta_t_7;
+    /* (M_aa) rotational block of M */
+    const real rps_M_aa_t = rps_M_ta_t_10*v.rps_q_y - rps_M_ta_t_6*v.rps_q_z;
+    const real rps_M_aa_t_2 = rps_M_ta_t_11*v.rps_q_y - rps_M_ta_t_8*v.rps_q_z;
+    const real rps_M_aa_t_3 = rps_M_ta_t_12*v.rps_q_y - rps_M_ta_t_9*v.rps_q_z;
+    const real rps_M_aa_t_4 = rps_M_ta_t_11*v.rps_q_x + rps_M_ta_t_4*v.rps_q_z;
+    const real rps_M_aa_t_5 = rps_M_ta_t_5*v.rps_q_z - rps_M_ta_t_12*v.rps_q_x;
+    const real rps_M_aa_t_6 = rps_M_ta_t_9*v.rps_q_x - rps_M_ta_t_5*v.rps_q_y;
+    /* (rps-H_a_2) moment of the column's unit force about the platform origin */
+    const real rps_H_a_2_x = v.axis_x_rps_axes1_z*v.rps_q_y - v.axis_x_rps_axes1_y*v.rps_q_z;
+    const real rps_H_a_2_y = v.axis_x_rps_axes1_x*v.rps_q_z - v.axis_x_rps_axes1_z*v.rps_q_x;
+    const real rps_H_a_2_z = v.axis_x_rps_axes1_y*v.rps_q_x - v.axis_x_rps_axes1_x*v.rps_q_y;
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, rps_d_c_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, rps_d_c_xy);  /* M_tt_t_2 */
+    gather(&terms[2*count + k], add, rps_d_c_xz);  /* M_tt_t_3 */
+    gather(&terms[3*count + k], add, rps_d_c_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, rps_d_c_yz);  /* M_tt_t_5 */
+    gather(&terms[5*count + k], add, rps_d_c_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) */
+    gather(&terms[6*count + k], add, rps_M_ta_t_3);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, -rps_M_ta_t_4);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, rps_M_ta_t_5);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, rps_M_ta_t_6);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, rps_M_ta_t_8);  /* M_ta_yy */
+    gather(&terms[11*count + k], add, rps_M_ta_t_9);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, rps_M_ta_t_10);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, rps_M_ta_t_11);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, rps_M_ta_t_12);  /* M_ta_zz */
+    /* (M_aa) */
+    gather(&terms[15*count + k], add, rps_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, rps_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, rps_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, rps_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, rps_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, rps_M_aa_t_6);  /* M_aa_zz_of_legs */
+    /* (Z_t) translational part of Z */
+    gather(&terms[21*count + k], add, v.rps_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[22*count + k], add, v.rps_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[23*count + k], add, v.rps_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[24*count + k], add, v.rps_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[25*count + k], add, v.rps_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[26*count + k], add, v.rps_Z_a_t_3);  /* Z_a_z_of_legs */
+    /* (rps-w_2) reciprocal vector 2 */
+    o[0*count + k] = v.axis_x_rps_axes1_x;
+    o[1*count + k] = v.axis_x_rps_axes1_y;
+    o[2*count + k] = v.axis_x_rps_axes1_z;
+    /* (rps-H_a_2) */
+    o[3*count + k] = rps_H_a_2_x;
+    o[4*count + k] = rps_H_a_2_y;
+    o[5*count + k] = rps_H_a_2_z;
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    o[6*count + k] = m->rps_base_frame_xz[i];
+    o[7*count + k] = m->rps_base_frame_yz[i];
+    o[8*count + k] = m->rps_base_frame_zz[i];
+    /* (rps-Hk_a_1) moment of the column's unit force about the platform origin */
+    o[9*count + k] = v.rps_Hk_a_1_x;
+    o[10*count + k] = v.rps_Hk_a_1_y;
+    o[11*count + k] = v.rps_Hk_a_1_z;
+    /* (rps-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+       */
+    o[12*count + k] = rps_u_1_in_axes1_z;
+    o[14*count + k] = ((v.axis_x_rps_axes1_x + (v.axis_x_rps_axes1_y + v.axis_x_rps_axes1_z))
+        + (rps_H_a_2_x + (rps_H_a_2_y + rps_H_a_2_z))) + ((m->rps_base_frame_xz[i] +
+        (m->rps_base_frame_yz[i] + m->rps_base_frame_zz[i])) + ((v.rps_Hk_a_1_x +
+        v.rps_Hk_a_1_y) + (v.rps_Hk_a_1_z + rps_u_1_in_axes1_z)));
+    o[13*count + k] = UNLESS(magnitude(v.rps_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rps_q_2) >
+        LEAST_2);
 }
 
-INLINE void dynamics_place_rps(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *H, real *Hk, real *constraint_bias, verdict *t)
+INLINE void dynamics_place_rps(size_t w, size_t i, size_t k, size_t at, size_t count, const real
+    *o, real *H, real *Hk, real *constraint_bias, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        H[(3*NU + leg)*w + k] = o[3*count + first + k];
-        H[(4*NU + leg)*w + k] = o[4*count + first + k];
-        H[(5*NU + leg)*w + k] = o[5*count + first + k];
-        Hk[leg*w + k] = o[6*count + first + k];
-        Hk[(NC + leg)*w + k] = o[7*count + first + k];
-        Hk[(2*NC + leg)*w + k] = o[8*count + first + k];
-        Hk[(3*NC + leg)*w + k] = o[9*count + first + k];
-        Hk[(4*NC + leg)*w + k] = o[10*count + first + k];
-        Hk[(5*NC + leg)*w + k] = o[11*count + first + k];
-        constraint_bias[leg*w + k] = o[12*count + first + k];
-        t->singular[k] += o[13*count + first + k];
-        t->total[k] += o[14*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    H[(3*NU + i)*w + k] = o[3*count + at];
+    H[(4*NU + i)*w + k] = o[4*count + at];
+    H[(5*NU + i)*w + k] = o[5*count + at];
+    Hk[i*w + k] = o[6*count + at];
+    Hk[(NC + i)*w + k] = o[7*count + at];
+    Hk[(2*NC + i)*w + k] = o[8*count + at];
+    Hk[(3*NC + i)*w + k] = o[9*count + at];
+    Hk[(4*NC + i)*w + k] = o[10*count + at];
+    Hk[(5*NC + i)*w + k] = o[11*count + at];
+    constraint_bias[i*w + k] = o[12*count + at];
+    t->singular[k] += o[13*count + at];
+    t->total[k] += o[14*count + at];
 }
 
-INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const real *sums, real *M,
-    real *Z, verdict *t)
+INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
+    real *M, real *Z, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (M_tt) translational block of M */
-        const real M_tt_xx_of_legs = sums[0*w + k];
-        const real platform_mass = m->platform_mass;
-        const real M_tt_xx = platform_mass - M_tt_xx_of_legs;
-        const real M_tt_yy_of_legs = sums[3*w + k];
-        const real M_tt_yy = platform_mass - M_tt_yy_of_legs;
-        const real M_tt_zz_of_legs = sums[5*w + k];
-        const real M_tt_zz = platform_mass - M_tt_zz_of_legs;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[11*w + k];
-        const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
-        const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[10*w + k];
-        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-        const real M_ta_yx_of_legs = sums[9*w + k];
-        const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-        const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[9*w + k];
-        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
-        const real M_ta_zx_of_legs = sums[12*w + k];
-        const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
-        const real M_ta_zy_of_legs = sums[13*w + k];
-        const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-        /* (M_aa) rotational block of M */
-        const real J_star_xx = s[12*w + k];
-        const real M_aa_xx_of_legs = sums[15*w + k];
-        const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[13*w + k];
-        const real M_aa_xy_of_legs = sums[16*w + k];
-        const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[14*w + k];
-        const real M_aa_xz_of_legs = sums[17*w + k];
-        const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[15*w + k];
-        const real M_aa_yy_of_legs = sums[18*w + k];
-        const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
-        const real J_star_yz = s[16*w + k];
-        const real M_aa_yz_of_legs = sums[19*w + k];
-        const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[17*w + k];
-        const real M_aa_zz_of_legs = sums[20*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-        /* (Z_t) translational part of Z */
-        const real Z_p_x = s[18*w + k];
-        const real Z_t_x_of_legs = sums[21*w + k];
-        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[19*w + k];
-        const real Z_t_y_of_legs = sums[22*w + k];
-        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[20*w + k];
-        const real Z_t_z_of_legs = sums[23*w + k];
-        const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-        /* (Z_a) rotational part of Z */
-        const real Z_a_x_of_legs = sums[24*w + k];
-        const real Z_q_x = s[21*w + k];
-        const real Z_a_x = Z_a_x_of_legs + Z_q_x;
-        const real Z_a_y_of_legs = sums[25*w + k];
-        const real Z_q_y = s[22*w + k];
-        const real Z_a_y = Z_a_y_of_legs + Z_q_y;
-        const real Z_a_z_of_legs = sums[26*w + k];
-        const real Z_q_z = s[23*w + k];
-        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
-        /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        const real M_tt_t_2 = sums[1*w + k];
-        M[1*w + k] = -M_tt_t_2;
-        M[NV*w + k] = -M_tt_t_2;
-        const real M_tt_t_3 = sums[2*w + k];
-        M[2*w + k] = -M_tt_t_3;
-        M[2*NV*w + k] = -M_tt_t_3;
-        M[(NV + 1)*w + k] = M_tt_yy;
-        const real M_tt_t_5 = sums[4*w + k];
-        M[(NV + 2)*w + k] = -M_tt_t_5;
-        M[(2*NV + 1)*w + k] = -M_tt_t_5;
-        M[(2*NV + 2)*w + k] = M_tt_zz;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xx = sums[6*w + k];
-        M[3*w + k] = M_ta_xx;
-        M[3*NV*w + k] = M_ta_xx;
-        M[4*w + k] = M_ta_xy;
-        M[4*NV*w + k] = M_ta_xy;
-        M[5*w + k] = M_ta_xz;
-        M[5*NV*w + k] = M_ta_xz;
-        M[(NV + 3)*w + k] = M_ta_yx;
-        M[(3*NV + 1)*w + k] = M_ta_yx;
-        const real M_ta_yy = sums[10*w + k];
-        M[(NV + 4)*w + k] = M_ta_yy;
-        M[(4*NV + 1)*w + k] = M_ta_yy;
-        M[(NV + 5)*w + k] = M_ta_yz;
-        M[(5*NV + 1)*w + k] = M_ta_yz;
-        M[(2*NV + 3)*w + k] = M_ta_zx;
-        M[(3*NV + 2)*w + k] = M_ta_zx;
-        M[(2*NV + 4)*w + k] = M_ta_zy;
-        M[(4*NV + 2)*w + k] = M_ta_zy;
-        const real M_ta_zz = sums[14*w + k];
-        M[(2*NV + 5)*w + k] = M_ta_zz;
-        M[(5*NV + 2)*w + k] = M_ta_zz;
-        /* (M_aa) rotational block of M */
-        M[(3*NV + 3)*w + k] = M_aa_xx;
-        M[(3*NV + 4)*w + k] = M_aa_xy;
-        M[(4*NV + 3)*w + k] = M_aa_xy;
-        M[(3*NV + 5)*w + k] = M_aa_xz;
-        M[(5*NV + 3)*w + k] = M_aa_xz;
-        M[(4*NV + 4)*w + k] = M_aa_yy;
-        M[(4*NV + 5)*w + k] = M_aa_yz;
-        M[(5*NV + 4)*w + k] = M_aa_yz;
-        M[(5*NV + 5)*w + k] = M_aa_zz;
-        /* (Z_t) translational part of Z */
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-        Z[2*w + k] = Z_t_z;
-        /* (Z_a) rotational part of Z */
-        Z[3*w + k] = Z_a_x;
-        Z[4*w + k] = Z_a_y;
-        Z[5*w + k] = Z_a_z;
-        t->total[k] += (((M_tt_xx + (M_tt_t_2 + M_tt_t_3)) + (M_tt_yy + (M_tt_t_5 + M_tt_zz))) +
-            ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
-            (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
-            ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
-    }
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = m->platform_mass - M_tt_xx_of_legs;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = m->platform_mass - M_tt_yy_of_legs;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = m->platform_mass - M_tt_zz_of_legs;
+    /* (M_ta) */
+    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real h_star_z = s[11*w + k];
+    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real h_star_y = s[10*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yx_of_legs = sums[9*w + k];
+    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_yz_of_legs = sums[11*w + k];
+    const real h_star_x = s[9*w + k];
+    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_zx_of_legs = sums[12*w + k];
+    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zy_of_legs = sums[13*w + k];
+    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    /* (M_aa) */
+    const real J_star_xx = s[12*w + k];
+    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
+    const real J_star_xy = s[13*w + k];
+    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
+    const real J_star_xz = s[14*w + k];
+    const real M_aa_xz_of_legs = sums[17*w + k];
+    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
+    const real J_star_yy = s[15*w + k];
+    const real M_aa_yy_of_legs = sums[18*w + k];
+    const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
+    const real J_star_yz = s[16*w + k];
+    const real M_aa_yz_of_legs = sums[19*w + k];
+    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
+    const real J_star_zz = s[17*w + k];
+    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
+    /* (Z_t) */
+    const real Z_p_x = s[18*w + k];
+    const real Z_t_x_of_legs = sums[21*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[19*w + k];
+    const real Z_t_y_of_legs = sums[22*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    const real Z_p_z = s[20*w + k];
+    const real Z_t_z_of_legs = sums[23*w + k];
+    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
+    /* (Z_a) */
+    const real Z_a_x_of_legs = sums[24*w + k];
+    const real Z_q_x = s[21*w + k];
+    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_y_of_legs = sums[25*w + k];
+    const real Z_q_y = s[22*w + k];
+    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_z_of_legs = sums[26*w + k];
+    const real Z_q_z = s[23*w + k];
+    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_t_2 = sums[1*w + k];
+    M[1*w + k] = -M_tt_t_2;
+    M[NV*w + k] = -M_tt_t_2;
+    const real M_tt_t_3 = sums[2*w + k];
+    M[2*w + k] = -M_tt_t_3;
+    M[2*NV*w + k] = -M_tt_t_3;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_t_5 = sums[4*w + k];
+    M[(NV + 2)*w + k] = -M_tt_t_5;
+    M[(2*NV + 1)*w + k] = -M_tt_t_5;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    /* (M_ta) */
+    const real M_ta_xx = sums[6*w + k];
+    M[3*w + k] = M_ta_xx;
+    M[3*NV*w + k] = M_ta_xx;
+    M[4*w + k] = M_ta_xy;
+    M[4*NV*w + k] = M_ta_xy;
+    M[5*w + k] = M_ta_xz;
+    M[5*NV*w + k] = M_ta_xz;
+    M[(NV + 3)*w + k] = M_ta_yx;
+    M[(3*NV + 1)*w + k] = M_ta_yx;
+    const real M_ta_yy = sums[10*w + k];
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
+    M[(NV + 5)*w + k] = M_ta_yz;
+    M[(5*NV + 1)*w + k] = M_ta_yz;
+    M[(2*NV + 3)*w + k] = M_ta_zx;
+    M[(3*NV + 2)*w + k] = M_ta_zx;
+    M[(2*NV + 4)*w + k] = M_ta_zy;
+    M[(4*NV + 2)*w + k] = M_ta_zy;
+    const real M_ta_zz = sums[14*w + k];
+    M[(2*NV + 5)*w + k] = M_ta_zz;
+    M[(5*NV + 2)*w + k] = M_ta_zz;
+    /* (M_aa) */
+    M[(3*NV + 3)*w + k] = M_aa_xx;
+    M[(3*NV + 4)*w + k] = M_aa_xy;
+    M[(4*NV + 3)*w + k] = M_aa_xy;
+    M[(3*NV + 5)*w + k] = M_aa_xz;
+    M[(5*NV + 3)*w + k] = M_aa_xz;
+    M[(4*NV + 4)*w + k] = M_aa_yy;
+    M[(4*NV + 5)*w + k] = M_aa_yz;
+    M[(5*NV + 4)*w + k] = M_aa_yz;
+    M[(5*NV + 5)*w + k] = M_aa_zz;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    /* (Z_a) */
+    Z[3*w + k] = Z_a_x;
+    Z[4*w + k] = Z_a_y;
+    Z[5*w + k] = Z_a_z;
+    t->total[k] += (((M_tt_xx + (M_tt_t_2 + M_tt_t_3)) + (M_tt_yy + (M_tt_t_5 + M_tt_zz))) +
+        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
+        (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
+        ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
 }
 
-INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
+APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, real *Hk, real *constraint_bias, verdict *t)
 {
     real s[24] = {0}, sums[27] = {0};
     real terms_rps[27*LEGS(LEGS_OF_rps)] = {0}, o_rps[15*LEGS(LEGS_OF_rps)] = {0};
-    dynamics_before(m, 1, X, V, s, t);
-    dynamics_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), 0, X, V, terms_rps, o_rps);
-    for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        dynamics_place_rps(1, LEGS(LEGS_OF_rps), o_rps, leg, leg, H, Hk, constraint_bias, t);
+    dynamics_before(m, 1, 0, X, V, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rps); ++k) {
+        dynamics_legs_rps(m, 1, k, 0, k, LEGS(LEGS_OF_rps), 0, s, X, V, terms_rps, o_rps);
+    }
+    for (size_t i = 0; i < LEGS_OF_rps; ++i) {
+        dynamics_place_rps(1, i, 0, i, LEGS(LEGS_OF_rps), o_rps, H, Hk, constraint_bias, t);
     }
     for (size_t n = 0; n < 27; ++n) {
         sums[n] = total(terms_rps + n*LEGS(LEGS_OF_rps), LEGS_OF_rps);
     }
-    dynamics_after(m, 1, s, sums, M, Z, t);
+    dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
-INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
-    real *H, real *Hk, real *constraint_bias, verdict *t)
+APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
+    real *restrict Z, real *restrict H, real *restrict Hk, real *restrict constraint_bias, verdict
+    *restrict t)
 {
     real s[24*LANES], sums[27*LANES];
     real o_rps[15*LANES];
-    dynamics_before(m, LANES, X, V, s, t);
-    clear(sums, 27*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        dynamics_legs_rps(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rps);
-        dynamics_place_rps(LANES, LANES, o_rps, leg, 0, H, Hk, constraint_bias, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        dynamics_before(m, LANES, k, X, V, s, t);
     }
-    dynamics_after(m, LANES, s, sums, M, Z, t);
+    clear(sums, 27*LANES);
+    for (size_t i = 0; i < LEGS_OF_rps; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_legs_rps(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rps);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_place_rps(LANES, i, k, k, LANES, o_rps, H, Hk, constraint_bias, t);
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        dynamics_after(m, LANES, k, s, sums, M, Z, t);
+    }
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        stage_M_dynamics(m, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = v.h_star_x;
-        s[10*w + k] = v.h_star_y;
-        s[11*w + k] = v.h_star_z;
-        s[12*w + k] = v.J_star_xx;
-        s[13*w + k] = v.J_star_xy;
-        s[14*w + k] = v.J_star_xz;
-        s[15*w + k] = v.J_star_yy;
-        s[16*w + k] = v.J_star_yz;
-        s[17*w + k] = v.J_star_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    stage_M_dynamics(m, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = v.h_star_x;
+    s[10*w + k] = v.h_star_y;
+    s[11*w + k] = v.h_star_z;
+    s[12*w + k] = v.J_star_xx;
+    s[13*w + k] = v.J_star_xy;
+    s[14*w + k] = v.J_star_xz;
+    s[15*w + k] = v.J_star_yy;
+    s[16*w + k] = v.J_star_yz;
+    s[17*w + k] = v.J_star_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void M_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void M_legs_rps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rps v;
-        stage_rps_X(m, w, i, j, s, X, &v);
-        /* (rps-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all degrees of freedom */
-        const real rps_J_group_1_in_axes1_zz = m->rps_J_group_1_in_axes1_zz[i];
-        const real rps_h_2_in_spec1_x = m->rps_h_2_in_spec1_x[i];
-        const real rps_link2_mass = m->rps_link2_mass[i];
-        const real rps_d_G_in_axes1_yy = v.inv_rps_q_2*(rps_h_2_in_spec1_x +
-            v.inv_rps_q_2*rps_J_group_1_in_axes1_zz + v.rps_q_2*(rps_link2_mass +
-            v.inv_rps_q_2*rps_h_2_in_spec1_x));
-        /* (rps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real rps_h_2_in_spec1_y = m->rps_h_2_in_spec1_y[i];
-        const real rps_d_c_in_axes1_xy = v.inv_rps_q_2*rps_h_2_in_spec1_y;
-        const real rps_d_c_t = v.axis_y_rps_axes1_x*rps_d_c_in_axes1_xy -
-            rps_link2_mass*v.rps_w_2_x;
-        const real rps_d_c_t_2 = v.axis_y_rps_axes1_y*rps_d_c_in_axes1_xy -
-            rps_link2_mass*v.rps_w_2_y;
-        const real rps_d_c_t_3 = rps_d_c_in_axes1_xy*v.rps_w_2_x -
-            v.axis_y_rps_axes1_x*rps_d_G_in_axes1_yy;
-        const real rps_d_c_t_4 = rps_d_c_in_axes1_xy*v.rps_w_2_y -
-            v.axis_y_rps_axes1_y*rps_d_G_in_axes1_yy;
-        const real rps_d_c_xx = v.axis_y_rps_axes1_x*rps_d_c_t_3 + rps_d_c_t*v.rps_w_2_x;
-        const real rps_d_c_xy = v.axis_y_rps_axes1_y*rps_d_c_t_3 + rps_d_c_t*v.rps_w_2_y;
-        const real rps_d_c_xz = v.axis_y_rps_axes1_z*rps_d_c_t_3 + rps_d_c_t*v.rps_w_2_z;
-        const real rps_d_c_yy = v.axis_y_rps_axes1_y*rps_d_c_t_4 + rps_d_c_t_2*v.rps_w_2_y;
-        const real rps_d_c_yz = v.axis_y_rps_axes1_z*rps_d_c_t_4 + rps_d_c_t_2*v.rps_w_2_z;
-        const real rps_d_c_zz = v.axis_y_rps_axes1_z*(rps_d_c_in_axes1_xy*v.rps_w_2_z -
-            v.axis_y_rps_axes1_z*rps_d_G_in_axes1_yy) +
-            v.rps_w_2_z*(v.axis_y_rps_axes1_z*rps_d_c_in_axes1_xy - rps_link2_mass*v.rps_w_2_z);
-        /* (M_ta) coupling block of M */
-        const real rps_M_ta_t = rps_d_c_xy*v.rps_q_z;
-        const real rps_M_ta_t_2 = rps_d_c_xz*v.rps_q_y;
-        const real rps_M_ta_t_3 = rps_M_ta_t - rps_M_ta_t_2;
-        const real rps_M_ta_t_4 = rps_d_c_xx*v.rps_q_z - rps_d_c_xz*v.rps_q_x;
-        const real rps_M_ta_t_5 = rps_d_c_xx*v.rps_q_y - rps_d_c_xy*v.rps_q_x;
-        const real rps_M_ta_t_6 = rps_d_c_yy*v.rps_q_z - rps_d_c_yz*v.rps_q_y;
-        const real rps_M_ta_t_7 = rps_d_c_yz*v.rps_q_x;
-        const real rps_M_ta_t_8 = rps_M_ta_t_7 - rps_M_ta_t;
-        const real rps_M_ta_t_9 = rps_d_c_xy*v.rps_q_y - rps_d_c_yy*v.rps_q_x;
-        const real rps_M_ta_t_10 = rps_d_c_yz*v.rps_q_z - rps_d_c_zz*v.rps_q_y;
-        const real rps_M_ta_t_11 = rps_d_c_zz*v.rps_q_x - rps_d_c_xz*v.rps_q_z;
-        const real rps_M_ta_t_12 = rps_M_ta_t_2 - rps_M_ta_t_7;
-        /* (M_aa) rotational block of M */
-        const real rps_M_aa_t = rps_M_ta_t_10*v.rps_q_y - rps_M_ta_t_6*v.rps_q_z;
-        const real rps_M_aa_t_2 = rps_M_ta_t_11*v.rps_q_y - rps_M_ta_t_8*v.rps_q_z;
-        const real rps_M_aa_t_3 = rps_M_ta_t_12*v.rps_q_y - rps_M_ta_t_9*v.rps_q_z;
-        const real rps_M_aa_t_4 = rps_M_ta_t_11*v.rps_q_x + rps_M_ta_t_4*v.rps_q_z;
-        const real rps_M_aa_t_5 = rps_M_ta_t_5*v.rps_q_z - rps_M_ta_t_12*v.rps_q_x;
-        const real rps_M_aa_t_6 = rps_M_ta_t_9*v.rps_q_x - rps_M_ta_t_5*v.rps_q_y;
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, rps_d_c_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, rps_d_c_xy);  /* M_tt_t_2 */
-        gather(&terms[2*count + k], add, rps_d_c_xz);  /* M_tt_t_3 */
-        gather(&terms[3*count + k], add, rps_d_c_yy);  /* M_tt_yy_of_legs */
-        gather(&terms[4*count + k], add, rps_d_c_yz);  /* M_tt_t_5 */
-        gather(&terms[5*count + k], add, rps_d_c_zz);  /* M_tt_zz_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[6*count + k], add, rps_M_ta_t_3);  /* M_ta_xx */
-        gather(&terms[7*count + k], add, -rps_M_ta_t_4);  /* M_ta_xy_of_legs */
-        gather(&terms[8*count + k], add, rps_M_ta_t_5);  /* M_ta_xz_of_legs */
-        gather(&terms[9*count + k], add, rps_M_ta_t_6);  /* M_ta_yx_of_legs */
-        gather(&terms[10*count + k], add, rps_M_ta_t_8);  /* M_ta_yy */
-        gather(&terms[11*count + k], add, rps_M_ta_t_9);  /* M_ta_yz_of_legs */
-        gather(&terms[12*count + k], add, rps_M_ta_t_10);  /* M_ta_zx_of_legs */
-        gather(&terms[13*count + k], add, rps_M_ta_t_11);  /* M_ta_zy_of_legs */
-        gather(&terms[14*count + k], add, rps_M_ta_t_12);  /* M_ta_zz */
-        /* (M_aa) rotational block of M */
-        gather(&terms[15*count + k], add, rps_M_aa_t);  /* M_aa_xx_of_legs */
-        gather(&terms[16*count + k], add, rps_M_aa_t_2);  /* M_aa_xy_of_legs */
-        gather(&terms[17*count + k], add, rps_M_aa_t_3);  /* M_aa_xz_of_legs */
-        gather(&terms[18*count + k], add, rps_M_aa_t_4);  /* M_aa_yy_of_legs */
-        gather(&terms[19*count + k], add, rps_M_aa_t_5);  /* M_aa_yz_of_legs */
-        gather(&terms[20*count + k], add, rps_M_aa_t_6);  /* M_aa_zz_of_legs */
-        o[0*count + k] = UNLESS(magnitude(v.rps_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rps_q_2) >
-            LEAST_2);
-    }
+    values_rps v;
+    stage_rps_X(m, w, i, j, s, X, &v);
+    /* (rps-d_G) coefficient of the acceleration in: force at the connection point that balances the
+       leg's inertia and weight along all degrees of freedom */
+    const real rps_d_G_in_axes1_yy = v.inv_rps_q_2*(m->rps_h_2_in_spec1_x[i] +
+        v.inv_rps_q_2*m->rps_J_group_1_in_axes1_zz[i] + v.rps_q_2*(m->rps_link2_mass[i] +
+        v.inv_rps_q_2*m->rps_h_2_in_spec1_x[i]));
+    /* (rps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real rps_d_c_in_axes1_xy = v.inv_rps_q_2*m->rps_h_2_in_spec1_y[i];
+    const real rps_d_c_t = v.axis_y_rps_axes1_x*rps_d_c_in_axes1_xy -
+        m->rps_link2_mass[i]*v.rps_w_2_x;
+    const real rps_d_c_t_2 = v.axis_y_rps_axes1_y*rps_d_c_in_axes1_xy -
+        m->rps_link2_mass[i]*v.rps_w_2_y;
+    const real rps_d_c_t_3 = rps_d_c_in_axes1_xy*v.rps_w_2_x -
+        v.axis_y_rps_axes1_x*rps_d_G_in_axes1_yy;
+    const real rps_d_c_t_4 = rps_d_c_in_axes1_xy*v.rps_w_2_y -
+        v.axis_y_rps_axes1_y*rps_d_G_in_axes1_yy;
+    const real rps_d_c_xx = v.axis_y_rps_axes1_x*rps_d_c_t_3 + rps_d_c_t*v.rps_w_2_x;
+    const real rps_d_c_xy = v.axis_y_rps_axes1_y*rps_d_c_t_3 + rps_d_c_t*v.rps_w_2_y;
+    const real rps_d_c_xz = v.axis_y_rps_axes1_z*rps_d_c_t_3 + rps_d_c_t*v.rps_w_2_z;
+    const real rps_d_c_yy = v.axis_y_rps_axes1_y*rps_d_c_t_4 + rps_d_c_t_2*v.rps_w_2_y;
+    const real rps_d_c_yz = v.axis_y_rps_axes1_z*rps_d_c_t_4 + rps_d_c_t_2*v.rps_w_2_z;
+    const real rps_d_c_zz = v.axis_y_rps_axes1_z*(rps_d_c_in_axes1_xy*v.rps_w_2_z -
+        v.axis_y_rps_axes1_z*rps_d_G_in_axes1_yy) +
+        v.rps_w_2_z*(v.axis_y_rps_axes1_z*rps_d_c_in_axes1_xy -
+        m->rps_link2_mass[i]*v.rps_w_2_z);
+    /* (M_ta) coupling block of M */
+    const real rps_M_ta_t = rps_d_c_xy*v.rps_q_z;
+    const real rps_M_ta_t_2 = rps_d_c_xz*v.rps_q_y;
+    const real rps_M_ta_t_3 = rps_M_ta_t - rps_M_ta_t_2;
+    const real rps_M_ta_t_4 = rps_d_c_xx*v.rps_q_z - rps_d_c_xz*v.rps_q_x;
+    const real rps_M_ta_t_5 = rps_d_c_xx*v.rps_q_y - rps_d_c_xy*v.rps_q_x;
+    const real rps_M_ta_t_6 = rps_d_c_yy*v.rps_q_z - rps_d_c_yz*v.rps_q_y;
+    const real rps_M_ta_t_7 = rps_d_c_yz*v.rps_q_x;
+    const real rps_M_ta_t_8 = rps_M_ta_t_7 - rps_M_ta_t;
+    const real rps_M_ta_t_9 = rps_d_c_xy*v.rps_q_y - rps_d_c_yy*v.rps_q_x;
+    const real rps_M_ta_t_10 = rps_d_c_yz*v.rps_q_z - rps_d_c_zz*v.rps_q_y;
+    const real rps_M_ta_t_11 = rps_d_c_zz*v.rps_q_x - rps_d_c_xz*v.rps_q_z;
+    const real rps_M_ta_t_12 = rps_M_ta_t_2 - rps_M_ta_t_7;
+    /* (M_aa) rotational block of M */
+    const real rps_M_aa_t = rps_M_ta_t_10*v.rps_q_y - rps_M_ta_t_6*v.rps_q_z;
+    const real rps_M_aa_t_2 = rps_M_ta_t_11*v.rps_q_y - rps_M_ta_t_8*v.rps_q_z;
+    const real rps_M_aa_t_3 = rps_M_ta_t_12*v.rps_q_y - rps_M_ta_t_9*v.rps_q_z;
+    const real rps_M_aa_t_4 = rps_M_ta_t_11*v.rps_q_x + rps_M_ta_t_4*v.rps_q_z;
+    const real rps_M_aa_t_5 = rps_M_ta_t_5*v.rps_q_z - rps_M_ta_t_12*v.rps_q_x;
+    const real rps_M_aa_t_6 = rps_M_ta_t_9*v.rps_q_x - rps_M_ta_t_5*v.rps_q_y;
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, rps_d_c_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, rps_d_c_xy);  /* M_tt_t_2 */
+    gather(&terms[2*count + k], add, rps_d_c_xz);  /* M_tt_t_3 */
+    gather(&terms[3*count + k], add, rps_d_c_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, rps_d_c_yz);  /* M_tt_t_5 */
+    gather(&terms[5*count + k], add, rps_d_c_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) */
+    gather(&terms[6*count + k], add, rps_M_ta_t_3);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, -rps_M_ta_t_4);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, rps_M_ta_t_5);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, rps_M_ta_t_6);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, rps_M_ta_t_8);  /* M_ta_yy */
+    gather(&terms[11*count + k], add, rps_M_ta_t_9);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, rps_M_ta_t_10);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, rps_M_ta_t_11);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, rps_M_ta_t_12);  /* M_ta_zz */
+    /* (M_aa) */
+    gather(&terms[15*count + k], add, rps_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, rps_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, rps_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, rps_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, rps_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, rps_M_aa_t_6);  /* M_aa_zz_of_legs */
+    o[0*count + k] = UNLESS(magnitude(v.rps_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rps_q_2) >
+        LEAST_2);
 }
 
-INLINE void M_place_rps(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void M_place_rps(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o[0*count + first + k];
-    }
+    t->singular[k] += o[0*count + at];
 }
 
-INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums, real *M, verdict
-    *t)
+INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
+    *M, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (M_tt) translational block of M */
-        const real M_tt_xx_of_legs = sums[0*w + k];
-        const real platform_mass = m->platform_mass;
-        const real M_tt_xx = platform_mass - M_tt_xx_of_legs;
-        const real M_tt_yy_of_legs = sums[3*w + k];
-        const real M_tt_yy = platform_mass - M_tt_yy_of_legs;
-        const real M_tt_zz_of_legs = sums[5*w + k];
-        const real M_tt_zz = platform_mass - M_tt_zz_of_legs;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[11*w + k];
-        const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
-        const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[10*w + k];
-        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-        const real M_ta_yx_of_legs = sums[9*w + k];
-        const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-        const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[9*w + k];
-        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
-        const real M_ta_zx_of_legs = sums[12*w + k];
-        const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
-        const real M_ta_zy_of_legs = sums[13*w + k];
-        const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-        /* (M_aa) rotational block of M */
-        const real J_star_xx = s[12*w + k];
-        const real M_aa_xx_of_legs = sums[15*w + k];
-        const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[13*w + k];
-        const real M_aa_xy_of_legs = sums[16*w + k];
-        const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[14*w + k];
-        const real M_aa_xz_of_legs = sums[17*w + k];
-        const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[15*w + k];
-        const real M_aa_yy_of_legs = sums[18*w + k];
-        const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
-        const real J_star_yz = s[16*w + k];
-        const real M_aa_yz_of_legs = sums[19*w + k];
-        const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[17*w + k];
-        const real M_aa_zz_of_legs = sums[20*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-        /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        const real M_tt_t_2 = sums[1*w + k];
-        M[1*w + k] = -M_tt_t_2;
-        M[NV*w + k] = -M_tt_t_2;
-        const real M_tt_t_3 = sums[2*w + k];
-        M[2*w + k] = -M_tt_t_3;
-        M[2*NV*w + k] = -M_tt_t_3;
-        M[(NV + 1)*w + k] = M_tt_yy;
-        const real M_tt_t_5 = sums[4*w + k];
-        M[(NV + 2)*w + k] = -M_tt_t_5;
-        M[(2*NV + 1)*w + k] = -M_tt_t_5;
-        M[(2*NV + 2)*w + k] = M_tt_zz;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xx = sums[6*w + k];
-        M[3*w + k] = M_ta_xx;
-        M[3*NV*w + k] = M_ta_xx;
-        M[4*w + k] = M_ta_xy;
-        M[4*NV*w + k] = M_ta_xy;
-        M[5*w + k] = M_ta_xz;
-        M[5*NV*w + k] = M_ta_xz;
-        M[(NV + 3)*w + k] = M_ta_yx;
-        M[(3*NV + 1)*w + k] = M_ta_yx;
-        const real M_ta_yy = sums[10*w + k];
-        M[(NV + 4)*w + k] = M_ta_yy;
-        M[(4*NV + 1)*w + k] = M_ta_yy;
-        M[(NV + 5)*w + k] = M_ta_yz;
-        M[(5*NV + 1)*w + k] = M_ta_yz;
-        M[(2*NV + 3)*w + k] = M_ta_zx;
-        M[(3*NV + 2)*w + k] = M_ta_zx;
-        M[(2*NV + 4)*w + k] = M_ta_zy;
-        M[(4*NV + 2)*w + k] = M_ta_zy;
-        const real M_ta_zz = sums[14*w + k];
-        M[(2*NV + 5)*w + k] = M_ta_zz;
-        M[(5*NV + 2)*w + k] = M_ta_zz;
-        /* (M_aa) rotational block of M */
-        M[(3*NV + 3)*w + k] = M_aa_xx;
-        M[(3*NV + 4)*w + k] = M_aa_xy;
-        M[(4*NV + 3)*w + k] = M_aa_xy;
-        M[(3*NV + 5)*w + k] = M_aa_xz;
-        M[(5*NV + 3)*w + k] = M_aa_xz;
-        M[(4*NV + 4)*w + k] = M_aa_yy;
-        M[(4*NV + 5)*w + k] = M_aa_yz;
-        M[(5*NV + 4)*w + k] = M_aa_yz;
-        M[(5*NV + 5)*w + k] = M_aa_zz;
-        t->total[k] += (((M_tt_xx + M_tt_t_2) + (M_tt_t_3 + (M_tt_yy + M_tt_t_5))) + ((M_tt_zz +
-            M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
-            (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
-            M_aa_zz))));
-    }
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = m->platform_mass - M_tt_xx_of_legs;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = m->platform_mass - M_tt_yy_of_legs;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = m->platform_mass - M_tt_zz_of_legs;
+    /* (M_ta) */
+    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real h_star_z = s[11*w + k];
+    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real h_star_y = s[10*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yx_of_legs = sums[9*w + k];
+    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_yz_of_legs = sums[11*w + k];
+    const real h_star_x = s[9*w + k];
+    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_zx_of_legs = sums[12*w + k];
+    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zy_of_legs = sums[13*w + k];
+    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    /* (M_aa) */
+    const real J_star_xx = s[12*w + k];
+    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
+    const real J_star_xy = s[13*w + k];
+    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
+    const real J_star_xz = s[14*w + k];
+    const real M_aa_xz_of_legs = sums[17*w + k];
+    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
+    const real J_star_yy = s[15*w + k];
+    const real M_aa_yy_of_legs = sums[18*w + k];
+    const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
+    const real J_star_yz = s[16*w + k];
+    const real M_aa_yz_of_legs = sums[19*w + k];
+    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
+    const real J_star_zz = s[17*w + k];
+    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_t_2 = sums[1*w + k];
+    M[1*w + k] = -M_tt_t_2;
+    M[NV*w + k] = -M_tt_t_2;
+    const real M_tt_t_3 = sums[2*w + k];
+    M[2*w + k] = -M_tt_t_3;
+    M[2*NV*w + k] = -M_tt_t_3;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_t_5 = sums[4*w + k];
+    M[(NV + 2)*w + k] = -M_tt_t_5;
+    M[(2*NV + 1)*w + k] = -M_tt_t_5;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    /* (M_ta) */
+    const real M_ta_xx = sums[6*w + k];
+    M[3*w + k] = M_ta_xx;
+    M[3*NV*w + k] = M_ta_xx;
+    M[4*w + k] = M_ta_xy;
+    M[4*NV*w + k] = M_ta_xy;
+    M[5*w + k] = M_ta_xz;
+    M[5*NV*w + k] = M_ta_xz;
+    M[(NV + 3)*w + k] = M_ta_yx;
+    M[(3*NV + 1)*w + k] = M_ta_yx;
+    const real M_ta_yy = sums[10*w + k];
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
+    M[(NV + 5)*w + k] = M_ta_yz;
+    M[(5*NV + 1)*w + k] = M_ta_yz;
+    M[(2*NV + 3)*w + k] = M_ta_zx;
+    M[(3*NV + 2)*w + k] = M_ta_zx;
+    M[(2*NV + 4)*w + k] = M_ta_zy;
+    M[(4*NV + 2)*w + k] = M_ta_zy;
+    const real M_ta_zz = sums[14*w + k];
+    M[(2*NV + 5)*w + k] = M_ta_zz;
+    M[(5*NV + 2)*w + k] = M_ta_zz;
+    /* (M_aa) */
+    M[(3*NV + 3)*w + k] = M_aa_xx;
+    M[(3*NV + 4)*w + k] = M_aa_xy;
+    M[(4*NV + 3)*w + k] = M_aa_xy;
+    M[(3*NV + 5)*w + k] = M_aa_xz;
+    M[(5*NV + 3)*w + k] = M_aa_xz;
+    M[(4*NV + 4)*w + k] = M_aa_yy;
+    M[(4*NV + 5)*w + k] = M_aa_yz;
+    M[(5*NV + 4)*w + k] = M_aa_yz;
+    M[(5*NV + 5)*w + k] = M_aa_zz;
+    t->total[k] += (((M_tt_xx + M_tt_t_2) + (M_tt_t_3 + (M_tt_yy + M_tt_t_5))) + ((M_tt_zz +
+        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
+        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+        M_aa_zz))));
 }
 
-INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
+APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
     real s[18] = {0}, sums[21] = {0};
     real terms_rps[21*LEGS(LEGS_OF_rps)] = {0}, o_rps[LEGS(LEGS_OF_rps)] = {0};
-    M_before(m, 1, X, s, t);
-    M_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), 0, X, terms_rps, o_rps);
-    for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        M_place_rps(1, LEGS(LEGS_OF_rps), o_rps, leg, t);
+    M_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rps); ++k) {
+        M_legs_rps(m, 1, k, 0, k, LEGS(LEGS_OF_rps), 0, s, X, terms_rps, o_rps);
+    }
+    for (size_t i = 0; i < LEGS_OF_rps; ++i) {
+        M_place_rps(0, i, LEGS(LEGS_OF_rps), o_rps, t);
     }
     for (size_t n = 0; n < 21; ++n) {
         sums[n] = total(terms_rps + n*LEGS(LEGS_OF_rps), LEGS_OF_rps);
     }
-    M_after(m, 1, s, sums, M, t);
+    M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
+INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verdict *restrict t)
 {
     real s[18*LANES], sums[21*LANES];
     real o_rps[LANES];
-    M_before(m, LANES, X, s, t);
-    clear(sums, 21*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        M_legs_rps(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_rps);
-        M_place_rps(LANES, LANES, o_rps, 0, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        M_before(m, LANES, k, X, s, t);
     }
-    M_after(m, LANES, s, sums, M, t);
+    clear(sums, 21*LANES);
+    for (size_t i = 0; i < LEGS_OF_rps; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            M_legs_rps(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rps);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            M_place_rps(k, k, LANES, o_rps, t);
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        M_after(m, LANES, k, s, sums, M, t);
+    }
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s, verdict
-    *t)
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        stage_V_X(w, k, V, &v);
-        stage_Z_dynamics(m, w, k, V, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = v.Z_p_x;
-        s[10*w + k] = v.Z_p_y;
-        s[11*w + k] = v.Z_p_z;
-        s[12*w + k] = v.Z_q_x;
-        s[13*w + k] = v.Z_q_y;
-        s[14*w + k] = v.Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    stage_V_X(w, k, V, &v);
+    stage_Z_dynamics(m, w, k, V, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = v.Z_p_x;
+    s[10*w + k] = v.Z_p_y;
+    s[11*w + k] = v.Z_p_z;
+    s[12*w + k] = v.Z_q_x;
+    s[13*w + k] = v.Z_q_y;
+    s[14*w + k] = v.Z_q_z;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void Z_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
+INLINE void Z_legs_rps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rps v;
-        stage_rps_X(m, w, i, j, s, X, &v);
-        stage_rps_V_X(w, j, V, &v);
-        stage_rps_Z_dynamics(m, w, i, j, V, &v);
-        /* (Z_t) translational part of Z */
-        gather(&terms[0*count + k], add, v.rps_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[1*count + k], add, v.rps_U_y);  /* Z_t_y_of_legs */
-        gather(&terms[2*count + k], add, v.rps_U_z);  /* Z_t_z_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[3*count + k], add, v.rps_Z_a_t);  /* Z_a_x_of_legs */
-        gather(&terms[4*count + k], add, v.rps_Z_a_t_2);  /* Z_a_y_of_legs */
-        gather(&terms[5*count + k], add, v.rps_Z_a_t_3);  /* Z_a_z_of_legs */
-        o[0*count + k] = UNLESS(magnitude(v.rps_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rps_q_2) >
-            LEAST_2);
-    }
+    values_rps v;
+    stage_rps_X(m, w, i, j, s, X, &v);
+    stage_rps_V_X(w, j, V, &v);
+    stage_rps_Z_dynamics(m, w, i, j, V, &v);
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v.rps_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v.rps_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, v.rps_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[3*count + k], add, v.rps_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[4*count + k], add, v.rps_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[5*count + k], add, v.rps_Z_a_t_3);  /* Z_a_z_of_legs */
+    o[0*count + k] = UNLESS(magnitude(v.rps_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rps_q_2) >
+        LEAST_2);
 }
 
-INLINE void Z_place_rps(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void Z_place_rps(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o[0*count + first + k];
-    }
+    t->singular[k] += o[0*count + at];
 }
 
-INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict *t)
+INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (Z_t) translational part of Z */
-        const real Z_p_x = s[9*w + k];
-        const real Z_t_x_of_legs = sums[0*w + k];
-        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[10*w + k];
-        const real Z_t_y_of_legs = sums[1*w + k];
-        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[11*w + k];
-        const real Z_t_z_of_legs = sums[2*w + k];
-        const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-        /* (Z_a) rotational part of Z */
-        const real Z_a_x_of_legs = sums[3*w + k];
-        const real Z_q_x = s[12*w + k];
-        const real Z_a_x = Z_a_x_of_legs + Z_q_x;
-        const real Z_a_y_of_legs = sums[4*w + k];
-        const real Z_q_y = s[13*w + k];
-        const real Z_a_y = Z_a_y_of_legs + Z_q_y;
-        const real Z_a_z_of_legs = sums[5*w + k];
-        const real Z_q_z = s[14*w + k];
-        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
-        /* (Z_t) translational part of Z */
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-        Z[2*w + k] = Z_t_z;
-        /* (Z_a) rotational part of Z */
-        Z[3*w + k] = Z_a_x;
-        Z[4*w + k] = Z_a_y;
-        Z[5*w + k] = Z_a_z;
-        t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
-    }
+    /* (Z_t) */
+    const real Z_p_x = s[9*w + k];
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[10*w + k];
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    const real Z_p_z = s[11*w + k];
+    const real Z_t_z_of_legs = sums[2*w + k];
+    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
+    /* (Z_a) */
+    const real Z_a_x_of_legs = sums[3*w + k];
+    const real Z_q_x = s[12*w + k];
+    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_y_of_legs = sums[4*w + k];
+    const real Z_q_y = s[13*w + k];
+    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_z_of_legs = sums[5*w + k];
+    const real Z_q_z = s[14*w + k];
+    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    /* (Z_a) */
+    Z[3*w + k] = Z_a_x;
+    Z[4*w + k] = Z_a_y;
+    Z[5*w + k] = Z_a_z;
+    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_rps[6*LEGS(LEGS_OF_rps)] = {0}, o_rps[LEGS(LEGS_OF_rps)] = {0};
-    Z_before(m, 1, X, V, s, t);
-    Z_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), 0, X, V, terms_rps, o_rps);
-    for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        Z_place_rps(1, LEGS(LEGS_OF_rps), o_rps, leg, t);
+    Z_before(m, 1, 0, X, V, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rps); ++k) {
+        Z_legs_rps(m, 1, k, 0, k, LEGS(LEGS_OF_rps), 0, s, X, V, terms_rps, o_rps);
+    }
+    for (size_t i = 0; i < LEGS_OF_rps; ++i) {
+        Z_place_rps(0, i, LEGS(LEGS_OF_rps), o_rps, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_rps + n*LEGS(LEGS_OF_rps), LEGS_OF_rps);
     }
-    Z_after(1, s, sums, Z, t);
+    Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z, verdict
+    *restrict t)
 {
     real s[15*LANES], sums[6*LANES];
     real o_rps[LANES];
-    Z_before(m, LANES, X, V, s, t);
-    clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        Z_legs_rps(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rps);
-        Z_place_rps(LANES, LANES, o_rps, 0, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        Z_before(m, LANES, k, X, V, s, t);
     }
-    Z_after(LANES, s, sums, Z, t);
+    clear(sums, 6*LANES);
+    for (size_t i = 0; i < LEGS_OF_rps; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_legs_rps(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rps);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_place_rps(k, k, LANES, o_rps, t);
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        Z_after(LANES, k, s, sums, Z, t);
+    }
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void H_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, const real *X, real *o)
+INLINE void H_legs_rps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rps v;
-        stage_rps_X(m, w, i, j, s, X, &v);
-        /* (rps-H_a_2) moment of the column's unit force about the platform origin */
-        const real rps_H_a_2_x = v.rps_q_y*v.rps_w_2_z - v.rps_q_z*v.rps_w_2_y;
-        const real rps_H_a_2_y = v.rps_q_z*v.rps_w_2_x - v.rps_q_x*v.rps_w_2_z;
-        const real rps_H_a_2_z = v.rps_q_x*v.rps_w_2_y - v.rps_q_y*v.rps_w_2_x;
-        /* (rps-w_2) reciprocal vector 2 */
-        o[0*count + k] = v.rps_w_2_x;
-        o[1*count + k] = v.rps_w_2_y;
-        o[2*count + k] = v.rps_w_2_z;
-        /* (rps-H_a_2) moment of the column's unit force about the platform origin */
-        o[3*count + k] = rps_H_a_2_x;
-        o[4*count + k] = rps_H_a_2_y;
-        o[5*count + k] = rps_H_a_2_z;
-        o[7*count + k] = (v.rps_w_2_x + (v.rps_w_2_y + v.rps_w_2_z)) + (rps_H_a_2_x + (rps_H_a_2_y
-            + rps_H_a_2_z));
-        o[6*count + k] = UNLESS(magnitude(v.rps_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rps_q_2) >
-            LEAST_2);
-    }
+    values_rps v;
+    stage_rps_X(m, w, i, j, s, X, &v);
+    /* (rps-H_a_2) moment of the column's unit force about the platform origin */
+    const real rps_H_a_2_x = v.rps_q_y*v.rps_w_2_z - v.rps_q_z*v.rps_w_2_y;
+    const real rps_H_a_2_y = v.rps_q_z*v.rps_w_2_x - v.rps_q_x*v.rps_w_2_z;
+    const real rps_H_a_2_z = v.rps_q_x*v.rps_w_2_y - v.rps_q_y*v.rps_w_2_x;
+    /* (rps-w_2) reciprocal vector 2 */
+    o[0*count + k] = v.rps_w_2_x;
+    o[1*count + k] = v.rps_w_2_y;
+    o[2*count + k] = v.rps_w_2_z;
+    /* (rps-H_a_2) */
+    o[3*count + k] = rps_H_a_2_x;
+    o[4*count + k] = rps_H_a_2_y;
+    o[5*count + k] = rps_H_a_2_z;
+    o[7*count + k] = (v.rps_w_2_x + (v.rps_w_2_y + v.rps_w_2_z)) + (rps_H_a_2_x + (rps_H_a_2_y
+        + rps_H_a_2_z));
+    o[6*count + k] = UNLESS(magnitude(v.rps_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rps_q_2) >
+        LEAST_2);
 }
 
-INLINE void H_place_rps(size_t w, size_t count, const real *o, size_t leg, size_t first, real *H,
-    verdict *t)
+INLINE void H_place_rps(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
+    *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        H[(3*NU + leg)*w + k] = o[3*count + first + k];
-        H[(4*NU + leg)*w + k] = o[4*count + first + k];
-        H[(5*NU + leg)*w + k] = o[5*count + first + k];
-        t->singular[k] += o[6*count + first + k];
-        t->total[k] += o[7*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    H[(3*NU + i)*w + k] = o[3*count + at];
+    H[(4*NU + i)*w + k] = o[4*count + at];
+    H[(5*NU + i)*w + k] = o[5*count + at];
+    t->singular[k] += o[6*count + at];
+    t->total[k] += o[7*count + at];
 }
 
-INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
+APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
     real s[9] = {0};
     real o_rps[8*LEGS(LEGS_OF_rps)] = {0};
-    H_before(m, 1, X, s, t);
-    H_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), X, o_rps);
-    for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        H_place_rps(1, LEGS(LEGS_OF_rps), o_rps, leg, leg, H, t);
+    H_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rps); ++k) {
+        H_legs_rps(m, 1, k, 0, k, LEGS(LEGS_OF_rps), s, X, o_rps);
+    }
+    for (size_t i = 0; i < LEGS_OF_rps; ++i) {
+        H_place_rps(1, i, 0, i, LEGS(LEGS_OF_rps), o_rps, H, t);
     }
 }
 
-INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
+INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verdict *restrict t)
 {
     real s[9*LANES];
     real o_rps[8*LANES];
-    H_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        H_legs_rps(m, LANES, leg, 0, s, 1, LANES, X, o_rps);
-        H_place_rps(LANES, LANES, o_rps, leg, 0, H, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        H_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_rps; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            H_legs_rps(m, LANES, i, k, k, LANES, s, X, o_rps);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            H_place_rps(LANES, i, k, k, LANES, o_rps, H, t);
+        }
     }
 }
 
 /* ---- Hk ---- */
-INLINE void Hk_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void Hk_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void Hk_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, const real *X, real *o)
+INLINE void Hk_legs_rps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rps v;
-        stage_rps_X(m, w, i, j, s, X, &v);
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        const real rps_base_frame_xz = m->rps_base_frame_xz[i];
-        o[0*count + k] = rps_base_frame_xz;
-        const real rps_base_frame_yz = m->rps_base_frame_yz[i];
-        o[1*count + k] = rps_base_frame_yz;
-        const real rps_base_frame_zz = m->rps_base_frame_zz[i];
-        o[2*count + k] = rps_base_frame_zz;
-        /* (rps-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = v.rps_Hk_a_1_x;
-        o[4*count + k] = v.rps_Hk_a_1_y;
-        o[5*count + k] = v.rps_Hk_a_1_z;
-        o[6*count + k] = (rps_base_frame_xz + (rps_base_frame_yz + rps_base_frame_zz)) +
-            (v.rps_Hk_a_1_x + (v.rps_Hk_a_1_y + v.rps_Hk_a_1_z));
-    }
+    values_rps v;
+    stage_rps_X(m, w, i, j, s, X, &v);
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    o[0*count + k] = m->rps_base_frame_xz[i];
+    o[1*count + k] = m->rps_base_frame_yz[i];
+    o[2*count + k] = m->rps_base_frame_zz[i];
+    /* (rps-Hk_a_1) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.rps_Hk_a_1_x;
+    o[4*count + k] = v.rps_Hk_a_1_y;
+    o[5*count + k] = v.rps_Hk_a_1_z;
+    o[6*count + k] = (m->rps_base_frame_xz[i] + (m->rps_base_frame_yz[i] +
+        m->rps_base_frame_zz[i])) + (v.rps_Hk_a_1_x + (v.rps_Hk_a_1_y + v.rps_Hk_a_1_z));
 }
 
-INLINE void Hk_place_rps(size_t w, size_t count, const real *o, size_t leg, size_t first, real
-    *Hk, verdict *t)
+INLINE void Hk_place_rps(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *Hk, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        Hk[leg*w + k] = o[0*count + first + k];
-        Hk[(NC + leg)*w + k] = o[1*count + first + k];
-        Hk[(2*NC + leg)*w + k] = o[2*count + first + k];
-        Hk[(3*NC + leg)*w + k] = o[3*count + first + k];
-        Hk[(4*NC + leg)*w + k] = o[4*count + first + k];
-        Hk[(5*NC + leg)*w + k] = o[5*count + first + k];
-        t->total[k] += o[6*count + first + k];
-    }
+    Hk[i*w + k] = o[0*count + at];
+    Hk[(NC + i)*w + k] = o[1*count + at];
+    Hk[(2*NC + i)*w + k] = o[2*count + at];
+    Hk[(3*NC + i)*w + k] = o[3*count + at];
+    Hk[(4*NC + i)*w + k] = o[4*count + at];
+    Hk[(5*NC + i)*w + k] = o[5*count + at];
+    t->total[k] += o[6*count + at];
 }
 
-INLINE void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
+APART void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
 {
     real s[9] = {0};
     real o_rps[7*LEGS(LEGS_OF_rps)] = {0};
-    Hk_before(m, 1, X, s, t);
-    Hk_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), X, o_rps);
-    for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        Hk_place_rps(1, LEGS(LEGS_OF_rps), o_rps, leg, leg, Hk, t);
+    Hk_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rps); ++k) {
+        Hk_legs_rps(m, 1, k, 0, k, LEGS(LEGS_OF_rps), s, X, o_rps);
+    }
+    for (size_t i = 0; i < LEGS_OF_rps; ++i) {
+        Hk_place_rps(1, i, 0, i, LEGS(LEGS_OF_rps), o_rps, Hk, t);
     }
 }
 
-INLINE void Hk_run_lanes(const prepared *m, const real *X, real *Hk, verdict *t)
+INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, verdict *restrict t)
 {
     real s[9*LANES];
     real o_rps[7*LANES];
-    Hk_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        Hk_legs_rps(m, LANES, leg, 0, s, 1, LANES, X, o_rps);
-        Hk_place_rps(LANES, LANES, o_rps, leg, 0, Hk, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        Hk_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_rps; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            Hk_legs_rps(m, LANES, i, k, k, LANES, s, X, o_rps);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            Hk_place_rps(LANES, i, k, k, LANES, o_rps, Hk, t);
+        }
     }
 }
 
 /* ---- constraint_bias ---- */
-INLINE void constraint_bias_before(const prepared *m, size_t w, const real *X, real *s, verdict
-    *t)
+INLINE void constraint_bias_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void constraint_bias_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, const
-    real *s, size_t states, size_t count, const real *X, const real *V, real *o)
+INLINE void constraint_bias_legs_rps(const prepared *m, size_t w, size_t i, size_t j, size_t k,
+    size_t count, const real *s, const real *X, const real *V, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rps v;
-        stage_rps_X(m, w, i, j, s, X, &v);
-        /* (rps-u_1) centripetal acceleration of the connection point */
-        const real omega_y = V[4*w + j];
-        const real omega_z = V[5*w + j];
-        const real rps_u_1_t = omega_y*v.rps_q_z - omega_z*v.rps_q_y;
-        const real omega_x = V[3*w + j];
-        const real rps_u_1_t_2 = omega_z*v.rps_q_x - omega_x*v.rps_q_z;
-        const real rps_u_1_t_3 = omega_x*v.rps_q_y - omega_y*v.rps_q_x;
-        const real rps_base_frame_xz = m->rps_base_frame_xz[i];
-        const real rps_base_frame_yz = m->rps_base_frame_yz[i];
-        const real rps_base_frame_zz = m->rps_base_frame_zz[i];
-        const real rps_u_1_in_axes1_z = rps_base_frame_xz*(omega_y*rps_u_1_t_3 -
-            omega_z*rps_u_1_t_2) + rps_base_frame_yz*(omega_z*rps_u_1_t - omega_x*rps_u_1_t_3) +
-            rps_base_frame_zz*(omega_x*rps_u_1_t_2 - omega_y*rps_u_1_t);
-        /* (rps-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-           */
-        o[0*count + k] = rps_u_1_in_axes1_z;
-        o[1*count + k] = rps_u_1_in_axes1_z;
-    }
+    values_rps v;
+    stage_rps_X(m, w, i, j, s, X, &v);
+    /* (rps-u_1) centripetal acceleration of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real rps_u_1_t = omega_y*v.rps_q_z - omega_z*v.rps_q_y;
+    const real omega_x = V[3*w + j];
+    const real rps_u_1_t_2 = omega_z*v.rps_q_x - omega_x*v.rps_q_z;
+    const real rps_u_1_t_3 = omega_x*v.rps_q_y - omega_y*v.rps_q_x;
+    const real rps_u_1_in_axes1_z = m->rps_base_frame_xz[i]*(omega_y*rps_u_1_t_3 -
+        omega_z*rps_u_1_t_2) + m->rps_base_frame_yz[i]*(omega_z*rps_u_1_t -
+        omega_x*rps_u_1_t_3) + m->rps_base_frame_zz[i]*(omega_x*rps_u_1_t_2 -
+        omega_y*rps_u_1_t);
+    /* (rps-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+       */
+    o[0*count + k] = rps_u_1_in_axes1_z;
+    o[1*count + k] = rps_u_1_in_axes1_z;
 }
 
-INLINE void constraint_bias_place_rps(size_t w, size_t count, const real *o, size_t leg, size_t
-    first, real *constraint_bias, verdict *t)
+INLINE void constraint_bias_place_rps(size_t w, size_t i, size_t k, size_t at, size_t count, const
+    real *o, real *constraint_bias, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        constraint_bias[leg*w + k] = o[0*count + first + k];
-        t->total[k] += o[1*count + first + k];
-    }
+    constraint_bias[i*w + k] = o[0*count + at];
+    t->total[k] += o[1*count + at];
 }
 
 INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V, real
@@ -2775,715 +2753,680 @@ INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V,
 {
     real s[9] = {0};
     real o_rps[2*LEGS(LEGS_OF_rps)] = {0};
-    constraint_bias_before(m, 1, X, s, t);
-    constraint_bias_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), X, V, o_rps);
-    for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        constraint_bias_place_rps(1, LEGS(LEGS_OF_rps), o_rps, leg, leg, constraint_bias, t);
+    constraint_bias_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rps); ++k) {
+        constraint_bias_legs_rps(m, 1, k, 0, k, LEGS(LEGS_OF_rps), s, X, V, o_rps);
+    }
+    for (size_t i = 0; i < LEGS_OF_rps; ++i) {
+        constraint_bias_place_rps(1, i, 0, i, LEGS(LEGS_OF_rps), o_rps, constraint_bias, t);
     }
 }
 
 INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const real *V, real
-    *constraint_bias, verdict *t)
+    *restrict constraint_bias, verdict *restrict t)
 {
     real s[9*LANES];
     real o_rps[2*LANES];
-    constraint_bias_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        constraint_bias_legs_rps(m, LANES, leg, 0, s, 1, LANES, X, V, o_rps);
-        constraint_bias_place_rps(LANES, LANES, o_rps, leg, 0, constraint_bias, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        constraint_bias_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_rps; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            constraint_bias_legs_rps(m, LANES, i, k, k, LANES, s, X, V, o_rps);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            constraint_bias_place_rps(LANES, i, k, k, LANES, o_rps, constraint_bias, t);
+        }
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, real *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        stage_V_X(w, k, V, &v);
-        /* (W_p) centripetal tensor of the platform */
-        const real omega_x = V[3*w + k];
-        const real omega_y = V[4*w + k];
-        const real W_p_xy = omega_x*omega_y;
-        const real omega_z = V[5*w + k];
-        const real W_p_xz = omega_x*omega_z;
-        const real W_p_yz = omega_y*omega_z;
-        /* (a_t) acceleration of the platform origin, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real t_ddot_x = A[0*w + k];
-        const real a_t_x = t_ddot_x - gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real t_ddot_y = A[1*w + k];
-        const real a_t_y = t_ddot_y - gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real t_ddot_z = A[2*w + k];
-        const real a_t_z = t_ddot_z - gravity_z;
-        const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
-        const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
-        const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
-        /* (f_p) inertia force of the platform less its weight */
-        const real f_p_t = omega_x*omega_x;
-        const real f_p_t_2 = omega_y*omega_y;
-        const real f_p_t_3 = omega_z*omega_z;
-        const real alpha_y = A[4*w + k];
-        const real alpha_z = A[5*w + k];
-        const real platform_mass = m->platform_mass;
-        const real f_p_x = a_t_x*platform_mass + v.h_star_y*(W_p_xy - alpha_z) +
-            v.h_star_z*(W_p_xz + alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
-        const real alpha_x = A[3*w + k];
-        const real f_p_y = a_t_y*platform_mass + v.h_star_x*(W_p_xy + alpha_z) +
-            v.h_star_z*(W_p_yz - alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
-        const real f_p_z = a_t_z*platform_mass + v.h_star_x*(W_p_xz - alpha_y) +
-            v.h_star_y*(W_p_yz + alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
-        /* (mu_p) inertia moment of the platform less that of its weight */
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real mu_p_t = J_star_in_platform_xx*v.omega_in_platform_x +
-            J_star_in_platform_xy*v.omega_in_platform_y +
-            J_star_in_platform_xz*v.omega_in_platform_z;
-        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real mu_p_t_2 = J_star_in_platform_xy*v.omega_in_platform_x +
-            J_star_in_platform_yy*v.omega_in_platform_y +
-            J_star_in_platform_yz*v.omega_in_platform_z;
-        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real mu_p_t_3 = J_star_in_platform_xz*v.omega_in_platform_x +
-            J_star_in_platform_yz*v.omega_in_platform_y +
-            J_star_in_platform_zz*v.omega_in_platform_z;
-        const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
-        const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
-        const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real mu_p_in_platform_x = J_star_in_platform_xx*alpha_in_platform_x +
-            J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z
-            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
-            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real mu_p_in_platform_y = J_star_in_platform_xy*alpha_in_platform_x +
-            J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z
-            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
-            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
-        const real mu_p_in_platform_z = J_star_in_platform_xz*alpha_in_platform_x +
-            J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z
-            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
-            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
-        const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
-            v.R_xz*mu_p_in_platform_z;
-        const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
-            v.R_yz*mu_p_in_platform_z;
-        const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
-            v.R_zz*mu_p_in_platform_z;
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = f_p_x;
-        s[10*w + k] = f_p_y;
-        s[11*w + k] = f_p_z;
-        s[12*w + k] = mu_p_x;
-        s[13*w + k] = mu_p_y;
-        s[14*w + k] = mu_p_z;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    stage_V_X(w, k, V, &v);
+    /* (W_p) centripetal tensor of the platform */
+    const real omega_x = V[3*w + k];
+    const real omega_y = V[4*w + k];
+    const real W_p_xy = omega_x*omega_y;
+    const real omega_z = V[5*w + k];
+    const real W_p_xz = omega_x*omega_z;
+    const real W_p_yz = omega_y*omega_z;
+    /* (a_t) acceleration of the platform origin, less gravity */
+    const real t_ddot_x = A[0*w + k];
+    const real a_t_x = t_ddot_x - m->gravity_x;
+    const real t_ddot_y = A[1*w + k];
+    const real a_t_y = t_ddot_y - m->gravity_y;
+    const real t_ddot_z = A[2*w + k];
+    const real a_t_z = t_ddot_z - m->gravity_z;
+    const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
+    const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
+    const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
+    /* (f_p) inertia force of the platform less its weight */
+    const real f_p_t = omega_x*omega_x;
+    const real f_p_t_2 = omega_y*omega_y;
+    const real f_p_t_3 = omega_z*omega_z;
+    const real alpha_y = A[4*w + k];
+    const real alpha_z = A[5*w + k];
+    const real f_p_x = a_t_x*m->platform_mass + v.h_star_y*(W_p_xy - alpha_z) +
+        v.h_star_z*(W_p_xz + alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+    const real alpha_x = A[3*w + k];
+    const real f_p_y = a_t_y*m->platform_mass + v.h_star_x*(W_p_xy + alpha_z) +
+        v.h_star_z*(W_p_yz - alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
+    const real f_p_z = a_t_z*m->platform_mass + v.h_star_x*(W_p_xz - alpha_y) +
+        v.h_star_y*(W_p_yz + alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
+    /* (mu_p) inertia moment of the platform less that of its weight */
+    const real mu_p_t = m->J_star_in_platform_xx*v.omega_in_platform_x +
+        m->J_star_in_platform_xy*v.omega_in_platform_y +
+        m->J_star_in_platform_xz*v.omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*v.omega_in_platform_x +
+        m->J_star_in_platform_yy*v.omega_in_platform_y +
+        m->J_star_in_platform_yz*v.omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*v.omega_in_platform_x +
+        m->J_star_in_platform_yz*v.omega_in_platform_y +
+        m->J_star_in_platform_zz*v.omega_in_platform_z;
+    const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
+    const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
+    const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+    const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
+        m->J_star_in_platform_xy*alpha_in_platform_y +
+        m->J_star_in_platform_xz*alpha_in_platform_z +
+        a_t_in_platform_z*m->h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
+        a_t_in_platform_y*m->h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+    const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
+        m->J_star_in_platform_yy*alpha_in_platform_y +
+        m->J_star_in_platform_yz*alpha_in_platform_z +
+        a_t_in_platform_x*m->h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
+        a_t_in_platform_z*m->h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
+    const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
+        m->J_star_in_platform_yz*alpha_in_platform_y +
+        m->J_star_in_platform_zz*alpha_in_platform_z +
+        a_t_in_platform_y*m->h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
+        a_t_in_platform_x*m->h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
+    const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
+        v.R_xz*mu_p_in_platform_z;
+    const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
+        v.R_yz*mu_p_in_platform_z;
+    const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
+        v.R_zz*mu_p_in_platform_z;
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = f_p_x;
+    s[10*w + k] = f_p_y;
+    s[11*w + k] = f_p_z;
+    s[12*w + k] = mu_p_x;
+    s[13*w + k] = mu_p_y;
+    s[14*w + k] = mu_p_z;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void required_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
-    *terms, real *o)
+INLINE void required_legs_rps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, const real *V, const real *A, real *terms, real
+    *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rps v;
-        stage_rps_X(m, w, i, j, s, X, &v);
-        stage_rps_A_X(w, j, A, &v);
-        stage_rps_V_X(w, j, V, &v);
-        stage_rps_A_V_X(w, j, V, &v);
-        stage_rps_legs_required(m, i, &v);
-        /* (R_a) moment that actuators and external wrench must give */
-        const real rps_R_a_t = v.rps_c_y*v.rps_q_z - v.rps_c_z*v.rps_q_y;
-        const real rps_R_a_t_2 = v.rps_c_z*v.rps_q_x - v.rps_c_x*v.rps_q_z;
-        const real rps_R_a_t_3 = v.rps_c_x*v.rps_q_y - v.rps_c_y*v.rps_q_x;
-        /* (rps-H_a_2) moment of the column's unit force about the platform origin */
-        const real rps_H_a_2_x = v.axis_x_rps_axes1_z*v.rps_q_y - v.axis_x_rps_axes1_y*v.rps_q_z;
-        const real rps_H_a_2_y = v.axis_x_rps_axes1_x*v.rps_q_z - v.axis_x_rps_axes1_z*v.rps_q_x;
-        const real rps_H_a_2_z = v.axis_x_rps_axes1_y*v.rps_q_x - v.axis_x_rps_axes1_x*v.rps_q_y;
-        /* (R_t) force that actuators and external wrench must give */
-        gather(&terms[0*count + k], add, v.rps_c_x);  /* R_t_x_of_legs */
-        gather(&terms[1*count + k], add, v.rps_c_y);  /* R_t_y_of_legs */
-        gather(&terms[2*count + k], add, v.rps_c_z);  /* R_t_z_of_legs */
-        /* (R_a) moment that actuators and external wrench must give */
-        gather(&terms[3*count + k], add, rps_R_a_t);  /* R_a_x_of_legs */
-        gather(&terms[4*count + k], add, rps_R_a_t_2);  /* R_a_y_of_legs */
-        gather(&terms[5*count + k], add, rps_R_a_t_3);  /* R_a_z_of_legs */
-        /* (rps-w_2) reciprocal vector 2 */
-        o[0*count + k] = v.axis_x_rps_axes1_x;
-        o[1*count + k] = v.axis_x_rps_axes1_y;
-        o[2*count + k] = v.axis_x_rps_axes1_z;
-        /* (rps-H_a_2) moment of the column's unit force about the platform origin */
-        o[3*count + k] = rps_H_a_2_x;
-        o[4*count + k] = rps_H_a_2_y;
-        o[5*count + k] = rps_H_a_2_z;
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        const real rps_base_frame_xz = m->rps_base_frame_xz[i];
-        o[6*count + k] = rps_base_frame_xz;
-        const real rps_base_frame_yz = m->rps_base_frame_yz[i];
-        o[7*count + k] = rps_base_frame_yz;
-        const real rps_base_frame_zz = m->rps_base_frame_zz[i];
-        o[8*count + k] = rps_base_frame_zz;
-        /* (rps-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[9*count + k] = v.rps_Hk_a_1_x;
-        o[10*count + k] = v.rps_Hk_a_1_y;
-        o[11*count + k] = v.rps_Hk_a_1_z;
-        o[12*count + k] = UNLESS(magnitude(v.rps_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rps_q_2) >
-            LEAST_2);
-    }
+    values_rps v;
+    stage_rps_X(m, w, i, j, s, X, &v);
+    stage_rps_A_X(w, j, A, &v);
+    stage_rps_V_X(w, j, V, &v);
+    stage_rps_A_V_X(w, j, V, &v);
+    stage_rps_legs_required(m, i, &v);
+    /* (R_a) moment that actuators and external wrench must give */
+    const real rps_R_a_t = v.rps_c_y*v.rps_q_z - v.rps_c_z*v.rps_q_y;
+    const real rps_R_a_t_2 = v.rps_c_z*v.rps_q_x - v.rps_c_x*v.rps_q_z;
+    const real rps_R_a_t_3 = v.rps_c_x*v.rps_q_y - v.rps_c_y*v.rps_q_x;
+    /* (rps-H_a_2) moment of the column's unit force about the platform origin */
+    const real rps_H_a_2_x = v.axis_x_rps_axes1_z*v.rps_q_y - v.axis_x_rps_axes1_y*v.rps_q_z;
+    const real rps_H_a_2_y = v.axis_x_rps_axes1_x*v.rps_q_z - v.axis_x_rps_axes1_z*v.rps_q_x;
+    const real rps_H_a_2_z = v.axis_x_rps_axes1_y*v.rps_q_x - v.axis_x_rps_axes1_x*v.rps_q_y;
+    /* (R_t) force that actuators and external wrench must give */
+    gather(&terms[0*count + k], add, v.rps_c_x);  /* R_t_x_of_legs */
+    gather(&terms[1*count + k], add, v.rps_c_y);  /* R_t_y_of_legs */
+    gather(&terms[2*count + k], add, v.rps_c_z);  /* R_t_z_of_legs */
+    /* (R_a) */
+    gather(&terms[3*count + k], add, rps_R_a_t);  /* R_a_x_of_legs */
+    gather(&terms[4*count + k], add, rps_R_a_t_2);  /* R_a_y_of_legs */
+    gather(&terms[5*count + k], add, rps_R_a_t_3);  /* R_a_z_of_legs */
+    /* (rps-w_2) reciprocal vector 2 */
+    o[0*count + k] = v.axis_x_rps_axes1_x;
+    o[1*count + k] = v.axis_x_rps_axes1_y;
+    o[2*count + k] = v.axis_x_rps_axes1_z;
+    /* (rps-H_a_2) */
+    o[3*count + k] = rps_H_a_2_x;
+    o[4*count + k] = rps_H_a_2_y;
+    o[5*count + k] = rps_H_a_2_z;
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    o[6*count + k] = m->rps_base_frame_xz[i];
+    o[7*count + k] = m->rps_base_frame_yz[i];
+    o[8*count + k] = m->rps_base_frame_zz[i];
+    /* (rps-Hk_a_1) moment of the column's unit force about the platform origin */
+    o[9*count + k] = v.rps_Hk_a_1_x;
+    o[10*count + k] = v.rps_Hk_a_1_y;
+    o[11*count + k] = v.rps_Hk_a_1_z;
+    o[12*count + k] = UNLESS(magnitude(v.rps_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rps_q_2) >
+        LEAST_2);
 }
 
-INLINE void required_place_rps(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *H, real *Hk, verdict *t)
+INLINE void required_place_rps(size_t w, size_t i, size_t k, size_t at, size_t count, const real
+    *o, real *H, real *Hk, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        H[(3*NU + leg)*w + k] = o[3*count + first + k];
-        H[(4*NU + leg)*w + k] = o[4*count + first + k];
-        H[(5*NU + leg)*w + k] = o[5*count + first + k];
-        Hk[leg*w + k] = o[6*count + first + k];
-        Hk[(NC + leg)*w + k] = o[7*count + first + k];
-        Hk[(2*NC + leg)*w + k] = o[8*count + first + k];
-        Hk[(3*NC + leg)*w + k] = o[9*count + first + k];
-        Hk[(4*NC + leg)*w + k] = o[10*count + first + k];
-        Hk[(5*NC + leg)*w + k] = o[11*count + first + k];
-        t->singular[k] += o[12*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    H[(3*NU + i)*w + k] = o[3*count + at];
+    H[(4*NU + i)*w + k] = o[4*count + at];
+    H[(5*NU + i)*w + k] = o[5*count + at];
+    Hk[i*w + k] = o[6*count + at];
+    Hk[(NC + i)*w + k] = o[7*count + at];
+    Hk[(2*NC + i)*w + k] = o[8*count + at];
+    Hk[(3*NC + i)*w + k] = o[9*count + at];
+    Hk[(4*NC + i)*w + k] = o[10*count + at];
+    Hk[(5*NC + i)*w + k] = o[11*count + at];
+    t->singular[k] += o[12*count + at];
 }
 
-INLINE void required_after(size_t w, const real *s, const real *sums, real *required)
+INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (R_t) force that actuators and external wrench must give */
-        const real R_t_x_of_legs = sums[0*w + k];
-        const real f_p_x = s[9*w + k];
-        const real R_t_x = f_p_x - R_t_x_of_legs;
-        const real R_t_y_of_legs = sums[1*w + k];
-        const real f_p_y = s[10*w + k];
-        const real R_t_y = f_p_y - R_t_y_of_legs;
-        const real R_t_z_of_legs = sums[2*w + k];
-        const real f_p_z = s[11*w + k];
-        const real R_t_z = f_p_z - R_t_z_of_legs;
-        /* (R_a) moment that actuators and external wrench must give */
-        const real R_a_x_of_legs = sums[3*w + k];
-        const real mu_p_x = s[12*w + k];
-        const real R_a_x = R_a_x_of_legs + mu_p_x;
-        const real R_a_y_of_legs = sums[4*w + k];
-        const real mu_p_y = s[13*w + k];
-        const real R_a_y = R_a_y_of_legs + mu_p_y;
-        const real R_a_z_of_legs = sums[5*w + k];
-        const real mu_p_z = s[14*w + k];
-        const real R_a_z = R_a_z_of_legs + mu_p_z;
-        /* (R_t) force that actuators and external wrench must give */
-        required[0*w + k] = R_t_x;
-        required[1*w + k] = R_t_y;
-        required[2*w + k] = R_t_z;
-        /* (R_a) moment that actuators and external wrench must give */
-        required[3*w + k] = R_a_x;
-        required[4*w + k] = R_a_y;
-        required[5*w + k] = R_a_z;
-    }
+    /* (R_t) */
+    const real R_t_x_of_legs = sums[0*w + k];
+    const real f_p_x = s[9*w + k];
+    const real R_t_x = f_p_x - R_t_x_of_legs;
+    const real R_t_y_of_legs = sums[1*w + k];
+    const real f_p_y = s[10*w + k];
+    const real R_t_y = f_p_y - R_t_y_of_legs;
+    const real R_t_z_of_legs = sums[2*w + k];
+    const real f_p_z = s[11*w + k];
+    const real R_t_z = f_p_z - R_t_z_of_legs;
+    /* (R_a) */
+    const real R_a_x_of_legs = sums[3*w + k];
+    const real mu_p_x = s[12*w + k];
+    const real R_a_x = R_a_x_of_legs + mu_p_x;
+    const real R_a_y_of_legs = sums[4*w + k];
+    const real mu_p_y = s[13*w + k];
+    const real R_a_y = R_a_y_of_legs + mu_p_y;
+    const real R_a_z_of_legs = sums[5*w + k];
+    const real mu_p_z = s[14*w + k];
+    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    /* (R_t) */
+    required[0*w + k] = R_t_x;
+    required[1*w + k] = R_t_y;
+    required[2*w + k] = R_t_z;
+    /* (R_a) */
+    required[3*w + k] = R_a_x;
+    required[4*w + k] = R_a_y;
+    required[5*w + k] = R_a_z;
 }
 
-INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, real *Hk, verdict *t)
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_rps[6*LEGS(LEGS_OF_rps)] = {0}, o_rps[13*LEGS(LEGS_OF_rps)] = {0};
-    required_before(m, 1, X, V, A, s, t);
-    required_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), 0, X, V, A, terms_rps, o_rps);
-    for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        required_place_rps(1, LEGS(LEGS_OF_rps), o_rps, leg, leg, H, Hk, t);
+    required_before(m, 1, 0, X, V, A, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rps); ++k) {
+        required_legs_rps(m, 1, k, 0, k, LEGS(LEGS_OF_rps), 0, s, X, V, A, terms_rps, o_rps);
+    }
+    for (size_t i = 0; i < LEGS_OF_rps; ++i) {
+        required_place_rps(1, i, 0, i, LEGS(LEGS_OF_rps), o_rps, H, Hk, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_rps + n*LEGS(LEGS_OF_rps), LEGS_OF_rps);
     }
-    required_after(1, s, sums, required);
+    required_after(1, 0, s, sums, required);
 }
 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *required, real *H, real *Hk, verdict *t)
+    real *restrict required, real *restrict H, real *restrict Hk, verdict *restrict t)
 {
     real s[15*LANES], sums[6*LANES];
     real o_rps[13*LANES];
-    required_before(m, LANES, X, V, A, s, t);
-    clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        required_legs_rps(m, LANES, leg, 0, s, 1, LANES, 1, X, V, A, sums, o_rps);
-        required_place_rps(LANES, LANES, o_rps, leg, 0, H, Hk, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        required_before(m, LANES, k, X, V, A, s, t);
     }
-    required_after(LANES, s, sums, required);
+    clear(sums, 6*LANES);
+    for (size_t i = 0; i < LEGS_OF_rps; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            required_legs_rps(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_rps);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            required_place_rps(LANES, i, k, k, LANES, o_rps, H, Hk, t);
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        required_after(LANES, k, s, sums, required);
+    }
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, const real *X, real *s, verdict
-    *t)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, real
+    *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void inverse_kinematics_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, const real *X, real *o)
+INLINE void inverse_kinematics_legs_rps(const prepared *m, size_t w, size_t i, size_t j, size_t k,
+    size_t count, const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        /* (rps-S) from the base point to the connection point */
-        const real R_xx = s[0*w + j];
-        const real R_xy = s[1*w + j];
-        const real R_xz = s[2*w + j];
-        const real rps_base_point_x = m->rps_base_point_x[i];
-        const real rps_platform_point_x = m->rps_platform_point_x[i];
-        const real rps_platform_point_y = m->rps_platform_point_y[i];
-        const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real t_x = X[0*w + j];
-        const real rps_S_x = t_x + R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
-            R_xz*rps_platform_point_z - rps_base_point_x;
-        const real R_yx = s[3*w + j];
-        const real R_yy = s[4*w + j];
-        const real R_yz = s[5*w + j];
-        const real rps_base_point_y = m->rps_base_point_y[i];
-        const real t_y = X[1*w + j];
-        const real rps_S_y = t_y + R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
-            R_yz*rps_platform_point_z - rps_base_point_y;
-        const real R_zx = s[6*w + j];
-        const real R_zy = s[7*w + j];
-        const real R_zz = s[8*w + j];
-        const real rps_base_point_z = m->rps_base_point_z[i];
-        const real t_z = X[2*w + j];
-        const real rps_S_z = t_z + R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
-            R_zz*rps_platform_point_z - rps_base_point_z;
-        const real rps_base_frame_xx = m->rps_base_frame_xx[i];
-        const real rps_base_frame_yx = m->rps_base_frame_yx[i];
-        const real rps_base_frame_zx = m->rps_base_frame_zx[i];
-        const real rps_S_in_turn1_x = rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx +
-            rps_S_z*rps_base_frame_zx;
-        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
-        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
-        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
-        const real rps_S_in_turn1_y = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
-            rps_S_z*rps_base_frame_zy;
-        /* (rps-q_2) displacement of joint 2 */
-        const real rps_q_2_t = rps_S_in_turn1_x*rps_S_in_turn1_x +
-            rps_S_in_turn1_y*rps_S_in_turn1_y;
-        const real rps_branch_1 = m->rps_branch_1[i];
-        const real rps_q_2 = rps_branch_1*root(rps_q_2_t);
-        /* (rps-q_1) displacement of joint 1 */
-        const real inv_rps_q_2 = 1/rps_q_2;
-        const real rps_q_1 = angle(inv_rps_q_2*rps_S_in_turn1_y, inv_rps_q_2*rps_S_in_turn1_x);
-        /* (rps-q_1) displacement of joint 1 */
-        o[0*count + k] = rps_q_1;
-        /* (rps-q_2) displacement of joint 2 */
-        o[1*count + k] = rps_q_2;
-        o[3*count + k] = rps_q_1 + rps_q_2;
-        o[2*count + k] = UNLESS(magnitude(rps_q_2_t) > LEAST_1);
-    }
+    /* (rps-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real t_x = X[0*w + j];
+    const real rps_S_x = t_x + R_xx*m->rps_platform_point_x[i] +
+        R_xy*m->rps_platform_point_y[i] + R_xz*m->rps_platform_point_z[i] -
+        m->rps_base_point_x[i];
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real t_y = X[1*w + j];
+    const real rps_S_y = t_y + R_yx*m->rps_platform_point_x[i] +
+        R_yy*m->rps_platform_point_y[i] + R_yz*m->rps_platform_point_z[i] -
+        m->rps_base_point_y[i];
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real t_z = X[2*w + j];
+    const real rps_S_z = t_z + R_zx*m->rps_platform_point_x[i] +
+        R_zy*m->rps_platform_point_y[i] + R_zz*m->rps_platform_point_z[i] -
+        m->rps_base_point_z[i];
+    const real rps_S_in_turn1_x = rps_S_x*m->rps_base_frame_xx[i] +
+        rps_S_y*m->rps_base_frame_yx[i] + rps_S_z*m->rps_base_frame_zx[i];
+    const real rps_S_in_turn1_y = rps_S_x*m->rps_base_frame_xy[i] +
+        rps_S_y*m->rps_base_frame_yy[i] + rps_S_z*m->rps_base_frame_zy[i];
+    /* (rps-q_2) displacement of joint 2 */
+    const real rps_q_2_t = rps_S_in_turn1_x*rps_S_in_turn1_x +
+        rps_S_in_turn1_y*rps_S_in_turn1_y;
+    const real rps_q_2 = m->rps_branch_1[i]*root(rps_q_2_t);
+    /* (rps-q_1) displacement of joint 1 */
+    const real inv_rps_q_2 = 1/rps_q_2;
+    const real rps_q_1 = angle(inv_rps_q_2*rps_S_in_turn1_y, inv_rps_q_2*rps_S_in_turn1_x);
+    /* (rps-q_1) */
+    o[0*count + k] = rps_q_1;
+    /* (rps-q_2) */
+    o[1*count + k] = rps_q_2;
+    o[3*count + k] = rps_q_1 + rps_q_2;
+    o[2*count + k] = UNLESS(magnitude(rps_q_2_t) > LEAST_1);
 }
 
-INLINE void inverse_kinematics_place_rps(size_t w, size_t count, const real *o, size_t leg, size_t
-    first, real *q, verdict *t)
+INLINE void inverse_kinematics_place_rps(size_t w, size_t i, size_t k, size_t at, size_t count,
+    const real *o, real *q, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        q[2*leg*w + k] = o[0*count + first + k];
-        q[(1 + 2*leg)*w + k] = o[1*count + first + k];
-        t->singular[k] += o[2*count + first + k];
-        t->total[k] += o[3*count + first + k];
-    }
+    q[2*i*w + k] = o[0*count + at];
+    q[(1 + 2*i)*w + k] = o[1*count + at];
+    t->singular[k] += o[2*count + at];
+    t->total[k] += o[3*count + at];
 }
 
-INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
+APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
     real s[9] = {0};
     real o_rps[4*LEGS(LEGS_OF_rps)] = {0};
-    inverse_kinematics_before(m, 1, X, s, t);
-    inverse_kinematics_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), X, o_rps);
-    for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        inverse_kinematics_place_rps(1, LEGS(LEGS_OF_rps), o_rps, leg, leg, q, t);
+    inverse_kinematics_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rps); ++k) {
+        inverse_kinematics_legs_rps(m, 1, k, 0, k, LEGS(LEGS_OF_rps), s, X, o_rps);
+    }
+    for (size_t i = 0; i < LEGS_OF_rps; ++i) {
+        inverse_kinematics_place_rps(1, i, 0, i, LEGS(LEGS_OF_rps), o_rps, q, t);
     }
 }
 
-INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
+INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
+    verdict *restrict t)
 {
     real s[9*LANES];
     real o_rps[4*LANES];
-    inverse_kinematics_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        inverse_kinematics_legs_rps(m, LANES, leg, 0, s, 1, LANES, X, o_rps);
-        inverse_kinematics_place_rps(LANES, LANES, o_rps, leg, 0, q, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        inverse_kinematics_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_rps; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_legs_rps(m, LANES, i, k, k, LANES, s, X, o_rps);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_place_rps(LANES, i, k, k, LANES, o_rps, q, t);
+        }
     }
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void joint_rates_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, const real *X, const real *V, real *o)
+INLINE void joint_rates_legs_rps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, const real *s, const real *X, const real *V, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rps v;
-        stage_rps_X(m, w, i, j, s, X, &v);
-        /* (rps-S_dot) velocity of the connection point */
-        const real omega_y = V[4*w + j];
-        const real omega_z = V[5*w + j];
-        const real t_dot_x = V[0*w + j];
-        const real rps_S_dot_x = t_dot_x + omega_y*v.rps_q_z - omega_z*v.rps_q_y;
-        const real omega_x = V[3*w + j];
-        const real t_dot_y = V[1*w + j];
-        const real rps_S_dot_y = t_dot_y + omega_z*v.rps_q_x - omega_x*v.rps_q_z;
-        const real t_dot_z = V[2*w + j];
-        const real rps_S_dot_z = t_dot_z + omega_x*v.rps_q_y - omega_y*v.rps_q_x;
-        const real rps_base_frame_xx = m->rps_base_frame_xx[i];
-        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
-        const real rps_base_frame_yx = m->rps_base_frame_yx[i];
-        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
-        const real rps_base_frame_zx = m->rps_base_frame_zx[i];
-        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
-        const real rps_S_dot_in_axes1_x = rps_S_dot_x*(rps_base_frame_xx*v.rps_c_1 +
-            rps_base_frame_xy*v.rps_s_1) + rps_S_dot_y*(rps_base_frame_yx*v.rps_c_1 +
-            rps_base_frame_yy*v.rps_s_1) + rps_S_dot_z*(rps_base_frame_zx*v.rps_c_1 +
-            rps_base_frame_zy*v.rps_s_1);
-        /* (rps-qd_1) rate of joint 1 */
-        const real rps_qd_1 = v.inv_rps_q_2*(rps_S_dot_x*(rps_base_frame_xy*v.rps_c_1 -
-            rps_base_frame_xx*v.rps_s_1) + rps_S_dot_y*(rps_base_frame_yy*v.rps_c_1 -
-            rps_base_frame_yx*v.rps_s_1) + rps_S_dot_z*(rps_base_frame_zy*v.rps_c_1 -
-            rps_base_frame_zx*v.rps_s_1));
-        /* (rps-qd_1) rate of joint 1 */
-        o[0*count + k] = rps_qd_1;
-        /* (rps-qd_2) rate of joint 2 */
-        o[1*count + k] = rps_S_dot_in_axes1_x;
-        o[3*count + k] = rps_qd_1 + rps_S_dot_in_axes1_x;
-        o[2*count + k] = UNLESS(magnitude(v.rps_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rps_q_2) >
-            LEAST_2);
-    }
+    values_rps v;
+    stage_rps_X(m, w, i, j, s, X, &v);
+    /* (rps-S_dot) velocity of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real t_dot_x = V[0*w + j];
+    const real rps_S_dot_x = t_dot_x + omega_y*v.rps_q_z - omega_z*v.rps_q_y;
+    const real omega_x = V[3*w + j];
+    const real t_dot_y = V[1*w + j];
+    const real rps_S_dot_y = t_dot_y + omega_z*v.rps_q_x - omega_x*v.rps_q_z;
+    const real t_dot_z = V[2*w + j];
+    const real rps_S_dot_z = t_dot_z + omega_x*v.rps_q_y - omega_y*v.rps_q_x;
+    const real rps_S_dot_in_axes1_x = rps_S_dot_x*(m->rps_base_frame_xx[i]*v.rps_c_1 +
+        m->rps_base_frame_xy[i]*v.rps_s_1) + rps_S_dot_y*(m->rps_base_frame_yx[i]*v.rps_c_1 +
+        m->rps_base_frame_yy[i]*v.rps_s_1) + rps_S_dot_z*(m->rps_base_frame_zx[i]*v.rps_c_1 +
+        m->rps_base_frame_zy[i]*v.rps_s_1);
+    /* (rps-qd_1) rate of joint 1 */
+    const real rps_qd_1 = v.inv_rps_q_2*(rps_S_dot_x*(m->rps_base_frame_xy[i]*v.rps_c_1 -
+        m->rps_base_frame_xx[i]*v.rps_s_1) + rps_S_dot_y*(m->rps_base_frame_yy[i]*v.rps_c_1 -
+        m->rps_base_frame_yx[i]*v.rps_s_1) + rps_S_dot_z*(m->rps_base_frame_zy[i]*v.rps_c_1 -
+        m->rps_base_frame_zx[i]*v.rps_s_1));
+    /* (rps-qd_1) */
+    o[0*count + k] = rps_qd_1;
+    /* (rps-qd_2) rate of joint 2 */
+    o[1*count + k] = rps_S_dot_in_axes1_x;
+    o[3*count + k] = rps_qd_1 + rps_S_dot_in_axes1_x;
+    o[2*count + k] = UNLESS(magnitude(v.rps_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rps_q_2) >
+        LEAST_2);
 }
 
-INLINE void joint_rates_place_rps(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *qd, verdict *t)
+INLINE void joint_rates_place_rps(size_t w, size_t i, size_t k, size_t at, size_t count, const
+    real *o, real *qd, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        qd[2*leg*w + k] = o[0*count + first + k];
-        qd[(1 + 2*leg)*w + k] = o[1*count + first + k];
-        t->singular[k] += o[2*count + first + k];
-        t->total[k] += o[3*count + first + k];
-    }
+    qd[2*i*w + k] = o[0*count + at];
+    qd[(1 + 2*i)*w + k] = o[1*count + at];
+    t->singular[k] += o[2*count + at];
+    t->total[k] += o[3*count + at];
 }
 
-INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
     real s[9] = {0};
     real o_rps[4*LEGS(LEGS_OF_rps)] = {0};
-    joint_rates_before(m, 1, X, s, t);
-    joint_rates_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), X, V, o_rps);
-    for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        joint_rates_place_rps(1, LEGS(LEGS_OF_rps), o_rps, leg, leg, qd, t);
+    joint_rates_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rps); ++k) {
+        joint_rates_legs_rps(m, 1, k, 0, k, LEGS(LEGS_OF_rps), s, X, V, o_rps);
+    }
+    for (size_t i = 0; i < LEGS_OF_rps; ++i) {
+        joint_rates_place_rps(1, i, 0, i, LEGS(LEGS_OF_rps), o_rps, qd, t);
     }
 }
 
-INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
-    verdict *t)
+INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
+    qd, verdict *restrict t)
 {
     real s[9*LANES];
     real o_rps[4*LANES];
-    joint_rates_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        joint_rates_legs_rps(m, LANES, leg, 0, s, 1, LANES, X, V, o_rps);
-        joint_rates_place_rps(LANES, LANES, o_rps, leg, 0, qd, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        joint_rates_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_rps; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_legs_rps(m, LANES, i, k, k, LANES, s, X, V, o_rps);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_place_rps(LANES, i, k, k, LANES, o_rps, qd, t);
+        }
     }
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, const real *X, real *s,
-    verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
+    *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void joint_accelerations_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
-    *o)
+INLINE void joint_accelerations_legs_rps(const prepared *m, size_t w, size_t i, size_t j, size_t
+    k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rps v;
-        stage_rps_X(m, w, i, j, s, X, &v);
-        stage_rps_A_X(w, j, A, &v);
-        stage_rps_V_X(w, j, V, &v);
-        stage_rps_A_V_X(w, j, V, &v);
-        /* (rps-rel) acceleration of the connection point left to the joint accelerations */
-        const real rps_rel_in_axes1_x = v.axis_x_rps_axes1_x*v.rps_S_ddot_x +
-            v.axis_x_rps_axes1_y*v.rps_S_ddot_y + v.axis_x_rps_axes1_z*v.rps_S_ddot_z +
-            v.rps_q_2*v.rps_qd_1*v.rps_qd_1;
-        const real rps_rel_in_axes1_y = v.axis_y_rps_axes1_x*v.rps_S_ddot_x +
-            v.axis_y_rps_axes1_y*v.rps_S_ddot_y + v.axis_y_rps_axes1_z*v.rps_S_ddot_z -
-            2*v.rps_S_dot_in_axes1_x*v.rps_qd_1;
-        /* (rps-qdd_1) acceleration of joint 1 */
-        const real rps_qdd_1 = v.inv_rps_q_2*rps_rel_in_axes1_y;
-        /* (rps-qdd_1) acceleration of joint 1 */
-        o[0*count + k] = rps_qdd_1;
-        /* (rps-qdd_2) acceleration of joint 2 */
-        o[1*count + k] = rps_rel_in_axes1_x;
-        o[3*count + k] = rps_qdd_1 + rps_rel_in_axes1_x;
-        o[2*count + k] = UNLESS(magnitude(v.rps_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rps_q_2) >
-            LEAST_2);
-    }
+    values_rps v;
+    stage_rps_X(m, w, i, j, s, X, &v);
+    stage_rps_A_X(w, j, A, &v);
+    stage_rps_V_X(w, j, V, &v);
+    stage_rps_A_V_X(w, j, V, &v);
+    /* (rps-rel) acceleration of the connection point left to the joint accelerations */
+    const real rps_rel_in_axes1_x = v.axis_x_rps_axes1_x*v.rps_S_ddot_x +
+        v.axis_x_rps_axes1_y*v.rps_S_ddot_y + v.axis_x_rps_axes1_z*v.rps_S_ddot_z +
+        v.rps_q_2*v.rps_qd_1*v.rps_qd_1;
+    const real rps_rel_in_axes1_y = v.axis_y_rps_axes1_x*v.rps_S_ddot_x +
+        v.axis_y_rps_axes1_y*v.rps_S_ddot_y + v.axis_y_rps_axes1_z*v.rps_S_ddot_z -
+        2*v.rps_S_dot_in_axes1_x*v.rps_qd_1;
+    /* (rps-qdd_1) acceleration of joint 1 */
+    const real rps_qdd_1 = v.inv_rps_q_2*rps_rel_in_axes1_y;
+    /* (rps-qdd_1) */
+    o[0*count + k] = rps_qdd_1;
+    /* (rps-qdd_2) acceleration of joint 2 */
+    o[1*count + k] = rps_rel_in_axes1_x;
+    o[3*count + k] = rps_qdd_1 + rps_rel_in_axes1_x;
+    o[2*count + k] = UNLESS(magnitude(v.rps_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rps_q_2) >
+        LEAST_2);
 }
 
-INLINE void joint_accelerations_place_rps(size_t w, size_t count, const real *o, size_t leg,
-    size_t first, real *qdd, verdict *t)
+INLINE void joint_accelerations_place_rps(size_t w, size_t i, size_t k, size_t at, size_t count,
+    const real *o, real *qdd, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        qdd[2*leg*w + k] = o[0*count + first + k];
-        qdd[(1 + 2*leg)*w + k] = o[1*count + first + k];
-        t->singular[k] += o[2*count + first + k];
-        t->total[k] += o[3*count + first + k];
-    }
+    qdd[2*i*w + k] = o[0*count + at];
+    qdd[(1 + 2*i)*w + k] = o[1*count + at];
+    t->singular[k] += o[2*count + at];
+    t->total[k] += o[3*count + at];
 }
 
-INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd, verdict *t)
+APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
+    real *qdd, verdict *t)
 {
     real s[9] = {0};
     real o_rps[4*LEGS(LEGS_OF_rps)] = {0};
-    joint_accelerations_before(m, 1, X, s, t);
-    joint_accelerations_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), X, V, A, o_rps);
-    for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        joint_accelerations_place_rps(1, LEGS(LEGS_OF_rps), o_rps, leg, leg, qdd, t);
+    joint_accelerations_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rps); ++k) {
+        joint_accelerations_legs_rps(m, 1, k, 0, k, LEGS(LEGS_OF_rps), s, X, V, A, o_rps);
+    }
+    for (size_t i = 0; i < LEGS_OF_rps; ++i) {
+        joint_accelerations_place_rps(1, i, 0, i, LEGS(LEGS_OF_rps), o_rps, qdd, t);
     }
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *qdd, verdict *t)
+    real *A, real *restrict qdd, verdict *restrict t)
 {
     real s[9*LANES];
     real o_rps[4*LANES];
-    joint_accelerations_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        joint_accelerations_legs_rps(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_rps);
-        joint_accelerations_place_rps(LANES, LANES, o_rps, leg, 0, qdd, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        joint_accelerations_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_rps; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_legs_rps(m, LANES, i, k, k, LANES, s, X, V, A, o_rps);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_place_rps(LANES, i, k, k, LANES, o_rps, qdd, t);
+        }
     }
 }
 
 /* ---- constraints ---- */
-INLINE void constraints_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void constraints_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void constraints_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, const real *X, real *o)
+INLINE void constraints_legs_rps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        /* (rps-S) from the base point to the connection point */
-        const real R_xx = s[0*w + j];
-        const real R_xy = s[1*w + j];
-        const real R_xz = s[2*w + j];
-        const real rps_base_point_x = m->rps_base_point_x[i];
-        const real rps_platform_point_x = m->rps_platform_point_x[i];
-        const real rps_platform_point_y = m->rps_platform_point_y[i];
-        const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real t_x = X[0*w + j];
-        const real rps_S_x = t_x + R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
-            R_xz*rps_platform_point_z - rps_base_point_x;
-        const real R_yx = s[3*w + j];
-        const real R_yy = s[4*w + j];
-        const real R_yz = s[5*w + j];
-        const real rps_base_point_y = m->rps_base_point_y[i];
-        const real t_y = X[1*w + j];
-        const real rps_S_y = t_y + R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
-            R_yz*rps_platform_point_z - rps_base_point_y;
-        const real R_zx = s[6*w + j];
-        const real R_zy = s[7*w + j];
-        const real R_zz = s[8*w + j];
-        const real rps_base_point_z = m->rps_base_point_z[i];
-        const real t_z = X[2*w + j];
-        const real rps_S_z = t_z + R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
-            R_zz*rps_platform_point_z - rps_base_point_z;
-        const real rps_base_frame_xz = m->rps_base_frame_xz[i];
-        const real rps_base_frame_yz = m->rps_base_frame_yz[i];
-        const real rps_base_frame_zz = m->rps_base_frame_zz[i];
-        const real rps_S_in_turn1_z = rps_S_x*rps_base_frame_xz + rps_S_y*rps_base_frame_yz +
-            rps_S_z*rps_base_frame_zz;
-        /* (rps-phi_c1) loop-closure residual along the constraint force */
-        o[0*count + k] = rps_S_in_turn1_z;
-        o[1*count + k] = rps_S_in_turn1_z;
-    }
+    /* (rps-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real t_x = X[0*w + j];
+    const real rps_S_x = t_x + R_xx*m->rps_platform_point_x[i] +
+        R_xy*m->rps_platform_point_y[i] + R_xz*m->rps_platform_point_z[i] -
+        m->rps_base_point_x[i];
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real t_y = X[1*w + j];
+    const real rps_S_y = t_y + R_yx*m->rps_platform_point_x[i] +
+        R_yy*m->rps_platform_point_y[i] + R_yz*m->rps_platform_point_z[i] -
+        m->rps_base_point_y[i];
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real t_z = X[2*w + j];
+    const real rps_S_z = t_z + R_zx*m->rps_platform_point_x[i] +
+        R_zy*m->rps_platform_point_y[i] + R_zz*m->rps_platform_point_z[i] -
+        m->rps_base_point_z[i];
+    const real rps_S_in_turn1_z = rps_S_x*m->rps_base_frame_xz[i] +
+        rps_S_y*m->rps_base_frame_yz[i] + rps_S_z*m->rps_base_frame_zz[i];
+    /* (rps-phi_c1) loop-closure residual along the constraint force */
+    o[0*count + k] = rps_S_in_turn1_z;
+    o[1*count + k] = rps_S_in_turn1_z;
 }
 
-INLINE void constraints_place_rps(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *constraints, verdict *t)
+INLINE void constraints_place_rps(size_t w, size_t i, size_t k, size_t at, size_t count, const
+    real *o, real *constraints, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        constraints[leg*w + k] = o[0*count + first + k];
-        t->total[k] += o[1*count + first + k];
-    }
+    constraints[i*w + k] = o[0*count + at];
+    t->total[k] += o[1*count + at];
 }
 
-INLINE void constraints_run(const prepared *m, const real *X, real *constraints, verdict *t)
+APART void constraints_run(const prepared *m, const real *X, real *constraints, verdict *t)
 {
     real s[9] = {0};
     real o_rps[2*LEGS(LEGS_OF_rps)] = {0};
-    constraints_before(m, 1, X, s, t);
-    constraints_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), X, o_rps);
-    for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        constraints_place_rps(1, LEGS(LEGS_OF_rps), o_rps, leg, leg, constraints, t);
+    constraints_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rps); ++k) {
+        constraints_legs_rps(m, 1, k, 0, k, LEGS(LEGS_OF_rps), s, X, o_rps);
+    }
+    for (size_t i = 0; i < LEGS_OF_rps; ++i) {
+        constraints_place_rps(1, i, 0, i, LEGS(LEGS_OF_rps), o_rps, constraints, t);
     }
 }
 
-INLINE void constraints_run_lanes(const prepared *m, const real *X, real *constraints, verdict *t)
+INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restrict constraints,
+    verdict *restrict t)
 {
     real s[9*LANES];
     real o_rps[2*LANES];
-    constraints_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        constraints_legs_rps(m, LANES, leg, 0, s, 1, LANES, X, o_rps);
-        constraints_place_rps(LANES, LANES, o_rps, leg, 0, constraints, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        constraints_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_rps; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            constraints_legs_rps(m, LANES, i, k, k, LANES, s, X, o_rps);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            constraints_place_rps(LANES, i, k, k, LANES, o_rps, constraints, t);
+        }
     }
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void legs_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
+INLINE void legs_legs_rps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    const real *s, const real *X, const real *V, const real *A, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rps v;
-        stage_rps_X(m, w, i, j, s, X, &v);
-        stage_rps_A_X(w, j, A, &v);
-        stage_rps_V_X(w, j, V, &v);
-        stage_rps_A_V_X(w, j, V, &v);
-        stage_rps_legs_required(m, i, &v);
-        /* (rps-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        o[0*count + k] = v.rps_c_x;
-        o[1*count + k] = v.rps_c_y;
-        o[2*count + k] = v.rps_c_z;
-        /* (rps-w_2) reciprocal vector 2 */
-        o[3*count + k] = v.axis_x_rps_axes1_x;
-        o[4*count + k] = v.axis_x_rps_axes1_y;
-        o[5*count + k] = v.axis_x_rps_axes1_z;
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        const real rps_base_frame_xz = m->rps_base_frame_xz[i];
-        o[6*count + k] = rps_base_frame_xz;
-        const real rps_base_frame_yz = m->rps_base_frame_yz[i];
-        o[7*count + k] = rps_base_frame_yz;
-        const real rps_base_frame_zz = m->rps_base_frame_zz[i];
-        o[8*count + k] = rps_base_frame_zz;
-        o[9*count + k] = UNLESS(magnitude(v.rps_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rps_q_2) >
-            LEAST_2);
-    }
+    values_rps v;
+    stage_rps_X(m, w, i, j, s, X, &v);
+    stage_rps_A_X(w, j, A, &v);
+    stage_rps_V_X(w, j, V, &v);
+    stage_rps_A_V_X(w, j, V, &v);
+    stage_rps_legs_required(m, i, &v);
+    /* (rps-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    o[0*count + k] = v.rps_c_x;
+    o[1*count + k] = v.rps_c_y;
+    o[2*count + k] = v.rps_c_z;
+    /* (rps-w_2) reciprocal vector 2 */
+    o[3*count + k] = v.axis_x_rps_axes1_x;
+    o[4*count + k] = v.axis_x_rps_axes1_y;
+    o[5*count + k] = v.axis_x_rps_axes1_z;
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    o[6*count + k] = m->rps_base_frame_xz[i];
+    o[7*count + k] = m->rps_base_frame_yz[i];
+    o[8*count + k] = m->rps_base_frame_zz[i];
+    o[9*count + k] = UNLESS(magnitude(v.rps_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rps_q_2) >
+        LEAST_2);
 }
 
-INLINE void legs_place_rps(size_t w, size_t count, const real *o, size_t leg, size_t first, real
-    *leg_force, real *actuator, real *constraint_direction, verdict *t)
+INLINE void legs_place_rps(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *leg_force, real *actuator, real *constraint_direction, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        leg_force[3*leg*w + k] = o[0*count + first + k];
-        leg_force[(3*leg + 1)*w + k] = o[1*count + first + k];
-        leg_force[(3*leg + 2)*w + k] = o[2*count + first + k];
-        actuator[3*leg*w + k] = o[3*count + first + k];
-        actuator[(3*leg + 1)*w + k] = o[4*count + first + k];
-        actuator[(3*leg + 2)*w + k] = o[5*count + first + k];
-        constraint_direction[3*leg*w + k] = o[6*count + first + k];
-        constraint_direction[(3*leg + 1)*w + k] = o[7*count + first + k];
-        constraint_direction[(3*leg + 2)*w + k] = o[8*count + first + k];
-        t->singular[k] += o[9*count + first + k];
-    }
+    leg_force[3*i*w + k] = o[0*count + at];
+    leg_force[(3*i + 1)*w + k] = o[1*count + at];
+    leg_force[(3*i + 2)*w + k] = o[2*count + at];
+    actuator[3*i*w + k] = o[3*count + at];
+    actuator[(3*i + 1)*w + k] = o[4*count + at];
+    actuator[(3*i + 2)*w + k] = o[5*count + at];
+    constraint_direction[3*i*w + k] = o[6*count + at];
+    constraint_direction[(3*i + 1)*w + k] = o[7*count + at];
+    constraint_direction[(3*i + 2)*w + k] = o[8*count + at];
+    t->singular[k] += o[9*count + at];
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
@@ -3491,303 +3434,254 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 {
     real s[9] = {0};
     real o_rps[10*LEGS(LEGS_OF_rps)] = {0};
-    legs_before(m, 1, X, s, t);
-    legs_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), X, V, A, o_rps);
-    for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        legs_place_rps(1, LEGS(LEGS_OF_rps), o_rps, leg, leg, leg_force, actuator, constraint_direction, t);
+    legs_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rps); ++k) {
+        legs_legs_rps(m, 1, k, 0, k, LEGS(LEGS_OF_rps), s, X, V, A, o_rps);
+    }
+    for (size_t i = 0; i < LEGS_OF_rps; ++i) {
+        legs_place_rps(1, i, 0, i, LEGS(LEGS_OF_rps), o_rps, leg_force, actuator, constraint_direction, t);
     }
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        /* (potential) potential energy */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real platform_mass = m->platform_mass;
-        const real t_x = X[0*w + k];
-        const real t_y = X[1*w + k];
-        const real t_z = X[2*w + k];
-        const real potential_t = gravity_x*(v.R_xx*h_star_in_platform_x +
-            v.R_xy*h_star_in_platform_y + v.R_xz*h_star_in_platform_z + platform_mass*t_x) +
-            gravity_y*(v.R_yx*h_star_in_platform_x + v.R_yy*h_star_in_platform_y +
-            v.R_yz*h_star_in_platform_z + platform_mass*t_y) +
-            gravity_z*(v.R_zx*h_star_in_platform_x + v.R_zy*h_star_in_platform_y +
-            v.R_zz*h_star_in_platform_z + platform_mass*t_z);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = potential_t;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    /* (potential) potential energy */
+    const real t_x = X[0*w + k];
+    const real t_y = X[1*w + k];
+    const real t_z = X[2*w + k];
+    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x +
+        v.R_xy*m->h_star_in_platform_y + v.R_xz*m->h_star_in_platform_z +
+        m->platform_mass*t_x) + m->gravity_y*(v.R_yx*m->h_star_in_platform_x +
+        v.R_yy*m->h_star_in_platform_y + v.R_yz*m->h_star_in_platform_z +
+        m->platform_mass*t_y) + m->gravity_z*(v.R_zx*m->h_star_in_platform_x +
+        v.R_zy*m->h_star_in_platform_y + v.R_zz*m->h_star_in_platform_z +
+        m->platform_mass*t_z);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = potential_t;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void potential_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void potential_legs_rps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        /* (rps-S) from the base point to the connection point */
-        const real R_xx = s[0*w + j];
-        const real R_xy = s[1*w + j];
-        const real R_xz = s[2*w + j];
-        const real rps_base_point_x = m->rps_base_point_x[i];
-        const real rps_platform_point_x = m->rps_platform_point_x[i];
-        const real rps_platform_point_y = m->rps_platform_point_y[i];
-        const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real t_x = X[0*w + j];
-        const real rps_S_x = t_x + R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
-            R_xz*rps_platform_point_z - rps_base_point_x;
-        const real R_yx = s[3*w + j];
-        const real R_yy = s[4*w + j];
-        const real R_yz = s[5*w + j];
-        const real rps_base_point_y = m->rps_base_point_y[i];
-        const real t_y = X[1*w + j];
-        const real rps_S_y = t_y + R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
-            R_yz*rps_platform_point_z - rps_base_point_y;
-        const real R_zx = s[6*w + j];
-        const real R_zy = s[7*w + j];
-        const real R_zz = s[8*w + j];
-        const real rps_base_point_z = m->rps_base_point_z[i];
-        const real t_z = X[2*w + j];
-        const real rps_S_z = t_z + R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
-            R_zz*rps_platform_point_z - rps_base_point_z;
-        const real rps_base_frame_xx = m->rps_base_frame_xx[i];
-        const real rps_base_frame_yx = m->rps_base_frame_yx[i];
-        const real rps_base_frame_zx = m->rps_base_frame_zx[i];
-        const real rps_S_in_turn1_x = rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx +
-            rps_S_z*rps_base_frame_zx;
-        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
-        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
-        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
-        const real rps_S_in_turn1_y = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
-            rps_S_z*rps_base_frame_zy;
-        /* (rps-q_2) displacement of joint 2 */
-        const real rps_q_2_t = rps_S_in_turn1_x*rps_S_in_turn1_x +
-            rps_S_in_turn1_y*rps_S_in_turn1_y;
-        const real rps_branch_1 = m->rps_branch_1[i];
-        const real rps_q_2 = rps_branch_1*root(rps_q_2_t);
-        /* (rps-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rps_q_2 = 1/rps_q_2;
-        const real rps_c_1 = inv_rps_q_2*rps_S_in_turn1_x;
-        /* (rps-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rps_s_1 = inv_rps_q_2*rps_S_in_turn1_y;
-        /* (potential) potential energy */
-        const real rps_potential_t = m->rps_potential_t[i];
-        const real rps_potential_t_2 = m->rps_potential_t_2[i];
-        const real rps_b_in_spec1_x = rps_c_1*rps_potential_t + rps_potential_t_2*rps_s_1;
-        const real rps_b_in_spec1_y = rps_c_1*rps_potential_t_2 - rps_potential_t*rps_s_1;
-        const real rps_acc_2_t = m->rps_acc_2_t[i];
-        const real rps_acc_2_t_2 = m->rps_acc_2_t_2[i];
-        const real rps_h_1_in_spec1_x = m->rps_h_1_in_spec1_x[i];
-        const real rps_h_1_in_spec1_y = m->rps_h_1_in_spec1_y[i];
-        const real rps_h_2_in_spec1_x = m->rps_h_2_in_spec1_x[i];
-        const real rps_h_2_in_spec1_y = m->rps_h_2_in_spec1_y[i];
-        const real rps_link1_mass = m->rps_link1_mass[i];
-        const real rps_link2_mass = m->rps_link2_mass[i];
-        const real rps_potential_t_3 = m->rps_potential_t_3[i];
-        const real rps_potential_t_4 = rps_potential_t_3 + (rps_acc_2_t*rps_c_1 +
-            rps_acc_2_t_2*rps_s_1)*(rps_h_1_in_spec1_x + rps_h_2_in_spec1_x +
-            rps_b_in_spec1_x*rps_link1_mass + rps_link2_mass*(rps_b_in_spec1_x + rps_q_2)) +
-            (rps_acc_2_t_2*rps_c_1 - rps_acc_2_t*rps_s_1)*(rps_h_1_in_spec1_y + rps_h_2_in_spec1_y
-            + rps_b_in_spec1_y*rps_link1_mass + rps_b_in_spec1_y*rps_link2_mass);
-        /* (potential) potential energy */
-        gather(&terms[0*count + k], add, rps_potential_t_4);  /* potential_of_legs */
-        o[0*count + k] = UNLESS(magnitude(rps_q_2_t) > LEAST_1);
-    }
+    /* (rps-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real t_x = X[0*w + j];
+    const real rps_S_x = t_x + R_xx*m->rps_platform_point_x[i] +
+        R_xy*m->rps_platform_point_y[i] + R_xz*m->rps_platform_point_z[i] -
+        m->rps_base_point_x[i];
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real t_y = X[1*w + j];
+    const real rps_S_y = t_y + R_yx*m->rps_platform_point_x[i] +
+        R_yy*m->rps_platform_point_y[i] + R_yz*m->rps_platform_point_z[i] -
+        m->rps_base_point_y[i];
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real t_z = X[2*w + j];
+    const real rps_S_z = t_z + R_zx*m->rps_platform_point_x[i] +
+        R_zy*m->rps_platform_point_y[i] + R_zz*m->rps_platform_point_z[i] -
+        m->rps_base_point_z[i];
+    const real rps_S_in_turn1_x = rps_S_x*m->rps_base_frame_xx[i] +
+        rps_S_y*m->rps_base_frame_yx[i] + rps_S_z*m->rps_base_frame_zx[i];
+    const real rps_S_in_turn1_y = rps_S_x*m->rps_base_frame_xy[i] +
+        rps_S_y*m->rps_base_frame_yy[i] + rps_S_z*m->rps_base_frame_zy[i];
+    /* (rps-q_2) displacement of joint 2 */
+    const real rps_q_2_t = rps_S_in_turn1_x*rps_S_in_turn1_x +
+        rps_S_in_turn1_y*rps_S_in_turn1_y;
+    const real rps_q_2 = m->rps_branch_1[i]*root(rps_q_2_t);
+    /* (rps-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real inv_rps_q_2 = 1/rps_q_2;
+    const real rps_c_1 = inv_rps_q_2*rps_S_in_turn1_x;
+    /* (rps-s_1) sine of the angle of joint 1 from its reference direction */
+    const real rps_s_1 = inv_rps_q_2*rps_S_in_turn1_y;
+    /* (potential) */
+    const real rps_b_in_spec1_x = rps_c_1*m->rps_potential_t[i] +
+        m->rps_potential_t_2[i]*rps_s_1;
+    const real rps_b_in_spec1_y = rps_c_1*m->rps_potential_t_2[i] -
+        m->rps_potential_t[i]*rps_s_1;
+    const real rps_potential_t_4 = m->rps_potential_t_3[i] + (m->rps_acc_2_t[i]*rps_c_1 +
+        m->rps_acc_2_t_2[i]*rps_s_1)*(m->rps_h_1_in_spec1_x[i] + m->rps_h_2_in_spec1_x[i] +
+        rps_b_in_spec1_x*m->rps_link1_mass[i] + m->rps_link2_mass[i]*(rps_b_in_spec1_x +
+        rps_q_2)) + (m->rps_acc_2_t_2[i]*rps_c_1 -
+        m->rps_acc_2_t[i]*rps_s_1)*(m->rps_h_1_in_spec1_y[i] + m->rps_h_2_in_spec1_y[i] +
+        rps_b_in_spec1_y*m->rps_link1_mass[i] + rps_b_in_spec1_y*m->rps_link2_mass[i]);
+    /* (potential) */
+    gather(&terms[0*count + k], add, rps_potential_t_4);  /* potential_of_legs */
+    o[0*count + k] = UNLESS(magnitude(rps_q_2_t) > LEAST_1);
 }
 
-INLINE void potential_place_rps(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void potential_place_rps(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o[0*count + first + k];
-    }
+    t->singular[k] += o[0*count + at];
 }
 
-INLINE void potential_after(size_t w, const real *s, const real *sums, real *potential)
+INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (potential) potential energy */
-        const real potential_of_legs = sums[0*w + k];
-        const real potential_t = s[9*w + k];
-        const real potential_ = -potential_of_legs - potential_t;
-        /* (potential) potential energy */
-        potential[0*w + k] = potential_;
-    }
+    /* (potential) */
+    const real potential_of_legs = sums[0*w + k];
+    const real potential_t = s[9*w + k];
+    const real potential_ = -potential_of_legs - potential_t;
+    /* (potential) */
+    potential[0*w + k] = potential_;
 }
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
     real s[10] = {0}, sums[1] = {0};
     real terms_rps[LEGS(LEGS_OF_rps)] = {0}, o_rps[LEGS(LEGS_OF_rps)] = {0};
-    potential_before(m, 1, X, s, t);
-    potential_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), 0, X, terms_rps, o_rps);
-    for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        potential_place_rps(1, LEGS(LEGS_OF_rps), o_rps, leg, t);
+    potential_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rps); ++k) {
+        potential_legs_rps(m, 1, k, 0, k, LEGS(LEGS_OF_rps), 0, s, X, terms_rps, o_rps);
+    }
+    for (size_t i = 0; i < LEGS_OF_rps; ++i) {
+        potential_place_rps(0, i, LEGS(LEGS_OF_rps), o_rps, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_rps + n*LEGS(LEGS_OF_rps), LEGS_OF_rps);
     }
-    potential_after(1, s, sums, potential);
+    potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
-    verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
+    *lengths, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        const real legs_size = m->legs_size;
-        lengths[1*w + k] = legs_size;
-        t->total[k] += legs_size;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    lengths[1*w + k] = m->legs_size;
+    t->total[k] += m->legs_size;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void condition_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void condition_legs_rps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_rps v;
-        stage_rps_X(m, w, i, j, s, X, &v);
-        /* (rps-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real rps_pivot_size = magnitude(v.rps_q_2_t);
-        const real rps_pivot_size_2 = magnitude(v.rps_q_2);
-        const real rps_least_pivots = lesser(R(1.3333333333333333)*root(rps_pivot_size),
-            R(1.3333333333333333)*rps_pivot_size_2);
-        /* (rps-H_a_2) moment of the column's unit force about the platform origin */
-        const real rps_H_a_2_x = v.rps_q_y*v.rps_w_2_z - v.rps_q_z*v.rps_w_2_y;
-        const real rps_H_a_2_y = v.rps_q_z*v.rps_w_2_x - v.rps_q_x*v.rps_w_2_z;
-        const real rps_H_a_2_z = v.rps_q_x*v.rps_w_2_y - v.rps_q_y*v.rps_w_2_x;
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_in_platform_x = m->b_c_in_platform_x;
-        const real rps_platform_point_x = m->rps_platform_point_x[i];
-        const real rps_spread_t = b_c_in_platform_x - rps_platform_point_x;
-        const real b_c_in_platform_y = m->b_c_in_platform_y;
-        const real rps_platform_point_y = m->rps_platform_point_y[i];
-        const real rps_spread_t_2 = b_c_in_platform_y - rps_platform_point_y;
-        const real b_c_in_platform_z = m->b_c_in_platform_z;
-        const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real rps_spread_t_3 = b_c_in_platform_z - rps_platform_point_z;
-        const real rps_spread_t_4 = rps_spread_t*rps_spread_t + rps_spread_t_2*rps_spread_t_2 +
-            rps_spread_t_3*rps_spread_t_3;
-        /* (spread) rms distance of the platform points from their centroid */
-        gather(&terms[0*count + k], add, rps_spread_t_4);  /* spread_rps */
-        /* (rps-w_2) reciprocal vector 2 */
-        o[0*count + k] = v.rps_w_2_x;
-        o[1*count + k] = v.rps_w_2_y;
-        o[2*count + k] = v.rps_w_2_z;
-        /* (rps-H_a_2) moment of the column's unit force about the platform origin */
-        o[3*count + k] = rps_H_a_2_x;
-        o[4*count + k] = rps_H_a_2_y;
-        o[5*count + k] = rps_H_a_2_z;
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        const real rps_base_frame_xz = m->rps_base_frame_xz[i];
-        o[6*count + k] = rps_base_frame_xz;
-        const real rps_base_frame_yz = m->rps_base_frame_yz[i];
-        o[7*count + k] = rps_base_frame_yz;
-        const real rps_base_frame_zz = m->rps_base_frame_zz[i];
-        o[8*count + k] = rps_base_frame_zz;
-        /* (rps-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[9*count + k] = v.rps_Hk_a_1_x;
-        o[10*count + k] = v.rps_Hk_a_1_y;
-        o[11*count + k] = v.rps_Hk_a_1_z;
-        /* (rps-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        o[12*count + k] = rps_least_pivots;
-        o[14*count + k] = ((v.rps_w_2_x + (v.rps_w_2_y + v.rps_w_2_z)) + (rps_H_a_2_x +
-            (rps_H_a_2_y + rps_H_a_2_z))) + ((rps_base_frame_xz + (rps_base_frame_yz +
-            rps_base_frame_zz)) + ((v.rps_Hk_a_1_x + v.rps_Hk_a_1_y) + (v.rps_Hk_a_1_z +
-            rps_least_pivots)));
-        o[13*count + k] = UNLESS(magnitude(v.rps_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rps_q_2) >
-            LEAST_2);
-    }
+    values_rps v;
+    stage_rps_X(m, w, i, j, s, X, &v);
+    /* (rps-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real rps_pivot_size = magnitude(v.rps_q_2_t);
+    const real rps_pivot_size_2 = magnitude(v.rps_q_2);
+    const real rps_least_pivots = lesser(R(1.3333333333333333)*root(rps_pivot_size),
+        R(1.3333333333333333)*rps_pivot_size_2);
+    /* (rps-H_a_2) moment of the column's unit force about the platform origin */
+    const real rps_H_a_2_x = v.rps_q_y*v.rps_w_2_z - v.rps_q_z*v.rps_w_2_y;
+    const real rps_H_a_2_y = v.rps_q_z*v.rps_w_2_x - v.rps_q_x*v.rps_w_2_z;
+    const real rps_H_a_2_z = v.rps_q_x*v.rps_w_2_y - v.rps_q_y*v.rps_w_2_x;
+    /* (spread) rms distance of the platform points from their centroid */
+    const real rps_spread_t = m->b_c_in_platform_x - m->rps_platform_point_x[i];
+    const real rps_spread_t_2 = m->b_c_in_platform_y - m->rps_platform_point_y[i];
+    const real rps_spread_t_3 = m->b_c_in_platform_z - m->rps_platform_point_z[i];
+    const real rps_spread_t_4 = rps_spread_t*rps_spread_t + rps_spread_t_2*rps_spread_t_2 +
+        rps_spread_t_3*rps_spread_t_3;
+    /* (spread) */
+    gather(&terms[0*count + k], add, rps_spread_t_4);  /* spread_rps */
+    /* (rps-w_2) reciprocal vector 2 */
+    o[0*count + k] = v.rps_w_2_x;
+    o[1*count + k] = v.rps_w_2_y;
+    o[2*count + k] = v.rps_w_2_z;
+    /* (rps-H_a_2) */
+    o[3*count + k] = rps_H_a_2_x;
+    o[4*count + k] = rps_H_a_2_y;
+    o[5*count + k] = rps_H_a_2_z;
+    /* (legs_size) */
+    o[6*count + k] = m->rps_base_frame_xz[i];
+    o[7*count + k] = m->rps_base_frame_yz[i];
+    o[8*count + k] = m->rps_base_frame_zz[i];
+    /* (rps-Hk_a_1) moment of the column's unit force about the platform origin */
+    o[9*count + k] = v.rps_Hk_a_1_x;
+    o[10*count + k] = v.rps_Hk_a_1_y;
+    o[11*count + k] = v.rps_Hk_a_1_z;
+    /* (rps-G) */
+    o[12*count + k] = rps_least_pivots;
+    o[14*count + k] = ((v.rps_w_2_x + (v.rps_w_2_y + v.rps_w_2_z)) + (rps_H_a_2_x +
+        (rps_H_a_2_y + rps_H_a_2_z))) + ((m->rps_base_frame_xz[i] + (m->rps_base_frame_yz[i] +
+        m->rps_base_frame_zz[i])) + ((v.rps_Hk_a_1_x + v.rps_Hk_a_1_y) + (v.rps_Hk_a_1_z +
+        rps_least_pivots)));
+    o[13*count + k] = UNLESS(magnitude(v.rps_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rps_q_2) >
+        LEAST_2);
 }
 
-INLINE void condition_place_rps(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *H, real *Hk, real *pivots, verdict *t)
+INLINE void condition_place_rps(size_t w, size_t i, size_t k, size_t at, size_t count, const real
+    *o, real *H, real *Hk, real *pivots, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        H[(3*NU + leg)*w + k] = o[3*count + first + k];
-        H[(4*NU + leg)*w + k] = o[4*count + first + k];
-        H[(5*NU + leg)*w + k] = o[5*count + first + k];
-        Hk[leg*w + k] = o[6*count + first + k];
-        Hk[(NC + leg)*w + k] = o[7*count + first + k];
-        Hk[(2*NC + leg)*w + k] = o[8*count + first + k];
-        Hk[(3*NC + leg)*w + k] = o[9*count + first + k];
-        Hk[(4*NC + leg)*w + k] = o[10*count + first + k];
-        Hk[(5*NC + leg)*w + k] = o[11*count + first + k];
-        pivots[leg*w + k] = o[12*count + first + k];
-        t->singular[k] += o[13*count + first + k];
-        t->total[k] += o[14*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    H[(3*NU + i)*w + k] = o[3*count + at];
+    H[(4*NU + i)*w + k] = o[4*count + at];
+    H[(5*NU + i)*w + k] = o[5*count + at];
+    Hk[i*w + k] = o[6*count + at];
+    Hk[(NC + i)*w + k] = o[7*count + at];
+    Hk[(2*NC + i)*w + k] = o[8*count + at];
+    Hk[(3*NC + i)*w + k] = o[9*count + at];
+    Hk[(4*NC + i)*w + k] = o[10*count + at];
+    Hk[(5*NC + i)*w + k] = o[11*count + at];
+    pivots[i*w + k] = o[12*count + at];
+    t->singular[k] += o[13*count + at];
+    t->total[k] += o[14*count + at];
 }
 
-INLINE void condition_after(const prepared *m, size_t w, const real *sums, real *lengths, verdict
-    *t)
+INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
+    *lengths, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (spread) rms distance of the platform points from their centroid */
-        const real spread_rps = sums[0*w + k];
-        const real spread_t = m->spread_t;
-        const real spread_ = root(spread_rps)*spread_t;
-        /* (spread) rms distance of the platform points from their centroid */
-        lengths[0*w + k] = spread_;
-        t->total[k] += spread_;
-    }
+    /* (spread) */
+    const real spread_rps = sums[0*w + k];
+    const real spread_ = root(spread_rps)*m->spread_t;
+    /* (spread) */
+    lengths[0*w + k] = spread_;
+    t->total[k] += spread_;
 }
 
-INLINE void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
+APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
     *pivots, real *reach, verdict *t)
 {
     real s[9] = {0}, sums[1] = {0};
     real terms_rps[LEGS(LEGS_OF_rps)] = {0}, o_rps[15*LEGS(LEGS_OF_rps)] = {0};
     clear(reach, NL);
-    condition_before(m, 1, X, s, lengths, t);
-    condition_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), 0, X, terms_rps, o_rps);
-    for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        condition_place_rps(1, LEGS(LEGS_OF_rps), o_rps, leg, leg, H, Hk, pivots, t);
+    condition_before(m, 1, 0, X, s, lengths, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_rps); ++k) {
+        condition_legs_rps(m, 1, k, 0, k, LEGS(LEGS_OF_rps), 0, s, X, terms_rps, o_rps);
+    }
+    for (size_t i = 0; i < LEGS_OF_rps; ++i) {
+        condition_place_rps(1, i, 0, i, LEGS(LEGS_OF_rps), o_rps, H, Hk, pivots, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_rps + n*LEGS(LEGS_OF_rps), LEGS_OF_rps);
     }
-    condition_after(m, 1, sums, lengths, t);
+    condition_after(m, 1, 0, sums, lengths, t);
 }
 
 /* ---- what users call, as steps over these ---- */
 
-INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
+int tripod_3rps_M(const prepared *m, const real *X, real *M_out)
 {
     verdict why;
     start(1, &why);
@@ -3796,9 +3690,11 @@ INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NV, M_out);
     }
+    return code;
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -3812,7 +3708,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
     deliver(NV*NV, M, M_out);
 }
 
-INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
+int tripod_3rps_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     verdict why;
     start(1, &why);
@@ -3825,9 +3721,11 @@ INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, 
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, Z_out);
     }
+    return code;
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -3842,7 +3740,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
     deliver(NV, Z, Z_out);
 }
 
-INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
+int tripod_3rps_H(const prepared *m, const real *X, real *H_out)
 {
     verdict why;
     start(1, &why);
@@ -3851,9 +3749,11 @@ INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NU, H_out);
     }
+    return code;
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -3867,7 +3767,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
     deliver(NV*NU, H, H_out);
 }
 
-INLINE void Hk_one(const prepared *m, const real *X, real *Hk_out, int *code)
+int tripod_3rps_Hk(const prepared *m, const real *X, real *Hk_out)
 {
     verdict why;
     start(1, &why);
@@ -3876,9 +3776,11 @@ INLINE void Hk_one(const prepared *m, const real *X, real *Hk_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NC, 1, Hk_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NC, Hk_out);
     }
+    return code;
 }
 
 INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
@@ -3892,7 +3794,7 @@ INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
     deliver(NV*NC, Hk, Hk_out);
 }
 
-INLINE void constraints_one(const prepared *m, const real *X, real *constraints_out, int *code)
+int tripod_3rps_constraints(const prepared *m, const real *X, real *constraints_out)
 {
     verdict why;
     start(1, &why);
@@ -3901,9 +3803,11 @@ INLINE void constraints_one(const prepared *m, const real *X, real *constraints_
     if (!is_finite(why.total[0])) {
         check(3, 1, constraints_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(3, constraints_out);
     }
+    return code;
 }
 
 INLINE void constraints_lanes(const prepared *m, const real *X, real *constraints_out, int *code)
@@ -3917,8 +3821,8 @@ INLINE void constraints_lanes(const prepared *m, const real *X, real *constraint
     deliver(3, constraints, constraints_out);
 }
 
-INLINE void constraint_bias_one(const prepared *m, const real *X, const real *V, real
-    *constraint_bias_out, int *code)
+int tripod_3rps_constraint_bias(const prepared *m, const real *X, const real *V, real
+    *constraint_bias_out)
 {
     verdict why;
     start(1, &why);
@@ -3931,9 +3835,11 @@ INLINE void constraint_bias_one(const prepared *m, const real *X, const real *V,
     if (!is_finite(why.total[0])) {
         check(3, 1, constraint_bias_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(3, constraint_bias_out);
     }
+    return code;
 }
 
 INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *V, real
@@ -3949,7 +3855,7 @@ INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *
     deliver(3, constraint_bias, constraint_bias_out);
 }
 
-INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out, int *code)
+int tripod_3rps_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
     verdict why;
     start(1, &why);
@@ -3958,9 +3864,11 @@ INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, q_out);
     }
+    return code;
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -3974,8 +3882,7 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
     deliver(NJ, q, q_out);
 }
 
-INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
-    *code)
+int tripod_3rps_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     verdict why;
     start(1, &why);
@@ -3988,9 +3895,11 @@ INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, rea
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, qd_out);
     }
+    return code;
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -4006,8 +3915,8 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
     deliver(NJ, qd, qd_out);
 }
 
-INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out, int *code)
+int tripod_3rps_joint_accelerations(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out)
 {
     verdict why;
     start(1, &why);
@@ -4021,9 +3930,11 @@ INLINE void joint_accelerations_one(const prepared *m, const real *X, const real
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, qdd_out);
     }
+    return code;
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4040,8 +3951,8 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
     deliver(NJ, qdd, qdd_out);
 }
 
-INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
-    *Z_out, real *H_out, int *code)
+int tripod_3rps_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out)
 {
     real Hk[NV*NC] = {0}, constraint_bias[3] = {0};
     verdict why;
@@ -4059,11 +3970,13 @@ INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *
     }
     check(NV*NC, 1, Hk, why.overflow);
     check(3, 1, constraint_bias, why.overflow);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NV, M_out);
         refuse(NV, Z_out);
         refuse(NV*NU, H_out);
     }
+    return code;
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -4257,8 +4170,8 @@ INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real
 static const size_t order_solve_1[] = {2, 4, 3, 5, 1, 0};
 static const real sizes_solve_1[] = {1.0, 0.25, 0.25, 0.25, 1.0, 1.0};
 
-INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *tau_out, real *lambda_out, int *code)
+int tripod_3rps_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau_out, real *lambda_out)
 {
     real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0},
         beside_1[NV*NV] = {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, work[NV*PADDED(NV)];
@@ -4288,10 +4201,12 @@ INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V
     check(NC, 1, lambda_, why.overflow);
     copy(NU, tau, tau_out);
     copy(NC, lambda_, lambda_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, tau_out);
         refuse(NC, lambda_out);
     }
+    return code;
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -4321,8 +4236,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
     deliver(NC, lambda_, lambda_out);
 }
 
-INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
-    const real *wrench, real *A_out, real *lambda_out, int *code)
+int tripod_3rps_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau,
+    const real *wrench, real *A_out, real *lambda_out)
 {
     real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0},
         constraint_bias[3] = {0}, times_1[NV] = {0}, add_1[NV] = {0}, subtract_1[NV] = {0},
@@ -4357,10 +4272,12 @@ INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V
     check(NC, 1, lambda_, why.overflow);
     copy(NV, A, A_out);
     copy(NC, lambda_, lambda_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, A_out);
         refuse(NC, lambda_out);
     }
+    return code;
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4399,21 +4316,28 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     deliver(NC, lambda_, lambda_out);
 }
 
-INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
+int tripod_3rps_complete_acceleration(const prepared *m, const real *X, const real *V, const real
+    *A, const real *wrench, real *completed_out)
 {
+    (void)m;
+    (void)X;
+    (void)V;
+    (void)wrench;
     verdict why;
     start(1, &why);
     check(NV, 1, A, why.invalid);
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, completed_out);
     }
+    return code;
 }
 
-INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces_out, int *code)
+int tripod_3rps_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *forces_out)
 {
     static const size_t places_add_forces_1[] = {0, 1, 2};
     static const size_t places_forces[] = {0, 1, 2};
@@ -4454,13 +4378,15 @@ INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, c
     add_forces(NL, NL, 1, places_forces, split_2, constraint_direction, forces);
     check(NL*NL, 1, forces, why.overflow);
     copy(NL*NL, forces, forces_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NL*NL, forces_out);
     }
+    return code;
 }
 
-INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
-    *potential_out, int *code)
+int tripod_3rps_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
+    *potential_out)
 {
     real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
@@ -4478,15 +4404,17 @@ INLINE void energy_one(const prepared *m, const real *X, const real *V, real *ki
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, kinetic_out);
         refuse(1, potential_out);
     }
+    return code;
 }
 
-INLINE void condition_one(const prepared *m, const real *X, const real *length, real *sigma_out,
-    real *legs_out, int *code)
+int tripod_3rps_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
+    const real *length = NULL;
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real length_in[1], H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] =
         {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NU] = {0};
@@ -4513,15 +4441,18 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
     check(NL, 1, reach, why.overflow);
     copy(NU, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, sigma_out);
         refuse(NL, legs_out);
     }
+    return code;
 }
 
-INLINE void condition_constrained_one(const prepared *m, const real *X, const real *length, real
-    *sigma_out, real *legs_out, int *code)
+int tripod_3rps_condition_constrained(const prepared *m, const real *X, real *sigma_out, real
+    *legs_out)
 {
+    const real *length = NULL;
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real length_in[1], H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] =
         {0}, beside_1[NV*NV] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] = {0}, sigma[NV] =
@@ -4549,14 +4480,16 @@ INLINE void condition_constrained_one(const prepared *m, const real *X, const re
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, sigma_out);
         refuse(NL, legs_out);
     }
+    return code;
 }
 
-INLINE void manipulability_one(const prepared *m, const real *X, real *measure_out, real
-    *isotropy_out, int *code)
+int tripod_3rps_manipulability(const prepared *m, const real *X, real *measure_out, real
+    *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     static const size_t places_divide_rows_2[] = {3, 4, 5};
@@ -4605,14 +4538,16 @@ INLINE void manipulability_one(const prepared *m, const real *X, real *measure_o
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, measure_out);
         refuse(1, isotropy_out);
     }
+    return code;
 }
 
-INLINE void singularity_distance_one(const prepared *m, const real *X, real *actuators_out, real
-    *legs_out, int *code)
+int tripod_3rps_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
+    *legs_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
@@ -4643,14 +4578,15 @@ INLINE void singularity_distance_one(const prepared *m, const real *X, real *act
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, actuators_out);
         refuse(1, legs_out);
     }
+    return code;
 }
 
-static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
-    int *code)
+static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
 {
     real q[NJ] = {0}, q_of_inverse_kinematics_from_1[3] = {0}, subtract_1[NU] = {0}, constraints[3] =
         {0}, negative_1[3] = {0}, gap[6] = {0};
@@ -4673,12 +4609,14 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
     beside(1, NU, 3, subtract_1, negative_1, gap);
     check(6, 1, gap, why.overflow);
     copy(6, gap, gap_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(6, gap_out);
     }
+    return code;
 }
 
-static void slope_one(const prepared *m, const real *X, real *slope_out, int *code)
+static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     real H[NV*NU] = {0}, Hk[NV*NC] = {0}, slope[NV*NV] = {0};
     verdict why;
@@ -4689,9 +4627,11 @@ static void slope_one(const prepared *m, const real *X, real *slope_out, int *co
     beside(NV, NU, NC, H, Hk, slope);
     check(NV*NV, 1, slope, why.overflow);
     copy(NV*NV, slope, slope_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NV, slope_out);
     }
+    return code;
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -4702,12 +4642,12 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    mismatch_one(m, found, q_actuated, gap, &code);
+    code = mismatch_one(m, found, q_actuated, gap);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        slope_one(m, found, slope, &code);
+        code = slope_one(m, found, slope);
         if (code != OK) {
             break;
         }
@@ -4721,7 +4661,7 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            mismatch_one(m, trial, q_actuated, next, &tried);
+            tried = mismatch_one(m, trial, q_actuated, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -4739,8 +4679,8 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 }
 
 
-INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
-    *X_out, int *code)
+int tripod_3rps_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real
+    *X_out)
 {
     real X[NQ] = {0};
     verdict why;
@@ -4753,12 +4693,14 @@ INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, co
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
-static void constraint_gap_one(const prepared *m, const real *X, real *gap_out, int *code)
+static int constraint_gap_one(const prepared *m, const real *X, real *gap_out)
 {
     real constraints[3] = {0}, gap[NC] = {0};
     verdict why;
@@ -4770,12 +4712,14 @@ static void constraint_gap_one(const prepared *m, const real *X, real *gap_out, 
     }
     check(NC, 1, gap, why.overflow);
     copy(NC, gap, gap_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NC, gap_out);
     }
+    return code;
 }
 
-static void constraint_slope_one(const prepared *m, const real *X, real *slope_out, int *code)
+static int constraint_slope_one(const prepared *m, const real *X, real *slope_out)
 {
     verdict why;
     start(1, &why);
@@ -4784,9 +4728,11 @@ static void constraint_slope_one(const prepared *m, const real *X, real *slope_o
     if (!is_finite(why.total[0])) {
         check(NV*NC, 1, slope_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NC, slope_out);
     }
+    return code;
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -4797,12 +4743,12 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    constraint_gap_one(m, found, gap, &code);
+    code = constraint_gap_one(m, found, gap);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > MET; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        constraint_slope_one(m, found, slope, &code);
+        code = constraint_slope_one(m, found, slope);
         if (code != OK) {
             break;
         }
@@ -4816,7 +4762,7 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            constraint_gap_one(m, trial, next, &tried);
+            tried = constraint_gap_one(m, trial, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -4834,7 +4780,7 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
 }
 
 
-INLINE void project_one(const prepared *m, const real *X, real *projected_out, int *code)
+int tripod_3rps_project(const prepared *m, const real *X, real *projected_out)
 {
     real projected[NQ] = {0};
     verdict why;
@@ -4843,13 +4789,18 @@ INLINE void project_one(const prepared *m, const real *X, real *projected_out, i
     blame(search_constraint_gap(m, X, projected), &why);
     check(NQ, 1, projected, why.overflow);
     copy(NQ, projected, projected_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, projected_out);
     }
+    return code;
 }
 
-INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
+int tripod_3rps_dissipation(const prepared *m, const real *X, const real *V, real
+    *dissipation_out)
 {
+    (void)m;
+    (void)X;
     real subtract_1[NV] = {0};
     verdict why;
     start(1, &why);
@@ -4860,13 +4811,14 @@ INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, dissipation_out);
     }
+    return code;
 }
 
-INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
-    *code)
+int tripod_3rps_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
     real M[NV*NV] = {0}, momentum[NV] = {0};
     verdict why;
@@ -4880,27 +4832,14 @@ INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, momentum_out);
     }
+    return code;
 }
 
-INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
-    int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], momentum[NV*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    M_run_lanes(m, X, M, &why);
-    product(NV, NV, 1, LANES, M, V, momentum);
-    add_up(NV, momentum, why.total);
-    suspect(&why, code);
-    deliver(NV, momentum, momentum_out);
-}
-
-INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
+int tripod_3rps_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5};
     real q[NJ] = {0}, margins[NJ] = {0};
@@ -4913,28 +4852,14 @@ INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_ou
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, margins_out);
     }
+    return code;
 }
 
-INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
-{
-    static const size_t places_margins[] = {0, 1, 2, 3, 4, 5};
-    real X_in[NQ*LANES], q[NJ*LANES], margins[NJ*LANES];
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < NJ*LANES; ++i) {
-        margins[i] = q[i];
-    }
-    unlimited(NJ, NJ, LANES, places_margins, margins, why.invalid);
-    suspect(&why, code);
-    deliver(NJ, margins, margins_out);
-}
-
-INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
+int tripod_3rps_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
     verdict why;
@@ -4947,28 +4872,14 @@ INLINE void within_limits_one(const prepared *m, const real *X, real *within_out
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, within_out);
     }
+    return code;
 }
 
-INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
-{
-    real X_in[NQ*LANES], q[NJ*LANES], subtract_1[NJ*LANES], within[LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < NJ*LANES; ++i) {
-        subtract_1[i] = q[i] - q[i];
-    }
-    not_negative(NJ, LANES, subtract_1, within, why.invalid);
-    add_up(1, within, why.total);
-    suspect(&why, code);
-    deliver(1, within, within_out);
-}
-
-INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
+int tripod_3rps_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
     verdict why;
@@ -4978,26 +4889,14 @@ INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out
     take(NU, 1, tripod_3rps_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, q_out);
     }
+    return code;
 }
 
-INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
-{
-    real X_in[NQ*LANES], q_of_inverse_kinematics[NJ*LANES], q[NU*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
-    take(NU, LANES, tripod_3rps_ACTUATED, q_of_inverse_kinematics, q);
-    add_up(NU, q, why.total);
-    suspect(&why, code);
-    deliver(NU, q, q_out);
-}
-
-INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
-    *code)
+int tripod_3rps_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
     verdict why;
@@ -5011,28 +4910,15 @@ INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, 
     take(NU, 1, tripod_3rps_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, qd_out);
     }
+    return code;
 }
 
-INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
-    int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], qd_of_joint_rates[NJ*LANES], qd[NU*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
-    take(NU, LANES, tripod_3rps_ACTUATED, qd_of_joint_rates, qd);
-    add_up(NU, qd, why.total);
-    suspect(&why, code);
-    deliver(NU, qd, qd_out);
-}
-
-INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out, int *code)
+int tripod_3rps_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
     verdict why;
@@ -5047,30 +4933,15 @@ INLINE void actuator_accelerations_one(const prepared *m, const real *X, const r
     take(NU, 1, tripod_3rps_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, qdd_out);
     }
+    return code;
 }
 
-INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *qdd_out, int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd_of_joint_accelerations[NJ*LANES],
-        qdd[NU*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    A = side_by_side(NV, A, A_in, why.total);
-    joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
-    take(NU, LANES, tripod_3rps_ACTUATED, qdd_of_joint_accelerations, qdd);
-    add_up(NU, qdd, why.total);
-    suspect(&why, code);
-    deliver(NU, qdd, qdd_out);
-}
-
-INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out, int *code)
+int tripod_3rps_power(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out)
 {
     real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
     verdict why;
@@ -5086,30 +4957,14 @@ INLINE void power_one(const prepared *m, const real *X, const real *V, const rea
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, power_out);
     }
+    return code;
 }
 
-INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out, int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0},
-        power[LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    tau = side_by_side(NU, tau, tau_in, why.total);
-    H_run_lanes(m, X, H, &why);
-    product(NV, NU, 1, LANES, H, tau, times_1);
-    inner(NV, LANES, times_1, V, power);
-    add_up(1, power, why.total);
-    suspect(&why, code);
-    deliver(1, power, power_out);
-}
-
-INLINE void rotation_one(const real *X, real *R_out, int *code)
+int tripod_3rps_rotation(const real *X, real *R_out)
 {
     real R[9] = {0};
     verdict why;
@@ -5119,12 +4974,14 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     copy(9, R, R_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(9, R_out);
     }
+    return code;
 }
 
-INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
+int tripod_3rps_pose(const real *t, const real *R, real *X_out)
 {
     real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0};
     verdict why;
@@ -5139,12 +4996,14 @@ INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
-INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
+int tripod_3rps_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     real quaternion_rate_1[4] = {0}, X_dot[NQ] = {0};
     verdict why;
@@ -5161,12 +5020,14 @@ INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
     beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_dot_out);
     }
+    return code;
 }
 
-INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *code)
+int tripod_3rps_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
     real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0};
     verdict why;
@@ -5181,12 +5042,14 @@ INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
-INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
+int tripod_3rps_retract(const real *X, const real *step, real *X_moved_out)
 {
     real turn_quaternion_1[4] = {0}, add_1[3] = {0}, X_moved[NQ] = {0};
     verdict why;
@@ -5207,12 +5070,14 @@ INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int 
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_moved_out);
     }
+    return code;
 }
 
-INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
+int tripod_3rps_difference(const real *X0, const real *X1, real *step_out)
 {
     real turn_between_1[3] = {0}, subtract_1[3] = {0}, step[NV] = {0};
     verdict why;
@@ -5233,12 +5098,14 @@ INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, step_out);
     }
+    return code;
 }
 
-INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
+int tripod_3rps_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     real turn_between_1[3] = {0}, subtract_1[3] = {0}, join_1[6] = {0}, scale_1[6] = {0},
         turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
@@ -5273,848 +5140,237 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
 /* ---- one state, and batches ---- */
 
-int tripod_3rps_M(const prepared *model, const real *X, real *M)
+size_t tripod_3rps_M_batch(const prepared *m, size_t n, const real *X, real *M, int *status)
 {
-    int code;
-    M_one(model, X, M, &code);
-    return code;
+    SIDE_BY_SIDE(M_lanes(m, X + NQ*i, M + NV*NV*i, codes), tripod_3rps_M(m, X + NQ*j, M + NV*NV*j));
 }
 
-size_t tripod_3rps_M_batch(const prepared *model, size_t n, const real *X, real *M, int *status)
+size_t tripod_3rps_Z_batch(const prepared *m, size_t n, const real *X, const real *V, real *Z, int
+    *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3rps_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(Z_lanes(m, X + NQ*i, V + NV*i, Z + NV*i, codes), tripod_3rps_Z(m, X + NQ*j, V + NV*j,
+        Z + NV*j));
 }
 
-int tripod_3rps_Z(const prepared *model, const real *X, const real *V, real *Z)
+size_t tripod_3rps_H_batch(const prepared *m, size_t n, const real *X, real *H, int *status)
 {
-    int code;
-    Z_one(model, X, V, Z, &code);
-    return code;
+    SIDE_BY_SIDE(H_lanes(m, X + NQ*i, H + NV*NU*i, codes), tripod_3rps_H(m, X + NQ*j, H + NV*NU*j));
 }
 
-size_t tripod_3rps_Z_batch(const prepared *model, size_t n, const real *X, const real *V, real *Z,
+size_t tripod_3rps_Hk_batch(const prepared *m, size_t n, const real *X, real *Hk, int *status)
+{
+    SIDE_BY_SIDE(Hk_lanes(m, X + NQ*i, Hk + NV*NC*i, codes), tripod_3rps_Hk(m, X + NQ*j, Hk +
+        NV*NC*j));
+}
+
+size_t tripod_3rps_constraints_batch(const prepared *m, size_t n, const real *X, real *residual,
     int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3rps_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(constraints_lanes(m, X + NQ*i, residual + NC*i, codes), tripod_3rps_constraints(m, X
+        + NQ*j, residual + NC*j));
 }
 
-int tripod_3rps_H(const prepared *model, const real *X, real *H)
+size_t tripod_3rps_constraint_bias_batch(const prepared *m, size_t n, const real *X, const real
+    *V, real *bias, int *status)
 {
-    int code;
-    H_one(model, X, H, &code);
-    return code;
+    SIDE_BY_SIDE(constraint_bias_lanes(m, X + NQ*i, V + NV*i, bias + NC*i, codes),
+        tripod_3rps_constraint_bias(m, X + NQ*j, V + NV*j, bias + NC*j));
 }
 
-size_t tripod_3rps_H_batch(const prepared *model, size_t n, const real *X, real *H, int *status)
+size_t tripod_3rps_inverse_kinematics_batch(const prepared *m, size_t n, const real *X, real *q,
+    int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3rps_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(inverse_kinematics_lanes(m, X + NQ*i, q + NJ*i, codes),
+        tripod_3rps_inverse_kinematics(m, X + NQ*j, q + NJ*j));
 }
 
-int tripod_3rps_Hk(const prepared *model, const real *X, real *Hk)
+size_t tripod_3rps_joint_rates_batch(const prepared *m, size_t n, const real *X, const real *V,
+    real *rates, int *status)
 {
-    int code;
-    Hk_one(model, X, Hk, &code);
-    return code;
+    SIDE_BY_SIDE(joint_rates_lanes(m, X + NQ*i, V + NV*i, rates + NJ*i, codes),
+        tripod_3rps_joint_rates(m, X + NQ*j, V + NV*j, rates + NJ*j));
 }
 
-size_t tripod_3rps_Hk_batch(const prepared *model, size_t n, const real *X, real *Hk, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            Hk_lanes(model, X + NQ*i, Hk + NV*NC*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3rps_Hk(model, X + NQ*(i + k), Hk + NV*NC*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3rps_constraints(const prepared *model, const real *X, real *residual)
-{
-    int code;
-    constraints_one(model, X, residual, &code);
-    return code;
-}
-
-size_t tripod_3rps_constraints_batch(const prepared *model, size_t n, const real *X, real
-    *residual, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            constraints_lanes(model, X + NQ*i, residual + NC*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3rps_constraints(model, X + NQ*(i + k), residual + NC*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3rps_constraint_bias(const prepared *model, const real *X, const real *V, real *bias)
-{
-    int code;
-    constraint_bias_one(model, X, V, bias, &code);
-    return code;
-}
-
-size_t tripod_3rps_constraint_bias_batch(const prepared *model, size_t n, const real *X, const
-    real *V, real *bias, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            constraint_bias_lanes(model, X + NQ*i, V + NV*i, bias + NC*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3rps_constraint_bias(model, X + NQ*(i + k), V + NV*(i + k), bias + NC*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3rps_inverse_kinematics(const prepared *model, const real *X, real *q)
-{
-    int code;
-    inverse_kinematics_one(model, X, q, &code);
-    return code;
-}
-
-size_t tripod_3rps_inverse_kinematics_batch(const prepared *model, size_t n, const real *X, real
-    *q, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3rps_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3rps_joint_rates(const prepared *model, const real *X, const real *V, real *rates)
-{
-    int code;
-    joint_rates_one(model, X, V, rates, &code);
-    return code;
-}
-
-size_t tripod_3rps_joint_rates_batch(const prepared *model, size_t n, const real *X, const real
-    *V, real *rates, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3rps_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3rps_joint_accelerations(const prepared *model, const real *X, const real *V, const
-    real *A, real *accelerations)
-{
-    int code;
-    joint_accelerations_one(model, X, V, A, accelerations, &code);
-    return code;
-}
-
-size_t tripod_3rps_joint_accelerations_batch(const prepared *model, size_t n, const real *X, const
+size_t tripod_3rps_joint_accelerations_batch(const prepared *m, size_t n, const real *X, const
     real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3rps_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
-                    accelerations + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(joint_accelerations_lanes(m, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i,
+        codes), tripod_3rps_joint_accelerations(m, X + NQ*j, V + NV*j, A + NV*j, accelerations +
+        NJ*j));
 }
 
-int tripod_3rps_dynamics(const prepared *model, const real *X, const real *V, real *M, real *Z,
-    real *H)
+size_t tripod_3rps_dynamics_batch(const prepared *m, size_t n, const real *X, const real *V, real
+    *M, real *Z, real *H, int *status)
 {
-    int code;
-    dynamics_one(model, X, V, M, Z, H, &code);
-    return code;
+    SIDE_BY_SIDE(dynamics_lanes(m, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes),
+        tripod_3rps_dynamics(m, X + NQ*j, V + NV*j, M + NV*NV*j, Z + NV*j, H + NV*NU*j));
 }
 
-size_t tripod_3rps_dynamics_batch(const prepared *model, size_t n, const real *X, const real *V,
-    real *M, real *Z, real *H, int *status)
+size_t tripod_3rps_inverse_dynamics_batch(const prepared *m, size_t n, const real *X, const real
+    *V, const real *A, const real *wrench, real *tau, real *lambda, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3rps_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z +
-                    NV*(i + k), H + NV*NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(inverse_dynamics_lanes(m, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i :
+        NULL, tau + NU*i, lambda + NC*i, codes), tripod_3rps_inverse_dynamics(m, X + NQ*j, V + NV*j, A
+        + NV*j, wrench ? wrench + NW*j : NULL, tau + NU*j, lambda + NC*j));
 }
 
-int tripod_3rps_inverse_dynamics(const prepared *model, const real *X, const real *V, const real
-    *A, const real *wrench, real *tau, real *lambda)
+size_t tripod_3rps_forward_dynamics_batch(const prepared *m, size_t n, const real *X, const real
+    *V, const real *tau, const real *wrench, real *A, real *lambda, int *status)
 {
-    int code;
-    inverse_dynamics_one(model, X, V, A, wrench, tau, lambda, &code);
-    return code;
+    SIDE_BY_SIDE(forward_dynamics_lanes(m, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i :
+        NULL, A + NV*i, lambda + NC*i, codes), tripod_3rps_forward_dynamics(m, X + NQ*j, V + NV*j, tau
+        + NU*j, wrench ? wrench + NW*j : NULL, A + NV*j, lambda + NC*j));
 }
 
-size_t tripod_3rps_inverse_dynamics_batch(const prepared *model, size_t n, const real *X, const
-    real *V, const real *A, const real *wrench, real *tau, real *lambda, int *status)
+size_t tripod_3rps_complete_acceleration_batch(const prepared *m, size_t n, const real *X, const
+    real *V, const real *A, const real *wrench, real *completed, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
-                NU*i, lambda + NC*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3rps_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
-                    wrench ? wrench + NW*(i + k) : NULL, tau + NU*(i + k), lambda + NC*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(tripod_3rps_complete_acceleration(m, X + NQ*j, V + NV*j, A + NV*j, wrench ? wrench +
+        NW*j : NULL, completed + NV*j));
 }
 
-int tripod_3rps_forward_dynamics(const prepared *model, const real *X, const real *V, const real
-    *tau, const real *wrench, real *A, real *lambda)
+size_t tripod_3rps_leg_reactions_batch(const prepared *m, size_t n, const real *X, const real *V,
+    const real *A, const real *wrench, real *forces, int *status)
 {
-    int code;
-    forward_dynamics_one(model, X, V, tau, wrench, A, lambda, &code);
-    return code;
+    ONE_BY_ONE(tripod_3rps_leg_reactions(m, X + NQ*j, V + NV*j, A + NV*j, wrench ? wrench + NW*j :
+        NULL, forces + 9*j));
 }
 
-size_t tripod_3rps_forward_dynamics_batch(const prepared *model, size_t n, const real *X, const
-    real *V, const real *tau, const real *wrench, real *A, real *lambda, int *status)
+size_t tripod_3rps_energy_batch(const prepared *m, size_t n, const real *X, const real *V, real
+    *kinetic, real *potential, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
-                NV*i, lambda + NC*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3rps_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k),
-                    wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k), lambda + NC*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(tripod_3rps_energy(m, X + NQ*j, V + NV*j, kinetic + j, potential + j));
 }
 
-int tripod_3rps_complete_acceleration(const prepared *model, const real *X, const real *V, const
-    real *A, const real *wrench, real *completed)
+size_t tripod_3rps_condition_batch(const prepared *m, size_t n, const real *X, real *sigma, real
+    *legs, int *status)
 {
-    int code;
-    (void)model, (void)X, (void)V, (void)wrench;
-    complete_acceleration_one(A, completed, &code);
-    return code;
+    ONE_BY_ONE(tripod_3rps_condition(m, X + NQ*j, sigma + 3*j, legs + 3*j));
 }
 
-size_t tripod_3rps_complete_acceleration_batch(const prepared *model, size_t n, const real *X,
-    const real *V, const real *A, const real *wrench, real *completed, int *status)
+size_t tripod_3rps_condition_constrained_batch(const prepared *m, size_t n, const real *X, real
+    *sigma, real *legs, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3rps_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
-            wrench + NW*i : NULL, completed + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(tripod_3rps_condition_constrained(m, X + NQ*j, sigma + 6*j, legs + 3*j));
 }
 
-int tripod_3rps_leg_reactions(const prepared *model, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces)
+size_t tripod_3rps_manipulability_batch(const prepared *m, size_t n, const real *X, real *measure,
+    real *isotropy, int *status)
 {
-    int code;
-    leg_reactions_one(model, X, V, A, wrench, forces, &code);
-    return code;
+    ONE_BY_ONE(tripod_3rps_manipulability(m, X + NQ*j, measure + j, isotropy + j));
 }
 
-size_t tripod_3rps_leg_reactions_batch(const prepared *model, size_t n, const real *X, const real
-    *V, const real *A, const real *wrench, real *forces, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3rps_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench +
-            NW*i : NULL, forces + 9*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3rps_energy(const prepared *model, const real *X, const real *V, real *kinetic, real
-    *potential)
-{
-    int code;
-    energy_one(model, X, V, kinetic, potential, &code);
-    return code;
-}
-
-size_t tripod_3rps_energy_batch(const prepared *model, size_t n, const real *X, const real *V,
-    real *kinetic, real *potential, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3rps_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3rps_condition(const prepared *model, const real *X, real *sigma, real *legs)
-{
-    int code;
-    condition_one(model, X, NULL, sigma, legs, &code);
-    return code;
-}
-
-size_t tripod_3rps_condition_batch(const prepared *model, size_t n, const real *X, real *sigma,
-    real *legs, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3rps_condition(model, X + NQ*i, sigma + 3*i, legs + 3*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3rps_condition_constrained(const prepared *model, const real *X, real *sigma, real
-    *legs)
-{
-    int code;
-    condition_constrained_one(model, X, NULL, sigma, legs, &code);
-    return code;
-}
-
-size_t tripod_3rps_condition_constrained_batch(const prepared *model, size_t n, const real *X,
-    real *sigma, real *legs, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3rps_condition_constrained(model, X + NQ*i, sigma + 6*i, legs + 3*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3rps_manipulability(const prepared *model, const real *X, real *measure, real
-    *isotropy)
-{
-    int code;
-    manipulability_one(model, X, measure, isotropy, &code);
-    return code;
-}
-
-size_t tripod_3rps_manipulability_batch(const prepared *model, size_t n, const real *X, real
-    *measure, real *isotropy, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3rps_manipulability(model, X + NQ*i, measure + i, isotropy + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3rps_singularity_distance(const prepared *model, const real *X, real *actuators, real
-    *legs)
-{
-    int code;
-    singularity_distance_one(model, X, actuators, legs, &code);
-    return code;
-}
-
-size_t tripod_3rps_singularity_distance_batch(const prepared *model, size_t n, const real *X, real
+size_t tripod_3rps_singularity_distance_batch(const prepared *m, size_t n, const real *X, real
     *actuators, real *legs, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3rps_singularity_distance(model, X + NQ*i, actuators + i, legs + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(tripod_3rps_singularity_distance(m, X + NQ*j, actuators + j, legs + j));
 }
 
-int tripod_3rps_forward_kinematics(const prepared *model, const real *q_actuated, const real *X0,
-    real *X)
+size_t tripod_3rps_forward_kinematics_batch(const prepared *m, size_t n, const real *q_actuated,
+    const real *X0, real *X, int *status)
 {
-    int code;
-    forward_kinematics_one(model, q_actuated, X0, X, &code);
-    return code;
+    ONE_BY_ONE(tripod_3rps_forward_kinematics(m, q_actuated + NU*j, X0 + NQ*j, X + NQ*j));
 }
 
-size_t tripod_3rps_forward_kinematics_batch(const prepared *model, size_t n, const real
-    *q_actuated, const real *X0, real *X, int *status)
+size_t tripod_3rps_project_batch(const prepared *m, size_t n, const real *X, real *projected, int
+    *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3rps_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(tripod_3rps_project(m, X + NQ*j, projected + NQ*j));
 }
 
-int tripod_3rps_project(const prepared *model, const real *X, real *projected)
+size_t tripod_3rps_dissipation_batch(const prepared *m, size_t n, const real *X, const real *V,
+    real *dissipation, int *status)
 {
-    int code;
-    project_one(model, X, projected, &code);
-    return code;
+    ONE_BY_ONE(tripod_3rps_dissipation(m, X + NQ*j, V + NV*j, dissipation + j));
 }
 
-size_t tripod_3rps_project_batch(const prepared *model, size_t n, const real *X, real *projected,
+size_t tripod_3rps_momentum_batch(const prepared *m, size_t n, const real *X, const real *V, real
+    *momentum, int *status)
+{
+    ONE_BY_ONE(tripod_3rps_momentum(m, X + NQ*j, V + NV*j, momentum + NV*j));
+}
+
+size_t tripod_3rps_joint_margins_batch(const prepared *m, size_t n, const real *X, real *margins,
     int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3rps_project(model, X + NQ*i, projected + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(tripod_3rps_joint_margins(m, X + NQ*j, margins + NJ*j));
 }
 
-int tripod_3rps_dissipation(const prepared *model, const real *X, const real *V, real
-    *dissipation)
+size_t tripod_3rps_within_limits_batch(const prepared *m, size_t n, const real *X, real *within,
+    int *status)
 {
-    int code;
-    (void)model, (void)X;
-    dissipation_one(V, dissipation, &code);
-    return code;
+    ONE_BY_ONE(tripod_3rps_within_limits(m, X + NQ*j, within + j));
 }
 
-size_t tripod_3rps_dissipation_batch(const prepared *model, size_t n, const real *X, const real
-    *V, real *dissipation, int *status)
+size_t tripod_3rps_actuator_positions_batch(const prepared *m, size_t n, const real *X, real *q,
+    int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3rps_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(tripod_3rps_actuator_positions(m, X + NQ*j, q + NU*j));
 }
 
-int tripod_3rps_momentum(const prepared *model, const real *X, const real *V, real *momentum)
+size_t tripod_3rps_actuator_rates_batch(const prepared *m, size_t n, const real *X, const real *V,
+    real *rates, int *status)
 {
-    int code;
-    momentum_one(model, X, V, momentum, &code);
-    return code;
+    ONE_BY_ONE(tripod_3rps_actuator_rates(m, X + NQ*j, V + NV*j, rates + NU*j));
 }
 
-size_t tripod_3rps_momentum_batch(const prepared *model, size_t n, const real *X, const real *V,
-    real *momentum, int *status)
+size_t tripod_3rps_actuator_accelerations_batch(const prepared *m, size_t n, const real *X, const
+    real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3rps_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(tripod_3rps_actuator_accelerations(m, X + NQ*j, V + NV*j, A + NV*j, accelerations +
+        NU*j));
 }
 
-int tripod_3rps_joint_margins(const prepared *model, const real *X, real *margins)
+size_t tripod_3rps_power_batch(const prepared *m, size_t n, const real *X, const real *V, const
+    real *tau, real *power, int *status)
 {
-    int code;
-    joint_margins_one(model, X, margins, &code);
-    return code;
-}
-
-size_t tripod_3rps_joint_margins_batch(const prepared *model, size_t n, const real *X, real
-    *margins, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3rps_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3rps_within_limits(const prepared *model, const real *X, real *within)
-{
-    int code;
-    within_limits_one(model, X, within, &code);
-    return code;
-}
-
-size_t tripod_3rps_within_limits_batch(const prepared *model, size_t n, const real *X, real
-    *within, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            within_limits_lanes(model, X + NQ*i, within + i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3rps_within_limits(model, X + NQ*(i + k), within + (i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3rps_actuator_positions(const prepared *model, const real *X, real *q)
-{
-    int code;
-    actuator_positions_one(model, X, q, &code);
-    return code;
-}
-
-size_t tripod_3rps_actuator_positions_batch(const prepared *model, size_t n, const real *X, real
-    *q, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3rps_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3rps_actuator_rates(const prepared *model, const real *X, const real *V, real *rates)
-{
-    int code;
-    actuator_rates_one(model, X, V, rates, &code);
-    return code;
-}
-
-size_t tripod_3rps_actuator_rates_batch(const prepared *model, size_t n, const real *X, const real
-    *V, real *rates, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3rps_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3rps_actuator_accelerations(const prepared *model, const real *X, const real *V, const
-    real *A, real *accelerations)
-{
-    int code;
-    actuator_accelerations_one(model, X, V, A, accelerations, &code);
-    return code;
-}
-
-size_t tripod_3rps_actuator_accelerations_batch(const prepared *model, size_t n, const real *X,
-    const real *V, const real *A, real *accelerations, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3rps_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
-                    k), accelerations + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3rps_power(const prepared *model, const real *X, const real *V, const real *tau, real
-    *power)
-{
-    int code;
-    power_one(model, X, V, tau, power, &code);
-    return code;
-}
-
-size_t tripod_3rps_power_batch(const prepared *model, size_t n, const real *X, const real *V,
-    const real *tau, real *power, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3rps_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power + (i +
-                    k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3rps_rotation(const real *X, real *R)
-{
-    int code;
-    rotation_one(X, R, &code);
-    return code;
+    ONE_BY_ONE(tripod_3rps_power(m, X + NQ*j, V + NV*j, tau + NU*j, power + j));
 }
 
 size_t tripod_3rps_rotation_batch(size_t n, const real *X, real *R, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3rps_rotation(X + NQ*i, R + 9*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3rps_pose(const real *t, const real *R, real *X)
-{
-    int code;
-    pose_one(t, R, X, &code);
-    return code;
+    ONE_BY_ONE(tripod_3rps_rotation(X + NQ*j, R + 9*j));
 }
 
 size_t tripod_3rps_pose_batch(size_t n, const real *t, const real *R, real *X, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3rps_pose(t + 3*i, R + 9*i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3rps_X_dot(const real *X, const real *V, real *X_dot)
-{
-    int code;
-    X_dot_one(X, V, X_dot, &code);
-    return code;
+    ONE_BY_ONE(tripod_3rps_pose(t + 3*j, R + 9*j, X + NQ*j));
 }
 
 size_t tripod_3rps_X_dot_batch(size_t n, const real *X, const real *V, real *X_dot, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3rps_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3rps_pose_from_rpy(const real *t, const real *rpy, real *X)
-{
-    int code;
-    pose_from_rpy_one(t, rpy, X, &code);
-    return code;
+    ONE_BY_ONE(tripod_3rps_X_dot(X + NQ*j, V + NV*j, X_dot + NQ*j));
 }
 
 size_t tripod_3rps_pose_from_rpy_batch(size_t n, const real *t, const real *rpy, real *X, int
     *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3rps_pose_from_rpy(t + 3*i, rpy + 3*i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3rps_retract(const real *X, const real *step, real *X_moved)
-{
-    int code;
-    retract_one(X, step, X_moved, &code);
-    return code;
+    ONE_BY_ONE(tripod_3rps_pose_from_rpy(t + 3*j, rpy + 3*j, X + NQ*j));
 }
 
 size_t tripod_3rps_retract_batch(size_t n, const real *X, const real *step, real *X_moved, int
     *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3rps_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3rps_difference(const real *X0, const real *X1, real *step)
-{
-    int code;
-    difference_one(X0, X1, step, &code);
-    return code;
+    ONE_BY_ONE(tripod_3rps_retract(X + NQ*j, step + NV*j, X_moved + NQ*j));
 }
 
 size_t tripod_3rps_difference_batch(size_t n, const real *X0, const real *X1, real *step, int
     *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3rps_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3rps_interpolate(const real *X0, const real *X1, const real *s, real *X)
-{
-    int code;
-    interpolate_one(X0, X1, s, X, &code);
-    return code;
+    ONE_BY_ONE(tripod_3rps_difference(X0 + NQ*j, X1 + NQ*j, step + NV*j));
 }
 
 size_t tripod_3rps_interpolate_batch(size_t n, const real *X0, const real *X1, const real *s, real
     *X, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3rps_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(tripod_3rps_interpolate(X0 + NQ*j, X1 + NQ*j, s + j, X + NQ*j));
 }

@@ -188,13 +188,27 @@ INLINE int sum_is_finite(const real *x, size_t n)
     return is_finite(total(sum, LANES));
 }
 
+/* How many of some numbers are not finite. */
+APART real not_finite(size_t n, const real *x)
+{
+    real count = 0;
+    if (!sum_is_finite(x, n)) {
+        for (size_t i = 0; i < n; ++i) {
+            count += UNLESS(is_finite(x[i]));
+        }
+    }
+    return count;
+}
+
 /* Flag the states with entries that are not finite; the states stand side by side. */
 INLINE void check(size_t size, size_t w, const real *x, real *flags)
 {
-    if (!sum_is_finite(x, size*w)) {
-        for (size_t i = 0; i < size*w; ++i) {
-            flags[i%w] += UNLESS(is_finite(x[i]));
-        }
+    if (w == 1) {
+        flags[0] += not_finite(size, x);
+        return;
+    }
+    for (size_t i = 0; i < size*w; ++i) {
+        flags[i%w] += UNLESS(is_finite(x[i]));
     }
 }
 
@@ -249,18 +263,17 @@ INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
     }
 }
 
-INLINE int judge(const verdict *t, int *code)
+INLINE int judge(const verdict *t)
 {
-    *code = t->invalid[0] > 0 ? INVALID
+    return t->invalid[0] > 0 ? INVALID
         : t->diverged[0] > 0 ? NOT_CONVERGED
         : t->unreachable[0] > 0 ? UNREACHABLE
         : t->singular[0] > 0 ? SINGULAR
         : t->overflow[0] > 0 ? INVALID : OK;
-    return *code;
 }
 
 /* States side by side that are not OK beyond doubt are INVALID here: they are settled one by one. */
-INLINE void suspect(const verdict *t, int *code)
+APART void suspect(const verdict *t, int *code)
 {
     real flags[LANES];
     for (size_t k = 0; k < LANES; ++k) {
@@ -282,7 +295,7 @@ INLINE void blame(int code, verdict *t)
 }
 
 /* Outputs of an impossible state. */
-INLINE void refuse(size_t size, real *out)
+APART void refuse(size_t size, real *out)
 {
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
@@ -318,6 +331,32 @@ INLINE size_t record(const int *code, size_t w, int *status)
     }
     return failed;
 }
+
+/* Bodies of batches.  lanes: settles the states from number i on, side by side, in codes; one: settles
+   state j, what fails and what is left too. */
+#define SIDE_BY_SIDE(lanes, one) \
+    size_t failed = 0, w; \
+    for (size_t i = 0; i < n; i += w) { \
+        int codes[LANES] = {INVALID}; \
+        w = LANES > 1 && i + LANES <= n ? LANES : 1; \
+        if (w > 1) { \
+            lanes; \
+        } \
+        for (size_t j = i; j < i + w; ++j) { \
+            if (codes[j - i] != OK) { \
+                codes[j - i] = one; \
+            } \
+        } \
+        failed += record(codes, w, status ? status + i : NULL); \
+    } \
+    return failed
+#define ONE_BY_ONE(one) \
+    size_t failed = 0; \
+    for (size_t j = 0; j < n; ++j) { \
+        const int code = one; \
+        failed += record(&code, 1, status ? status + j : NULL); \
+    } \
+    return failed
 
 /* What the reader of specifications allows; floats have less to offer. */
 #define ROUNDED BY_TYPE(1e-5, 1e-06, 1e-06)  /* lengths and products of unit vectors */
@@ -1480,15 +1519,12 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real R_zy = quaternion_wx + quaternion_yz;
     const real R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (h_star) first moment about the platform origin */
-    const real h_star_in_platform_x = m->h_star_in_platform_x;
-    const real h_star_in_platform_y = m->h_star_in_platform_y;
-    const real h_star_in_platform_z = m->h_star_in_platform_z;
-    const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-        R_xz*h_star_in_platform_z;
-    const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-        R_yz*h_star_in_platform_z;
-    const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-        R_zz*h_star_in_platform_z;
+    const real h_star_x = R_xx*m->h_star_in_platform_x + R_xy*m->h_star_in_platform_y +
+        R_xz*m->h_star_in_platform_z;
+    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yy*m->h_star_in_platform_y +
+        R_yz*m->h_star_in_platform_z;
+    const real h_star_z = R_zx*m->h_star_in_platform_x + R_zy*m->h_star_in_platform_y +
+        R_zz*m->h_star_in_platform_z;
     v->quaternion_scale = quaternion_scale;
     v->R_xx = R_xx;
     v->R_xy = R_xy;
@@ -1521,33 +1557,27 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
 INLINE void stage_M_dynamics(const prepared *m, values *v)
 {
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-    const real J_star_t_6 = m->J_star_t_6;
-    const real J_star_t = J_star_in_platform_xy*v->R_xx + J_star_in_platform_yz*v->R_xz -
-        J_star_t_6*v->R_xy;
-    const real J_star_t_2 = J_star_in_platform_xy*v->R_yx + J_star_in_platform_yz*v->R_yz -
-        J_star_t_6*v->R_yy;
-    const real J_star_t_3 = J_star_in_platform_xy*v->R_zx + J_star_in_platform_yz*v->R_zz -
-        J_star_t_6*v->R_zy;
-    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-    const real J_star_t_8 = m->J_star_t_8;
-    const real J_star_t_4 = J_star_t_8*v->R_xz - J_star_in_platform_xz*v->R_xx;
-    const real J_star_t_5 = J_star_t_8*v->R_yz - J_star_in_platform_xz*v->R_yx;
-    const real J_star_t_7 = J_star_t_8*v->R_zz - J_star_in_platform_xz*v->R_zx;
+    const real J_star_t = m->J_star_in_platform_xy*v->R_xx + m->J_star_in_platform_yz*v->R_xz
+        - m->J_star_t_6*v->R_xy;
+    const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
+        m->J_star_in_platform_yz*v->R_yz - m->J_star_t_6*v->R_yy;
+    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx +
+        m->J_star_in_platform_yz*v->R_zz - m->J_star_t_6*v->R_zy;
+    const real J_star_t_4 = m->J_star_t_8*v->R_xz - m->J_star_in_platform_xz*v->R_xx;
+    const real J_star_t_5 = m->J_star_t_8*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
+    const real J_star_t_7 = m->J_star_t_8*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_9 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
-    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-    const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_9;
+    const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_9;
     const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
         J_star_t_5*v->R_xz;
     const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_7*v->R_xz;
     const real J_star_t_10 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
-    const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_10;
+    const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_10;
     const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
         J_star_t_7*v->R_yz;
     const real J_star_t_11 = J_star_t_3*v->R_zy - J_star_t_7*v->R_zz;
-    const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_11;
+    const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_11;
     v->J_star_xx = J_star_xx;
     v->J_star_xy = J_star_xy;
     v->J_star_xz = J_star_xz;
@@ -1565,46 +1595,34 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real omega_x = V[3*w + k];
     const real Z_p_t_5 = v->h_star_x*omega_z - v->h_star_z*omega_x;
     const real Z_p_t_6 = v->h_star_y*omega_x - v->h_star_x*omega_y;
-    const real Z_p_t = m->Z_p_t;
-    const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-    const real Z_p_t_2 = m->Z_p_t_2;
-    const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-    const real Z_p_t_3 = m->Z_p_t_3;
-    const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
+    const real Z_p_x = Z_p_t_6*omega_y - m->Z_p_t - Z_p_t_5*omega_z;
+    const real Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
+    const real Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real gravity_x = m->gravity_x;
-    const real gravity_y = m->gravity_y;
-    const real gravity_z = m->gravity_z;
-    const real g_in_platform_x = v->R_xx*gravity_x + v->R_yx*gravity_y + v->R_zx*gravity_z;
-    const real g_in_platform_y = v->R_xy*gravity_x + v->R_yy*gravity_y + v->R_zy*gravity_z;
-    const real g_in_platform_z = v->R_xz*gravity_x + v->R_yz*gravity_y + v->R_zz*gravity_z;
-    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-    const real Z_q_t = J_star_in_platform_xx*v->omega_in_platform_x +
-        J_star_in_platform_xy*v->omega_in_platform_y +
-        J_star_in_platform_xz*v->omega_in_platform_z;
-    const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-    const real Z_q_t_2 = J_star_in_platform_xy*v->omega_in_platform_x +
-        J_star_in_platform_yy*v->omega_in_platform_y +
-        J_star_in_platform_yz*v->omega_in_platform_z;
-    const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-    const real Z_q_t_3 = J_star_in_platform_xz*v->omega_in_platform_x +
-        J_star_in_platform_yz*v->omega_in_platform_y +
-        J_star_in_platform_zz*v->omega_in_platform_z;
-    const real h_star_in_platform_y = m->h_star_in_platform_y;
-    const real h_star_in_platform_z = m->h_star_in_platform_z;
+    const real g_in_platform_x = v->R_xx*m->gravity_x + v->R_yx*m->gravity_y +
+        v->R_zx*m->gravity_z;
+    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_yy*m->gravity_y +
+        v->R_zy*m->gravity_z;
+    const real g_in_platform_z = v->R_xz*m->gravity_x + v->R_yz*m->gravity_y +
+        v->R_zz*m->gravity_z;
+    const real Z_q_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
+        m->J_star_in_platform_xy*v->omega_in_platform_y +
+        m->J_star_in_platform_xz*v->omega_in_platform_z;
+    const real Z_q_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
+        m->J_star_in_platform_yy*v->omega_in_platform_y +
+        m->J_star_in_platform_yz*v->omega_in_platform_z;
+    const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
+        m->J_star_in_platform_yz*v->omega_in_platform_y +
+        m->J_star_in_platform_zz*v->omega_in_platform_z;
     const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
-        g_in_platform_y*h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
-        g_in_platform_z*h_star_in_platform_y;
-    const real h_star_in_platform_x = m->h_star_in_platform_x;
+        g_in_platform_y*m->h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
+        g_in_platform_z*m->h_star_in_platform_y;
     const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
-        g_in_platform_z*h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
-        g_in_platform_x*h_star_in_platform_z;
+        g_in_platform_z*m->h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
+        g_in_platform_x*m->h_star_in_platform_z;
     const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
-        g_in_platform_x*h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
-        g_in_platform_y*h_star_in_platform_x;
+        g_in_platform_x*m->h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
+        g_in_platform_y*m->h_star_in_platform_x;
     const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
         v->R_xz*Z_q_in_platform_z;
     const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
@@ -1647,50 +1665,34 @@ INLINE void stage_upu_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real upu_platform_point_x = m->upu_platform_point_x[i];
-    const real upu_platform_point_y = m->upu_platform_point_y[i];
-    const real upu_platform_point_z = m->upu_platform_point_z[i];
-    const real upu_q_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
-        R_xz*upu_platform_point_z;
+    const real upu_q_x = R_xx*m->upu_platform_point_x[i] + R_xy*m->upu_platform_point_y[i] +
+        R_xz*m->upu_platform_point_z[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real upu_q_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
-        R_yz*upu_platform_point_z;
+    const real upu_q_y = R_yx*m->upu_platform_point_x[i] + R_yy*m->upu_platform_point_y[i] +
+        R_yz*m->upu_platform_point_z[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
-    const real upu_q_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
-        R_zz*upu_platform_point_z;
+    const real upu_q_z = R_zx*m->upu_platform_point_x[i] + R_zy*m->upu_platform_point_y[i] +
+        R_zz*m->upu_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real upu_base_point_x = m->upu_base_point_x[i];
-    const real upu_S_x = t_x + upu_q_x - upu_base_point_x;
+    const real upu_S_x = t_x + upu_q_x - m->upu_base_point_x[i];
     const real t_y = X[1*w + j];
-    const real upu_base_point_y = m->upu_base_point_y[i];
-    const real upu_S_y = t_y + upu_q_y - upu_base_point_y;
+    const real upu_S_y = t_y + upu_q_y - m->upu_base_point_y[i];
     const real t_z = X[2*w + j];
-    const real upu_base_point_z = m->upu_base_point_z[i];
-    const real upu_S_z = t_z + upu_q_z - upu_base_point_z;
-    const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-    const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-    const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-    const real upu_S_in_turn1_x = upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx +
-        upu_S_z*upu_base_frame_zx;
-    const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-    const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-    const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-    const real upu_S_in_turn1_y = upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy +
-        upu_S_z*upu_base_frame_zy;
-    const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-    const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-    const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-    const real upu_S_in_turn1_z = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
-        upu_S_z*upu_base_frame_zz;
+    const real upu_S_z = t_z + upu_q_z - m->upu_base_point_z[i];
+    const real upu_S_in_turn1_x = upu_S_x*m->upu_base_frame_xx[i] +
+        upu_S_y*m->upu_base_frame_yx[i] + upu_S_z*m->upu_base_frame_zx[i];
+    const real upu_S_in_turn1_y = upu_S_x*m->upu_base_frame_xy[i] +
+        upu_S_y*m->upu_base_frame_yy[i] + upu_S_z*m->upu_base_frame_zy[i];
+    const real upu_S_in_turn1_z = upu_S_x*m->upu_base_frame_xz[i] +
+        upu_S_y*m->upu_base_frame_yz[i] + upu_S_z*m->upu_base_frame_zz[i];
     /* (upu-root_1) amplitude, the length across axis 1, with the sign of the branch */
     const real upu_root_1_t = upu_S_in_turn1_x*upu_S_in_turn1_x +
         upu_S_in_turn1_y*upu_S_in_turn1_y;
-    const real upu_branch_1 = m->upu_branch_1[i];
-    const real upu_root_1 = upu_branch_1*root(upu_root_1_t);
+    const real upu_root_1 = m->upu_branch_1[i]*root(upu_root_1_t);
     /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
     const real inv_upu_root_1 = 1/upu_root_1;
     const real upu_c_1 = inv_upu_root_1*upu_S_in_turn1_x;
@@ -1698,24 +1700,26 @@ INLINE void stage_upu_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real upu_s_1 = inv_upu_root_1*upu_S_in_turn1_y;
     /* (upu-q_3) displacement of joint 3 */
     const real upu_q_3_t = upu_S_in_turn1_z*upu_S_in_turn1_z + upu_root_1_t;
-    const real upu_branch_2 = m->upu_branch_2[i];
-    const real upu_q_3 = upu_branch_2*root(upu_q_3_t);
+    const real upu_q_3 = m->upu_branch_2[i]*root(upu_q_3_t);
     /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
     const real inv_upu_q_3 = 1/upu_q_3;
     const real upu_c_2 = inv_upu_q_3*upu_root_1;
     /* (upu-S_dot) velocity of the connection point */
     const real upu_e_1_in_axes2_x = inv_upu_q_3*upu_S_in_turn1_z;
-    const real axis_z_upu_axes2_x = upu_base_frame_xy*upu_c_1 - upu_base_frame_xx*upu_s_1;
-    const real axis_z_upu_axes2_y = upu_base_frame_yy*upu_c_1 - upu_base_frame_yx*upu_s_1;
-    const real axis_z_upu_axes2_z = upu_base_frame_zy*upu_c_1 - upu_base_frame_zx*upu_s_1;
+    const real axis_z_upu_axes2_x = m->upu_base_frame_xy[i]*upu_c_1 -
+        m->upu_base_frame_xx[i]*upu_s_1;
+    const real axis_z_upu_axes2_y = m->upu_base_frame_yy[i]*upu_c_1 -
+        m->upu_base_frame_yx[i]*upu_s_1;
+    const real axis_z_upu_axes2_z = m->upu_base_frame_zy[i]*upu_c_1 -
+        m->upu_base_frame_zx[i]*upu_s_1;
     const real upu_S_dot_t = upu_c_1*upu_e_1_in_axes2_x;
     const real upu_S_dot_t_2 = upu_e_1_in_axes2_x*upu_s_1;
-    const real axis_y_upu_axes2_x = upu_S_dot_t*upu_base_frame_xx +
-        upu_S_dot_t_2*upu_base_frame_xy - upu_base_frame_xz*upu_c_2;
-    const real axis_y_upu_axes2_y = upu_S_dot_t*upu_base_frame_yx +
-        upu_S_dot_t_2*upu_base_frame_yy - upu_base_frame_yz*upu_c_2;
-    const real axis_y_upu_axes2_z = upu_S_dot_t*upu_base_frame_zx +
-        upu_S_dot_t_2*upu_base_frame_zy - upu_base_frame_zz*upu_c_2;
+    const real axis_y_upu_axes2_x = upu_S_dot_t*m->upu_base_frame_xx[i] +
+        upu_S_dot_t_2*m->upu_base_frame_xy[i] - m->upu_base_frame_xz[i]*upu_c_2;
+    const real axis_y_upu_axes2_y = upu_S_dot_t*m->upu_base_frame_yx[i] +
+        upu_S_dot_t_2*m->upu_base_frame_yy[i] - m->upu_base_frame_yz[i]*upu_c_2;
+    const real axis_y_upu_axes2_z = upu_S_dot_t*m->upu_base_frame_zx[i] +
+        upu_S_dot_t_2*m->upu_base_frame_zy[i] - m->upu_base_frame_zz[i]*upu_c_2;
     const real axis_x_upu_axes2_x = axis_y_upu_axes2_y*axis_z_upu_axes2_z -
         axis_y_upu_axes2_z*axis_z_upu_axes2_y;
     const real axis_x_upu_axes2_y = axis_y_upu_axes2_z*axis_z_upu_axes2_x -
@@ -1723,24 +1727,27 @@ INLINE void stage_upu_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real axis_x_upu_axes2_z = axis_y_upu_axes2_x*axis_z_upu_axes2_y -
         axis_y_upu_axes2_y*axis_z_upu_axes2_x;
     /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
-    const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
-    const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
-    const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
-    const real upu_n_m1_t = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
-        R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
-        upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
-        R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
-        R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-    const real upu_n_m1_t_2 = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
-        R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
-        upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
-        R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
-        R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-    const real upu_n_m1_t_3 = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
-        R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
-        upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
-        R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
-        R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
+    const real upu_n_m1_t =
+        m->upu_platform_joint_axis_platform_x[i]*(R_xx*m->upu_base_frame_xx[i] +
+        R_yx*m->upu_base_frame_yx[i] + R_zx*m->upu_base_frame_zx[i]) +
+        m->upu_platform_joint_axis_platform_y[i]*(R_xy*m->upu_base_frame_xx[i] +
+        R_yy*m->upu_base_frame_yx[i] + R_zy*m->upu_base_frame_zx[i]) +
+        m->upu_platform_joint_axis_platform_z[i]*(R_xz*m->upu_base_frame_xx[i] +
+        R_yz*m->upu_base_frame_yx[i] + R_zz*m->upu_base_frame_zx[i]);
+    const real upu_n_m1_t_2 =
+        m->upu_platform_joint_axis_platform_x[i]*(R_xx*m->upu_base_frame_xy[i] +
+        R_yx*m->upu_base_frame_yy[i] + R_zx*m->upu_base_frame_zy[i]) +
+        m->upu_platform_joint_axis_platform_y[i]*(R_xy*m->upu_base_frame_xy[i] +
+        R_yy*m->upu_base_frame_yy[i] + R_zy*m->upu_base_frame_zy[i]) +
+        m->upu_platform_joint_axis_platform_z[i]*(R_xz*m->upu_base_frame_xy[i] +
+        R_yz*m->upu_base_frame_yy[i] + R_zz*m->upu_base_frame_zy[i]);
+    const real upu_n_m1_t_3 =
+        m->upu_platform_joint_axis_platform_x[i]*(R_xx*m->upu_base_frame_xz[i] +
+        R_yx*m->upu_base_frame_yz[i] + R_zx*m->upu_base_frame_zz[i]) +
+        m->upu_platform_joint_axis_platform_y[i]*(R_xy*m->upu_base_frame_xz[i] +
+        R_yy*m->upu_base_frame_yz[i] + R_zy*m->upu_base_frame_zz[i]) +
+        m->upu_platform_joint_axis_platform_z[i]*(R_xz*m->upu_base_frame_xz[i] +
+        R_yz*m->upu_base_frame_yz[i] + R_zz*m->upu_base_frame_zz[i]);
     const real upu_n_m1_t_4 = upu_c_1*upu_n_m1_t + upu_n_m1_t_2*upu_s_1;
     const real upu_n_m1_in_axes2_y = upu_c_2*upu_n_m1_t_4 + upu_e_1_in_axes2_x*upu_n_m1_t_3;
     const real upu_end_p1_in_axes2_y = upu_e_1_in_axes2_x*upu_n_m1_t_4 - upu_c_2*upu_n_m1_t_3;
@@ -1759,9 +1766,7 @@ INLINE void stage_upu_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (upu-nd_m1) rate of moment direction 1 */
     const real upu_end_p1_in_axes2_z = upu_c_1*upu_n_m1_t_2 - upu_n_m1_t*upu_s_1;
     /* (upu-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real upu_acc_3_t = m->upu_acc_3_t[i];
-    const real upu_acc_3_t_2 = m->upu_acc_3_t_2[i];
-    const real upu_g_in_axes2_z = upu_acc_3_t_2*upu_c_1 - upu_acc_3_t*upu_s_1;
+    const real upu_g_in_axes2_z = m->upu_acc_3_t_2[i]*upu_c_1 - m->upu_acc_3_t[i]*upu_s_1;
     v->upu_q_x = upu_q_x;
     v->upu_q_y = upu_q_y;
     v->upu_q_z = upu_q_z;
@@ -1857,7 +1862,7 @@ INLINE void stage_upu_V_X(size_t w, size_t j, const real *V, values_upu *v)
     const real upu_omega_1_in_axes2_y = -v->upu_c_2*upu_qd_1;
     /* (upu-W_2) centripetal tensor of link 2 */
     const real upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2;
-    /* (upu-nd_m1) rate of moment direction 1 */
+    /* (upu-nd_m1) */
     const real upu_nd_m1_in_axes2_x = v->upu_end_p1_in_axes2_z*upu_omega_in_axes2_x -
         v->upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x -
         v->upu_n_m1_in_axes2_y*upu_omega_in_axes2_z;
@@ -1910,21 +1915,12 @@ INLINE void stage_upu_H_condition(const prepared *m, size_t i, values_upu *v)
     /* (upu-w_3) force part of reciprocal wrench 3 */
     const real upu_w_3_t = v->upu_c_1*v->upu_e_1_in_axes2_x;
     const real upu_w_3_t_2 = v->upu_e_1_in_axes2_x*v->upu_s_1;
-    const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-    const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-    const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-    const real axis_y_upu_axes2_x = upu_base_frame_xx*upu_w_3_t +
-        upu_base_frame_xy*upu_w_3_t_2 - upu_base_frame_xz*v->upu_c_2;
-    const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-    const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-    const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-    const real axis_y_upu_axes2_y = upu_base_frame_yx*upu_w_3_t +
-        upu_base_frame_yy*upu_w_3_t_2 - upu_base_frame_yz*v->upu_c_2;
-    const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-    const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-    const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-    const real axis_y_upu_axes2_z = upu_base_frame_zx*upu_w_3_t +
-        upu_base_frame_zy*upu_w_3_t_2 - upu_base_frame_zz*v->upu_c_2;
+    const real axis_y_upu_axes2_x = m->upu_base_frame_xx[i]*upu_w_3_t +
+        m->upu_base_frame_xy[i]*upu_w_3_t_2 - m->upu_base_frame_xz[i]*v->upu_c_2;
+    const real axis_y_upu_axes2_y = m->upu_base_frame_yx[i]*upu_w_3_t +
+        m->upu_base_frame_yy[i]*upu_w_3_t_2 - m->upu_base_frame_yz[i]*v->upu_c_2;
+    const real axis_y_upu_axes2_z = m->upu_base_frame_zx[i]*upu_w_3_t +
+        m->upu_base_frame_zy[i]*upu_w_3_t_2 - m->upu_base_frame_zz[i]*v->upu_c_2;
     const real upu_w_3_x = axis_y_upu_axes2_y*v->axis_z_upu_axes2_z -
         axis_y_upu_axes2_z*v->axis_z_upu_axes2_y;
     const real upu_w_3_y = axis_y_upu_axes2_z*v->axis_z_upu_axes2_x -
@@ -1970,93 +1966,88 @@ INLINE void stage_upu_M_dynamics(const prepared *m, size_t i, values_upu *v)
     const real upu_d_acc_3_in_axes2_zz = upu_d_alpha_1_t*v->upu_q_3;
     /* (upu-dalpha_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
        about its reference point */
-    const real upu_h_3_in_spec2_y = m->upu_h_3_in_spec2_y[i];
     const real upu_dalpha_phi_3_in_axes2_xy =
-        upu_dalpha_alpha_1_in_axes2_yy*upu_h_3_in_spec2_y;
+        upu_dalpha_alpha_1_in_axes2_yy*m->upu_h_3_in_spec2_y[i];
     /* (upu-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
        about its reference point */
-    const real upu_h_3_in_spec2_z = m->upu_h_3_in_spec2_z[i];
-    const real upu_d_phi_3_in_axes2_xy = v->inv_upu_q_3*upu_h_3_in_spec2_z;
+    const real upu_d_phi_3_in_axes2_xy = v->inv_upu_q_3*m->upu_h_3_in_spec2_z[i];
     /* (upu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
        links' inertia and weight */
-    const real upu_J_group_2_in_axes2_xx = m->upu_J_group_2_in_axes2_xx[i];
-    const real upu_J_group_2_in_axes2_xy = m->upu_J_group_2_in_axes2_xy[i];
-    const real upu_J_group_2_in_axes2_yy = m->upu_J_group_2_in_axes2_yy[i];
-    const real upu_h_3_in_spec2_x = m->upu_h_3_in_spec2_x[i];
-    const real upu_link3_mass = m->upu_link3_mass[i];
     const real upu_dalpha_Gamma_1_in_axes2_x =
-        v->upu_e_1_in_axes2_x*(upu_J_group_2_in_axes2_xx*upu_dalpha_alpha_1_in_axes2_xx -
-        upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_t_2 -
-        upu_dalpha_acc_3_in_axes2_zx*upu_h_3_in_spec2_z) -
-        v->upu_c_2*(upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_in_axes2_xx -
-        upu_J_group_2_in_axes2_yy*upu_dalpha_alpha_1_t_2 -
-        upu_dalpha_acc_3_in_axes2_zx*upu_h_3_in_spec2_x -
-        v->upu_q_3*(upu_dalpha_acc_3_in_axes2_zx*upu_link3_mass +
-        upu_dalpha_alpha_1_t_2*upu_h_3_in_spec2_x -
-        upu_dalpha_alpha_1_in_axes2_xx*upu_h_3_in_spec2_z));
+        v->upu_e_1_in_axes2_x*(m->upu_J_group_2_in_axes2_xx[i]*upu_dalpha_alpha_1_in_axes2_xx
+        - m->upu_J_group_2_in_axes2_xy[i]*upu_dalpha_alpha_1_t_2 -
+        upu_dalpha_acc_3_in_axes2_zx*m->upu_h_3_in_spec2_z[i]) -
+        v->upu_c_2*(m->upu_J_group_2_in_axes2_xy[i]*upu_dalpha_alpha_1_in_axes2_xx -
+        m->upu_J_group_2_in_axes2_yy[i]*upu_dalpha_alpha_1_t_2 -
+        upu_dalpha_acc_3_in_axes2_zx*m->upu_h_3_in_spec2_x[i] -
+        v->upu_q_3*(upu_dalpha_acc_3_in_axes2_zx*m->upu_link3_mass[i] +
+        upu_dalpha_alpha_1_t_2*m->upu_h_3_in_spec2_x[i] -
+        upu_dalpha_alpha_1_in_axes2_xx*m->upu_h_3_in_spec2_z[i]));
     const real upu_dalpha_Gamma_1_in_axes2_y =
-        v->upu_e_1_in_axes2_x*(upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_in_axes2_yy +
-        upu_dalpha_acc_3_t*upu_h_3_in_spec2_z -
-        upu_J_group_2_in_axes2_xx*upu_dalpha_alpha_1_t) -
-        v->upu_c_2*(upu_J_group_2_in_axes2_yy*upu_dalpha_alpha_1_in_axes2_yy +
-        upu_dalpha_acc_3_t*upu_h_3_in_spec2_x - upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_t
-        - v->upu_q_3*(upu_dalpha_alpha_1_t*upu_h_3_in_spec2_z -
-        upu_dalpha_acc_3_t*upu_link3_mass -
-        upu_dalpha_alpha_1_in_axes2_yy*upu_h_3_in_spec2_x));
+        v->upu_e_1_in_axes2_x*(m->upu_J_group_2_in_axes2_xy[i]*upu_dalpha_alpha_1_in_axes2_yy
+        + upu_dalpha_acc_3_t*m->upu_h_3_in_spec2_z[i] -
+        m->upu_J_group_2_in_axes2_xx[i]*upu_dalpha_alpha_1_t) -
+        v->upu_c_2*(m->upu_J_group_2_in_axes2_yy[i]*upu_dalpha_alpha_1_in_axes2_yy +
+        upu_dalpha_acc_3_t*m->upu_h_3_in_spec2_x[i] -
+        m->upu_J_group_2_in_axes2_xy[i]*upu_dalpha_alpha_1_t -
+        v->upu_q_3*(upu_dalpha_alpha_1_t*m->upu_h_3_in_spec2_z[i] -
+        upu_dalpha_acc_3_t*m->upu_link3_mass[i] -
+        upu_dalpha_alpha_1_in_axes2_yy*m->upu_h_3_in_spec2_x[i]));
     /* (upu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
     const real upu_d_Gamma_1_in_axes2_z =
-        v->upu_e_1_in_axes2_x*(upu_J_group_2_in_axes2_xx*upu_d_alpha_1_in_axes2_xz -
-        upu_J_group_2_in_axes2_xy*upu_d_alpha_1_t -
-        upu_d_acc_3_in_axes2_zz*upu_h_3_in_spec2_z) -
-        v->upu_c_2*(upu_J_group_2_in_axes2_xy*upu_d_alpha_1_in_axes2_xz -
-        upu_J_group_2_in_axes2_yy*upu_d_alpha_1_t - upu_d_acc_3_in_axes2_zz*upu_h_3_in_spec2_x
-        - v->upu_q_3*(upu_d_acc_3_in_axes2_zz*upu_link3_mass +
-        upu_d_alpha_1_t*upu_h_3_in_spec2_x - upu_d_alpha_1_in_axes2_xz*upu_h_3_in_spec2_z));
+        v->upu_e_1_in_axes2_x*(m->upu_J_group_2_in_axes2_xx[i]*upu_d_alpha_1_in_axes2_xz -
+        m->upu_J_group_2_in_axes2_xy[i]*upu_d_alpha_1_t -
+        upu_d_acc_3_in_axes2_zz*m->upu_h_3_in_spec2_z[i]) -
+        v->upu_c_2*(m->upu_J_group_2_in_axes2_xy[i]*upu_d_alpha_1_in_axes2_xz -
+        m->upu_J_group_2_in_axes2_yy[i]*upu_d_alpha_1_t -
+        upu_d_acc_3_in_axes2_zz*m->upu_h_3_in_spec2_x[i] -
+        v->upu_q_3*(upu_d_acc_3_in_axes2_zz*m->upu_link3_mass[i] +
+        upu_d_alpha_1_t*m->upu_h_3_in_spec2_x[i] -
+        upu_d_alpha_1_in_axes2_xz*m->upu_h_3_in_spec2_z[i]));
     /* (upu-dalpha_G) coefficient of the acceleration in: force at the connection point that balances
        the leg's inertia and weight along all degrees of freedom */
     const real upu_dalpha_G_in_axes2_zx = upu_dalpha_Gamma_1_in_axes2_x*v->upu_w_1_in_axes2_z;
     const real upu_dalpha_G_in_axes2_zy = upu_dalpha_Gamma_1_in_axes2_y*v->upu_w_1_in_axes2_z;
-    const real upu_J_group_2_in_axes2_xz = m->upu_J_group_2_in_axes2_xz[i];
-    const real upu_J_group_2_in_axes2_yz = m->upu_J_group_2_in_axes2_yz[i];
     const real upu_dalpha_G_in_axes2_yx =
-        v->inv_upu_q_3*(upu_J_group_2_in_axes2_xz*upu_dalpha_alpha_1_in_axes2_xx -
-        upu_J_group_2_in_axes2_yz*upu_dalpha_alpha_1_t_2 -
-        upu_dalpha_alpha_1_in_axes2_xx*upu_h_3_in_spec2_y*v->upu_q_3);
+        v->inv_upu_q_3*(m->upu_J_group_2_in_axes2_xz[i]*upu_dalpha_alpha_1_in_axes2_xx -
+        m->upu_J_group_2_in_axes2_yz[i]*upu_dalpha_alpha_1_t_2 -
+        upu_dalpha_alpha_1_in_axes2_xx*m->upu_h_3_in_spec2_y[i]*v->upu_q_3);
     const real upu_dalpha_G_in_axes2_yy =
-        v->inv_upu_q_3*(upu_J_group_2_in_axes2_yz*upu_dalpha_alpha_1_in_axes2_yy +
-        upu_dalpha_alpha_1_t*upu_h_3_in_spec2_y*v->upu_q_3 -
-        upu_J_group_2_in_axes2_xz*upu_dalpha_alpha_1_t);
+        v->inv_upu_q_3*(m->upu_J_group_2_in_axes2_yz[i]*upu_dalpha_alpha_1_in_axes2_yy +
+        upu_dalpha_alpha_1_t*m->upu_h_3_in_spec2_y[i]*v->upu_q_3 -
+        m->upu_J_group_2_in_axes2_xz[i]*upu_dalpha_alpha_1_t);
     /* (upu-d_G) coefficient of the acceleration in: force at the connection point that balances the
        leg's inertia and weight along all degrees of freedom */
     const real upu_d_G_in_axes2_yz =
-        v->inv_upu_q_3*(upu_J_group_2_in_axes2_xz*upu_d_alpha_1_in_axes2_xz -
-        upu_J_group_2_in_axes2_yz*upu_d_alpha_1_t -
-        upu_d_alpha_1_in_axes2_xz*upu_h_3_in_spec2_y*v->upu_q_3);
+        v->inv_upu_q_3*(m->upu_J_group_2_in_axes2_xz[i]*upu_d_alpha_1_in_axes2_xz -
+        m->upu_J_group_2_in_axes2_yz[i]*upu_d_alpha_1_t -
+        upu_d_alpha_1_in_axes2_xz*m->upu_h_3_in_spec2_y[i]*v->upu_q_3);
     /* (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
        balances the leg's inertia and weight along all degrees of freedom */
     const real upu_dalpha_G_m1_in_axes2_x = -upu_dalpha_Gamma_1_in_axes2_x*upu_m1_w_1_t;
     const real upu_dalpha_G_m1_in_axes2_y = -upu_dalpha_Gamma_1_in_axes2_y*upu_m1_w_1_t;
     /* (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
        the leg's inertia and weight along all degrees of freedom */
-    const real upu_d_G_m1_in_axes2_x = v->upu_c_2*upu_h_3_in_spec2_y*upu_m1_w_1_t;
+    const real upu_d_G_m1_in_axes2_x = v->upu_c_2*m->upu_h_3_in_spec2_y[i]*upu_m1_w_1_t;
     const real upu_d_G_m1_t =
-        upu_m1_w_1_t*(v->upu_e_1_in_axes2_x*(v->inv_upu_q_3*upu_J_group_2_in_axes2_xz -
-        upu_h_3_in_spec2_y) - v->inv_upu_q_3*upu_J_group_2_in_axes2_yz*v->upu_c_2);
+        upu_m1_w_1_t*(v->upu_e_1_in_axes2_x*(v->inv_upu_q_3*m->upu_J_group_2_in_axes2_xz[i] -
+        m->upu_h_3_in_spec2_y[i]) -
+        v->inv_upu_q_3*m->upu_J_group_2_in_axes2_yz[i]*v->upu_c_2);
     const real upu_d_G_m1_t_2 = upu_d_Gamma_1_in_axes2_z*upu_m1_w_1_t;
     /* (upu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
        and without the mass at the connection point */
-    const real upu_dalpha_c_in_axes2_xx = upu_dalpha_alpha_1_t_2*upu_h_3_in_spec2_y;
+    const real upu_dalpha_c_in_axes2_xx = upu_dalpha_alpha_1_t_2*m->upu_h_3_in_spec2_y[i];
     /* (upu-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
        without the mass at the connection point */
-    const real upu_d_c_in_axes2_xz = upu_d_alpha_1_t*upu_h_3_in_spec2_y;
+    const real upu_d_c_in_axes2_xz = upu_d_alpha_1_t*m->upu_h_3_in_spec2_y[i];
     /* (upu-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real upu_J_group_2_in_axes2_zz = m->upu_J_group_2_in_axes2_zz[i];
-    const real upu_Q_t = v->inv_upu_q_3*(upu_h_3_in_spec2_x +
-        v->inv_upu_q_3*upu_J_group_2_in_axes2_zz + v->upu_q_3*(upu_link3_mass +
-        v->inv_upu_q_3*upu_h_3_in_spec2_x)) - upu_link3_mass;
+    const real upu_Q_t = v->inv_upu_q_3*(m->upu_h_3_in_spec2_x[i] +
+        v->inv_upu_q_3*m->upu_J_group_2_in_axes2_zz[i] + v->upu_q_3*(m->upu_link3_mass[i] +
+        v->inv_upu_q_3*m->upu_h_3_in_spec2_x[i])) - m->upu_link3_mass[i];
     const real upu_Q_t_2 = R(0.5)*upu_Q_t;
-    const real upu_Q_t_3 = upu_d_Gamma_1_in_axes2_z*v->upu_w_1_in_axes2_z - upu_link3_mass;
+    const real upu_Q_t_3 = upu_d_Gamma_1_in_axes2_z*v->upu_w_1_in_axes2_z -
+        m->upu_link3_mass[i];
     const real upu_Q_t_4 = R(0.5)*upu_Q_t_3;
     v->upu_dalpha_phi_3_in_axes2_xy = upu_dalpha_phi_3_in_axes2_xy;
     v->upu_d_phi_3_in_axes2_xy = upu_d_phi_3_in_axes2_xy;
@@ -2092,14 +2083,11 @@ INLINE void stage_upu_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
         v->axis_y_upu_axes2_y*upu_u_1_y + v->axis_y_upu_axes2_z*upu_u_1_z - upu_B_2_o_t;
     const real upu_B_2_o_in_axes2_yx = v->inv_upu_q_3*upu_B_2_o_t_2;
     /* (upu-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real upu_acc_3_t = m->upu_acc_3_t[i];
-    const real upu_acc_3_t_2 = m->upu_acc_3_t_2[i];
-    const real upu_acc_3_o_t = upu_acc_3_t*v->upu_c_1 + upu_acc_3_t_2*v->upu_s_1;
-    const real upu_acc_3_t_3 = m->upu_acc_3_t_3[i];
+    const real upu_acc_3_o_t = m->upu_acc_3_t[i]*v->upu_c_1 + m->upu_acc_3_t_2[i]*v->upu_s_1;
     const real upu_g_in_axes2_x = upu_acc_3_o_t*v->upu_c_2 +
-        upu_acc_3_t_3*v->upu_e_1_in_axes2_x;
+        m->upu_acc_3_t_3[i]*v->upu_e_1_in_axes2_x;
     const real upu_g_in_axes2_y = upu_acc_3_o_t*v->upu_e_1_in_axes2_x -
-        upu_acc_3_t_3*v->upu_c_2;
+        m->upu_acc_3_t_3[i]*v->upu_c_2;
     const real upu_acc_3_o_in_axes2_x = v->axis_x_upu_axes2_x*upu_u_1_x +
         v->axis_x_upu_axes2_y*upu_u_1_y + v->axis_x_upu_axes2_z*upu_u_1_z - upu_g_in_axes2_x;
     const real upu_acc_3_o_in_axes2_y = upu_B_2_o_t + upu_B_2_o_t_2 - upu_g_in_axes2_y;
@@ -2153,14 +2141,11 @@ INLINE void stage_upu_legs_required(const prepared *m, size_t i, values_upu *v)
     const real upu_B_2_in_axes2_zx = v->upu_W_2_in_axes2_xz - upu_alpha_2_in_axes2_y;
     const real upu_B_2_in_axes2_zy = upu_W_2_in_axes2_yz + upu_alpha_2_in_axes2_x;
     /* (upu-acc_3) acceleration of the reference point of link 3, less gravity */
-    const real upu_acc_3_t = m->upu_acc_3_t[i];
-    const real upu_acc_3_t_2 = m->upu_acc_3_t_2[i];
-    const real upu_acc_3_t_4 = upu_acc_3_t*v->upu_c_1 + upu_acc_3_t_2*v->upu_s_1;
-    const real upu_acc_3_t_3 = m->upu_acc_3_t_3[i];
-    const real upu_g_in_axes2_x = upu_acc_3_t_3*v->upu_e_1_in_axes2_x +
+    const real upu_acc_3_t_4 = m->upu_acc_3_t[i]*v->upu_c_1 + m->upu_acc_3_t_2[i]*v->upu_s_1;
+    const real upu_g_in_axes2_x = m->upu_acc_3_t_3[i]*v->upu_e_1_in_axes2_x +
         upu_acc_3_t_4*v->upu_c_2;
     const real upu_g_in_axes2_y = upu_acc_3_t_4*v->upu_e_1_in_axes2_x -
-        upu_acc_3_t_3*v->upu_c_2;
+        m->upu_acc_3_t_3[i]*v->upu_c_2;
     const real upu_acc_3_in_axes2_x = v->axis_x_upu_axes2_x*v->upu_S_ddot_x +
         v->axis_x_upu_axes2_y*v->upu_S_ddot_y + v->axis_x_upu_axes2_z*v->upu_S_ddot_z -
         upu_g_in_axes2_x;
@@ -2171,48 +2156,44 @@ INLINE void stage_upu_legs_required(const prepared *m, size_t i, values_upu *v)
     const real upu_f_3_t = v->upu_qd_2*v->upu_qd_2;
     const real upu_f_3_t_2 = v->upu_omega_1_in_axes2_x*v->upu_omega_1_in_axes2_x;
     const real upu_f_3_t_3 = v->upu_omega_1_in_axes2_y*v->upu_omega_1_in_axes2_y;
-    const real upu_h_3_in_spec2_x = m->upu_h_3_in_spec2_x[i];
-    const real upu_h_3_in_spec2_y = m->upu_h_3_in_spec2_y[i];
-    const real upu_h_3_in_spec2_z = m->upu_h_3_in_spec2_z[i];
-    const real upu_link3_mass = m->upu_link3_mass[i];
-    const real upu_f_3_in_axes2_x = upu_acc_3_in_axes2_x*upu_link3_mass +
-        upu_alpha_1_in_axes2_y*upu_h_3_in_spec2_y - upu_B_2_in_axes2_xy*upu_h_3_in_spec2_z -
-        upu_h_3_in_spec2_x*(upu_f_3_t + upu_f_3_t_3);
-    const real upu_f_3_in_axes2_y = upu_B_2_in_axes2_yx*upu_h_3_in_spec2_x +
-        upu_acc_3_in_axes2_y*upu_link3_mass + upu_alpha_1_t*upu_h_3_in_spec2_y +
-        upu_h_3_in_spec2_z*(upu_f_3_t + upu_f_3_t_2);
-    const real upu_f_3_in_axes2_z = upu_B_2_in_axes2_zx*upu_h_3_in_spec2_x +
-        upu_acc_3_in_axes2_z*upu_link3_mass - upu_B_2_in_axes2_zy*upu_h_3_in_spec2_z -
-        upu_h_3_in_spec2_y*(upu_f_3_t_2 + upu_f_3_t_3);
+    const real upu_f_3_in_axes2_x = upu_acc_3_in_axes2_x*m->upu_link3_mass[i] +
+        upu_alpha_1_in_axes2_y*m->upu_h_3_in_spec2_y[i] -
+        upu_B_2_in_axes2_xy*m->upu_h_3_in_spec2_z[i] - m->upu_h_3_in_spec2_x[i]*(upu_f_3_t +
+        upu_f_3_t_3);
+    const real upu_f_3_in_axes2_y = upu_B_2_in_axes2_yx*m->upu_h_3_in_spec2_x[i] +
+        upu_acc_3_in_axes2_y*m->upu_link3_mass[i] + upu_alpha_1_t*m->upu_h_3_in_spec2_y[i] +
+        m->upu_h_3_in_spec2_z[i]*(upu_f_3_t + upu_f_3_t_2);
+    const real upu_f_3_in_axes2_z = upu_B_2_in_axes2_zx*m->upu_h_3_in_spec2_x[i] +
+        upu_acc_3_in_axes2_z*m->upu_link3_mass[i] -
+        upu_B_2_in_axes2_zy*m->upu_h_3_in_spec2_z[i] - m->upu_h_3_in_spec2_y[i]*(upu_f_3_t_2 +
+        upu_f_3_t_3);
     /* (upu-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real upu_J_group_2_in_axes2_xy = m->upu_J_group_2_in_axes2_xy[i];
-    const real upu_J_group_2_in_axes2_xz = m->upu_J_group_2_in_axes2_xz[i];
-    const real upu_J_group_2_in_axes2_yz = m->upu_J_group_2_in_axes2_yz[i];
-    const real upu_Sigma_2_in_axes2_yy = m->upu_Sigma_2_in_axes2_yy[i];
-    const real upu_Sigma_2_in_axes2_zz = m->upu_Sigma_2_in_axes2_zz[i];
-    const real upu_h_2_in_spec2_y = m->upu_h_2_in_spec2_y[i];
-    const real upu_h_2_in_spec2_z = m->upu_h_2_in_spec2_z[i];
-    const real upu_mu_2_in_axes2_x = upu_B_2_in_axes2_yx*upu_J_group_2_in_axes2_xz +
-        upu_B_2_in_axes2_zy*upu_Sigma_2_in_axes2_yy + upu_g_in_axes2_y*upu_h_2_in_spec2_y +
-        v->upu_g_in_axes2_z*upu_h_2_in_spec2_z - upu_B_2_in_axes2_zx*upu_J_group_2_in_axes2_xy
-        - upu_J_group_2_in_axes2_yz*(upu_f_3_t - upu_f_3_t_3) -
-        upu_Sigma_2_in_axes2_zz*upu_alpha_1_t - upu_acc_3_in_axes2_y*upu_h_3_in_spec2_y -
-        upu_acc_3_in_axes2_z*upu_h_3_in_spec2_z;
-    const real upu_Sigma_2_in_axes2_xx = m->upu_Sigma_2_in_axes2_xx[i];
-    const real upu_h_2_in_spec2_x = m->upu_h_2_in_spec2_x[i];
-    const real upu_mu_2_in_axes2_y = upu_B_2_in_axes2_zy*upu_J_group_2_in_axes2_xy +
-        upu_J_group_2_in_axes2_xz*(upu_f_3_t - upu_f_3_t_2) +
-        upu_Sigma_2_in_axes2_zz*upu_alpha_1_in_axes2_y +
-        upu_acc_3_in_axes2_x*upu_h_3_in_spec2_y + v->upu_g_in_axes2_z*upu_h_2_in_spec2_x -
-        upu_B_2_in_axes2_xy*upu_J_group_2_in_axes2_yz -
-        upu_B_2_in_axes2_zx*upu_Sigma_2_in_axes2_xx - upu_acc_3_in_axes2_z*upu_h_3_in_spec2_x
-        - upu_g_in_axes2_x*upu_h_2_in_spec2_y;
-    const real upu_mu_2_in_axes2_z = upu_B_2_in_axes2_yx*upu_Sigma_2_in_axes2_xx +
-        upu_J_group_2_in_axes2_xy*(upu_f_3_t_2 - upu_f_3_t_3) +
-        upu_J_group_2_in_axes2_yz*upu_alpha_1_in_axes2_y +
-        upu_acc_3_in_axes2_x*upu_h_3_in_spec2_z + upu_acc_3_in_axes2_y*upu_h_3_in_spec2_x -
-        upu_B_2_in_axes2_xy*upu_Sigma_2_in_axes2_yy - upu_J_group_2_in_axes2_xz*upu_alpha_1_t
-        - upu_g_in_axes2_x*upu_h_2_in_spec2_z - upu_g_in_axes2_y*upu_h_2_in_spec2_x;
+    const real upu_mu_2_in_axes2_x = upu_B_2_in_axes2_yx*m->upu_J_group_2_in_axes2_xz[i] +
+        upu_B_2_in_axes2_zy*m->upu_Sigma_2_in_axes2_yy[i] +
+        upu_g_in_axes2_y*m->upu_h_2_in_spec2_y[i] +
+        v->upu_g_in_axes2_z*m->upu_h_2_in_spec2_z[i] -
+        upu_B_2_in_axes2_zx*m->upu_J_group_2_in_axes2_xy[i] -
+        m->upu_J_group_2_in_axes2_yz[i]*(upu_f_3_t - upu_f_3_t_3) -
+        m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_t -
+        upu_acc_3_in_axes2_y*m->upu_h_3_in_spec2_y[i] -
+        upu_acc_3_in_axes2_z*m->upu_h_3_in_spec2_z[i];
+    const real upu_mu_2_in_axes2_y = upu_B_2_in_axes2_zy*m->upu_J_group_2_in_axes2_xy[i] +
+        m->upu_J_group_2_in_axes2_xz[i]*(upu_f_3_t - upu_f_3_t_2) +
+        m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_in_axes2_y +
+        upu_acc_3_in_axes2_x*m->upu_h_3_in_spec2_y[i] +
+        v->upu_g_in_axes2_z*m->upu_h_2_in_spec2_x[i] -
+        upu_B_2_in_axes2_xy*m->upu_J_group_2_in_axes2_yz[i] -
+        upu_B_2_in_axes2_zx*m->upu_Sigma_2_in_axes2_xx[i] -
+        upu_acc_3_in_axes2_z*m->upu_h_3_in_spec2_x[i] -
+        upu_g_in_axes2_x*m->upu_h_2_in_spec2_y[i];
+    const real upu_mu_2_in_axes2_z = upu_B_2_in_axes2_yx*m->upu_Sigma_2_in_axes2_xx[i] +
+        m->upu_J_group_2_in_axes2_xy[i]*(upu_f_3_t_2 - upu_f_3_t_3) +
+        m->upu_J_group_2_in_axes2_yz[i]*upu_alpha_1_in_axes2_y +
+        upu_acc_3_in_axes2_x*m->upu_h_3_in_spec2_z[i] +
+        upu_acc_3_in_axes2_y*m->upu_h_3_in_spec2_x[i] -
+        upu_B_2_in_axes2_xy*m->upu_Sigma_2_in_axes2_yy[i] -
+        m->upu_J_group_2_in_axes2_xz[i]*upu_alpha_1_t -
+        upu_g_in_axes2_x*m->upu_h_2_in_spec2_z[i] - upu_g_in_axes2_y*m->upu_h_2_in_spec2_x[i];
     /* (upu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
        left out */
     const real upu_N_2_in_axes2_y = upu_mu_2_in_axes2_y - upu_f_3_in_axes2_z*v->upu_q_3;
@@ -2248,1444 +2229,1405 @@ INLINE void stage_upu_legs_required(const prepared *m, size_t i, values_upu *v)
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s,
-    verdict *t)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        stage_V_X(w, k, V, &v);
-        stage_M_dynamics(m, &v);
-        stage_Z_dynamics(m, w, k, V, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = v.h_star_x;
-        s[10*w + k] = v.h_star_y;
-        s[11*w + k] = v.h_star_z;
-        s[12*w + k] = v.J_star_xx;
-        s[13*w + k] = v.J_star_xy;
-        s[14*w + k] = v.J_star_xz;
-        s[15*w + k] = v.J_star_yy;
-        s[16*w + k] = v.J_star_yz;
-        s[17*w + k] = v.J_star_zz;
-        s[18*w + k] = v.Z_p_x;
-        s[19*w + k] = v.Z_p_y;
-        s[20*w + k] = v.Z_p_z;
-        s[21*w + k] = v.Z_q_x;
-        s[22*w + k] = v.Z_q_y;
-        s[23*w + k] = v.Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    stage_V_X(w, k, V, &v);
+    stage_M_dynamics(m, &v);
+    stage_Z_dynamics(m, w, k, V, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = v.h_star_x;
+    s[10*w + k] = v.h_star_y;
+    s[11*w + k] = v.h_star_z;
+    s[12*w + k] = v.J_star_xx;
+    s[13*w + k] = v.J_star_xy;
+    s[14*w + k] = v.J_star_xz;
+    s[15*w + k] = v.J_star_yy;
+    s[16*w + k] = v.J_star_yz;
+    s[17*w + k] = v.J_star_zz;
+    s[18*w + k] = v.Z_p_x;
+    s[19*w + k] = v.Z_p_y;
+    s[20*w + k] = v.Z_p_z;
+    s[21*w + k] = v.Z_q_x;
+    s[22*w + k] = v.Z_q_y;
+    s[23*w + k] = v.Z_q_z;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void dynamics_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
+INLINE void dynamics_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_upu v;
-        stage_upu_X(m, w, i, j, s, X, &v);
-        stage_upu_V_X(w, j, V, &v);
-        stage_upu_M_dynamics(m, i, &v);
-        stage_upu_Z_dynamics(m, w, i, j, V, &v);
-        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real upu_n_m1_x = v.axis_y_upu_axes2_x*v.upu_n_m1_in_axes2_y -
-            v.axis_x_upu_axes2_x*v.upu_end_p1_in_axes2_y;
-        const real upu_n_m1_y = v.axis_y_upu_axes2_y*v.upu_n_m1_in_axes2_y -
-            v.axis_x_upu_axes2_y*v.upu_end_p1_in_axes2_y;
-        const real upu_n_m1_z = v.axis_y_upu_axes2_z*v.upu_n_m1_in_axes2_y -
-            v.axis_x_upu_axes2_z*v.upu_end_p1_in_axes2_y;
-        /* (upu-eta_1) rate at which the joints turn along moment direction 1 */
-        const real omega_x = V[3*w + j];
-        const real omega_y = V[4*w + j];
-        const real omega_z = V[5*w + j];
-        const real upu_eta_1 = omega_x*upu_n_m1_x + omega_y*upu_n_m1_y + omega_z*upu_n_m1_z;
-        /* (upu-qd_1) rate of joint 1 */
-        const real upu_qd_1 = v.upu_w_1_in_axes2_z*(v.axis_z_upu_axes2_x*v.upu_S_dot_x +
-            v.axis_z_upu_axes2_y*v.upu_S_dot_y + v.axis_z_upu_axes2_z*v.upu_S_dot_z -
-            upu_eta_1*v.upu_n_c_in_axes2_z);
-        /* (upu-omega_1) angular velocity of link 1 */
-        const real upu_omega_1_in_axes2_x = v.upu_e_1_in_axes2_x*upu_qd_1;
-        const real upu_omega_1_in_axes2_y = -v.upu_c_2*upu_qd_1;
-        /* (upu-W_2) centripetal tensor of link 2 */
-        const real upu_W_2_in_axes2_yz = upu_omega_1_in_axes2_y*v.upu_qd_2;
-        const real upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*v.upu_qd_2;
-        const real upu_W_2_in_axes2_xy = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_y;
-        /* (upu-bias) acceleration of the connection point at zero joint accelerations */
-        const real upu_bias_t_2 = v.upu_bias_t*upu_omega_1_in_axes2_y;
-        const real upu_bias_in_axes2_z = 2*upu_W_2_in_axes2_xz*v.upu_q_3 - upu_bias_t_2;
-        /* (upu-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-           */
-        const real upu_rel_o_in_axes2_z = v.axis_z_upu_axes2_x*v.upu_u_1_x +
-            v.axis_z_upu_axes2_y*v.upu_u_1_y + v.axis_z_upu_axes2_z*v.upu_u_1_z -
-            upu_bias_in_axes2_z;
-        /* (upu-nd_m1) rate of moment direction 1 */
-        const real upu_nd_m1_in_axes2_x = v.upu_end_p1_in_axes2_z*v.upu_omega_in_axes2_x -
-            v.upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x -
-            v.upu_n_m1_in_axes2_y*v.upu_omega_in_axes2_z;
-        const real upu_nd_m1_in_axes2_y = v.upu_end_p1_in_axes2_z*v.upu_omega_in_axes2_y -
-            v.upu_end_p1_in_axes2_y*v.upu_omega_in_axes2_z -
-            v.upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y;
-        /* (upu-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real upu_nu_1_t = upu_W_2_in_axes2_xz*v.upu_n_m1_in_axes2_y +
-            upu_W_2_in_axes2_yz*v.upu_end_p1_in_axes2_y;
-        const real upu_nu_1_t_2 = upu_nd_m1_in_axes2_y*(v.upu_omega_in_axes2_y -
-            upu_omega_1_in_axes2_y) - upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x -
-            v.upu_omega_in_axes2_x) - (v.upu_omega_in_axes2_z -
-            v.upu_qd_2)*(-v.upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
-            v.upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x);
-        const real upu_nu_1 = upu_nu_1_t + upu_nu_1_t_2;
-        /* (upu-qdd_1_o) remainder of: acceleration of joint 1 */
-        const real upu_qdd_1_o_t = v.upu_w_1_in_axes2_z*(v.upu_n_c_in_axes2_z*upu_nu_1 -
-            upu_rel_o_in_axes2_z);
-        /* (upu-alpha_1_o) remainder of: angular acceleration of link 1 */
-        const real upu_alpha_1_o_t = v.upu_e_1_in_axes2_x*upu_qdd_1_o_t;
-        const real upu_alpha_1_o_in_axes2_y = v.upu_c_2*upu_qdd_1_o_t;
-        /* (upu-alpha_2_o) remainder of: angular acceleration of link 2 */
-        const real upu_alpha_2_o_in_axes2_x = upu_W_2_in_axes2_yz - upu_alpha_1_o_t;
-        const real upu_alpha_2_o_in_axes2_y = upu_alpha_1_o_in_axes2_y - upu_W_2_in_axes2_xz;
-        /* (upu-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real upu_B_2_o_in_axes2_xy = 2*upu_W_2_in_axes2_xy - v.upu_B_2_o_in_axes2_yx;
-        const real upu_B_2_o_in_axes2_zx = upu_W_2_in_axes2_xz - upu_alpha_2_o_in_axes2_y;
-        const real upu_B_2_o_in_axes2_zy = upu_W_2_in_axes2_yz + upu_alpha_2_o_in_axes2_x;
-        /* (upu-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-        const real upu_acc_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*v.upu_q_3 - upu_bias_t_2 -
-            v.upu_g_in_axes2_z;
-        /* (upu-f_3_o) remainder of: inertia force of link 3 less its weight */
-        const real upu_f_3_o_t = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x;
-        const real upu_f_3_o_t_2 = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y;
-        const real upu_h_3_in_spec2_x = m->upu_h_3_in_spec2_x[i];
-        const real upu_h_3_in_spec2_y = m->upu_h_3_in_spec2_y[i];
-        const real upu_h_3_in_spec2_z = m->upu_h_3_in_spec2_z[i];
-        const real upu_link3_mass = m->upu_link3_mass[i];
-        const real upu_f_3_o_in_axes2_x = v.upu_acc_3_o_in_axes2_x*upu_link3_mass +
-            upu_alpha_1_o_in_axes2_y*upu_h_3_in_spec2_y - upu_B_2_o_in_axes2_xy*upu_h_3_in_spec2_z
-            - upu_h_3_in_spec2_x*(upu_f_3_o_t_2 + v.upu_f_3_o_t_3);
-        const real upu_f_3_o_in_axes2_y = v.upu_B_2_o_in_axes2_yx*upu_h_3_in_spec2_x +
-            v.upu_acc_3_o_in_axes2_y*upu_link3_mass + upu_alpha_1_o_t*upu_h_3_in_spec2_y +
-            upu_h_3_in_spec2_z*(upu_f_3_o_t + v.upu_f_3_o_t_3);
-        const real upu_f_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*upu_h_3_in_spec2_x +
-            upu_acc_3_o_in_axes2_z*upu_link3_mass - upu_B_2_o_in_axes2_zy*upu_h_3_in_spec2_z -
-            upu_h_3_in_spec2_y*(upu_f_3_o_t + upu_f_3_o_t_2);
-        /* (upu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-           reference points */
-        const real upu_J_group_2_in_axes2_xy = m->upu_J_group_2_in_axes2_xy[i];
-        const real upu_J_group_2_in_axes2_xz = m->upu_J_group_2_in_axes2_xz[i];
-        const real upu_J_group_2_in_axes2_yz = m->upu_J_group_2_in_axes2_yz[i];
-        const real upu_Sigma_2_in_axes2_yy = m->upu_Sigma_2_in_axes2_yy[i];
-        const real upu_Sigma_2_in_axes2_zz = m->upu_Sigma_2_in_axes2_zz[i];
-        const real upu_h_2_in_spec2_y = m->upu_h_2_in_spec2_y[i];
-        const real upu_h_2_in_spec2_z = m->upu_h_2_in_spec2_z[i];
-        const real upu_mu_2_o_in_axes2_x = v.upu_B_2_o_in_axes2_yx*upu_J_group_2_in_axes2_xz +
-            upu_B_2_o_in_axes2_zy*upu_Sigma_2_in_axes2_yy +
-            upu_J_group_2_in_axes2_yz*(upu_f_3_o_t_2 - v.upu_f_3_o_t_3) +
-            v.upu_g_in_axes2_y*upu_h_2_in_spec2_y + v.upu_g_in_axes2_z*upu_h_2_in_spec2_z -
-            upu_B_2_o_in_axes2_zx*upu_J_group_2_in_axes2_xy -
-            upu_Sigma_2_in_axes2_zz*upu_alpha_1_o_t - v.upu_acc_3_o_in_axes2_y*upu_h_3_in_spec2_y
-            - upu_acc_3_o_in_axes2_z*upu_h_3_in_spec2_z;
-        const real upu_Sigma_2_in_axes2_xx = m->upu_Sigma_2_in_axes2_xx[i];
-        const real upu_h_2_in_spec2_x = m->upu_h_2_in_spec2_x[i];
-        const real upu_mu_2_o_in_axes2_y = upu_B_2_o_in_axes2_zy*upu_J_group_2_in_axes2_xy +
-            upu_Sigma_2_in_axes2_zz*upu_alpha_1_o_in_axes2_y +
-            v.upu_acc_3_o_in_axes2_x*upu_h_3_in_spec2_y + v.upu_g_in_axes2_z*upu_h_2_in_spec2_x -
-            upu_B_2_o_in_axes2_xy*upu_J_group_2_in_axes2_yz -
-            upu_B_2_o_in_axes2_zx*upu_Sigma_2_in_axes2_xx - upu_J_group_2_in_axes2_xz*(upu_f_3_o_t
-            - v.upu_f_3_o_t_3) - upu_acc_3_o_in_axes2_z*upu_h_3_in_spec2_x -
-            v.upu_g_in_axes2_x*upu_h_2_in_spec2_y;
-        const real upu_mu_2_o_in_axes2_z = v.upu_B_2_o_in_axes2_yx*upu_Sigma_2_in_axes2_xx +
-            upu_J_group_2_in_axes2_xy*(upu_f_3_o_t - upu_f_3_o_t_2) +
-            upu_J_group_2_in_axes2_yz*upu_alpha_1_o_in_axes2_y +
-            v.upu_acc_3_o_in_axes2_x*upu_h_3_in_spec2_z +
-            v.upu_acc_3_o_in_axes2_y*upu_h_3_in_spec2_x -
-            upu_B_2_o_in_axes2_xy*upu_Sigma_2_in_axes2_yy -
-            upu_J_group_2_in_axes2_xz*upu_alpha_1_o_t - v.upu_g_in_axes2_x*upu_h_2_in_spec2_z -
-            v.upu_g_in_axes2_y*upu_h_2_in_spec2_x;
-        /* (upu-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
-           connection point left out */
-        const real upu_N_2_o_in_axes2_y = upu_mu_2_o_in_axes2_y - upu_f_3_o_in_axes2_z*v.upu_q_3;
-        const real upu_N_2_o_t = upu_N_2_o_in_axes2_y*v.upu_c_2 -
-            v.upu_e_1_in_axes2_x*upu_mu_2_o_in_axes2_x;
-        /* (upu-G_o) remainder of: force at the connection point that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real upu_G_o_in_axes2_y = upu_f_3_o_in_axes2_y +
-            v.inv_upu_q_3*upu_mu_2_o_in_axes2_z;
-        /* (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
-           balances the leg's inertia and weight along all degrees of freedom */
-        const real upu_dalpha_G_m1_y = v.axis_x_upu_axes2_y*v.upu_dalpha_G_m1_in_axes2_x +
-            v.axis_y_upu_axes2_y*v.upu_dalpha_G_m1_in_axes2_y;
-        const real upu_dalpha_G_m1_z = v.axis_x_upu_axes2_z*v.upu_dalpha_G_m1_in_axes2_x +
-            v.axis_y_upu_axes2_z*v.upu_dalpha_G_m1_in_axes2_y;
-        /* (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
-           the leg's inertia and weight along all degrees of freedom */
-        const real upu_d_G_m1_x = v.axis_x_upu_axes2_x*v.upu_d_G_m1_in_axes2_x -
-            v.axis_y_upu_axes2_x*v.upu_d_G_m1_t - v.axis_z_upu_axes2_x*v.upu_d_G_m1_t_2;
-        const real upu_d_G_m1_y = v.axis_x_upu_axes2_y*v.upu_d_G_m1_in_axes2_x -
-            v.axis_y_upu_axes2_y*v.upu_d_G_m1_t - v.axis_z_upu_axes2_y*v.upu_d_G_m1_t_2;
-        const real upu_d_G_m1_z = v.axis_x_upu_axes2_z*v.upu_d_G_m1_in_axes2_x -
-            v.axis_y_upu_axes2_z*v.upu_d_G_m1_t - v.axis_z_upu_axes2_z*v.upu_d_G_m1_t_2;
-        /* (upu-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real upu_G_m1_o = upu_N_2_o_t*v.upu_n_c_in_axes2_z*v.upu_w_1_in_axes2_z;
-        /* (upu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
-        const real upu_d_G_m_xx = upu_d_G_m1_x*upu_n_m1_x;
-        const real upu_d_G_m_xy = upu_d_G_m1_y*upu_n_m1_x;
-        const real upu_d_G_m_xz = upu_d_G_m1_z*upu_n_m1_x;
-        const real upu_d_G_m_yx = upu_d_G_m1_x*upu_n_m1_y;
-        /* (upu-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real upu_G_m_o_in_axes2_y = upu_G_m1_o*v.upu_n_m1_in_axes2_y;
-        /* (upu-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-           connection point */
-        const real upu_c_o_in_axes2_z = upu_N_2_o_t*v.upu_w_1_in_axes2_z;
-        /* (upu-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real upu_Q_t_5 = v.axis_x_upu_axes2_x*v.upu_d_phi_3_in_axes2_xy +
-            v.axis_y_upu_axes2_x*v.upu_Q_t_2 + v.axis_z_upu_axes2_x*v.upu_d_G_in_axes2_yz;
-        const real upu_Q_t_6 = v.axis_x_upu_axes2_y*v.upu_d_phi_3_in_axes2_xy +
-            v.axis_y_upu_axes2_y*v.upu_Q_t_2 + v.axis_z_upu_axes2_y*v.upu_d_G_in_axes2_yz;
-        const real upu_Q_t_7 = v.axis_x_upu_axes2_z*v.upu_d_phi_3_in_axes2_xy +
-            v.axis_y_upu_axes2_z*v.upu_Q_t_2 + v.axis_z_upu_axes2_z*v.upu_d_G_in_axes2_yz;
-        const real upu_Q_t_8 = v.axis_z_upu_axes2_x*v.upu_Q_t_4 -
-            v.axis_x_upu_axes2_x*v.upu_d_c_in_axes2_xz;
-        const real upu_Q_t_9 = v.axis_z_upu_axes2_y*v.upu_Q_t_4 -
-            v.axis_x_upu_axes2_y*v.upu_d_c_in_axes2_xz;
-        const real upu_Q_t_10 = v.axis_z_upu_axes2_z*v.upu_Q_t_4 -
-            v.axis_x_upu_axes2_z*v.upu_d_c_in_axes2_xz;
-        const real upu_Q_t_11 = v.axis_y_upu_axes2_x*upu_Q_t_5 + v.axis_z_upu_axes2_x*upu_Q_t_8;
-        const real upu_Q_xx = 2*upu_Q_t_11 + upu_link3_mass;
-        const real upu_Q_xy = v.axis_y_upu_axes2_x*upu_Q_t_6 + v.axis_y_upu_axes2_y*upu_Q_t_5 +
-            v.axis_z_upu_axes2_x*upu_Q_t_9 + v.axis_z_upu_axes2_y*upu_Q_t_8;
-        const real upu_Q_xz = v.axis_y_upu_axes2_x*upu_Q_t_7 + v.axis_y_upu_axes2_z*upu_Q_t_5 +
-            v.axis_z_upu_axes2_x*upu_Q_t_10 + v.axis_z_upu_axes2_z*upu_Q_t_8;
-        const real upu_Q_t_12 = v.axis_y_upu_axes2_y*upu_Q_t_6 + v.axis_z_upu_axes2_y*upu_Q_t_9;
-        const real upu_Q_yy = 2*upu_Q_t_12 + upu_link3_mass;
-        const real upu_Q_yz = v.axis_y_upu_axes2_y*upu_Q_t_7 + v.axis_y_upu_axes2_z*upu_Q_t_6 +
-            v.axis_z_upu_axes2_y*upu_Q_t_10 + v.axis_z_upu_axes2_z*upu_Q_t_9;
-        const real upu_Q_t_13 = v.axis_y_upu_axes2_z*upu_Q_t_7 + v.axis_z_upu_axes2_z*upu_Q_t_10;
-        const real upu_Q_zz = 2*upu_Q_t_13 + upu_link3_mass;
-        /* (upu-c_m_o) remainder of: moment of the leg on the platform without actuation */
-        const real upu_c_m_o_in_axes2_x = upu_G_m1_o*v.upu_end_p1_in_axes2_y;
-        /* (upu-U) velocity and gravity terms of the leg force */
-        const real upu_U_x = v.axis_x_upu_axes2_x*upu_f_3_o_in_axes2_x +
-            v.axis_y_upu_axes2_x*upu_G_o_in_axes2_y - v.axis_z_upu_axes2_x*upu_c_o_in_axes2_z;
-        const real upu_U_y = v.axis_x_upu_axes2_y*upu_f_3_o_in_axes2_x +
-            v.axis_y_upu_axes2_y*upu_G_o_in_axes2_y - v.axis_z_upu_axes2_y*upu_c_o_in_axes2_z;
-        const real upu_U_z = v.axis_x_upu_axes2_z*upu_f_3_o_in_axes2_x +
-            v.axis_y_upu_axes2_z*upu_G_o_in_axes2_y - v.axis_z_upu_axes2_z*upu_c_o_in_axes2_z;
-        /* (M_ta) coupling block of M */
-        const real upu_M_ta_t = v.axis_x_upu_axes2_x*v.upu_dalpha_c_in_axes2_xx -
-            v.axis_y_upu_axes2_x*v.upu_dalpha_G_in_axes2_yx -
-            v.axis_z_upu_axes2_x*v.upu_dalpha_G_in_axes2_zx;
-        const real upu_M_ta_t_2 = v.axis_x_upu_axes2_y*v.upu_dalpha_c_in_axes2_xx -
-            v.axis_y_upu_axes2_y*v.upu_dalpha_G_in_axes2_yx -
-            v.axis_z_upu_axes2_y*v.upu_dalpha_G_in_axes2_zx;
-        const real upu_M_ta_t_3 = v.axis_x_upu_axes2_z*v.upu_dalpha_c_in_axes2_xx -
-            v.axis_y_upu_axes2_z*v.upu_dalpha_G_in_axes2_yx -
-            v.axis_z_upu_axes2_z*v.upu_dalpha_G_in_axes2_zx;
-        const real upu_M_ta_t_4 = -v.axis_x_upu_axes2_x*v.upu_dalpha_phi_3_in_axes2_xy -
-            v.axis_y_upu_axes2_x*v.upu_dalpha_G_in_axes2_yy -
-            v.axis_z_upu_axes2_x*v.upu_dalpha_G_in_axes2_zy;
-        const real upu_M_ta_t_5 = -v.axis_x_upu_axes2_y*v.upu_dalpha_phi_3_in_axes2_xy -
-            v.axis_y_upu_axes2_y*v.upu_dalpha_G_in_axes2_yy -
-            v.axis_z_upu_axes2_y*v.upu_dalpha_G_in_axes2_zy;
-        const real upu_M_ta_t_6 = -v.axis_x_upu_axes2_z*v.upu_dalpha_phi_3_in_axes2_xy -
-            v.axis_y_upu_axes2_z*v.upu_dalpha_G_in_axes2_yy -
-            v.axis_z_upu_axes2_z*v.upu_dalpha_G_in_axes2_zy;
-        const real upu_M_ta_t_7 = upu_Q_xy*v.upu_q_z;
-        const real upu_M_ta_t_8 = upu_Q_xz*v.upu_q_y;
-        const real upu_M_ta_t_9 = upu_Q_yz*v.upu_q_x;
-        const real upu_M_ta_t_10 = upu_M_ta_t_8 - upu_M_ta_t_7 - v.axis_x_upu_axes2_x*upu_M_ta_t -
-            v.axis_y_upu_axes2_x*upu_M_ta_t_4;
-        const real upu_M_ta_t_11 = upu_Q_xx*v.upu_q_z - v.axis_x_upu_axes2_y*upu_M_ta_t -
-            v.axis_y_upu_axes2_y*upu_M_ta_t_4 - upu_Q_xz*v.upu_q_x;
-        const real upu_M_ta_t_12 = upu_Q_xy*v.upu_q_x - v.axis_x_upu_axes2_z*upu_M_ta_t -
-            v.axis_y_upu_axes2_z*upu_M_ta_t_4 - upu_Q_xx*v.upu_q_y;
-        const real upu_M_ta_t_13 = upu_Q_yz*v.upu_q_y - v.axis_x_upu_axes2_x*upu_M_ta_t_2 -
-            v.axis_y_upu_axes2_x*upu_M_ta_t_5 - upu_Q_yy*v.upu_q_z;
-        const real upu_M_ta_t_14 = upu_M_ta_t_7 - upu_M_ta_t_9 - v.axis_x_upu_axes2_y*upu_M_ta_t_2
-            - v.axis_y_upu_axes2_y*upu_M_ta_t_5;
-        const real upu_M_ta_t_15 = upu_Q_yy*v.upu_q_x - v.axis_x_upu_axes2_z*upu_M_ta_t_2 -
-            v.axis_y_upu_axes2_z*upu_M_ta_t_5 - upu_Q_xy*v.upu_q_y;
-        const real upu_M_ta_t_16 = upu_Q_zz*v.upu_q_y - v.axis_x_upu_axes2_x*upu_M_ta_t_3 -
-            v.axis_y_upu_axes2_x*upu_M_ta_t_6 - upu_Q_yz*v.upu_q_z;
-        const real upu_M_ta_t_17 = upu_Q_xz*v.upu_q_z - v.axis_x_upu_axes2_y*upu_M_ta_t_3 -
-            v.axis_y_upu_axes2_y*upu_M_ta_t_6 - upu_Q_zz*v.upu_q_x;
-        const real upu_M_ta_t_18 = upu_M_ta_t_9 - upu_M_ta_t_8 - v.axis_x_upu_axes2_z*upu_M_ta_t_3
-            - v.axis_y_upu_axes2_z*upu_M_ta_t_6;
-        /* (M_aa) rotational block of M */
-        const real upu_M_aa_t = upu_M_ta_t_16*v.upu_q_y + upu_d_G_m_xz*v.upu_q_y +
-            upu_n_m1_x*(v.axis_x_upu_axes2_x*v.upu_dalpha_G_m1_in_axes2_x +
-            v.axis_y_upu_axes2_x*v.upu_dalpha_G_m1_in_axes2_y) - upu_M_ta_t_13*v.upu_q_z -
-            upu_d_G_m_xy*v.upu_q_z;
-        const real upu_M_aa_t_2 = upu_M_ta_t_17*v.upu_q_y + upu_d_G_m_xx*v.upu_q_z +
-            upu_dalpha_G_m1_y*upu_n_m1_x - upu_M_ta_t_14*v.upu_q_z - upu_d_G_m_xz*v.upu_q_x;
-        const real upu_M_aa_t_3 = upu_M_ta_t_18*v.upu_q_y + upu_d_G_m_xy*v.upu_q_x +
-            upu_dalpha_G_m1_z*upu_n_m1_x - upu_M_ta_t_15*v.upu_q_z - upu_d_G_m_xx*v.upu_q_y;
-        const real upu_M_aa_t_4 = upu_M_ta_t_11*v.upu_q_z + upu_d_G_m_yx*v.upu_q_z +
-            upu_dalpha_G_m1_y*upu_n_m1_y - upu_M_ta_t_17*v.upu_q_x -
-            upu_d_G_m1_z*upu_n_m1_y*v.upu_q_x;
-        const real upu_M_aa_t_5 = upu_M_ta_t_12*v.upu_q_z + upu_dalpha_G_m1_z*upu_n_m1_y +
-            upu_d_G_m1_y*upu_n_m1_y*v.upu_q_x - upu_M_ta_t_18*v.upu_q_x - upu_d_G_m_yx*v.upu_q_y;
-        const real upu_M_aa_t_6 = upu_M_ta_t_15*v.upu_q_x + upu_dalpha_G_m1_z*upu_n_m1_z +
-            upu_d_G_m1_y*upu_n_m1_z*v.upu_q_x - upu_M_ta_t_12*v.upu_q_y -
-            upu_d_G_m1_x*upu_n_m1_z*v.upu_q_y;
-        /* (Z_a) rotational part of Z */
-        const real upu_Z_a_t = v.axis_y_upu_axes2_x*upu_G_m_o_in_axes2_y + upu_U_z*v.upu_q_y -
-            v.axis_x_upu_axes2_x*upu_c_m_o_in_axes2_x - upu_U_y*v.upu_q_z;
-        const real upu_Z_a_t_2 = v.axis_y_upu_axes2_y*upu_G_m_o_in_axes2_y + upu_U_x*v.upu_q_z -
-            v.axis_x_upu_axes2_y*upu_c_m_o_in_axes2_x - upu_U_z*v.upu_q_x;
-        const real upu_Z_a_t_3 = v.axis_y_upu_axes2_z*upu_G_m_o_in_axes2_y + upu_U_y*v.upu_q_x -
-            v.axis_x_upu_axes2_z*upu_c_m_o_in_axes2_x - upu_U_x*v.upu_q_y;
-        /* (upu-H_a_3) moment of the column's unit force about the platform origin */
-        const real upu_H_a_3_x = v.axis_x_upu_axes2_z*v.upu_q_y - v.axis_x_upu_axes2_y*v.upu_q_z;
-        const real upu_H_a_3_y = v.axis_x_upu_axes2_x*v.upu_q_z - v.axis_x_upu_axes2_z*v.upu_q_x;
-        const real upu_H_a_3_z = v.axis_x_upu_axes2_y*v.upu_q_x - v.axis_x_upu_axes2_x*v.upu_q_y;
-        /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real upu_Hk_a_1_x = upu_n_m1_x + v.upu_n_c_z*v.upu_q_y - v.upu_n_c_y*v.upu_q_z;
-        const real upu_Hk_a_1_y = upu_n_m1_y + v.upu_n_c_x*v.upu_q_z - v.upu_n_c_z*v.upu_q_x;
-        const real upu_Hk_a_1_z = upu_n_m1_z + v.upu_n_c_y*v.upu_q_x - v.upu_n_c_x*v.upu_q_y;
-        /* (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-           */
-        const real upu_gamma_c1 = upu_nu_1 + v.upu_n_c_in_axes2_z*upu_rel_o_in_axes2_z;
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, upu_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, upu_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, upu_Q_xz);  /* M_tt_xz */
-        gather(&terms[3*count + k], add, upu_Q_yy);  /* M_tt_yy_of_legs */
-        gather(&terms[4*count + k], add, upu_Q_yz);  /* M_tt_yz */
-        gather(&terms[5*count + k], add, upu_Q_zz);  /* M_tt_zz_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[6*count + k], add, upu_M_ta_t_10);  /* M_ta_xx */
-        gather(&terms[7*count + k], add, upu_M_ta_t_11);  /* M_ta_xy_of_legs */
-        gather(&terms[8*count + k], add, upu_M_ta_t_12);  /* M_ta_xz_of_legs */
-        gather(&terms[9*count + k], add, upu_M_ta_t_13);  /* M_ta_yx_of_legs */
-        gather(&terms[10*count + k], add, upu_M_ta_t_14);  /* M_ta_yy */
-        gather(&terms[11*count + k], add, upu_M_ta_t_15);  /* M_ta_yz_of_legs */
-        gather(&terms[12*count + k], add, upu_M_ta_t_16);  /* M_ta_zx_of_legs */
-        gather(&terms[13*count + k], add, upu_M_ta_t_17);  /* M_ta_zy_of_legs */
-        gather(&terms[14*count + k], add, upu_M_ta_t_18);  /* M_ta_zz */
-        /* (M_aa) rotational block of M */
-        gather(&terms[15*count + k], add, upu_M_aa_t);  /* M_aa_xx_of_legs */
-        gather(&terms[16*count + k], add, upu_M_aa_t_2);  /* M_aa_xy_of_legs */
-        gather(&terms[17*count + k], add, upu_M_aa_t_3);  /* M_aa_xz_of_legs */
-        gather(&terms[18*count + k], add, upu_M_aa_t_4);  /* M_aa_yy_of_legs */
-        gather(&terms[19*count + k], add, upu_M_aa_t_5);  /* M_aa_yz_of_legs */
-        gather(&terms[20*count + k], add, upu_M_aa_t_6);  /* M_aa_zz_of_legs */
-        /* (Z_t) translational part of Z */
-        gather(&terms[21*count + k], add, upu_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[22*count + k], add, upu_U_y);  /* Z_t_y_of_legs */
-        gather(&terms[23*count + k], add, upu_U_z);  /* Z_t_z_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[24*count + k], add, upu_Z_a_t);  /* Z_a_x_of_legs */
-        gather(&terms[25*count + k], add, upu_Z_a_t_2);  /* Z_a_y_of_legs */
-        gather(&terms[26*count + k], add, upu_Z_a_t_3);  /* Z_a_z_of_legs */
-        /* (upu-w_3) force part of reciprocal wrench 3 */
-        o[0*count + k] = v.axis_x_upu_axes2_x;
-        o[1*count + k] = v.axis_x_upu_axes2_y;
-        o[2*count + k] = v.axis_x_upu_axes2_z;
-        /* (upu-H_a_3) moment of the column's unit force about the platform origin */
-        o[3*count + k] = upu_H_a_3_x;
-        o[4*count + k] = upu_H_a_3_y;
-        o[5*count + k] = upu_H_a_3_z;
-        /* (upu-n_c) force part, zero on the manifold, of the constraint moment */
-        o[6*count + k] = v.upu_n_c_x;
-        o[7*count + k] = v.upu_n_c_y;
-        o[8*count + k] = v.upu_n_c_z;
-        /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[9*count + k] = upu_Hk_a_1_x;
-        o[10*count + k] = upu_Hk_a_1_y;
-        o[11*count + k] = upu_Hk_a_1_z;
-        /* (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-           */
-        o[12*count + k] = upu_gamma_c1;
-        o[14*count + k] = ((v.axis_x_upu_axes2_x + (v.axis_x_upu_axes2_y + v.axis_x_upu_axes2_z))
-            + (upu_H_a_3_x + (upu_H_a_3_y + upu_H_a_3_z))) + ((v.upu_n_c_x + (v.upu_n_c_y +
-            v.upu_n_c_z)) + ((upu_Hk_a_1_x + upu_Hk_a_1_y) + (upu_Hk_a_1_z + upu_gamma_c1)));
-        o[13*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
-            LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
-            LEAST_3);
-    }
+    values_upu v;
+    stage_upu_X(m, w, i, j, s, X, &v);
+    stage_upu_V_X(w, j, V, &v);
+    stage_upu_M_dynamics(m, i, &v);
+    stage_upu_Z_dynamics(m, w, i, j, V, &v);
+    /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+    const real upu_n_m1_x = v.axis_y_upu_axes2_x*v.upu_n_m1_in_axes2_y -
+        v.axis_x_upu_axes2_x*v.upu_end_p1_in_axes2_y;
+    const real upu_n_m1_y = v.axis_y_upu_axes2_y*v.upu_n_m1_in_axes2_y -
+        v.axis_x_upu_axes2_y*v.upu_end_p1_in_axes2_y;
+    const real upu_n_m1_z = v.axis_y_upu_axes2_z*v.upu_n_m1_in_axes2_y -
+        v.axis_x_upu_axes2_z*v.upu_end_p1_in_axes2_y;
+    /* (upu-eta_1) rate at which the joints turn along moment direction 1 */
+    const real omega_x = V[3*w + j];
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real upu_eta_1 = omega_x*upu_n_m1_x + omega_y*upu_n_m1_y + omega_z*upu_n_m1_z;
+    /* (upu-qd_1) rate of joint 1 */
+    const real upu_qd_1 = v.upu_w_1_in_axes2_z*(v.axis_z_upu_axes2_x*v.upu_S_dot_x +
+        v.axis_z_upu_axes2_y*v.upu_S_dot_y + v.axis_z_upu_axes2_z*v.upu_S_dot_z -
+        upu_eta_1*v.upu_n_c_in_axes2_z);
+    /* (upu-omega_1) angular velocity of link 1 */
+    const real upu_omega_1_in_axes2_x = v.upu_e_1_in_axes2_x*upu_qd_1;
+    const real upu_omega_1_in_axes2_y = -v.upu_c_2*upu_qd_1;
+    /* (upu-W_2) centripetal tensor of link 2 */
+    const real upu_W_2_in_axes2_yz = upu_omega_1_in_axes2_y*v.upu_qd_2;
+    const real upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*v.upu_qd_2;
+    const real upu_W_2_in_axes2_xy = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_y;
+    /* (upu-bias) acceleration of the connection point at zero joint accelerations */
+    const real upu_bias_t_2 = v.upu_bias_t*upu_omega_1_in_axes2_y;
+    const real upu_bias_in_axes2_z = 2*upu_W_2_in_axes2_xz*v.upu_q_3 - upu_bias_t_2;
+    /* (upu-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real upu_rel_o_in_axes2_z = v.axis_z_upu_axes2_x*v.upu_u_1_x +
+        v.axis_z_upu_axes2_y*v.upu_u_1_y + v.axis_z_upu_axes2_z*v.upu_u_1_z -
+        upu_bias_in_axes2_z;
+    /* (upu-nd_m1) rate of moment direction 1 */
+    const real upu_nd_m1_in_axes2_x = v.upu_end_p1_in_axes2_z*v.upu_omega_in_axes2_x -
+        v.upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x -
+        v.upu_n_m1_in_axes2_y*v.upu_omega_in_axes2_z;
+    const real upu_nd_m1_in_axes2_y = v.upu_end_p1_in_axes2_z*v.upu_omega_in_axes2_y -
+        v.upu_end_p1_in_axes2_y*v.upu_omega_in_axes2_z -
+        v.upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y;
+    /* (upu-nu_1) bias of the angular acceleration along moment direction 1 */
+    const real upu_nu_1_t = upu_W_2_in_axes2_xz*v.upu_n_m1_in_axes2_y +
+        upu_W_2_in_axes2_yz*v.upu_end_p1_in_axes2_y;
+    const real upu_nu_1_t_2 = upu_nd_m1_in_axes2_y*(v.upu_omega_in_axes2_y -
+        upu_omega_1_in_axes2_y) - upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x -
+        v.upu_omega_in_axes2_x) - (v.upu_omega_in_axes2_z -
+        v.upu_qd_2)*(-v.upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
+        v.upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x);
+    const real upu_nu_1 = upu_nu_1_t + upu_nu_1_t_2;
+    /* (upu-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real upu_qdd_1_o_t = v.upu_w_1_in_axes2_z*(v.upu_n_c_in_axes2_z*upu_nu_1 -
+        upu_rel_o_in_axes2_z);
+    /* (upu-alpha_1_o) remainder of: angular acceleration of link 1 */
+    const real upu_alpha_1_o_t = v.upu_e_1_in_axes2_x*upu_qdd_1_o_t;
+    const real upu_alpha_1_o_in_axes2_y = v.upu_c_2*upu_qdd_1_o_t;
+    /* (upu-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real upu_alpha_2_o_in_axes2_x = upu_W_2_in_axes2_yz - upu_alpha_1_o_t;
+    const real upu_alpha_2_o_in_axes2_y = upu_alpha_1_o_in_axes2_y - upu_W_2_in_axes2_xz;
+    /* (upu-B_2_o) remainder of the acceleration tensor of link 2 */
+    const real upu_B_2_o_in_axes2_xy = 2*upu_W_2_in_axes2_xy - v.upu_B_2_o_in_axes2_yx;
+    const real upu_B_2_o_in_axes2_zx = upu_W_2_in_axes2_xz - upu_alpha_2_o_in_axes2_y;
+    const real upu_B_2_o_in_axes2_zy = upu_W_2_in_axes2_yz + upu_alpha_2_o_in_axes2_x;
+    /* (upu-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
+    const real upu_acc_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*v.upu_q_3 - upu_bias_t_2 -
+        v.upu_g_in_axes2_z;
+    /* (upu-f_3_o) remainder of: inertia force of link 3 less its weight */
+    const real upu_f_3_o_t = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x;
+    const real upu_f_3_o_t_2 = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y;
+    const real upu_f_3_o_in_axes2_x = v.upu_acc_3_o_in_axes2_x*m->upu_link3_mass[i] +
+        upu_alpha_1_o_in_axes2_y*m->upu_h_3_in_spec2_y[i] -
+        upu_B_2_o_in_axes2_xy*m->upu_h_3_in_spec2_z[i] -
+        m->upu_h_3_in_spec2_x[i]*(upu_f_3_o_t_2 + v.upu_f_3_o_t_3);
+    const real upu_f_3_o_in_axes2_y = v.upu_B_2_o_in_axes2_yx*m->upu_h_3_in_spec2_x[i] +
+        v.upu_acc_3_o_in_axes2_y*m->upu_link3_mass[i] +
+        upu_alpha_1_o_t*m->upu_h_3_in_spec2_y[i] + m->upu_h_3_in_spec2_z[i]*(upu_f_3_o_t +
+        v.upu_f_3_o_t_3);
+    const real upu_f_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*m->upu_h_3_in_spec2_x[i] +
+        upu_acc_3_o_in_axes2_z*m->upu_link3_mass[i] -
+        upu_B_2_o_in_axes2_zy*m->upu_h_3_in_spec2_z[i] - m->upu_h_3_in_spec2_y[i]*(upu_f_3_o_t
+        + upu_f_3_o_t_2);
+    /* (upu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real upu_mu_2_o_in_axes2_x = v.upu_B_2_o_in_axes2_yx*m->upu_J_group_2_in_axes2_xz[i]
+        + upu_B_2_o_in_axes2_zy*m->upu_Sigma_2_in_axes2_yy[i] +
+        m->upu_J_group_2_in_axes2_yz[i]*(upu_f_3_o_t_2 - v.upu_f_3_o_t_3) +
+        v.upu_g_in_axes2_y*m->upu_h_2_in_spec2_y[i] +
+        v.upu_g_in_axes2_z*m->upu_h_2_in_spec2_z[i] -
+        upu_B_2_o_in_axes2_zx*m->upu_J_group_2_in_axes2_xy[i] -
+        m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_o_t -
+        v.upu_acc_3_o_in_axes2_y*m->upu_h_3_in_spec2_y[i] -
+        upu_acc_3_o_in_axes2_z*m->upu_h_3_in_spec2_z[i];
+    const real upu_mu_2_o_in_axes2_y = upu_B_2_o_in_axes2_zy*m->upu_J_group_2_in_axes2_xy[i] +
+        m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_o_in_axes2_y +
+        v.upu_acc_3_o_in_axes2_x*m->upu_h_3_in_spec2_y[i] +
+        v.upu_g_in_axes2_z*m->upu_h_2_in_spec2_x[i] -
+        upu_B_2_o_in_axes2_xy*m->upu_J_group_2_in_axes2_yz[i] -
+        upu_B_2_o_in_axes2_zx*m->upu_Sigma_2_in_axes2_xx[i] -
+        m->upu_J_group_2_in_axes2_xz[i]*(upu_f_3_o_t - v.upu_f_3_o_t_3) -
+        upu_acc_3_o_in_axes2_z*m->upu_h_3_in_spec2_x[i] -
+        v.upu_g_in_axes2_x*m->upu_h_2_in_spec2_y[i];
+    const real upu_mu_2_o_in_axes2_z = v.upu_B_2_o_in_axes2_yx*m->upu_Sigma_2_in_axes2_xx[i] +
+        m->upu_J_group_2_in_axes2_xy[i]*(upu_f_3_o_t - upu_f_3_o_t_2) +
+        m->upu_J_group_2_in_axes2_yz[i]*upu_alpha_1_o_in_axes2_y +
+        v.upu_acc_3_o_in_axes2_x*m->upu_h_3_in_spec2_z[i] +
+        v.upu_acc_3_o_in_axes2_y*m->upu_h_3_in_spec2_x[i] -
+        upu_B_2_o_in_axes2_xy*m->upu_Sigma_2_in_axes2_yy[i] -
+        m->upu_J_group_2_in_axes2_xz[i]*upu_alpha_1_o_t -
+        v.upu_g_in_axes2_x*m->upu_h_2_in_spec2_z[i] -
+        v.upu_g_in_axes2_y*m->upu_h_2_in_spec2_x[i];
+    /* (upu-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+       connection point left out */
+    const real upu_N_2_o_in_axes2_y = upu_mu_2_o_in_axes2_y - upu_f_3_o_in_axes2_z*v.upu_q_3;
+    const real upu_N_2_o_t = upu_N_2_o_in_axes2_y*v.upu_c_2 -
+        v.upu_e_1_in_axes2_x*upu_mu_2_o_in_axes2_x;
+    /* (upu-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real upu_G_o_in_axes2_y = upu_f_3_o_in_axes2_y +
+        v.inv_upu_q_3*upu_mu_2_o_in_axes2_z;
+    /* (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
+       balances the leg's inertia and weight along all degrees of freedom */
+    const real upu_dalpha_G_m1_y = v.axis_x_upu_axes2_y*v.upu_dalpha_G_m1_in_axes2_x +
+        v.axis_y_upu_axes2_y*v.upu_dalpha_G_m1_in_axes2_y;
+    const real upu_dalpha_G_m1_z = v.axis_x_upu_axes2_z*v.upu_dalpha_G_m1_in_axes2_x +
+        v.axis_y_upu_axes2_z*v.upu_dalpha_G_m1_in_axes2_y;
+    /* (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
+       the leg's inertia and weight along all degrees of freedom */
+    const real upu_d_G_m1_x = v.axis_x_upu_axes2_x*v.upu_d_G_m1_in_axes2_x -
+        v.axis_y_upu_axes2_x*v.upu_d_G_m1_t - v.axis_z_upu_axes2_x*v.upu_d_G_m1_t_2;
+    const real upu_d_G_m1_y = v.axis_x_upu_axes2_y*v.upu_d_G_m1_in_axes2_x -
+        v.axis_y_upu_axes2_y*v.upu_d_G_m1_t - v.axis_z_upu_axes2_y*v.upu_d_G_m1_t_2;
+    const real upu_d_G_m1_z = v.axis_x_upu_axes2_z*v.upu_d_G_m1_in_axes2_x -
+        v.axis_y_upu_axes2_z*v.upu_d_G_m1_t - v.axis_z_upu_axes2_z*v.upu_d_G_m1_t_2;
+    /* (upu-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real upu_G_m1_o = upu_N_2_o_t*v.upu_n_c_in_axes2_z*v.upu_w_1_in_axes2_z;
+    /* (upu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
+       the leg's inertia and weight along all degrees of freedom */
+    const real upu_d_G_m_xx = upu_d_G_m1_x*upu_n_m1_x;
+    const real upu_d_G_m_xy = upu_d_G_m1_y*upu_n_m1_x;
+    const real upu_d_G_m_xz = upu_d_G_m1_z*upu_n_m1_x;
+    const real upu_d_G_m_yx = upu_d_G_m1_x*upu_n_m1_y;
+    /* (upu-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real upu_G_m_o_in_axes2_y = upu_G_m1_o*v.upu_n_m1_in_axes2_y;
+    /* (upu-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
+    const real upu_c_o_in_axes2_z = upu_N_2_o_t*v.upu_w_1_in_axes2_z;
+    /* (upu-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real upu_Q_t_5 = v.axis_x_upu_axes2_x*v.upu_d_phi_3_in_axes2_xy +
+        v.axis_y_upu_axes2_x*v.upu_Q_t_2 + v.axis_z_upu_axes2_x*v.upu_d_G_in_axes2_yz;
+    const real upu_Q_t_6 = v.axis_x_upu_axes2_y*v.upu_d_phi_3_in_axes2_xy +
+        v.axis_y_upu_axes2_y*v.upu_Q_t_2 + v.axis_z_upu_axes2_y*v.upu_d_G_in_axes2_yz;
+    const real upu_Q_t_7 = v.axis_x_upu_axes2_z*v.upu_d_phi_3_in_axes2_xy +
+        v.axis_y_upu_axes2_z*v.upu_Q_t_2 + v.axis_z_upu_axes2_z*v.upu_d_G_in_axes2_yz;
+    const real upu_Q_t_8 = v.axis_z_upu_axes2_x*v.upu_Q_t_4 -
+        v.axis_x_upu_axes2_x*v.upu_d_c_in_axes2_xz;
+    const real upu_Q_t_9 = v.axis_z_upu_axes2_y*v.upu_Q_t_4 -
+        v.axis_x_upu_axes2_y*v.upu_d_c_in_axes2_xz;
+    const real upu_Q_t_10 = v.axis_z_upu_axes2_z*v.upu_Q_t_4 -
+        v.axis_x_upu_axes2_z*v.upu_d_c_in_axes2_xz;
+    const real upu_Q_t_11 = v.axis_y_upu_axes2_x*upu_Q_t_5 + v.axis_z_upu_axes2_x*upu_Q_t_8;
+    const real upu_Q_xx = 2*upu_Q_t_11 + m->upu_link3_mass[i];
+    const real upu_Q_xy = v.axis_y_upu_axes2_x*upu_Q_t_6 + v.axis_y_upu_axes2_y*upu_Q_t_5 +
+        v.axis_z_upu_axes2_x*upu_Q_t_9 + v.axis_z_upu_axes2_y*upu_Q_t_8;
+    const real upu_Q_xz = v.axis_y_upu_axes2_x*upu_Q_t_7 + v.axis_y_upu_axes2_z*upu_Q_t_5 +
+        v.axis_z_upu_axes2_x*upu_Q_t_10 + v.axis_z_upu_axes2_z*upu_Q_t_8;
+    const real upu_Q_t_12 = v.axis_y_upu_axes2_y*upu_Q_t_6 + v.axis_z_upu_axes2_y*upu_Q_t_9;
+    const real upu_Q_yy = 2*upu_Q_t_12 + m->upu_link3_mass[i];
+    const real upu_Q_yz = v.axis_y_upu_axes2_y*upu_Q_t_7 + v.axis_y_upu_axes2_z*upu_Q_t_6 +
+        v.axis_z_upu_axes2_y*upu_Q_t_10 + v.axis_z_upu_axes2_z*upu_Q_t_9;
+    const real upu_Q_t_13 = v.axis_y_upu_axes2_z*upu_Q_t_7 + v.axis_z_upu_axes2_z*upu_Q_t_10;
+    const real upu_Q_zz = 2*upu_Q_t_13 + m->upu_link3_mass[i];
+    /* (upu-c_m_o) remainder of: moment of the leg on the platform without actuation */
+    const real upu_c_m_o_in_axes2_x = upu_G_m1_o*v.upu_end_p1_in_axes2_y;
+    /* (upu-U) velocity and gravity terms of the leg force */
+    const real upu_U_x = v.axis_x_upu_axes2_x*upu_f_3_o_in_axes2_x +
+        v.axis_y_upu_axes2_x*upu_G_o_in_axes2_y - v.axis_z_upu_axes2_x*upu_c_o_in_axes2_z;
+    const real upu_U_y = v.axis_x_upu_axes2_y*upu_f_3_o_in_axes2_x +
+        v.axis_y_upu_axes2_y*upu_G_o_in_axes2_y - v.axis_z_upu_axes2_y*upu_c_o_in_axes2_z;
+    const real upu_U_z = v.axis_x_upu_axes2_z*upu_f_3_o_in_axes2_x +
+        v.axis_y_upu_axes2_z*upu_G_o_in_axes2_y - v.axis_z_upu_axes2_z*upu_c_o_in_axes2_z;
+    /* (M_ta) coupling block of M */
+    const real upu_M_ta_t = v.axis_x_upu_axes2_x*v.upu_dalpha_c_in_axes2_xx -
+        v.axis_y_upu_axes2_x*v.upu_dalpha_G_in_axes2_yx -
+        v.axis_z_upu_axes2_x*v.upu_dalpha_G_in_axes2_zx;
+    const real upu_M_ta_t_2 = v.axis_x_upu_axes2_y*v.upu_dalpha_c_in_axes2_xx -
+        v.axis_y_upu_axes2_y*v.upu_dalpha_G_in_axes2_yx -
+        v.axis_z_upu_axes2_y*v.upu_dalpha_G_in_axes2_zx;
+    const real upu_M_ta_t_3 = v.axis_x_upu_axes2_z*v.upu_dalpha_c_in_axes2_xx -
+        v.axis_y_upu_axes2_z*v.upu_dalpha_G_in_axes2_yx -
+        v.axis_z_upu_axes2_z*v.upu_dalpha_G_in_axes2_zx;
+    const real upu_M_ta_t_4 = -v.axis_x_upu_axes2_x*v.upu_dalpha_phi_3_in_axes2_xy -
+        v.axis_y_upu_axes2_x*v.upu_dalpha_G_in_axes2_yy -
+        v.axis_z_upu_axes2_x*v.upu_dalpha_G_in_axes2_zy;
+    const real upu_M_ta_t_5 = -v.axis_x_upu_axes2_y*v.upu_dalpha_phi_3_in_axes2_xy -
+        v.axis_y_upu_axes2_y*v.upu_dalpha_G_in_axes2_yy -
+        v.axis_z_upu_axes2_y*v.upu_dalpha_G_in_axes2_zy;
+    const real upu_M_ta_t_6 = -v.axis_x_upu_axes2_z*v.upu_dalpha_phi_3_in_axes2_xy -
+        v.axis_y_upu_axes2_z*v.upu_dalpha_G_in_axes2_yy -
+        v.axis_z_upu_axes2_z*v.upu_dalpha_G_in_axes2_zy;
+    const real upu_M_ta_t_7 = upu_Q_xy*v.upu_q_z;
+    const real upu_M_ta_t_8 = upu_Q_xz*v.upu_q_y;
+    const real upu_M_ta_t_9 = upu_Q_yz*v.upu_q_x;
+    const real upu_M_ta_t_10 = upu_M_ta_t_8 - upu_M_ta_t_7 - v.axis_x_upu_axes2_x*upu_M_ta_t -
+        v.axis_y_upu_axes2_x*upu_M_ta_t_4;
+    const real upu_M_ta_t_11 = upu_Q_xx*v.upu_q_z - v.axis_x_upu_axes2_y*upu_M_ta_t -
+        v.axis_y_upu_axes2_y*upu_M_ta_t_4 - upu_Q_xz*v.upu_q_x;
+    const real upu_M_ta_t_12 = upu_Q_xy*v.upu_q_x - v.axis_x_upu_axes2_z*upu_M_ta_t -
+        v.axis_y_upu_axes2_z*upu_M_ta_t_4 - upu_Q_xx*v.upu_q_y;
+    const real upu_M_ta_t_13 = upu_Q_yz*v.upu_q_y - v.axis_x_upu_axes2_x*upu_M_ta_t_2 -
+        v.axis_y_upu_axes2_x*upu_M_ta_t_5 - upu_Q_yy*v.upu_q_z;
+    const real upu_M_ta_t_14 = upu_M_ta_t_7 - upu_M_ta_t_9 - v.axis_x_upu_axes2_y*upu_M_ta_t_2
+        - v.axis_y_upu_axes2_y*upu_M_ta_t_5;
+    const real upu_M_ta_t_15 = upu_Q_yy*v.upu_q_x - v.axis_x_upu_axes2_z*upu_M_ta_t_2 -
+        v.axis_y_upu_axes2_z*upu_M_ta_t_5 - upu_Q_xy*v.upu_q_y;
+    const real upu_M_ta_t_16 = upu_Q_zz*v.upu_q_y - v.axis_x_upu_axes2_x*upu_M_ta_t_3 -
+        v.axis_y_upu_axes2_x*upu_M_ta_t_6 - upu_Q_yz*v.upu_q_z;
+    const real upu_M_ta_t_17 = upu_Q_xz*v.upu_q_z - v.axis_x_upu_axes2_y*upu_M_ta_t_3 -
+        v.axis_y_upu_axes2_y*upu_M_ta_t_6 - upu_Q_zz*v.upu_q_x;
+    const real upu_M_ta_t_18 = upu_M_ta_t_9 - upu_M_ta_t_8 - v.axis_x_upu_axes2_z*upu_M_ta_t_3
+        - v.axis_y_upu_axes2_z*upu_M_ta_t_6;
+    /* (M_aa) rotational block of M */
+    const real upu_M_aa_t = upu_M_ta_t_16*v.upu_q_y + upu_d_G_m_xz*v.upu_q_y +
+        upu_n_m1_x*(v.axis_x_upu_axes2_x*v.upu_dalpha_G_m1_in_axes2_x +
+        v.axis_y_upu_axes2_x*v.upu_dalpha_G_m1_in_axes2_y) - upu_M_ta_t_13*v.upu_q_z -
+        upu_d_G_m_xy*v.upu_q_z;
+    const real upu_M_aa_t_2 = upu_M_ta_t_17*v.upu_q_y + upu_d_G_m_xx*v.upu_q_z +
+        upu_dalpha_G_m1_y*upu_n_m1_x - upu_M_ta_t_14*v.upu_q_z - upu_d_G_m_xz*v.upu_q_x;
+    const real upu_M_aa_t_3 = upu_M_ta_t_18*v.upu_q_y + upu_d_G_m_xy*v.upu_q_x +
+        upu_dalpha_G_m1_z*upu_n_m1_x - upu_M_ta_t_15*v.upu_q_z - upu_d_G_m_xx*v.upu_q_y;
+    const real upu_M_aa_t_4 = upu_M_ta_t_11*v.upu_q_z + upu_d_G_m_yx*v.upu_q_z +
+        upu_dalpha_G_m1_y*upu_n_m1_y - upu_M_ta_t_17*v.upu_q_x -
+        upu_d_G_m1_z*upu_n_m1_y*v.upu_q_x;
+    const real upu_M_aa_t_5 = upu_M_ta_t_12*v.upu_q_z + upu_dalpha_G_m1_z*upu_n_m1_y +
+        upu_d_G_m1_y*upu_n_m1_y*v.upu_q_x - upu_M_ta_t_18*v.upu_q_x - upu_d_G_m_yx*v.upu_q_y;
+    const real upu_M_aa_t_6 = upu_M_ta_t_15*v.upu_q_x + upu_dalpha_G_m1_z*upu_n_m1_z +
+        upu_d_G_m1_y*upu_n_m1_z*v.upu_q_x - upu_M_ta_t_12*v.upu_q_y -
+        upu_d_G_m1_x*upu_n_m1_z*v.upu_q_y;
+    /* (Z_a) rotational part of Z */
+    const real upu_Z_a_t = v.axis_y_upu_axes2_x*upu_G_m_o_in_axes2_y + upu_U_z*v.upu_q_y -
+        v.axis_x_upu_axes2_x*upu_c_m_o_in_axes2_x - upu_U_y*v.upu_q_z;
+    const real upu_Z_a_t_2 = v.axis_y_upu_axes2_y*upu_G_m_o_in_axes2_y + upu_U_x*v.upu_q_z -
+        v.axis_x_upu_axes2_y*upu_c_m_o_in_axes2_x - upu_U_z*v.upu_q_x;
+    const real upu_Z_a_t_3 = v.axis_y_upu_axes2_z*upu_G_m_o_in_axes2_y + upu_U_y*v.upu_q_x -
+        v.axis_x_upu_axes2_z*upu_c_m_o_in_axes2_x - upu_U_x*v.upu_q_y;
+    /* (upu-H_a_3) moment of the column's unit force about the platform origin */
+    const real upu_H_a_3_x = v.axis_x_upu_axes2_z*v.upu_q_y - v.axis_x_upu_axes2_y*v.upu_q_z;
+    const real upu_H_a_3_y = v.axis_x_upu_axes2_x*v.upu_q_z - v.axis_x_upu_axes2_z*v.upu_q_x;
+    const real upu_H_a_3_z = v.axis_x_upu_axes2_y*v.upu_q_x - v.axis_x_upu_axes2_x*v.upu_q_y;
+    /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
+    const real upu_Hk_a_1_x = upu_n_m1_x + v.upu_n_c_z*v.upu_q_y - v.upu_n_c_y*v.upu_q_z;
+    const real upu_Hk_a_1_y = upu_n_m1_y + v.upu_n_c_x*v.upu_q_z - v.upu_n_c_z*v.upu_q_x;
+    const real upu_Hk_a_1_z = upu_n_m1_z + v.upu_n_c_y*v.upu_q_x - v.upu_n_c_x*v.upu_q_y;
+    /* (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+       */
+    const real upu_gamma_c1 = upu_nu_1 + v.upu_n_c_in_axes2_z*upu_rel_o_in_axes2_z;
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, upu_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, upu_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, upu_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, upu_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, upu_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, upu_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) */
+    gather(&terms[6*count + k], add, upu_M_ta_t_10);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, upu_M_ta_t_11);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, upu_M_ta_t_12);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, upu_M_ta_t_13);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, upu_M_ta_t_14);  /* M_ta_yy */
+    gather(&terms[11*count + k], add, upu_M_ta_t_15);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, upu_M_ta_t_16);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, upu_M_ta_t_17);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, upu_M_ta_t_18);  /* M_ta_zz */
+    /* (M_aa) */
+    gather(&terms[15*count + k], add, upu_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, upu_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, upu_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, upu_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, upu_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, upu_M_aa_t_6);  /* M_aa_zz_of_legs */
+    /* (Z_t) translational part of Z */
+    gather(&terms[21*count + k], add, upu_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[22*count + k], add, upu_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[23*count + k], add, upu_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) */
+    gather(&terms[24*count + k], add, upu_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[25*count + k], add, upu_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[26*count + k], add, upu_Z_a_t_3);  /* Z_a_z_of_legs */
+    /* (upu-w_3) force part of reciprocal wrench 3 */
+    o[0*count + k] = v.axis_x_upu_axes2_x;
+    o[1*count + k] = v.axis_x_upu_axes2_y;
+    o[2*count + k] = v.axis_x_upu_axes2_z;
+    /* (upu-H_a_3) */
+    o[3*count + k] = upu_H_a_3_x;
+    o[4*count + k] = upu_H_a_3_y;
+    o[5*count + k] = upu_H_a_3_z;
+    /* (upu-n_c) force part, zero on the manifold, of the constraint moment */
+    o[6*count + k] = v.upu_n_c_x;
+    o[7*count + k] = v.upu_n_c_y;
+    o[8*count + k] = v.upu_n_c_z;
+    /* (upu-Hk_a_1) */
+    o[9*count + k] = upu_Hk_a_1_x;
+    o[10*count + k] = upu_Hk_a_1_y;
+    o[11*count + k] = upu_Hk_a_1_z;
+    /* (upu-gamma_c1) */
+    o[12*count + k] = upu_gamma_c1;
+    o[14*count + k] = ((v.axis_x_upu_axes2_x + (v.axis_x_upu_axes2_y + v.axis_x_upu_axes2_z))
+        + (upu_H_a_3_x + (upu_H_a_3_y + upu_H_a_3_z))) + ((v.upu_n_c_x + (v.upu_n_c_y +
+        v.upu_n_c_z)) + ((upu_Hk_a_1_x + upu_Hk_a_1_y) + (upu_Hk_a_1_z + upu_gamma_c1)));
+    o[13*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
+        LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
+        LEAST_3);
 }
 
-INLINE void dynamics_place_upu(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *H, real *Hk, real *constraint_bias, verdict *t)
+INLINE void dynamics_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, const real
+    *o, real *H, real *Hk, real *constraint_bias, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        H[(3*NU + leg)*w + k] = o[3*count + first + k];
-        H[(4*NU + leg)*w + k] = o[4*count + first + k];
-        H[(5*NU + leg)*w + k] = o[5*count + first + k];
-        Hk[leg*w + k] = o[6*count + first + k];
-        Hk[(NC + leg)*w + k] = o[7*count + first + k];
-        Hk[(2*NC + leg)*w + k] = o[8*count + first + k];
-        Hk[(3*NC + leg)*w + k] = o[9*count + first + k];
-        Hk[(4*NC + leg)*w + k] = o[10*count + first + k];
-        Hk[(5*NC + leg)*w + k] = o[11*count + first + k];
-        constraint_bias[leg*w + k] = o[12*count + first + k];
-        t->singular[k] += o[13*count + first + k];
-        t->total[k] += o[14*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    H[(3*NU + i)*w + k] = o[3*count + at];
+    H[(4*NU + i)*w + k] = o[4*count + at];
+    H[(5*NU + i)*w + k] = o[5*count + at];
+    Hk[i*w + k] = o[6*count + at];
+    Hk[(NC + i)*w + k] = o[7*count + at];
+    Hk[(2*NC + i)*w + k] = o[8*count + at];
+    Hk[(3*NC + i)*w + k] = o[9*count + at];
+    Hk[(4*NC + i)*w + k] = o[10*count + at];
+    Hk[(5*NC + i)*w + k] = o[11*count + at];
+    constraint_bias[i*w + k] = o[12*count + at];
+    t->singular[k] += o[13*count + at];
+    t->total[k] += o[14*count + at];
 }
 
-INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const real *sums, real *M,
-    real *Z, verdict *t)
+INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
+    real *M, real *Z, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (M_tt) translational block of M */
-        const real M_tt_xx_of_legs = sums[0*w + k];
-        const real platform_mass = m->platform_mass;
-        const real M_tt_xx = M_tt_xx_of_legs + platform_mass;
-        const real M_tt_yy_of_legs = sums[3*w + k];
-        const real M_tt_yy = M_tt_yy_of_legs + platform_mass;
-        const real M_tt_zz_of_legs = sums[5*w + k];
-        const real M_tt_zz = M_tt_zz_of_legs + platform_mass;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[11*w + k];
-        const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
-        const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[10*w + k];
-        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-        const real M_ta_yx_of_legs = sums[9*w + k];
-        const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-        const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[9*w + k];
-        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
-        const real M_ta_zx_of_legs = sums[12*w + k];
-        const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
-        const real M_ta_zy_of_legs = sums[13*w + k];
-        const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-        /* (M_aa) rotational block of M */
-        const real J_star_xx = s[12*w + k];
-        const real M_aa_xx_of_legs = sums[15*w + k];
-        const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[13*w + k];
-        const real M_aa_xy_of_legs = sums[16*w + k];
-        const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[14*w + k];
-        const real M_aa_xz_of_legs = sums[17*w + k];
-        const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[15*w + k];
-        const real M_aa_yy_of_legs = sums[18*w + k];
-        const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-        const real J_star_yz = s[16*w + k];
-        const real M_aa_yz_of_legs = sums[19*w + k];
-        const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[17*w + k];
-        const real M_aa_zz_of_legs = sums[20*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-        /* (Z_t) translational part of Z */
-        const real Z_p_x = s[18*w + k];
-        const real Z_t_x_of_legs = sums[21*w + k];
-        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[19*w + k];
-        const real Z_t_y_of_legs = sums[22*w + k];
-        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[20*w + k];
-        const real Z_t_z_of_legs = sums[23*w + k];
-        const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-        /* (Z_a) rotational part of Z */
-        const real Z_a_x_of_legs = sums[24*w + k];
-        const real Z_q_x = s[21*w + k];
-        const real Z_a_x = Z_a_x_of_legs + Z_q_x;
-        const real Z_a_y_of_legs = sums[25*w + k];
-        const real Z_q_y = s[22*w + k];
-        const real Z_a_y = Z_a_y_of_legs + Z_q_y;
-        const real Z_a_z_of_legs = sums[26*w + k];
-        const real Z_q_z = s[23*w + k];
-        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
-        /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        const real M_tt_xy = sums[1*w + k];
-        M[1*w + k] = M_tt_xy;
-        M[NV*w + k] = M_tt_xy;
-        const real M_tt_xz = sums[2*w + k];
-        M[2*w + k] = M_tt_xz;
-        M[2*NV*w + k] = M_tt_xz;
-        M[(NV + 1)*w + k] = M_tt_yy;
-        const real M_tt_yz = sums[4*w + k];
-        M[(NV + 2)*w + k] = M_tt_yz;
-        M[(2*NV + 1)*w + k] = M_tt_yz;
-        M[(2*NV + 2)*w + k] = M_tt_zz;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xx = sums[6*w + k];
-        M[3*w + k] = M_ta_xx;
-        M[3*NV*w + k] = M_ta_xx;
-        M[4*w + k] = M_ta_xy;
-        M[4*NV*w + k] = M_ta_xy;
-        M[5*w + k] = M_ta_xz;
-        M[5*NV*w + k] = M_ta_xz;
-        M[(NV + 3)*w + k] = M_ta_yx;
-        M[(3*NV + 1)*w + k] = M_ta_yx;
-        const real M_ta_yy = sums[10*w + k];
-        M[(NV + 4)*w + k] = M_ta_yy;
-        M[(4*NV + 1)*w + k] = M_ta_yy;
-        M[(NV + 5)*w + k] = M_ta_yz;
-        M[(5*NV + 1)*w + k] = M_ta_yz;
-        M[(2*NV + 3)*w + k] = M_ta_zx;
-        M[(3*NV + 2)*w + k] = M_ta_zx;
-        M[(2*NV + 4)*w + k] = M_ta_zy;
-        M[(4*NV + 2)*w + k] = M_ta_zy;
-        const real M_ta_zz = sums[14*w + k];
-        M[(2*NV + 5)*w + k] = M_ta_zz;
-        M[(5*NV + 2)*w + k] = M_ta_zz;
-        /* (M_aa) rotational block of M */
-        M[(3*NV + 3)*w + k] = M_aa_xx;
-        M[(3*NV + 4)*w + k] = M_aa_xy;
-        M[(4*NV + 3)*w + k] = M_aa_xy;
-        M[(3*NV + 5)*w + k] = M_aa_xz;
-        M[(5*NV + 3)*w + k] = M_aa_xz;
-        M[(4*NV + 4)*w + k] = M_aa_yy;
-        M[(4*NV + 5)*w + k] = M_aa_yz;
-        M[(5*NV + 4)*w + k] = M_aa_yz;
-        M[(5*NV + 5)*w + k] = M_aa_zz;
-        /* (Z_t) translational part of Z */
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-        Z[2*w + k] = Z_t_z;
-        /* (Z_a) rotational part of Z */
-        Z[3*w + k] = Z_a_x;
-        Z[4*w + k] = Z_a_y;
-        Z[5*w + k] = Z_a_z;
-        t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
-            ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
-            (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
-            ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
-    }
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = M_tt_xx_of_legs + m->platform_mass;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = M_tt_yy_of_legs + m->platform_mass;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = M_tt_zz_of_legs + m->platform_mass;
+    /* (M_ta) */
+    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real h_star_z = s[11*w + k];
+    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real h_star_y = s[10*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yx_of_legs = sums[9*w + k];
+    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_yz_of_legs = sums[11*w + k];
+    const real h_star_x = s[9*w + k];
+    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_zx_of_legs = sums[12*w + k];
+    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zy_of_legs = sums[13*w + k];
+    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    /* (M_aa) */
+    const real J_star_xx = s[12*w + k];
+    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
+    const real J_star_xy = s[13*w + k];
+    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
+    const real J_star_xz = s[14*w + k];
+    const real M_aa_xz_of_legs = sums[17*w + k];
+    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
+    const real J_star_yy = s[15*w + k];
+    const real M_aa_yy_of_legs = sums[18*w + k];
+    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
+    const real J_star_yz = s[16*w + k];
+    const real M_aa_yz_of_legs = sums[19*w + k];
+    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
+    const real J_star_zz = s[17*w + k];
+    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
+    /* (Z_t) */
+    const real Z_p_x = s[18*w + k];
+    const real Z_t_x_of_legs = sums[21*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[19*w + k];
+    const real Z_t_y_of_legs = sums[22*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    const real Z_p_z = s[20*w + k];
+    const real Z_t_z_of_legs = sums[23*w + k];
+    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
+    /* (Z_a) */
+    const real Z_a_x_of_legs = sums[24*w + k];
+    const real Z_q_x = s[21*w + k];
+    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_y_of_legs = sums[25*w + k];
+    const real Z_q_y = s[22*w + k];
+    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_z_of_legs = sums[26*w + k];
+    const real Z_q_z = s[23*w + k];
+    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    const real M_tt_xz = sums[2*w + k];
+    M[2*w + k] = M_tt_xz;
+    M[2*NV*w + k] = M_tt_xz;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_yz = sums[4*w + k];
+    M[(NV + 2)*w + k] = M_tt_yz;
+    M[(2*NV + 1)*w + k] = M_tt_yz;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    /* (M_ta) */
+    const real M_ta_xx = sums[6*w + k];
+    M[3*w + k] = M_ta_xx;
+    M[3*NV*w + k] = M_ta_xx;
+    M[4*w + k] = M_ta_xy;
+    M[4*NV*w + k] = M_ta_xy;
+    M[5*w + k] = M_ta_xz;
+    M[5*NV*w + k] = M_ta_xz;
+    M[(NV + 3)*w + k] = M_ta_yx;
+    M[(3*NV + 1)*w + k] = M_ta_yx;
+    const real M_ta_yy = sums[10*w + k];
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
+    M[(NV + 5)*w + k] = M_ta_yz;
+    M[(5*NV + 1)*w + k] = M_ta_yz;
+    M[(2*NV + 3)*w + k] = M_ta_zx;
+    M[(3*NV + 2)*w + k] = M_ta_zx;
+    M[(2*NV + 4)*w + k] = M_ta_zy;
+    M[(4*NV + 2)*w + k] = M_ta_zy;
+    const real M_ta_zz = sums[14*w + k];
+    M[(2*NV + 5)*w + k] = M_ta_zz;
+    M[(5*NV + 2)*w + k] = M_ta_zz;
+    /* (M_aa) */
+    M[(3*NV + 3)*w + k] = M_aa_xx;
+    M[(3*NV + 4)*w + k] = M_aa_xy;
+    M[(4*NV + 3)*w + k] = M_aa_xy;
+    M[(3*NV + 5)*w + k] = M_aa_xz;
+    M[(5*NV + 3)*w + k] = M_aa_xz;
+    M[(4*NV + 4)*w + k] = M_aa_yy;
+    M[(4*NV + 5)*w + k] = M_aa_yz;
+    M[(5*NV + 4)*w + k] = M_aa_yz;
+    M[(5*NV + 5)*w + k] = M_aa_zz;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    /* (Z_a) */
+    Z[3*w + k] = Z_a_x;
+    Z[4*w + k] = Z_a_y;
+    Z[5*w + k] = Z_a_z;
+    t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
+        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
+        (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
+        ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
 }
 
-INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
+APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, real *Hk, real *constraint_bias, verdict *t)
 {
     real s[24] = {0}, sums[27] = {0};
     real terms_upu[27*LEGS(LEGS_OF_upu)] = {0}, o_upu[15*LEGS(LEGS_OF_upu)] = {0};
-    dynamics_before(m, 1, X, V, s, t);
-    dynamics_legs_upu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_upu), 0, X, V, terms_upu, o_upu);
-    for (size_t leg = 0; leg < LEGS_OF_upu; ++leg) {
-        dynamics_place_upu(1, LEGS(LEGS_OF_upu), o_upu, leg, leg, H, Hk, constraint_bias, t);
+    dynamics_before(m, 1, 0, X, V, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
+        dynamics_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), 0, s, X, V, terms_upu, o_upu);
+    }
+    for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        dynamics_place_upu(1, i, 0, i, LEGS(LEGS_OF_upu), o_upu, H, Hk, constraint_bias, t);
     }
     for (size_t n = 0; n < 27; ++n) {
         sums[n] = total(terms_upu + n*LEGS(LEGS_OF_upu), LEGS_OF_upu);
     }
-    dynamics_after(m, 1, s, sums, M, Z, t);
+    dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
-INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
-    real *H, real *Hk, real *constraint_bias, verdict *t)
+APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
+    real *restrict Z, real *restrict H, real *restrict Hk, real *restrict constraint_bias, verdict
+    *restrict t)
 {
     real s[24*LANES], sums[27*LANES];
     real o_upu[15*LANES];
-    dynamics_before(m, LANES, X, V, s, t);
-    clear(sums, 27*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_upu; ++leg) {
-        dynamics_legs_upu(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_upu);
-        dynamics_place_upu(LANES, LANES, o_upu, leg, 0, H, Hk, constraint_bias, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        dynamics_before(m, LANES, k, X, V, s, t);
     }
-    dynamics_after(m, LANES, s, sums, M, Z, t);
+    clear(sums, 27*LANES);
+    for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_legs_upu(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_upu);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            dynamics_place_upu(LANES, i, k, k, LANES, o_upu, H, Hk, constraint_bias, t);
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        dynamics_after(m, LANES, k, s, sums, M, Z, t);
+    }
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        stage_M_dynamics(m, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = v.h_star_x;
-        s[10*w + k] = v.h_star_y;
-        s[11*w + k] = v.h_star_z;
-        s[12*w + k] = v.J_star_xx;
-        s[13*w + k] = v.J_star_xy;
-        s[14*w + k] = v.J_star_xz;
-        s[15*w + k] = v.J_star_yy;
-        s[16*w + k] = v.J_star_yz;
-        s[17*w + k] = v.J_star_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    stage_M_dynamics(m, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = v.h_star_x;
+    s[10*w + k] = v.h_star_y;
+    s[11*w + k] = v.h_star_z;
+    s[12*w + k] = v.J_star_xx;
+    s[13*w + k] = v.J_star_xy;
+    s[14*w + k] = v.J_star_xz;
+    s[15*w + k] = v.J_star_yy;
+    s[16*w + k] = v.J_star_yz;
+    s[17*w + k] = v.J_star_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void M_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void M_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_upu v;
-        stage_upu_X(m, w, i, j, s, X, &v);
-        stage_upu_M_dynamics(m, i, &v);
-        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real upu_n_m1_t_6 = v.upu_c_1*v.upu_e_1_in_axes2_x;
-        const real upu_n_m1_t_7 = v.upu_e_1_in_axes2_x*v.upu_s_1;
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-        const real axis_y_upu_axes2_x = upu_base_frame_xx*upu_n_m1_t_6 +
-            upu_base_frame_xy*upu_n_m1_t_7 - upu_base_frame_xz*v.upu_c_2;
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-        const real axis_y_upu_axes2_y = upu_base_frame_yx*upu_n_m1_t_6 +
-            upu_base_frame_yy*upu_n_m1_t_7 - upu_base_frame_yz*v.upu_c_2;
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real axis_y_upu_axes2_z = upu_base_frame_zx*upu_n_m1_t_6 +
-            upu_base_frame_zy*upu_n_m1_t_7 - upu_base_frame_zz*v.upu_c_2;
-        const real axis_x_upu_axes2_x = axis_y_upu_axes2_y*v.axis_z_upu_axes2_z -
-            axis_y_upu_axes2_z*v.axis_z_upu_axes2_y;
-        const real axis_x_upu_axes2_y = axis_y_upu_axes2_z*v.axis_z_upu_axes2_x -
-            axis_y_upu_axes2_x*v.axis_z_upu_axes2_z;
-        const real axis_x_upu_axes2_z = axis_y_upu_axes2_x*v.axis_z_upu_axes2_y -
-            axis_y_upu_axes2_y*v.axis_z_upu_axes2_x;
-        const real upu_n_m1_x = axis_y_upu_axes2_x*v.upu_n_m1_in_axes2_y -
-            axis_x_upu_axes2_x*v.upu_end_p1_in_axes2_y;
-        const real upu_n_m1_y = axis_y_upu_axes2_y*v.upu_n_m1_in_axes2_y -
-            axis_x_upu_axes2_y*v.upu_end_p1_in_axes2_y;
-        const real upu_n_m1_z = axis_y_upu_axes2_z*v.upu_n_m1_in_axes2_y -
-            axis_x_upu_axes2_z*v.upu_end_p1_in_axes2_y;
-        /* (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
-           balances the leg's inertia and weight along all degrees of freedom */
-        const real upu_dalpha_G_m1_y = axis_x_upu_axes2_y*v.upu_dalpha_G_m1_in_axes2_x +
-            axis_y_upu_axes2_y*v.upu_dalpha_G_m1_in_axes2_y;
-        const real upu_dalpha_G_m1_z = axis_x_upu_axes2_z*v.upu_dalpha_G_m1_in_axes2_x +
-            axis_y_upu_axes2_z*v.upu_dalpha_G_m1_in_axes2_y;
-        /* (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
-           the leg's inertia and weight along all degrees of freedom */
-        const real upu_d_G_m1_x = axis_x_upu_axes2_x*v.upu_d_G_m1_in_axes2_x -
-            axis_y_upu_axes2_x*v.upu_d_G_m1_t - v.axis_z_upu_axes2_x*v.upu_d_G_m1_t_2;
-        const real upu_d_G_m1_y = axis_x_upu_axes2_y*v.upu_d_G_m1_in_axes2_x -
-            axis_y_upu_axes2_y*v.upu_d_G_m1_t - v.axis_z_upu_axes2_y*v.upu_d_G_m1_t_2;
-        const real upu_d_G_m1_z = axis_x_upu_axes2_z*v.upu_d_G_m1_in_axes2_x -
-            axis_y_upu_axes2_z*v.upu_d_G_m1_t - v.axis_z_upu_axes2_z*v.upu_d_G_m1_t_2;
-        /* (upu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
-        const real upu_d_G_m_xx = upu_d_G_m1_x*upu_n_m1_x;
-        const real upu_d_G_m_xy = upu_d_G_m1_y*upu_n_m1_x;
-        const real upu_d_G_m_xz = upu_d_G_m1_z*upu_n_m1_x;
-        const real upu_d_G_m_yx = upu_d_G_m1_x*upu_n_m1_y;
-        /* (upu-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real upu_Q_t_5 = axis_x_upu_axes2_x*v.upu_d_phi_3_in_axes2_xy +
-            axis_y_upu_axes2_x*v.upu_Q_t_2 + v.axis_z_upu_axes2_x*v.upu_d_G_in_axes2_yz;
-        const real upu_Q_t_6 = axis_x_upu_axes2_y*v.upu_d_phi_3_in_axes2_xy +
-            axis_y_upu_axes2_y*v.upu_Q_t_2 + v.axis_z_upu_axes2_y*v.upu_d_G_in_axes2_yz;
-        const real upu_Q_t_7 = axis_x_upu_axes2_z*v.upu_d_phi_3_in_axes2_xy +
-            axis_y_upu_axes2_z*v.upu_Q_t_2 + v.axis_z_upu_axes2_z*v.upu_d_G_in_axes2_yz;
-        const real upu_Q_t_8 = v.axis_z_upu_axes2_x*v.upu_Q_t_4 -
-            axis_x_upu_axes2_x*v.upu_d_c_in_axes2_xz;
-        const real upu_Q_t_9 = v.axis_z_upu_axes2_y*v.upu_Q_t_4 -
-            axis_x_upu_axes2_y*v.upu_d_c_in_axes2_xz;
-        const real upu_Q_t_10 = v.axis_z_upu_axes2_z*v.upu_Q_t_4 -
-            axis_x_upu_axes2_z*v.upu_d_c_in_axes2_xz;
-        const real upu_Q_t_11 = axis_y_upu_axes2_x*upu_Q_t_5 + v.axis_z_upu_axes2_x*upu_Q_t_8;
-        const real upu_link3_mass = m->upu_link3_mass[i];
-        const real upu_Q_xx = 2*upu_Q_t_11 + upu_link3_mass;
-        const real upu_Q_xy = axis_y_upu_axes2_x*upu_Q_t_6 + axis_y_upu_axes2_y*upu_Q_t_5 +
-            v.axis_z_upu_axes2_x*upu_Q_t_9 + v.axis_z_upu_axes2_y*upu_Q_t_8;
-        const real upu_Q_xz = axis_y_upu_axes2_x*upu_Q_t_7 + axis_y_upu_axes2_z*upu_Q_t_5 +
-            v.axis_z_upu_axes2_x*upu_Q_t_10 + v.axis_z_upu_axes2_z*upu_Q_t_8;
-        const real upu_Q_t_12 = axis_y_upu_axes2_y*upu_Q_t_6 + v.axis_z_upu_axes2_y*upu_Q_t_9;
-        const real upu_Q_yy = 2*upu_Q_t_12 + upu_link3_mass;
-        const real upu_Q_yz = axis_y_upu_axes2_y*upu_Q_t_7 + axis_y_upu_axes2_z*upu_Q_t_6 +
-            v.axis_z_upu_axes2_y*upu_Q_t_10 + v.axis_z_upu_axes2_z*upu_Q_t_9;
-        const real upu_Q_t_13 = axis_y_upu_axes2_z*upu_Q_t_7 + v.axis_z_upu_axes2_z*upu_Q_t_10;
-        const real upu_Q_zz = 2*upu_Q_t_13 + upu_link3_mass;
-        /* (M_ta) coupling block of M */
-        const real upu_M_ta_t = axis_x_upu_axes2_x*v.upu_dalpha_c_in_axes2_xx -
-            axis_y_upu_axes2_x*v.upu_dalpha_G_in_axes2_yx -
-            v.axis_z_upu_axes2_x*v.upu_dalpha_G_in_axes2_zx;
-        const real upu_M_ta_t_2 = axis_x_upu_axes2_y*v.upu_dalpha_c_in_axes2_xx -
-            axis_y_upu_axes2_y*v.upu_dalpha_G_in_axes2_yx -
-            v.axis_z_upu_axes2_y*v.upu_dalpha_G_in_axes2_zx;
-        const real upu_M_ta_t_3 = axis_x_upu_axes2_z*v.upu_dalpha_c_in_axes2_xx -
-            axis_y_upu_axes2_z*v.upu_dalpha_G_in_axes2_yx -
-            v.axis_z_upu_axes2_z*v.upu_dalpha_G_in_axes2_zx;
-        const real upu_M_ta_t_4 = -axis_x_upu_axes2_x*v.upu_dalpha_phi_3_in_axes2_xy -
-            axis_y_upu_axes2_x*v.upu_dalpha_G_in_axes2_yy -
-            v.axis_z_upu_axes2_x*v.upu_dalpha_G_in_axes2_zy;
-        const real upu_M_ta_t_5 = -axis_x_upu_axes2_y*v.upu_dalpha_phi_3_in_axes2_xy -
-            axis_y_upu_axes2_y*v.upu_dalpha_G_in_axes2_yy -
-            v.axis_z_upu_axes2_y*v.upu_dalpha_G_in_axes2_zy;
-        const real upu_M_ta_t_6 = -axis_x_upu_axes2_z*v.upu_dalpha_phi_3_in_axes2_xy -
-            axis_y_upu_axes2_z*v.upu_dalpha_G_in_axes2_yy -
-            v.axis_z_upu_axes2_z*v.upu_dalpha_G_in_axes2_zy;
-        const real upu_M_ta_t_7 = upu_Q_xy*v.upu_q_z;
-        const real upu_M_ta_t_8 = upu_Q_xz*v.upu_q_y;
-        const real upu_M_ta_t_9 = upu_Q_yz*v.upu_q_x;
-        const real upu_M_ta_t_10 = upu_M_ta_t_8 - upu_M_ta_t_7 - axis_x_upu_axes2_x*upu_M_ta_t -
-            axis_y_upu_axes2_x*upu_M_ta_t_4;
-        const real upu_M_ta_t_11 = upu_Q_xx*v.upu_q_z - axis_x_upu_axes2_y*upu_M_ta_t -
-            axis_y_upu_axes2_y*upu_M_ta_t_4 - upu_Q_xz*v.upu_q_x;
-        const real upu_M_ta_t_12 = upu_Q_xy*v.upu_q_x - axis_x_upu_axes2_z*upu_M_ta_t -
-            axis_y_upu_axes2_z*upu_M_ta_t_4 - upu_Q_xx*v.upu_q_y;
-        const real upu_M_ta_t_13 = upu_Q_yz*v.upu_q_y - axis_x_upu_axes2_x*upu_M_ta_t_2 -
-            axis_y_upu_axes2_x*upu_M_ta_t_5 - upu_Q_yy*v.upu_q_z;
-        const real upu_M_ta_t_14 = upu_M_ta_t_7 - upu_M_ta_t_9 - axis_x_upu_axes2_y*upu_M_ta_t_2 -
-            axis_y_upu_axes2_y*upu_M_ta_t_5;
-        const real upu_M_ta_t_15 = upu_Q_yy*v.upu_q_x - axis_x_upu_axes2_z*upu_M_ta_t_2 -
-            axis_y_upu_axes2_z*upu_M_ta_t_5 - upu_Q_xy*v.upu_q_y;
-        const real upu_M_ta_t_16 = upu_Q_zz*v.upu_q_y - axis_x_upu_axes2_x*upu_M_ta_t_3 -
-            axis_y_upu_axes2_x*upu_M_ta_t_6 - upu_Q_yz*v.upu_q_z;
-        const real upu_M_ta_t_17 = upu_Q_xz*v.upu_q_z - axis_x_upu_axes2_y*upu_M_ta_t_3 -
-            axis_y_upu_axes2_y*upu_M_ta_t_6 - upu_Q_zz*v.upu_q_x;
-        const real upu_M_ta_t_18 = upu_M_ta_t_9 - upu_M_ta_t_8 - axis_x_upu_axes2_z*upu_M_ta_t_3 -
-            axis_y_upu_axes2_z*upu_M_ta_t_6;
-        /* (M_aa) rotational block of M */
-        const real upu_M_aa_t = upu_M_ta_t_16*v.upu_q_y + upu_d_G_m_xz*v.upu_q_y +
-            upu_n_m1_x*(axis_x_upu_axes2_x*v.upu_dalpha_G_m1_in_axes2_x +
-            axis_y_upu_axes2_x*v.upu_dalpha_G_m1_in_axes2_y) - upu_M_ta_t_13*v.upu_q_z -
-            upu_d_G_m_xy*v.upu_q_z;
-        const real upu_M_aa_t_2 = upu_M_ta_t_17*v.upu_q_y + upu_d_G_m_xx*v.upu_q_z +
-            upu_dalpha_G_m1_y*upu_n_m1_x - upu_M_ta_t_14*v.upu_q_z - upu_d_G_m_xz*v.upu_q_x;
-        const real upu_M_aa_t_3 = upu_M_ta_t_18*v.upu_q_y + upu_d_G_m_xy*v.upu_q_x +
-            upu_dalpha_G_m1_z*upu_n_m1_x - upu_M_ta_t_15*v.upu_q_z - upu_d_G_m_xx*v.upu_q_y;
-        const real upu_M_aa_t_4 = upu_M_ta_t_11*v.upu_q_z + upu_d_G_m_yx*v.upu_q_z +
-            upu_dalpha_G_m1_y*upu_n_m1_y - upu_M_ta_t_17*v.upu_q_x -
-            upu_d_G_m1_z*upu_n_m1_y*v.upu_q_x;
-        const real upu_M_aa_t_5 = upu_M_ta_t_12*v.upu_q_z + upu_dalpha_G_m1_z*upu_n_m1_y +
-            upu_d_G_m1_y*upu_n_m1_y*v.upu_q_x - upu_M_ta_t_18*v.upu_q_x - upu_d_G_m_yx*v.upu_q_y;
-        const real upu_M_aa_t_6 = upu_M_ta_t_15*v.upu_q_x + upu_dalpha_G_m1_z*upu_n_m1_z +
-            upu_d_G_m1_y*upu_n_m1_z*v.upu_q_x - upu_M_ta_t_12*v.upu_q_y -
-            upu_d_G_m1_x*upu_n_m1_z*v.upu_q_y;
-        /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, upu_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, upu_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, upu_Q_xz);  /* M_tt_xz */
-        gather(&terms[3*count + k], add, upu_Q_yy);  /* M_tt_yy_of_legs */
-        gather(&terms[4*count + k], add, upu_Q_yz);  /* M_tt_yz */
-        gather(&terms[5*count + k], add, upu_Q_zz);  /* M_tt_zz_of_legs */
-        /* (M_ta) coupling block of M */
-        gather(&terms[6*count + k], add, upu_M_ta_t_10);  /* M_ta_xx */
-        gather(&terms[7*count + k], add, upu_M_ta_t_11);  /* M_ta_xy_of_legs */
-        gather(&terms[8*count + k], add, upu_M_ta_t_12);  /* M_ta_xz_of_legs */
-        gather(&terms[9*count + k], add, upu_M_ta_t_13);  /* M_ta_yx_of_legs */
-        gather(&terms[10*count + k], add, upu_M_ta_t_14);  /* M_ta_yy */
-        gather(&terms[11*count + k], add, upu_M_ta_t_15);  /* M_ta_yz_of_legs */
-        gather(&terms[12*count + k], add, upu_M_ta_t_16);  /* M_ta_zx_of_legs */
-        gather(&terms[13*count + k], add, upu_M_ta_t_17);  /* M_ta_zy_of_legs */
-        gather(&terms[14*count + k], add, upu_M_ta_t_18);  /* M_ta_zz */
-        /* (M_aa) rotational block of M */
-        gather(&terms[15*count + k], add, upu_M_aa_t);  /* M_aa_xx_of_legs */
-        gather(&terms[16*count + k], add, upu_M_aa_t_2);  /* M_aa_xy_of_legs */
-        gather(&terms[17*count + k], add, upu_M_aa_t_3);  /* M_aa_xz_of_legs */
-        gather(&terms[18*count + k], add, upu_M_aa_t_4);  /* M_aa_yy_of_legs */
-        gather(&terms[19*count + k], add, upu_M_aa_t_5);  /* M_aa_yz_of_legs */
-        gather(&terms[20*count + k], add, upu_M_aa_t_6);  /* M_aa_zz_of_legs */
-        o[0*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
-            LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
-            LEAST_3);
-    }
+    values_upu v;
+    stage_upu_X(m, w, i, j, s, X, &v);
+    stage_upu_M_dynamics(m, i, &v);
+    /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+    const real upu_n_m1_t_6 = v.upu_c_1*v.upu_e_1_in_axes2_x;
+    const real upu_n_m1_t_7 = v.upu_e_1_in_axes2_x*v.upu_s_1;
+    const real axis_y_upu_axes2_x = m->upu_base_frame_xx[i]*upu_n_m1_t_6 +
+        m->upu_base_frame_xy[i]*upu_n_m1_t_7 - m->upu_base_frame_xz[i]*v.upu_c_2;
+    const real axis_y_upu_axes2_y = m->upu_base_frame_yx[i]*upu_n_m1_t_6 +
+        m->upu_base_frame_yy[i]*upu_n_m1_t_7 - m->upu_base_frame_yz[i]*v.upu_c_2;
+    const real axis_y_upu_axes2_z = m->upu_base_frame_zx[i]*upu_n_m1_t_6 +
+        m->upu_base_frame_zy[i]*upu_n_m1_t_7 - m->upu_base_frame_zz[i]*v.upu_c_2;
+    const real axis_x_upu_axes2_x = axis_y_upu_axes2_y*v.axis_z_upu_axes2_z -
+        axis_y_upu_axes2_z*v.axis_z_upu_axes2_y;
+    const real axis_x_upu_axes2_y = axis_y_upu_axes2_z*v.axis_z_upu_axes2_x -
+        axis_y_upu_axes2_x*v.axis_z_upu_axes2_z;
+    const real axis_x_upu_axes2_z = axis_y_upu_axes2_x*v.axis_z_upu_axes2_y -
+        axis_y_upu_axes2_y*v.axis_z_upu_axes2_x;
+    const real upu_n_m1_x = axis_y_upu_axes2_x*v.upu_n_m1_in_axes2_y -
+        axis_x_upu_axes2_x*v.upu_end_p1_in_axes2_y;
+    const real upu_n_m1_y = axis_y_upu_axes2_y*v.upu_n_m1_in_axes2_y -
+        axis_x_upu_axes2_y*v.upu_end_p1_in_axes2_y;
+    const real upu_n_m1_z = axis_y_upu_axes2_z*v.upu_n_m1_in_axes2_y -
+        axis_x_upu_axes2_z*v.upu_end_p1_in_axes2_y;
+    /* (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
+       balances the leg's inertia and weight along all degrees of freedom */
+    const real upu_dalpha_G_m1_y = axis_x_upu_axes2_y*v.upu_dalpha_G_m1_in_axes2_x +
+        axis_y_upu_axes2_y*v.upu_dalpha_G_m1_in_axes2_y;
+    const real upu_dalpha_G_m1_z = axis_x_upu_axes2_z*v.upu_dalpha_G_m1_in_axes2_x +
+        axis_y_upu_axes2_z*v.upu_dalpha_G_m1_in_axes2_y;
+    /* (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
+       the leg's inertia and weight along all degrees of freedom */
+    const real upu_d_G_m1_x = axis_x_upu_axes2_x*v.upu_d_G_m1_in_axes2_x -
+        axis_y_upu_axes2_x*v.upu_d_G_m1_t - v.axis_z_upu_axes2_x*v.upu_d_G_m1_t_2;
+    const real upu_d_G_m1_y = axis_x_upu_axes2_y*v.upu_d_G_m1_in_axes2_x -
+        axis_y_upu_axes2_y*v.upu_d_G_m1_t - v.axis_z_upu_axes2_y*v.upu_d_G_m1_t_2;
+    const real upu_d_G_m1_z = axis_x_upu_axes2_z*v.upu_d_G_m1_in_axes2_x -
+        axis_y_upu_axes2_z*v.upu_d_G_m1_t - v.axis_z_upu_axes2_z*v.upu_d_G_m1_t_2;
+    /* (upu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
+       the leg's inertia and weight along all degrees of freedom */
+    const real upu_d_G_m_xx = upu_d_G_m1_x*upu_n_m1_x;
+    const real upu_d_G_m_xy = upu_d_G_m1_y*upu_n_m1_x;
+    const real upu_d_G_m_xz = upu_d_G_m1_z*upu_n_m1_x;
+    const real upu_d_G_m_yx = upu_d_G_m1_x*upu_n_m1_y;
+    /* (upu-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real upu_Q_t_5 = axis_x_upu_axes2_x*v.upu_d_phi_3_in_axes2_xy +
+        axis_y_upu_axes2_x*v.upu_Q_t_2 + v.axis_z_upu_axes2_x*v.upu_d_G_in_axes2_yz;
+    const real upu_Q_t_6 = axis_x_upu_axes2_y*v.upu_d_phi_3_in_axes2_xy +
+        axis_y_upu_axes2_y*v.upu_Q_t_2 + v.axis_z_upu_axes2_y*v.upu_d_G_in_axes2_yz;
+    const real upu_Q_t_7 = axis_x_upu_axes2_z*v.upu_d_phi_3_in_axes2_xy +
+        axis_y_upu_axes2_z*v.upu_Q_t_2 + v.axis_z_upu_axes2_z*v.upu_d_G_in_axes2_yz;
+    const real upu_Q_t_8 = v.axis_z_upu_axes2_x*v.upu_Q_t_4 -
+        axis_x_upu_axes2_x*v.upu_d_c_in_axes2_xz;
+    const real upu_Q_t_9 = v.axis_z_upu_axes2_y*v.upu_Q_t_4 -
+        axis_x_upu_axes2_y*v.upu_d_c_in_axes2_xz;
+    const real upu_Q_t_10 = v.axis_z_upu_axes2_z*v.upu_Q_t_4 -
+        axis_x_upu_axes2_z*v.upu_d_c_in_axes2_xz;
+    const real upu_Q_t_11 = axis_y_upu_axes2_x*upu_Q_t_5 + v.axis_z_upu_axes2_x*upu_Q_t_8;
+    const real upu_Q_xx = 2*upu_Q_t_11 + m->upu_link3_mass[i];
+    const real upu_Q_xy = axis_y_upu_axes2_x*upu_Q_t_6 + axis_y_upu_axes2_y*upu_Q_t_5 +
+        v.axis_z_upu_axes2_x*upu_Q_t_9 + v.axis_z_upu_axes2_y*upu_Q_t_8;
+    const real upu_Q_xz = axis_y_upu_axes2_x*upu_Q_t_7 + axis_y_upu_axes2_z*upu_Q_t_5 +
+        v.axis_z_upu_axes2_x*upu_Q_t_10 + v.axis_z_upu_axes2_z*upu_Q_t_8;
+    const real upu_Q_t_12 = axis_y_upu_axes2_y*upu_Q_t_6 + v.axis_z_upu_axes2_y*upu_Q_t_9;
+    const real upu_Q_yy = 2*upu_Q_t_12 + m->upu_link3_mass[i];
+    const real upu_Q_yz = axis_y_upu_axes2_y*upu_Q_t_7 + axis_y_upu_axes2_z*upu_Q_t_6 +
+        v.axis_z_upu_axes2_y*upu_Q_t_10 + v.axis_z_upu_axes2_z*upu_Q_t_9;
+    const real upu_Q_t_13 = axis_y_upu_axes2_z*upu_Q_t_7 + v.axis_z_upu_axes2_z*upu_Q_t_10;
+    const real upu_Q_zz = 2*upu_Q_t_13 + m->upu_link3_mass[i];
+    /* (M_ta) coupling block of M */
+    const real upu_M_ta_t = axis_x_upu_axes2_x*v.upu_dalpha_c_in_axes2_xx -
+        axis_y_upu_axes2_x*v.upu_dalpha_G_in_axes2_yx -
+        v.axis_z_upu_axes2_x*v.upu_dalpha_G_in_axes2_zx;
+    const real upu_M_ta_t_2 = axis_x_upu_axes2_y*v.upu_dalpha_c_in_axes2_xx -
+        axis_y_upu_axes2_y*v.upu_dalpha_G_in_axes2_yx -
+        v.axis_z_upu_axes2_y*v.upu_dalpha_G_in_axes2_zx;
+    const real upu_M_ta_t_3 = axis_x_upu_axes2_z*v.upu_dalpha_c_in_axes2_xx -
+        axis_y_upu_axes2_z*v.upu_dalpha_G_in_axes2_yx -
+        v.axis_z_upu_axes2_z*v.upu_dalpha_G_in_axes2_zx;
+    const real upu_M_ta_t_4 = -axis_x_upu_axes2_x*v.upu_dalpha_phi_3_in_axes2_xy -
+        axis_y_upu_axes2_x*v.upu_dalpha_G_in_axes2_yy -
+        v.axis_z_upu_axes2_x*v.upu_dalpha_G_in_axes2_zy;
+    const real upu_M_ta_t_5 = -axis_x_upu_axes2_y*v.upu_dalpha_phi_3_in_axes2_xy -
+        axis_y_upu_axes2_y*v.upu_dalpha_G_in_axes2_yy -
+        v.axis_z_upu_axes2_y*v.upu_dalpha_G_in_axes2_zy;
+    const real upu_M_ta_t_6 = -axis_x_upu_axes2_z*v.upu_dalpha_phi_3_in_axes2_xy -
+        axis_y_upu_axes2_z*v.upu_dalpha_G_in_axes2_yy -
+        v.axis_z_upu_axes2_z*v.upu_dalpha_G_in_axes2_zy;
+    const real upu_M_ta_t_7 = upu_Q_xy*v.upu_q_z;
+    const real upu_M_ta_t_8 = upu_Q_xz*v.upu_q_y;
+    const real upu_M_ta_t_9 = upu_Q_yz*v.upu_q_x;
+    const real upu_M_ta_t_10 = upu_M_ta_t_8 - upu_M_ta_t_7 - axis_x_upu_axes2_x*upu_M_ta_t -
+        axis_y_upu_axes2_x*upu_M_ta_t_4;
+    const real upu_M_ta_t_11 = upu_Q_xx*v.upu_q_z - axis_x_upu_axes2_y*upu_M_ta_t -
+        axis_y_upu_axes2_y*upu_M_ta_t_4 - upu_Q_xz*v.upu_q_x;
+    const real upu_M_ta_t_12 = upu_Q_xy*v.upu_q_x - axis_x_upu_axes2_z*upu_M_ta_t -
+        axis_y_upu_axes2_z*upu_M_ta_t_4 - upu_Q_xx*v.upu_q_y;
+    const real upu_M_ta_t_13 = upu_Q_yz*v.upu_q_y - axis_x_upu_axes2_x*upu_M_ta_t_2 -
+        axis_y_upu_axes2_x*upu_M_ta_t_5 - upu_Q_yy*v.upu_q_z;
+    const real upu_M_ta_t_14 = upu_M_ta_t_7 - upu_M_ta_t_9 - axis_x_upu_axes2_y*upu_M_ta_t_2 -
+        axis_y_upu_axes2_y*upu_M_ta_t_5;
+    const real upu_M_ta_t_15 = upu_Q_yy*v.upu_q_x - axis_x_upu_axes2_z*upu_M_ta_t_2 -
+        axis_y_upu_axes2_z*upu_M_ta_t_5 - upu_Q_xy*v.upu_q_y;
+    const real upu_M_ta_t_16 = upu_Q_zz*v.upu_q_y - axis_x_upu_axes2_x*upu_M_ta_t_3 -
+        axis_y_upu_axes2_x*upu_M_ta_t_6 - upu_Q_yz*v.upu_q_z;
+    const real upu_M_ta_t_17 = upu_Q_xz*v.upu_q_z - axis_x_upu_axes2_y*upu_M_ta_t_3 -
+        axis_y_upu_axes2_y*upu_M_ta_t_6 - upu_Q_zz*v.upu_q_x;
+    const real upu_M_ta_t_18 = upu_M_ta_t_9 - upu_M_ta_t_8 - axis_x_upu_axes2_z*upu_M_ta_t_3 -
+        axis_y_upu_axes2_z*upu_M_ta_t_6;
+    /* (M_aa) rotational block of M */
+    const real upu_M_aa_t = upu_M_ta_t_16*v.upu_q_y + upu_d_G_m_xz*v.upu_q_y +
+        upu_n_m1_x*(axis_x_upu_axes2_x*v.upu_dalpha_G_m1_in_axes2_x +
+        axis_y_upu_axes2_x*v.upu_dalpha_G_m1_in_axes2_y) - upu_M_ta_t_13*v.upu_q_z -
+        upu_d_G_m_xy*v.upu_q_z;
+    const real upu_M_aa_t_2 = upu_M_ta_t_17*v.upu_q_y + upu_d_G_m_xx*v.upu_q_z +
+        upu_dalpha_G_m1_y*upu_n_m1_x - upu_M_ta_t_14*v.upu_q_z - upu_d_G_m_xz*v.upu_q_x;
+    const real upu_M_aa_t_3 = upu_M_ta_t_18*v.upu_q_y + upu_d_G_m_xy*v.upu_q_x +
+        upu_dalpha_G_m1_z*upu_n_m1_x - upu_M_ta_t_15*v.upu_q_z - upu_d_G_m_xx*v.upu_q_y;
+    const real upu_M_aa_t_4 = upu_M_ta_t_11*v.upu_q_z + upu_d_G_m_yx*v.upu_q_z +
+        upu_dalpha_G_m1_y*upu_n_m1_y - upu_M_ta_t_17*v.upu_q_x -
+        upu_d_G_m1_z*upu_n_m1_y*v.upu_q_x;
+    const real upu_M_aa_t_5 = upu_M_ta_t_12*v.upu_q_z + upu_dalpha_G_m1_z*upu_n_m1_y +
+        upu_d_G_m1_y*upu_n_m1_y*v.upu_q_x - upu_M_ta_t_18*v.upu_q_x - upu_d_G_m_yx*v.upu_q_y;
+    const real upu_M_aa_t_6 = upu_M_ta_t_15*v.upu_q_x + upu_dalpha_G_m1_z*upu_n_m1_z +
+        upu_d_G_m1_y*upu_n_m1_z*v.upu_q_x - upu_M_ta_t_12*v.upu_q_y -
+        upu_d_G_m1_x*upu_n_m1_z*v.upu_q_y;
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, upu_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, upu_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, upu_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, upu_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, upu_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, upu_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) */
+    gather(&terms[6*count + k], add, upu_M_ta_t_10);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, upu_M_ta_t_11);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, upu_M_ta_t_12);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, upu_M_ta_t_13);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, upu_M_ta_t_14);  /* M_ta_yy */
+    gather(&terms[11*count + k], add, upu_M_ta_t_15);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, upu_M_ta_t_16);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, upu_M_ta_t_17);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, upu_M_ta_t_18);  /* M_ta_zz */
+    /* (M_aa) */
+    gather(&terms[15*count + k], add, upu_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, upu_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, upu_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, upu_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, upu_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, upu_M_aa_t_6);  /* M_aa_zz_of_legs */
+    o[0*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
+        LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
+        LEAST_3);
 }
 
-INLINE void M_place_upu(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void M_place_upu(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o[0*count + first + k];
-    }
+    t->singular[k] += o[0*count + at];
 }
 
-INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums, real *M, verdict
-    *t)
+INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
+    *M, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (M_tt) translational block of M */
-        const real M_tt_xx_of_legs = sums[0*w + k];
-        const real platform_mass = m->platform_mass;
-        const real M_tt_xx = M_tt_xx_of_legs + platform_mass;
-        const real M_tt_yy_of_legs = sums[3*w + k];
-        const real M_tt_yy = M_tt_yy_of_legs + platform_mass;
-        const real M_tt_zz_of_legs = sums[5*w + k];
-        const real M_tt_zz = M_tt_zz_of_legs + platform_mass;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[11*w + k];
-        const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
-        const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[10*w + k];
-        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-        const real M_ta_yx_of_legs = sums[9*w + k];
-        const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-        const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[9*w + k];
-        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
-        const real M_ta_zx_of_legs = sums[12*w + k];
-        const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
-        const real M_ta_zy_of_legs = sums[13*w + k];
-        const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-        /* (M_aa) rotational block of M */
-        const real J_star_xx = s[12*w + k];
-        const real M_aa_xx_of_legs = sums[15*w + k];
-        const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[13*w + k];
-        const real M_aa_xy_of_legs = sums[16*w + k];
-        const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[14*w + k];
-        const real M_aa_xz_of_legs = sums[17*w + k];
-        const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[15*w + k];
-        const real M_aa_yy_of_legs = sums[18*w + k];
-        const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-        const real J_star_yz = s[16*w + k];
-        const real M_aa_yz_of_legs = sums[19*w + k];
-        const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[17*w + k];
-        const real M_aa_zz_of_legs = sums[20*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-        /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        const real M_tt_xy = sums[1*w + k];
-        M[1*w + k] = M_tt_xy;
-        M[NV*w + k] = M_tt_xy;
-        const real M_tt_xz = sums[2*w + k];
-        M[2*w + k] = M_tt_xz;
-        M[2*NV*w + k] = M_tt_xz;
-        M[(NV + 1)*w + k] = M_tt_yy;
-        const real M_tt_yz = sums[4*w + k];
-        M[(NV + 2)*w + k] = M_tt_yz;
-        M[(2*NV + 1)*w + k] = M_tt_yz;
-        M[(2*NV + 2)*w + k] = M_tt_zz;
-        /* (M_ta) coupling block of M */
-        const real M_ta_xx = sums[6*w + k];
-        M[3*w + k] = M_ta_xx;
-        M[3*NV*w + k] = M_ta_xx;
-        M[4*w + k] = M_ta_xy;
-        M[4*NV*w + k] = M_ta_xy;
-        M[5*w + k] = M_ta_xz;
-        M[5*NV*w + k] = M_ta_xz;
-        M[(NV + 3)*w + k] = M_ta_yx;
-        M[(3*NV + 1)*w + k] = M_ta_yx;
-        const real M_ta_yy = sums[10*w + k];
-        M[(NV + 4)*w + k] = M_ta_yy;
-        M[(4*NV + 1)*w + k] = M_ta_yy;
-        M[(NV + 5)*w + k] = M_ta_yz;
-        M[(5*NV + 1)*w + k] = M_ta_yz;
-        M[(2*NV + 3)*w + k] = M_ta_zx;
-        M[(3*NV + 2)*w + k] = M_ta_zx;
-        M[(2*NV + 4)*w + k] = M_ta_zy;
-        M[(4*NV + 2)*w + k] = M_ta_zy;
-        const real M_ta_zz = sums[14*w + k];
-        M[(2*NV + 5)*w + k] = M_ta_zz;
-        M[(5*NV + 2)*w + k] = M_ta_zz;
-        /* (M_aa) rotational block of M */
-        M[(3*NV + 3)*w + k] = M_aa_xx;
-        M[(3*NV + 4)*w + k] = M_aa_xy;
-        M[(4*NV + 3)*w + k] = M_aa_xy;
-        M[(3*NV + 5)*w + k] = M_aa_xz;
-        M[(5*NV + 3)*w + k] = M_aa_xz;
-        M[(4*NV + 4)*w + k] = M_aa_yy;
-        M[(4*NV + 5)*w + k] = M_aa_yz;
-        M[(5*NV + 4)*w + k] = M_aa_yz;
-        M[(5*NV + 5)*w + k] = M_aa_zz;
-        t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
-            M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
-            (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
-            M_aa_zz))));
-    }
+    /* (M_tt) */
+    const real M_tt_xx_of_legs = sums[0*w + k];
+    const real M_tt_xx = M_tt_xx_of_legs + m->platform_mass;
+    const real M_tt_yy_of_legs = sums[3*w + k];
+    const real M_tt_yy = M_tt_yy_of_legs + m->platform_mass;
+    const real M_tt_zz_of_legs = sums[5*w + k];
+    const real M_tt_zz = M_tt_zz_of_legs + m->platform_mass;
+    /* (M_ta) */
+    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real h_star_z = s[11*w + k];
+    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real h_star_y = s[10*w + k];
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+    const real M_ta_yx_of_legs = sums[9*w + k];
+    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_yz_of_legs = sums[11*w + k];
+    const real h_star_x = s[9*w + k];
+    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_zx_of_legs = sums[12*w + k];
+    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zy_of_legs = sums[13*w + k];
+    const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    /* (M_aa) */
+    const real J_star_xx = s[12*w + k];
+    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
+    const real J_star_xy = s[13*w + k];
+    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
+    const real J_star_xz = s[14*w + k];
+    const real M_aa_xz_of_legs = sums[17*w + k];
+    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
+    const real J_star_yy = s[15*w + k];
+    const real M_aa_yy_of_legs = sums[18*w + k];
+    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
+    const real J_star_yz = s[16*w + k];
+    const real M_aa_yz_of_legs = sums[19*w + k];
+    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
+    const real J_star_zz = s[17*w + k];
+    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
+    /* (M_tt) */
+    M[0*w + k] = M_tt_xx;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
+    const real M_tt_xz = sums[2*w + k];
+    M[2*w + k] = M_tt_xz;
+    M[2*NV*w + k] = M_tt_xz;
+    M[(NV + 1)*w + k] = M_tt_yy;
+    const real M_tt_yz = sums[4*w + k];
+    M[(NV + 2)*w + k] = M_tt_yz;
+    M[(2*NV + 1)*w + k] = M_tt_yz;
+    M[(2*NV + 2)*w + k] = M_tt_zz;
+    /* (M_ta) */
+    const real M_ta_xx = sums[6*w + k];
+    M[3*w + k] = M_ta_xx;
+    M[3*NV*w + k] = M_ta_xx;
+    M[4*w + k] = M_ta_xy;
+    M[4*NV*w + k] = M_ta_xy;
+    M[5*w + k] = M_ta_xz;
+    M[5*NV*w + k] = M_ta_xz;
+    M[(NV + 3)*w + k] = M_ta_yx;
+    M[(3*NV + 1)*w + k] = M_ta_yx;
+    const real M_ta_yy = sums[10*w + k];
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
+    M[(NV + 5)*w + k] = M_ta_yz;
+    M[(5*NV + 1)*w + k] = M_ta_yz;
+    M[(2*NV + 3)*w + k] = M_ta_zx;
+    M[(3*NV + 2)*w + k] = M_ta_zx;
+    M[(2*NV + 4)*w + k] = M_ta_zy;
+    M[(4*NV + 2)*w + k] = M_ta_zy;
+    const real M_ta_zz = sums[14*w + k];
+    M[(2*NV + 5)*w + k] = M_ta_zz;
+    M[(5*NV + 2)*w + k] = M_ta_zz;
+    /* (M_aa) */
+    M[(3*NV + 3)*w + k] = M_aa_xx;
+    M[(3*NV + 4)*w + k] = M_aa_xy;
+    M[(4*NV + 3)*w + k] = M_aa_xy;
+    M[(3*NV + 5)*w + k] = M_aa_xz;
+    M[(5*NV + 3)*w + k] = M_aa_xz;
+    M[(4*NV + 4)*w + k] = M_aa_yy;
+    M[(4*NV + 5)*w + k] = M_aa_yz;
+    M[(5*NV + 4)*w + k] = M_aa_yz;
+    M[(5*NV + 5)*w + k] = M_aa_zz;
+    t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
+        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
+        (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+        M_aa_zz))));
 }
 
-INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
+APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
     real s[18] = {0}, sums[21] = {0};
     real terms_upu[21*LEGS(LEGS_OF_upu)] = {0}, o_upu[LEGS(LEGS_OF_upu)] = {0};
-    M_before(m, 1, X, s, t);
-    M_legs_upu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_upu), 0, X, terms_upu, o_upu);
-    for (size_t leg = 0; leg < LEGS_OF_upu; ++leg) {
-        M_place_upu(1, LEGS(LEGS_OF_upu), o_upu, leg, t);
+    M_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
+        M_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), 0, s, X, terms_upu, o_upu);
+    }
+    for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        M_place_upu(0, i, LEGS(LEGS_OF_upu), o_upu, t);
     }
     for (size_t n = 0; n < 21; ++n) {
         sums[n] = total(terms_upu + n*LEGS(LEGS_OF_upu), LEGS_OF_upu);
     }
-    M_after(m, 1, s, sums, M, t);
+    M_after(m, 1, 0, s, sums, M, t);
 }
 
-INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
+INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verdict *restrict t)
 {
     real s[18*LANES], sums[21*LANES];
     real o_upu[LANES];
-    M_before(m, LANES, X, s, t);
-    clear(sums, 21*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_upu; ++leg) {
-        M_legs_upu(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_upu);
-        M_place_upu(LANES, LANES, o_upu, 0, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        M_before(m, LANES, k, X, s, t);
     }
-    M_after(m, LANES, s, sums, M, t);
+    clear(sums, 21*LANES);
+    for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            M_legs_upu(m, LANES, i, k, k, LANES, 1, s, X, sums, o_upu);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            M_place_upu(k, k, LANES, o_upu, t);
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        M_after(m, LANES, k, s, sums, M, t);
+    }
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s, verdict
-    *t)
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        stage_V_X(w, k, V, &v);
-        stage_Z_dynamics(m, w, k, V, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = v.Z_p_x;
-        s[10*w + k] = v.Z_p_y;
-        s[11*w + k] = v.Z_p_z;
-        s[12*w + k] = v.Z_q_x;
-        s[13*w + k] = v.Z_q_y;
-        s[14*w + k] = v.Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    stage_V_X(w, k, V, &v);
+    stage_Z_dynamics(m, w, k, V, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = v.Z_p_x;
+    s[10*w + k] = v.Z_p_y;
+    s[11*w + k] = v.Z_p_z;
+    s[12*w + k] = v.Z_q_x;
+    s[13*w + k] = v.Z_q_y;
+    s[14*w + k] = v.Z_q_z;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void Z_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
+INLINE void Z_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_upu v;
-        stage_upu_X(m, w, i, j, s, X, &v);
-        stage_upu_V_X(w, j, V, &v);
-        stage_upu_Z_dynamics(m, w, i, j, V, &v);
-        /* (upu-eta_1) rate at which the joints turn along moment direction 1 */
-        const real omega_x = V[3*w + j];
-        const real omega_y = V[4*w + j];
-        const real omega_z = V[5*w + j];
-        const real upu_eta_1 = omega_x*(v.axis_y_upu_axes2_x*v.upu_n_m1_in_axes2_y -
-            v.axis_x_upu_axes2_x*v.upu_end_p1_in_axes2_y) +
-            omega_y*(v.axis_y_upu_axes2_y*v.upu_n_m1_in_axes2_y -
-            v.axis_x_upu_axes2_y*v.upu_end_p1_in_axes2_y) +
-            omega_z*(v.axis_y_upu_axes2_z*v.upu_n_m1_in_axes2_y -
-            v.axis_x_upu_axes2_z*v.upu_end_p1_in_axes2_y);
-        /* (upu-qd_1) rate of joint 1 */
-        const real upu_qd_1 = v.upu_w_1_in_axes2_z*(v.axis_z_upu_axes2_x*v.upu_S_dot_x +
-            v.axis_z_upu_axes2_y*v.upu_S_dot_y + v.axis_z_upu_axes2_z*v.upu_S_dot_z -
-            upu_eta_1*v.upu_n_c_in_axes2_z);
-        /* (upu-omega_1) angular velocity of link 1 */
-        const real upu_omega_1_in_axes2_x = v.upu_e_1_in_axes2_x*upu_qd_1;
-        const real upu_omega_1_in_axes2_y = -v.upu_c_2*upu_qd_1;
-        /* (upu-W_2) centripetal tensor of link 2 */
-        const real upu_W_2_in_axes2_yz = upu_omega_1_in_axes2_y*v.upu_qd_2;
-        const real upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*v.upu_qd_2;
-        const real upu_W_2_in_axes2_xy = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_y;
-        /* (upu-bias) acceleration of the connection point at zero joint accelerations */
-        const real upu_bias_t_2 = v.upu_bias_t*upu_omega_1_in_axes2_y;
-        const real upu_bias_in_axes2_z = 2*upu_W_2_in_axes2_xz*v.upu_q_3 - upu_bias_t_2;
-        /* (upu-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-           */
-        const real upu_rel_o_in_axes2_z = v.axis_z_upu_axes2_x*v.upu_u_1_x +
-            v.axis_z_upu_axes2_y*v.upu_u_1_y + v.axis_z_upu_axes2_z*v.upu_u_1_z -
-            upu_bias_in_axes2_z;
-        /* (upu-nd_m1) rate of moment direction 1 */
-        const real upu_nd_m1_in_axes2_x = v.upu_end_p1_in_axes2_z*v.upu_omega_in_axes2_x -
-            v.upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x -
-            v.upu_n_m1_in_axes2_y*v.upu_omega_in_axes2_z;
-        const real upu_nd_m1_in_axes2_y = v.upu_end_p1_in_axes2_z*v.upu_omega_in_axes2_y -
-            v.upu_end_p1_in_axes2_y*v.upu_omega_in_axes2_z -
-            v.upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y;
-        /* (upu-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real upu_nu_1_t = upu_W_2_in_axes2_xz*v.upu_n_m1_in_axes2_y +
-            upu_W_2_in_axes2_yz*v.upu_end_p1_in_axes2_y;
-        const real upu_nu_1_t_2 = upu_nd_m1_in_axes2_y*(v.upu_omega_in_axes2_y -
-            upu_omega_1_in_axes2_y) - upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x -
-            v.upu_omega_in_axes2_x) - (v.upu_omega_in_axes2_z -
-            v.upu_qd_2)*(-v.upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
-            v.upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x);
-        const real upu_nu_1 = upu_nu_1_t + upu_nu_1_t_2;
-        /* (upu-qdd_1_o) remainder of: acceleration of joint 1 */
-        const real upu_qdd_1_o_t = v.upu_w_1_in_axes2_z*(v.upu_n_c_in_axes2_z*upu_nu_1 -
-            upu_rel_o_in_axes2_z);
-        /* (upu-alpha_1_o) remainder of: angular acceleration of link 1 */
-        const real upu_alpha_1_o_t = v.upu_e_1_in_axes2_x*upu_qdd_1_o_t;
-        const real upu_alpha_1_o_in_axes2_y = v.upu_c_2*upu_qdd_1_o_t;
-        /* (upu-alpha_2_o) remainder of: angular acceleration of link 2 */
-        const real upu_alpha_2_o_in_axes2_x = upu_W_2_in_axes2_yz - upu_alpha_1_o_t;
-        const real upu_alpha_2_o_in_axes2_y = upu_alpha_1_o_in_axes2_y - upu_W_2_in_axes2_xz;
-        /* (upu-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real upu_B_2_o_in_axes2_xy = 2*upu_W_2_in_axes2_xy - v.upu_B_2_o_in_axes2_yx;
-        const real upu_B_2_o_in_axes2_zx = upu_W_2_in_axes2_xz - upu_alpha_2_o_in_axes2_y;
-        const real upu_B_2_o_in_axes2_zy = upu_W_2_in_axes2_yz + upu_alpha_2_o_in_axes2_x;
-        /* (upu-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-        const real upu_acc_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*v.upu_q_3 - upu_bias_t_2 -
-            v.upu_g_in_axes2_z;
-        /* (upu-f_3_o) remainder of: inertia force of link 3 less its weight */
-        const real upu_f_3_o_t = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x;
-        const real upu_f_3_o_t_2 = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y;
-        const real upu_h_3_in_spec2_x = m->upu_h_3_in_spec2_x[i];
-        const real upu_h_3_in_spec2_y = m->upu_h_3_in_spec2_y[i];
-        const real upu_h_3_in_spec2_z = m->upu_h_3_in_spec2_z[i];
-        const real upu_link3_mass = m->upu_link3_mass[i];
-        const real upu_f_3_o_in_axes2_x = v.upu_acc_3_o_in_axes2_x*upu_link3_mass +
-            upu_alpha_1_o_in_axes2_y*upu_h_3_in_spec2_y - upu_B_2_o_in_axes2_xy*upu_h_3_in_spec2_z
-            - upu_h_3_in_spec2_x*(upu_f_3_o_t_2 + v.upu_f_3_o_t_3);
-        const real upu_f_3_o_in_axes2_y = v.upu_B_2_o_in_axes2_yx*upu_h_3_in_spec2_x +
-            v.upu_acc_3_o_in_axes2_y*upu_link3_mass + upu_alpha_1_o_t*upu_h_3_in_spec2_y +
-            upu_h_3_in_spec2_z*(upu_f_3_o_t + v.upu_f_3_o_t_3);
-        const real upu_f_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*upu_h_3_in_spec2_x +
-            upu_acc_3_o_in_axes2_z*upu_link3_mass - upu_B_2_o_in_axes2_zy*upu_h_3_in_spec2_z -
-            upu_h_3_in_spec2_y*(upu_f_3_o_t + upu_f_3_o_t_2);
-        /* (upu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-           reference points */
-        const real upu_J_group_2_in_axes2_xy = m->upu_J_group_2_in_axes2_xy[i];
-        const real upu_J_group_2_in_axes2_xz = m->upu_J_group_2_in_axes2_xz[i];
-        const real upu_J_group_2_in_axes2_yz = m->upu_J_group_2_in_axes2_yz[i];
-        const real upu_Sigma_2_in_axes2_yy = m->upu_Sigma_2_in_axes2_yy[i];
-        const real upu_Sigma_2_in_axes2_zz = m->upu_Sigma_2_in_axes2_zz[i];
-        const real upu_h_2_in_spec2_y = m->upu_h_2_in_spec2_y[i];
-        const real upu_h_2_in_spec2_z = m->upu_h_2_in_spec2_z[i];
-        const real upu_mu_2_o_in_axes2_x = v.upu_B_2_o_in_axes2_yx*upu_J_group_2_in_axes2_xz +
-            upu_B_2_o_in_axes2_zy*upu_Sigma_2_in_axes2_yy +
-            upu_J_group_2_in_axes2_yz*(upu_f_3_o_t_2 - v.upu_f_3_o_t_3) +
-            v.upu_g_in_axes2_y*upu_h_2_in_spec2_y + v.upu_g_in_axes2_z*upu_h_2_in_spec2_z -
-            upu_B_2_o_in_axes2_zx*upu_J_group_2_in_axes2_xy -
-            upu_Sigma_2_in_axes2_zz*upu_alpha_1_o_t - v.upu_acc_3_o_in_axes2_y*upu_h_3_in_spec2_y
-            - upu_acc_3_o_in_axes2_z*upu_h_3_in_spec2_z;
-        const real upu_Sigma_2_in_axes2_xx = m->upu_Sigma_2_in_axes2_xx[i];
-        const real upu_h_2_in_spec2_x = m->upu_h_2_in_spec2_x[i];
-        const real upu_mu_2_o_in_axes2_y = upu_B_2_o_in_axes2_zy*upu_J_group_2_in_axes2_xy +
-            upu_Sigma_2_in_axes2_zz*upu_alpha_1_o_in_axes2_y +
-            v.upu_acc_3_o_in_axes2_x*upu_h_3_in_spec2_y + v.upu_g_in_axes2_z*upu_h_2_in_spec2_x -
-            upu_B_2_o_in_axes2_xy*upu_J_group_2_in_axes2_yz -
-            upu_B_2_o_in_axes2_zx*upu_Sigma_2_in_axes2_xx - upu_J_group_2_in_axes2_xz*(upu_f_3_o_t
-            - v.upu_f_3_o_t_3) - upu_acc_3_o_in_axes2_z*upu_h_3_in_spec2_x -
-            v.upu_g_in_axes2_x*upu_h_2_in_spec2_y;
-        const real upu_mu_2_o_in_axes2_z = v.upu_B_2_o_in_axes2_yx*upu_Sigma_2_in_axes2_xx +
-            upu_J_group_2_in_axes2_xy*(upu_f_3_o_t - upu_f_3_o_t_2) +
-            upu_J_group_2_in_axes2_yz*upu_alpha_1_o_in_axes2_y +
-            v.upu_acc_3_o_in_axes2_x*upu_h_3_in_spec2_z +
-            v.upu_acc_3_o_in_axes2_y*upu_h_3_in_spec2_x -
-            upu_B_2_o_in_axes2_xy*upu_Sigma_2_in_axes2_yy -
-            upu_J_group_2_in_axes2_xz*upu_alpha_1_o_t - v.upu_g_in_axes2_x*upu_h_2_in_spec2_z -
-            v.upu_g_in_axes2_y*upu_h_2_in_spec2_x;
-        /* (upu-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
-           connection point left out */
-        const real upu_N_2_o_in_axes2_y = upu_mu_2_o_in_axes2_y - upu_f_3_o_in_axes2_z*v.upu_q_3;
-        const real upu_N_2_o_t = upu_N_2_o_in_axes2_y*v.upu_c_2 -
-            v.upu_e_1_in_axes2_x*upu_mu_2_o_in_axes2_x;
-        /* (upu-G_o) remainder of: force at the connection point that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real upu_G_o_in_axes2_y = upu_f_3_o_in_axes2_y +
-            v.inv_upu_q_3*upu_mu_2_o_in_axes2_z;
-        /* (upu-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real upu_G_m1_o = upu_N_2_o_t*v.upu_n_c_in_axes2_z*v.upu_w_1_in_axes2_z;
-        /* (upu-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
-           weight along all degrees of freedom */
-        const real upu_G_m_o_in_axes2_y = upu_G_m1_o*v.upu_n_m1_in_axes2_y;
-        /* (upu-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-           connection point */
-        const real upu_c_o_in_axes2_z = upu_N_2_o_t*v.upu_w_1_in_axes2_z;
-        /* (upu-c_m_o) remainder of: moment of the leg on the platform without actuation */
-        const real upu_c_m_o_in_axes2_x = upu_G_m1_o*v.upu_end_p1_in_axes2_y;
-        /* (upu-U) velocity and gravity terms of the leg force */
-        const real upu_U_x = v.axis_x_upu_axes2_x*upu_f_3_o_in_axes2_x +
-            v.axis_y_upu_axes2_x*upu_G_o_in_axes2_y - v.axis_z_upu_axes2_x*upu_c_o_in_axes2_z;
-        const real upu_U_y = v.axis_x_upu_axes2_y*upu_f_3_o_in_axes2_x +
-            v.axis_y_upu_axes2_y*upu_G_o_in_axes2_y - v.axis_z_upu_axes2_y*upu_c_o_in_axes2_z;
-        const real upu_U_z = v.axis_x_upu_axes2_z*upu_f_3_o_in_axes2_x +
-            v.axis_y_upu_axes2_z*upu_G_o_in_axes2_y - v.axis_z_upu_axes2_z*upu_c_o_in_axes2_z;
-        /* (Z_a) rotational part of Z */
-        const real upu_Z_a_t = v.axis_y_upu_axes2_x*upu_G_m_o_in_axes2_y + upu_U_z*v.upu_q_y -
-            v.axis_x_upu_axes2_x*upu_c_m_o_in_axes2_x - upu_U_y*v.upu_q_z;
-        const real upu_Z_a_t_2 = v.axis_y_upu_axes2_y*upu_G_m_o_in_axes2_y + upu_U_x*v.upu_q_z -
-            v.axis_x_upu_axes2_y*upu_c_m_o_in_axes2_x - upu_U_z*v.upu_q_x;
-        const real upu_Z_a_t_3 = v.axis_y_upu_axes2_z*upu_G_m_o_in_axes2_y + upu_U_y*v.upu_q_x -
-            v.axis_x_upu_axes2_z*upu_c_m_o_in_axes2_x - upu_U_x*v.upu_q_y;
-        /* (Z_t) translational part of Z */
-        gather(&terms[0*count + k], add, upu_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[1*count + k], add, upu_U_y);  /* Z_t_y_of_legs */
-        gather(&terms[2*count + k], add, upu_U_z);  /* Z_t_z_of_legs */
-        /* (Z_a) rotational part of Z */
-        gather(&terms[3*count + k], add, upu_Z_a_t);  /* Z_a_x_of_legs */
-        gather(&terms[4*count + k], add, upu_Z_a_t_2);  /* Z_a_y_of_legs */
-        gather(&terms[5*count + k], add, upu_Z_a_t_3);  /* Z_a_z_of_legs */
-        o[0*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
-            LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
-            LEAST_3);
-    }
+    values_upu v;
+    stage_upu_X(m, w, i, j, s, X, &v);
+    stage_upu_V_X(w, j, V, &v);
+    stage_upu_Z_dynamics(m, w, i, j, V, &v);
+    /* (upu-eta_1) rate at which the joints turn along moment direction 1 */
+    const real omega_x = V[3*w + j];
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real upu_eta_1 = omega_x*(v.axis_y_upu_axes2_x*v.upu_n_m1_in_axes2_y -
+        v.axis_x_upu_axes2_x*v.upu_end_p1_in_axes2_y) +
+        omega_y*(v.axis_y_upu_axes2_y*v.upu_n_m1_in_axes2_y -
+        v.axis_x_upu_axes2_y*v.upu_end_p1_in_axes2_y) +
+        omega_z*(v.axis_y_upu_axes2_z*v.upu_n_m1_in_axes2_y -
+        v.axis_x_upu_axes2_z*v.upu_end_p1_in_axes2_y);
+    /* (upu-qd_1) rate of joint 1 */
+    const real upu_qd_1 = v.upu_w_1_in_axes2_z*(v.axis_z_upu_axes2_x*v.upu_S_dot_x +
+        v.axis_z_upu_axes2_y*v.upu_S_dot_y + v.axis_z_upu_axes2_z*v.upu_S_dot_z -
+        upu_eta_1*v.upu_n_c_in_axes2_z);
+    /* (upu-omega_1) angular velocity of link 1 */
+    const real upu_omega_1_in_axes2_x = v.upu_e_1_in_axes2_x*upu_qd_1;
+    const real upu_omega_1_in_axes2_y = -v.upu_c_2*upu_qd_1;
+    /* (upu-W_2) centripetal tensor of link 2 */
+    const real upu_W_2_in_axes2_yz = upu_omega_1_in_axes2_y*v.upu_qd_2;
+    const real upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*v.upu_qd_2;
+    const real upu_W_2_in_axes2_xy = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_y;
+    /* (upu-bias) acceleration of the connection point at zero joint accelerations */
+    const real upu_bias_t_2 = v.upu_bias_t*upu_omega_1_in_axes2_y;
+    const real upu_bias_in_axes2_z = 2*upu_W_2_in_axes2_xz*v.upu_q_3 - upu_bias_t_2;
+    /* (upu-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real upu_rel_o_in_axes2_z = v.axis_z_upu_axes2_x*v.upu_u_1_x +
+        v.axis_z_upu_axes2_y*v.upu_u_1_y + v.axis_z_upu_axes2_z*v.upu_u_1_z -
+        upu_bias_in_axes2_z;
+    /* (upu-nd_m1) rate of moment direction 1 */
+    const real upu_nd_m1_in_axes2_x = v.upu_end_p1_in_axes2_z*v.upu_omega_in_axes2_x -
+        v.upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x -
+        v.upu_n_m1_in_axes2_y*v.upu_omega_in_axes2_z;
+    const real upu_nd_m1_in_axes2_y = v.upu_end_p1_in_axes2_z*v.upu_omega_in_axes2_y -
+        v.upu_end_p1_in_axes2_y*v.upu_omega_in_axes2_z -
+        v.upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y;
+    /* (upu-nu_1) bias of the angular acceleration along moment direction 1 */
+    const real upu_nu_1_t = upu_W_2_in_axes2_xz*v.upu_n_m1_in_axes2_y +
+        upu_W_2_in_axes2_yz*v.upu_end_p1_in_axes2_y;
+    const real upu_nu_1_t_2 = upu_nd_m1_in_axes2_y*(v.upu_omega_in_axes2_y -
+        upu_omega_1_in_axes2_y) - upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x -
+        v.upu_omega_in_axes2_x) - (v.upu_omega_in_axes2_z -
+        v.upu_qd_2)*(-v.upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
+        v.upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x);
+    const real upu_nu_1 = upu_nu_1_t + upu_nu_1_t_2;
+    /* (upu-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real upu_qdd_1_o_t = v.upu_w_1_in_axes2_z*(v.upu_n_c_in_axes2_z*upu_nu_1 -
+        upu_rel_o_in_axes2_z);
+    /* (upu-alpha_1_o) remainder of: angular acceleration of link 1 */
+    const real upu_alpha_1_o_t = v.upu_e_1_in_axes2_x*upu_qdd_1_o_t;
+    const real upu_alpha_1_o_in_axes2_y = v.upu_c_2*upu_qdd_1_o_t;
+    /* (upu-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real upu_alpha_2_o_in_axes2_x = upu_W_2_in_axes2_yz - upu_alpha_1_o_t;
+    const real upu_alpha_2_o_in_axes2_y = upu_alpha_1_o_in_axes2_y - upu_W_2_in_axes2_xz;
+    /* (upu-B_2_o) remainder of the acceleration tensor of link 2 */
+    const real upu_B_2_o_in_axes2_xy = 2*upu_W_2_in_axes2_xy - v.upu_B_2_o_in_axes2_yx;
+    const real upu_B_2_o_in_axes2_zx = upu_W_2_in_axes2_xz - upu_alpha_2_o_in_axes2_y;
+    const real upu_B_2_o_in_axes2_zy = upu_W_2_in_axes2_yz + upu_alpha_2_o_in_axes2_x;
+    /* (upu-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
+    const real upu_acc_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*v.upu_q_3 - upu_bias_t_2 -
+        v.upu_g_in_axes2_z;
+    /* (upu-f_3_o) remainder of: inertia force of link 3 less its weight */
+    const real upu_f_3_o_t = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x;
+    const real upu_f_3_o_t_2 = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y;
+    const real upu_f_3_o_in_axes2_x = v.upu_acc_3_o_in_axes2_x*m->upu_link3_mass[i] +
+        upu_alpha_1_o_in_axes2_y*m->upu_h_3_in_spec2_y[i] -
+        upu_B_2_o_in_axes2_xy*m->upu_h_3_in_spec2_z[i] -
+        m->upu_h_3_in_spec2_x[i]*(upu_f_3_o_t_2 + v.upu_f_3_o_t_3);
+    const real upu_f_3_o_in_axes2_y = v.upu_B_2_o_in_axes2_yx*m->upu_h_3_in_spec2_x[i] +
+        v.upu_acc_3_o_in_axes2_y*m->upu_link3_mass[i] +
+        upu_alpha_1_o_t*m->upu_h_3_in_spec2_y[i] + m->upu_h_3_in_spec2_z[i]*(upu_f_3_o_t +
+        v.upu_f_3_o_t_3);
+    const real upu_f_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*m->upu_h_3_in_spec2_x[i] +
+        upu_acc_3_o_in_axes2_z*m->upu_link3_mass[i] -
+        upu_B_2_o_in_axes2_zy*m->upu_h_3_in_spec2_z[i] - m->upu_h_3_in_spec2_y[i]*(upu_f_3_o_t
+        + upu_f_3_o_t_2);
+    /* (upu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real upu_mu_2_o_in_axes2_x = v.upu_B_2_o_in_axes2_yx*m->upu_J_group_2_in_axes2_xz[i]
+        + upu_B_2_o_in_axes2_zy*m->upu_Sigma_2_in_axes2_yy[i] +
+        m->upu_J_group_2_in_axes2_yz[i]*(upu_f_3_o_t_2 - v.upu_f_3_o_t_3) +
+        v.upu_g_in_axes2_y*m->upu_h_2_in_spec2_y[i] +
+        v.upu_g_in_axes2_z*m->upu_h_2_in_spec2_z[i] -
+        upu_B_2_o_in_axes2_zx*m->upu_J_group_2_in_axes2_xy[i] -
+        m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_o_t -
+        v.upu_acc_3_o_in_axes2_y*m->upu_h_3_in_spec2_y[i] -
+        upu_acc_3_o_in_axes2_z*m->upu_h_3_in_spec2_z[i];
+    const real upu_mu_2_o_in_axes2_y = upu_B_2_o_in_axes2_zy*m->upu_J_group_2_in_axes2_xy[i] +
+        m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_o_in_axes2_y +
+        v.upu_acc_3_o_in_axes2_x*m->upu_h_3_in_spec2_y[i] +
+        v.upu_g_in_axes2_z*m->upu_h_2_in_spec2_x[i] -
+        upu_B_2_o_in_axes2_xy*m->upu_J_group_2_in_axes2_yz[i] -
+        upu_B_2_o_in_axes2_zx*m->upu_Sigma_2_in_axes2_xx[i] -
+        m->upu_J_group_2_in_axes2_xz[i]*(upu_f_3_o_t - v.upu_f_3_o_t_3) -
+        upu_acc_3_o_in_axes2_z*m->upu_h_3_in_spec2_x[i] -
+        v.upu_g_in_axes2_x*m->upu_h_2_in_spec2_y[i];
+    const real upu_mu_2_o_in_axes2_z = v.upu_B_2_o_in_axes2_yx*m->upu_Sigma_2_in_axes2_xx[i] +
+        m->upu_J_group_2_in_axes2_xy[i]*(upu_f_3_o_t - upu_f_3_o_t_2) +
+        m->upu_J_group_2_in_axes2_yz[i]*upu_alpha_1_o_in_axes2_y +
+        v.upu_acc_3_o_in_axes2_x*m->upu_h_3_in_spec2_z[i] +
+        v.upu_acc_3_o_in_axes2_y*m->upu_h_3_in_spec2_x[i] -
+        upu_B_2_o_in_axes2_xy*m->upu_Sigma_2_in_axes2_yy[i] -
+        m->upu_J_group_2_in_axes2_xz[i]*upu_alpha_1_o_t -
+        v.upu_g_in_axes2_x*m->upu_h_2_in_spec2_z[i] -
+        v.upu_g_in_axes2_y*m->upu_h_2_in_spec2_x[i];
+    /* (upu-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+       connection point left out */
+    const real upu_N_2_o_in_axes2_y = upu_mu_2_o_in_axes2_y - upu_f_3_o_in_axes2_z*v.upu_q_3;
+    const real upu_N_2_o_t = upu_N_2_o_in_axes2_y*v.upu_c_2 -
+        v.upu_e_1_in_axes2_x*upu_mu_2_o_in_axes2_x;
+    /* (upu-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real upu_G_o_in_axes2_y = upu_f_3_o_in_axes2_y +
+        v.inv_upu_q_3*upu_mu_2_o_in_axes2_z;
+    /* (upu-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real upu_G_m1_o = upu_N_2_o_t*v.upu_n_c_in_axes2_z*v.upu_w_1_in_axes2_z;
+    /* (upu-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real upu_G_m_o_in_axes2_y = upu_G_m1_o*v.upu_n_m1_in_axes2_y;
+    /* (upu-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
+    const real upu_c_o_in_axes2_z = upu_N_2_o_t*v.upu_w_1_in_axes2_z;
+    /* (upu-c_m_o) remainder of: moment of the leg on the platform without actuation */
+    const real upu_c_m_o_in_axes2_x = upu_G_m1_o*v.upu_end_p1_in_axes2_y;
+    /* (upu-U) velocity and gravity terms of the leg force */
+    const real upu_U_x = v.axis_x_upu_axes2_x*upu_f_3_o_in_axes2_x +
+        v.axis_y_upu_axes2_x*upu_G_o_in_axes2_y - v.axis_z_upu_axes2_x*upu_c_o_in_axes2_z;
+    const real upu_U_y = v.axis_x_upu_axes2_y*upu_f_3_o_in_axes2_x +
+        v.axis_y_upu_axes2_y*upu_G_o_in_axes2_y - v.axis_z_upu_axes2_y*upu_c_o_in_axes2_z;
+    const real upu_U_z = v.axis_x_upu_axes2_z*upu_f_3_o_in_axes2_x +
+        v.axis_y_upu_axes2_z*upu_G_o_in_axes2_y - v.axis_z_upu_axes2_z*upu_c_o_in_axes2_z;
+    /* (Z_a) rotational part of Z */
+    const real upu_Z_a_t = v.axis_y_upu_axes2_x*upu_G_m_o_in_axes2_y + upu_U_z*v.upu_q_y -
+        v.axis_x_upu_axes2_x*upu_c_m_o_in_axes2_x - upu_U_y*v.upu_q_z;
+    const real upu_Z_a_t_2 = v.axis_y_upu_axes2_y*upu_G_m_o_in_axes2_y + upu_U_x*v.upu_q_z -
+        v.axis_x_upu_axes2_y*upu_c_m_o_in_axes2_x - upu_U_z*v.upu_q_x;
+    const real upu_Z_a_t_3 = v.axis_y_upu_axes2_z*upu_G_m_o_in_axes2_y + upu_U_y*v.upu_q_x -
+        v.axis_x_upu_axes2_z*upu_c_m_o_in_axes2_x - upu_U_x*v.upu_q_y;
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, upu_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, upu_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, upu_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) */
+    gather(&terms[3*count + k], add, upu_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[4*count + k], add, upu_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[5*count + k], add, upu_Z_a_t_3);  /* Z_a_z_of_legs */
+    o[0*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
+        LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
+        LEAST_3);
 }
 
-INLINE void Z_place_upu(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void Z_place_upu(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o[0*count + first + k];
-    }
+    t->singular[k] += o[0*count + at];
 }
 
-INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict *t)
+INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (Z_t) translational part of Z */
-        const real Z_p_x = s[9*w + k];
-        const real Z_t_x_of_legs = sums[0*w + k];
-        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[10*w + k];
-        const real Z_t_y_of_legs = sums[1*w + k];
-        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[11*w + k];
-        const real Z_t_z_of_legs = sums[2*w + k];
-        const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-        /* (Z_a) rotational part of Z */
-        const real Z_a_x_of_legs = sums[3*w + k];
-        const real Z_q_x = s[12*w + k];
-        const real Z_a_x = Z_a_x_of_legs + Z_q_x;
-        const real Z_a_y_of_legs = sums[4*w + k];
-        const real Z_q_y = s[13*w + k];
-        const real Z_a_y = Z_a_y_of_legs + Z_q_y;
-        const real Z_a_z_of_legs = sums[5*w + k];
-        const real Z_q_z = s[14*w + k];
-        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
-        /* (Z_t) translational part of Z */
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-        Z[2*w + k] = Z_t_z;
-        /* (Z_a) rotational part of Z */
-        Z[3*w + k] = Z_a_x;
-        Z[4*w + k] = Z_a_y;
-        Z[5*w + k] = Z_a_z;
-        t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
-    }
+    /* (Z_t) */
+    const real Z_p_x = s[9*w + k];
+    const real Z_t_x_of_legs = sums[0*w + k];
+    const real Z_t_x = Z_p_x + Z_t_x_of_legs;
+    const real Z_p_y = s[10*w + k];
+    const real Z_t_y_of_legs = sums[1*w + k];
+    const real Z_t_y = Z_p_y + Z_t_y_of_legs;
+    const real Z_p_z = s[11*w + k];
+    const real Z_t_z_of_legs = sums[2*w + k];
+    const real Z_t_z = Z_p_z + Z_t_z_of_legs;
+    /* (Z_a) */
+    const real Z_a_x_of_legs = sums[3*w + k];
+    const real Z_q_x = s[12*w + k];
+    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_y_of_legs = sums[4*w + k];
+    const real Z_q_y = s[13*w + k];
+    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_z_of_legs = sums[5*w + k];
+    const real Z_q_z = s[14*w + k];
+    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    /* (Z_t) */
+    Z[0*w + k] = Z_t_x;
+    Z[1*w + k] = Z_t_y;
+    Z[2*w + k] = Z_t_z;
+    /* (Z_a) */
+    Z[3*w + k] = Z_a_x;
+    Z[4*w + k] = Z_a_y;
+    Z[5*w + k] = Z_a_z;
+    t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_upu[6*LEGS(LEGS_OF_upu)] = {0}, o_upu[LEGS(LEGS_OF_upu)] = {0};
-    Z_before(m, 1, X, V, s, t);
-    Z_legs_upu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_upu), 0, X, V, terms_upu, o_upu);
-    for (size_t leg = 0; leg < LEGS_OF_upu; ++leg) {
-        Z_place_upu(1, LEGS(LEGS_OF_upu), o_upu, leg, t);
+    Z_before(m, 1, 0, X, V, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
+        Z_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), 0, s, X, V, terms_upu, o_upu);
+    }
+    for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        Z_place_upu(0, i, LEGS(LEGS_OF_upu), o_upu, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_upu + n*LEGS(LEGS_OF_upu), LEGS_OF_upu);
     }
-    Z_after(1, s, sums, Z, t);
+    Z_after(1, 0, s, sums, Z, t);
 }
 
-INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
+INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z, verdict
+    *restrict t)
 {
     real s[15*LANES], sums[6*LANES];
     real o_upu[LANES];
-    Z_before(m, LANES, X, V, s, t);
-    clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_upu; ++leg) {
-        Z_legs_upu(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_upu);
-        Z_place_upu(LANES, LANES, o_upu, 0, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        Z_before(m, LANES, k, X, V, s, t);
     }
-    Z_after(LANES, s, sums, Z, t);
+    clear(sums, 6*LANES);
+    for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_legs_upu(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_upu);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            Z_place_upu(k, k, LANES, o_upu, t);
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        Z_after(LANES, k, s, sums, Z, t);
+    }
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void H_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, const real *X, real *o)
+INLINE void H_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_upu v;
-        stage_upu_X(m, w, i, j, s, X, &v);
-        stage_upu_H_condition(m, i, &v);
-        /* (upu-w_3) force part of reciprocal wrench 3 */
-        o[0*count + k] = v.upu_w_3_x;
-        o[1*count + k] = v.upu_w_3_y;
-        o[2*count + k] = v.upu_w_3_z;
-        /* (upu-H_a_3) moment of the column's unit force about the platform origin */
-        o[3*count + k] = v.upu_H_a_3_x;
-        o[4*count + k] = v.upu_H_a_3_y;
-        o[5*count + k] = v.upu_H_a_3_z;
-        o[7*count + k] = (v.upu_w_3_x + (v.upu_w_3_y + v.upu_w_3_z)) + (v.upu_H_a_3_x +
-            (v.upu_H_a_3_y + v.upu_H_a_3_z));
-        o[6*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_q_3) > LEAST_3);
-    }
+    values_upu v;
+    stage_upu_X(m, w, i, j, s, X, &v);
+    stage_upu_H_condition(m, i, &v);
+    /* (upu-w_3) force part of reciprocal wrench 3 */
+    o[0*count + k] = v.upu_w_3_x;
+    o[1*count + k] = v.upu_w_3_y;
+    o[2*count + k] = v.upu_w_3_z;
+    /* (upu-H_a_3) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.upu_H_a_3_x;
+    o[4*count + k] = v.upu_H_a_3_y;
+    o[5*count + k] = v.upu_H_a_3_z;
+    o[7*count + k] = (v.upu_w_3_x + (v.upu_w_3_y + v.upu_w_3_z)) + (v.upu_H_a_3_x +
+        (v.upu_H_a_3_y + v.upu_H_a_3_z));
+    o[6*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_q_3) > LEAST_3);
 }
 
-INLINE void H_place_upu(size_t w, size_t count, const real *o, size_t leg, size_t first, real *H,
-    verdict *t)
+INLINE void H_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
+    *H, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        H[(3*NU + leg)*w + k] = o[3*count + first + k];
-        H[(4*NU + leg)*w + k] = o[4*count + first + k];
-        H[(5*NU + leg)*w + k] = o[5*count + first + k];
-        t->singular[k] += o[6*count + first + k];
-        t->total[k] += o[7*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    H[(3*NU + i)*w + k] = o[3*count + at];
+    H[(4*NU + i)*w + k] = o[4*count + at];
+    H[(5*NU + i)*w + k] = o[5*count + at];
+    t->singular[k] += o[6*count + at];
+    t->total[k] += o[7*count + at];
 }
 
-INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
+APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
     real s[9] = {0};
     real o_upu[8*LEGS(LEGS_OF_upu)] = {0};
-    H_before(m, 1, X, s, t);
-    H_legs_upu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_upu), X, o_upu);
-    for (size_t leg = 0; leg < LEGS_OF_upu; ++leg) {
-        H_place_upu(1, LEGS(LEGS_OF_upu), o_upu, leg, leg, H, t);
+    H_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
+        H_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, o_upu);
+    }
+    for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        H_place_upu(1, i, 0, i, LEGS(LEGS_OF_upu), o_upu, H, t);
     }
 }
 
-INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
+INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verdict *restrict t)
 {
     real s[9*LANES];
     real o_upu[8*LANES];
-    H_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_upu; ++leg) {
-        H_legs_upu(m, LANES, leg, 0, s, 1, LANES, X, o_upu);
-        H_place_upu(LANES, LANES, o_upu, leg, 0, H, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        H_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            H_legs_upu(m, LANES, i, k, k, LANES, s, X, o_upu);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            H_place_upu(LANES, i, k, k, LANES, o_upu, H, t);
+        }
     }
 }
 
 /* ---- Hk ---- */
-INLINE void Hk_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void Hk_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void Hk_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, const real *X, real *o)
+INLINE void Hk_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_upu v;
-        stage_upu_X(m, w, i, j, s, X, &v);
-        /* (upu-n_c) force part, zero on the manifold, of the constraint moment */
-        const real upu_n_c_in_axes2_z = v.upu_q_3*(v.upu_c_2*v.upu_n_m1_in_axes2_y +
-            v.upu_e_1_in_axes2_x*v.upu_end_p1_in_axes2_y)/v.upu_volume_c_t;
-        const real upu_n_c_x = v.axis_z_upu_axes2_x*upu_n_c_in_axes2_z;
-        const real upu_n_c_y = v.axis_z_upu_axes2_y*upu_n_c_in_axes2_z;
-        const real upu_n_c_z = v.axis_z_upu_axes2_z*upu_n_c_in_axes2_z;
-        /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real upu_Hk_a_1_t = v.upu_c_1*v.upu_e_1_in_axes2_x;
-        const real upu_Hk_a_1_t_2 = v.upu_e_1_in_axes2_x*v.upu_s_1;
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-        const real axis_y_upu_axes2_x = upu_Hk_a_1_t*upu_base_frame_xx +
-            upu_Hk_a_1_t_2*upu_base_frame_xy - upu_base_frame_xz*v.upu_c_2;
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-        const real axis_y_upu_axes2_y = upu_Hk_a_1_t*upu_base_frame_yx +
-            upu_Hk_a_1_t_2*upu_base_frame_yy - upu_base_frame_yz*v.upu_c_2;
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real axis_y_upu_axes2_z = upu_Hk_a_1_t*upu_base_frame_zx +
-            upu_Hk_a_1_t_2*upu_base_frame_zy - upu_base_frame_zz*v.upu_c_2;
-        const real upu_Hk_a_1_x = axis_y_upu_axes2_x*v.upu_n_m1_in_axes2_y + upu_n_c_z*v.upu_q_y -
-            v.upu_end_p1_in_axes2_y*(axis_y_upu_axes2_y*v.axis_z_upu_axes2_z -
-            axis_y_upu_axes2_z*v.axis_z_upu_axes2_y) - upu_n_c_y*v.upu_q_z;
-        const real upu_Hk_a_1_y = axis_y_upu_axes2_y*v.upu_n_m1_in_axes2_y + upu_n_c_x*v.upu_q_z -
-            v.upu_end_p1_in_axes2_y*(axis_y_upu_axes2_z*v.axis_z_upu_axes2_x -
-            axis_y_upu_axes2_x*v.axis_z_upu_axes2_z) - upu_n_c_z*v.upu_q_x;
-        const real upu_Hk_a_1_z = axis_y_upu_axes2_z*v.upu_n_m1_in_axes2_y + upu_n_c_y*v.upu_q_x -
-            v.upu_end_p1_in_axes2_y*(axis_y_upu_axes2_x*v.axis_z_upu_axes2_y -
-            axis_y_upu_axes2_y*v.axis_z_upu_axes2_x) - upu_n_c_x*v.upu_q_y;
-        /* (upu-n_c) force part, zero on the manifold, of the constraint moment */
-        o[0*count + k] = upu_n_c_x;
-        o[1*count + k] = upu_n_c_y;
-        o[2*count + k] = upu_n_c_z;
-        /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = upu_Hk_a_1_x;
-        o[4*count + k] = upu_Hk_a_1_y;
-        o[5*count + k] = upu_Hk_a_1_z;
-        o[7*count + k] = (upu_n_c_x + (upu_n_c_y + upu_n_c_z)) + (upu_Hk_a_1_x + (upu_Hk_a_1_y +
-            upu_Hk_a_1_z));
-        o[6*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
-            LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3);
-    }
+    values_upu v;
+    stage_upu_X(m, w, i, j, s, X, &v);
+    /* (upu-n_c) force part, zero on the manifold, of the constraint moment */
+    const real upu_n_c_in_axes2_z = v.upu_q_3*(v.upu_c_2*v.upu_n_m1_in_axes2_y +
+        v.upu_e_1_in_axes2_x*v.upu_end_p1_in_axes2_y)/v.upu_volume_c_t;
+    const real upu_n_c_x = v.axis_z_upu_axes2_x*upu_n_c_in_axes2_z;
+    const real upu_n_c_y = v.axis_z_upu_axes2_y*upu_n_c_in_axes2_z;
+    const real upu_n_c_z = v.axis_z_upu_axes2_z*upu_n_c_in_axes2_z;
+    /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
+    const real upu_Hk_a_1_t = v.upu_c_1*v.upu_e_1_in_axes2_x;
+    const real upu_Hk_a_1_t_2 = v.upu_e_1_in_axes2_x*v.upu_s_1;
+    const real axis_y_upu_axes2_x = upu_Hk_a_1_t*m->upu_base_frame_xx[i] +
+        upu_Hk_a_1_t_2*m->upu_base_frame_xy[i] - m->upu_base_frame_xz[i]*v.upu_c_2;
+    const real axis_y_upu_axes2_y = upu_Hk_a_1_t*m->upu_base_frame_yx[i] +
+        upu_Hk_a_1_t_2*m->upu_base_frame_yy[i] - m->upu_base_frame_yz[i]*v.upu_c_2;
+    const real axis_y_upu_axes2_z = upu_Hk_a_1_t*m->upu_base_frame_zx[i] +
+        upu_Hk_a_1_t_2*m->upu_base_frame_zy[i] - m->upu_base_frame_zz[i]*v.upu_c_2;
+    const real upu_Hk_a_1_x = axis_y_upu_axes2_x*v.upu_n_m1_in_axes2_y + upu_n_c_z*v.upu_q_y -
+        v.upu_end_p1_in_axes2_y*(axis_y_upu_axes2_y*v.axis_z_upu_axes2_z -
+        axis_y_upu_axes2_z*v.axis_z_upu_axes2_y) - upu_n_c_y*v.upu_q_z;
+    const real upu_Hk_a_1_y = axis_y_upu_axes2_y*v.upu_n_m1_in_axes2_y + upu_n_c_x*v.upu_q_z -
+        v.upu_end_p1_in_axes2_y*(axis_y_upu_axes2_z*v.axis_z_upu_axes2_x -
+        axis_y_upu_axes2_x*v.axis_z_upu_axes2_z) - upu_n_c_z*v.upu_q_x;
+    const real upu_Hk_a_1_z = axis_y_upu_axes2_z*v.upu_n_m1_in_axes2_y + upu_n_c_y*v.upu_q_x -
+        v.upu_end_p1_in_axes2_y*(axis_y_upu_axes2_x*v.axis_z_upu_axes2_y -
+        axis_y_upu_axes2_y*v.axis_z_upu_axes2_x) - upu_n_c_x*v.upu_q_y;
+    /* (upu-n_c) */
+    o[0*count + k] = upu_n_c_x;
+    o[1*count + k] = upu_n_c_y;
+    o[2*count + k] = upu_n_c_z;
+    /* (upu-Hk_a_1) */
+    o[3*count + k] = upu_Hk_a_1_x;
+    o[4*count + k] = upu_Hk_a_1_y;
+    o[5*count + k] = upu_Hk_a_1_z;
+    o[7*count + k] = (upu_n_c_x + (upu_n_c_y + upu_n_c_z)) + (upu_Hk_a_1_x + (upu_Hk_a_1_y +
+        upu_Hk_a_1_z));
+    o[6*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
+        LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3);
 }
 
-INLINE void Hk_place_upu(size_t w, size_t count, const real *o, size_t leg, size_t first, real
-    *Hk, verdict *t)
+INLINE void Hk_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *Hk, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        Hk[leg*w + k] = o[0*count + first + k];
-        Hk[(NC + leg)*w + k] = o[1*count + first + k];
-        Hk[(2*NC + leg)*w + k] = o[2*count + first + k];
-        Hk[(3*NC + leg)*w + k] = o[3*count + first + k];
-        Hk[(4*NC + leg)*w + k] = o[4*count + first + k];
-        Hk[(5*NC + leg)*w + k] = o[5*count + first + k];
-        t->singular[k] += o[6*count + first + k];
-        t->total[k] += o[7*count + first + k];
-    }
+    Hk[i*w + k] = o[0*count + at];
+    Hk[(NC + i)*w + k] = o[1*count + at];
+    Hk[(2*NC + i)*w + k] = o[2*count + at];
+    Hk[(3*NC + i)*w + k] = o[3*count + at];
+    Hk[(4*NC + i)*w + k] = o[4*count + at];
+    Hk[(5*NC + i)*w + k] = o[5*count + at];
+    t->singular[k] += o[6*count + at];
+    t->total[k] += o[7*count + at];
 }
 
-INLINE void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
+APART void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
 {
     real s[9] = {0};
     real o_upu[8*LEGS(LEGS_OF_upu)] = {0};
-    Hk_before(m, 1, X, s, t);
-    Hk_legs_upu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_upu), X, o_upu);
-    for (size_t leg = 0; leg < LEGS_OF_upu; ++leg) {
-        Hk_place_upu(1, LEGS(LEGS_OF_upu), o_upu, leg, leg, Hk, t);
+    Hk_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
+        Hk_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, o_upu);
+    }
+    for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        Hk_place_upu(1, i, 0, i, LEGS(LEGS_OF_upu), o_upu, Hk, t);
     }
 }
 
-INLINE void Hk_run_lanes(const prepared *m, const real *X, real *Hk, verdict *t)
+INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, verdict *restrict t)
 {
     real s[9*LANES];
     real o_upu[8*LANES];
-    Hk_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_upu; ++leg) {
-        Hk_legs_upu(m, LANES, leg, 0, s, 1, LANES, X, o_upu);
-        Hk_place_upu(LANES, LANES, o_upu, leg, 0, Hk, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        Hk_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            Hk_legs_upu(m, LANES, i, k, k, LANES, s, X, o_upu);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            Hk_place_upu(LANES, i, k, k, LANES, o_upu, Hk, t);
+        }
     }
 }
 
 /* ---- constraint_bias ---- */
-INLINE void constraint_bias_before(const prepared *m, size_t w, const real *X, real *s, verdict
-    *t)
+INLINE void constraint_bias_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void constraint_bias_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, const
-    real *s, size_t states, size_t count, const real *X, const real *V, real *o)
+INLINE void constraint_bias_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k,
+    size_t count, const real *s, const real *X, const real *V, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_upu v;
-        stage_upu_X(m, w, i, j, s, X, &v);
-        stage_upu_V_X(w, j, V, &v);
-        /* (upu-eta_1) rate at which the joints turn along moment direction 1 */
-        const real omega_x = V[3*w + j];
-        const real omega_y = V[4*w + j];
-        const real omega_z = V[5*w + j];
-        const real upu_eta_1 = omega_x*(v.axis_y_upu_axes2_x*v.upu_n_m1_in_axes2_y -
-            v.axis_x_upu_axes2_x*v.upu_end_p1_in_axes2_y) +
-            omega_y*(v.axis_y_upu_axes2_y*v.upu_n_m1_in_axes2_y -
-            v.axis_x_upu_axes2_y*v.upu_end_p1_in_axes2_y) +
-            omega_z*(v.axis_y_upu_axes2_z*v.upu_n_m1_in_axes2_y -
-            v.axis_x_upu_axes2_z*v.upu_end_p1_in_axes2_y);
-        /* (upu-qd_1) rate of joint 1 */
-        const real upu_qd_1 = (v.axis_z_upu_axes2_x*v.upu_S_dot_x +
-            v.axis_z_upu_axes2_y*v.upu_S_dot_y + v.axis_z_upu_axes2_z*v.upu_S_dot_z -
-            upu_eta_1*v.upu_n_c_in_axes2_z)/v.upu_w_1_t;
-        /* (upu-omega_1) angular velocity of link 1 */
-        const real upu_omega_1_in_axes2_x = v.upu_e_1_in_axes2_x*upu_qd_1;
-        const real upu_omega_1_in_axes2_y = -v.upu_c_2*upu_qd_1;
-        /* (upu-W_2) centripetal tensor of link 2 */
-        const real upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*v.upu_qd_2;
-        /* (upu-bias) acceleration of the connection point at zero joint accelerations */
-        const real upu_bias_in_axes2_z = 2*upu_W_2_in_axes2_xz*v.upu_q_3 -
-            2*v.upu_S_dot_in_axes2_x*upu_omega_1_in_axes2_y;
-        /* (upu-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-           */
-        const real upu_rel_o_in_axes2_z = v.axis_z_upu_axes2_x*(omega_y*v.upu_S_dot_t_5 -
-            omega_z*v.upu_S_dot_t_4) + v.axis_z_upu_axes2_y*(omega_z*v.upu_S_dot_t_3 -
-            omega_x*v.upu_S_dot_t_5) + v.axis_z_upu_axes2_z*(omega_x*v.upu_S_dot_t_4 -
-            omega_y*v.upu_S_dot_t_3) - upu_bias_in_axes2_z;
-        /* (upu-nd_m1) rate of moment direction 1 */
-        const real upu_nd_m1_in_axes2_x = v.upu_end_p1_in_axes2_z*v.upu_omega_in_axes2_x -
-            v.upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x -
-            v.upu_n_m1_in_axes2_y*v.upu_omega_in_axes2_z;
-        const real upu_nd_m1_in_axes2_y = v.upu_end_p1_in_axes2_z*v.upu_omega_in_axes2_y -
-            v.upu_end_p1_in_axes2_y*v.upu_omega_in_axes2_z -
-            v.upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y;
-        /* (upu-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real upu_nu_1_t = upu_W_2_in_axes2_xz*v.upu_n_m1_in_axes2_y +
-            v.upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y*v.upu_qd_2;
-        const real upu_nu_1_t_2 = upu_nd_m1_in_axes2_y*(v.upu_omega_in_axes2_y -
-            upu_omega_1_in_axes2_y) - upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x -
-            v.upu_omega_in_axes2_x) - (v.upu_omega_in_axes2_z -
-            v.upu_qd_2)*(-v.upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
-            v.upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x);
-        const real upu_nu_1 = upu_nu_1_t + upu_nu_1_t_2;
-        /* (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-           */
-        const real upu_gamma_c1 = upu_nu_1 + v.upu_n_c_in_axes2_z*upu_rel_o_in_axes2_z;
-        /* (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-           */
-        o[0*count + k] = upu_gamma_c1;
-        o[2*count + k] = upu_gamma_c1;
-        o[1*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
-            LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
-            LEAST_3);
-    }
+    values_upu v;
+    stage_upu_X(m, w, i, j, s, X, &v);
+    stage_upu_V_X(w, j, V, &v);
+    /* (upu-eta_1) rate at which the joints turn along moment direction 1 */
+    const real omega_x = V[3*w + j];
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real upu_eta_1 = omega_x*(v.axis_y_upu_axes2_x*v.upu_n_m1_in_axes2_y -
+        v.axis_x_upu_axes2_x*v.upu_end_p1_in_axes2_y) +
+        omega_y*(v.axis_y_upu_axes2_y*v.upu_n_m1_in_axes2_y -
+        v.axis_x_upu_axes2_y*v.upu_end_p1_in_axes2_y) +
+        omega_z*(v.axis_y_upu_axes2_z*v.upu_n_m1_in_axes2_y -
+        v.axis_x_upu_axes2_z*v.upu_end_p1_in_axes2_y);
+    /* (upu-qd_1) rate of joint 1 */
+    const real upu_qd_1 = (v.axis_z_upu_axes2_x*v.upu_S_dot_x +
+        v.axis_z_upu_axes2_y*v.upu_S_dot_y + v.axis_z_upu_axes2_z*v.upu_S_dot_z -
+        upu_eta_1*v.upu_n_c_in_axes2_z)/v.upu_w_1_t;
+    /* (upu-omega_1) angular velocity of link 1 */
+    const real upu_omega_1_in_axes2_x = v.upu_e_1_in_axes2_x*upu_qd_1;
+    const real upu_omega_1_in_axes2_y = -v.upu_c_2*upu_qd_1;
+    /* (upu-W_2) centripetal tensor of link 2 */
+    const real upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*v.upu_qd_2;
+    /* (upu-bias) acceleration of the connection point at zero joint accelerations */
+    const real upu_bias_in_axes2_z = 2*upu_W_2_in_axes2_xz*v.upu_q_3 -
+        2*v.upu_S_dot_in_axes2_x*upu_omega_1_in_axes2_y;
+    /* (upu-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real upu_rel_o_in_axes2_z = v.axis_z_upu_axes2_x*(omega_y*v.upu_S_dot_t_5 -
+        omega_z*v.upu_S_dot_t_4) + v.axis_z_upu_axes2_y*(omega_z*v.upu_S_dot_t_3 -
+        omega_x*v.upu_S_dot_t_5) + v.axis_z_upu_axes2_z*(omega_x*v.upu_S_dot_t_4 -
+        omega_y*v.upu_S_dot_t_3) - upu_bias_in_axes2_z;
+    /* (upu-nd_m1) rate of moment direction 1 */
+    const real upu_nd_m1_in_axes2_x = v.upu_end_p1_in_axes2_z*v.upu_omega_in_axes2_x -
+        v.upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x -
+        v.upu_n_m1_in_axes2_y*v.upu_omega_in_axes2_z;
+    const real upu_nd_m1_in_axes2_y = v.upu_end_p1_in_axes2_z*v.upu_omega_in_axes2_y -
+        v.upu_end_p1_in_axes2_y*v.upu_omega_in_axes2_z -
+        v.upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y;
+    /* (upu-nu_1) bias of the angular acceleration along moment direction 1 */
+    const real upu_nu_1_t = upu_W_2_in_axes2_xz*v.upu_n_m1_in_axes2_y +
+        v.upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y*v.upu_qd_2;
+    const real upu_nu_1_t_2 = upu_nd_m1_in_axes2_y*(v.upu_omega_in_axes2_y -
+        upu_omega_1_in_axes2_y) - upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x -
+        v.upu_omega_in_axes2_x) - (v.upu_omega_in_axes2_z -
+        v.upu_qd_2)*(-v.upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
+        v.upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x);
+    const real upu_nu_1 = upu_nu_1_t + upu_nu_1_t_2;
+    /* (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+       */
+    const real upu_gamma_c1 = upu_nu_1 + v.upu_n_c_in_axes2_z*upu_rel_o_in_axes2_z;
+    /* (upu-gamma_c1) */
+    o[0*count + k] = upu_gamma_c1;
+    o[2*count + k] = upu_gamma_c1;
+    o[1*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
+        LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
+        LEAST_3);
 }
 
-INLINE void constraint_bias_place_upu(size_t w, size_t count, const real *o, size_t leg, size_t
-    first, real *constraint_bias, verdict *t)
+INLINE void constraint_bias_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, const
+    real *o, real *constraint_bias, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        constraint_bias[leg*w + k] = o[0*count + first + k];
-        t->singular[k] += o[1*count + first + k];
-        t->total[k] += o[2*count + first + k];
-    }
+    constraint_bias[i*w + k] = o[0*count + at];
+    t->singular[k] += o[1*count + at];
+    t->total[k] += o[2*count + at];
 }
 
 INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V, real
@@ -3693,822 +3635,792 @@ INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V,
 {
     real s[9] = {0};
     real o_upu[3*LEGS(LEGS_OF_upu)] = {0};
-    constraint_bias_before(m, 1, X, s, t);
-    constraint_bias_legs_upu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_upu), X, V, o_upu);
-    for (size_t leg = 0; leg < LEGS_OF_upu; ++leg) {
-        constraint_bias_place_upu(1, LEGS(LEGS_OF_upu), o_upu, leg, leg, constraint_bias, t);
+    constraint_bias_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
+        constraint_bias_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, V, o_upu);
+    }
+    for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        constraint_bias_place_upu(1, i, 0, i, LEGS(LEGS_OF_upu), o_upu, constraint_bias, t);
     }
 }
 
 INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const real *V, real
-    *constraint_bias, verdict *t)
+    *restrict constraint_bias, verdict *restrict t)
 {
     real s[9*LANES];
     real o_upu[3*LANES];
-    constraint_bias_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_upu; ++leg) {
-        constraint_bias_legs_upu(m, LANES, leg, 0, s, 1, LANES, X, V, o_upu);
-        constraint_bias_place_upu(LANES, LANES, o_upu, leg, 0, constraint_bias, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        constraint_bias_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            constraint_bias_legs_upu(m, LANES, i, k, k, LANES, s, X, V, o_upu);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            constraint_bias_place_upu(LANES, i, k, k, LANES, o_upu, constraint_bias, t);
+        }
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, real *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        stage_V_X(w, k, V, &v);
-        /* (W_p) centripetal tensor of the platform */
-        const real omega_x = V[3*w + k];
-        const real omega_y = V[4*w + k];
-        const real W_p_xy = omega_x*omega_y;
-        const real omega_z = V[5*w + k];
-        const real W_p_xz = omega_x*omega_z;
-        const real W_p_yz = omega_y*omega_z;
-        /* (a_t) acceleration of the platform origin, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real t_ddot_x = A[0*w + k];
-        const real a_t_x = t_ddot_x - gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real t_ddot_y = A[1*w + k];
-        const real a_t_y = t_ddot_y - gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real t_ddot_z = A[2*w + k];
-        const real a_t_z = t_ddot_z - gravity_z;
-        const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
-        const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
-        const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
-        /* (f_p) inertia force of the platform less its weight */
-        const real f_p_t = omega_x*omega_x;
-        const real f_p_t_2 = omega_y*omega_y;
-        const real f_p_t_3 = omega_z*omega_z;
-        const real alpha_y = A[4*w + k];
-        const real alpha_z = A[5*w + k];
-        const real platform_mass = m->platform_mass;
-        const real f_p_x = a_t_x*platform_mass + v.h_star_y*(W_p_xy - alpha_z) +
-            v.h_star_z*(W_p_xz + alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
-        const real alpha_x = A[3*w + k];
-        const real f_p_y = a_t_y*platform_mass + v.h_star_x*(W_p_xy + alpha_z) +
-            v.h_star_z*(W_p_yz - alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
-        const real f_p_z = a_t_z*platform_mass + v.h_star_x*(W_p_xz - alpha_y) +
-            v.h_star_y*(W_p_yz + alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
-        /* (mu_p) inertia moment of the platform less that of its weight */
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real mu_p_t = J_star_in_platform_xx*v.omega_in_platform_x +
-            J_star_in_platform_xy*v.omega_in_platform_y +
-            J_star_in_platform_xz*v.omega_in_platform_z;
-        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real mu_p_t_2 = J_star_in_platform_xy*v.omega_in_platform_x +
-            J_star_in_platform_yy*v.omega_in_platform_y +
-            J_star_in_platform_yz*v.omega_in_platform_z;
-        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real mu_p_t_3 = J_star_in_platform_xz*v.omega_in_platform_x +
-            J_star_in_platform_yz*v.omega_in_platform_y +
-            J_star_in_platform_zz*v.omega_in_platform_z;
-        const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
-        const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
-        const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real mu_p_in_platform_x = J_star_in_platform_xx*alpha_in_platform_x +
-            J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z
-            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
-            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real mu_p_in_platform_y = J_star_in_platform_xy*alpha_in_platform_x +
-            J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z
-            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
-            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
-        const real mu_p_in_platform_z = J_star_in_platform_xz*alpha_in_platform_x +
-            J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z
-            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
-            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
-        const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
-            v.R_xz*mu_p_in_platform_z;
-        const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
-            v.R_yz*mu_p_in_platform_z;
-        const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
-            v.R_zz*mu_p_in_platform_z;
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = f_p_x;
-        s[10*w + k] = f_p_y;
-        s[11*w + k] = f_p_z;
-        s[12*w + k] = mu_p_x;
-        s[13*w + k] = mu_p_y;
-        s[14*w + k] = mu_p_z;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    stage_V_X(w, k, V, &v);
+    /* (W_p) centripetal tensor of the platform */
+    const real omega_x = V[3*w + k];
+    const real omega_y = V[4*w + k];
+    const real W_p_xy = omega_x*omega_y;
+    const real omega_z = V[5*w + k];
+    const real W_p_xz = omega_x*omega_z;
+    const real W_p_yz = omega_y*omega_z;
+    /* (a_t) acceleration of the platform origin, less gravity */
+    const real t_ddot_x = A[0*w + k];
+    const real a_t_x = t_ddot_x - m->gravity_x;
+    const real t_ddot_y = A[1*w + k];
+    const real a_t_y = t_ddot_y - m->gravity_y;
+    const real t_ddot_z = A[2*w + k];
+    const real a_t_z = t_ddot_z - m->gravity_z;
+    const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
+    const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
+    const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
+    /* (f_p) inertia force of the platform less its weight */
+    const real f_p_t = omega_x*omega_x;
+    const real f_p_t_2 = omega_y*omega_y;
+    const real f_p_t_3 = omega_z*omega_z;
+    const real alpha_y = A[4*w + k];
+    const real alpha_z = A[5*w + k];
+    const real f_p_x = a_t_x*m->platform_mass + v.h_star_y*(W_p_xy - alpha_z) +
+        v.h_star_z*(W_p_xz + alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+    const real alpha_x = A[3*w + k];
+    const real f_p_y = a_t_y*m->platform_mass + v.h_star_x*(W_p_xy + alpha_z) +
+        v.h_star_z*(W_p_yz - alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
+    const real f_p_z = a_t_z*m->platform_mass + v.h_star_x*(W_p_xz - alpha_y) +
+        v.h_star_y*(W_p_yz + alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
+    /* (mu_p) inertia moment of the platform less that of its weight */
+    const real mu_p_t = m->J_star_in_platform_xx*v.omega_in_platform_x +
+        m->J_star_in_platform_xy*v.omega_in_platform_y +
+        m->J_star_in_platform_xz*v.omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*v.omega_in_platform_x +
+        m->J_star_in_platform_yy*v.omega_in_platform_y +
+        m->J_star_in_platform_yz*v.omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*v.omega_in_platform_x +
+        m->J_star_in_platform_yz*v.omega_in_platform_y +
+        m->J_star_in_platform_zz*v.omega_in_platform_z;
+    const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
+    const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
+    const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+    const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
+        m->J_star_in_platform_xy*alpha_in_platform_y +
+        m->J_star_in_platform_xz*alpha_in_platform_z +
+        a_t_in_platform_z*m->h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
+        a_t_in_platform_y*m->h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+    const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
+        m->J_star_in_platform_yy*alpha_in_platform_y +
+        m->J_star_in_platform_yz*alpha_in_platform_z +
+        a_t_in_platform_x*m->h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
+        a_t_in_platform_z*m->h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
+    const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
+        m->J_star_in_platform_yz*alpha_in_platform_y +
+        m->J_star_in_platform_zz*alpha_in_platform_z +
+        a_t_in_platform_y*m->h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
+        a_t_in_platform_x*m->h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
+    const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
+        v.R_xz*mu_p_in_platform_z;
+    const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
+        v.R_yz*mu_p_in_platform_z;
+    const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
+        v.R_zz*mu_p_in_platform_z;
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = f_p_x;
+    s[10*w + k] = f_p_y;
+    s[11*w + k] = f_p_z;
+    s[12*w + k] = mu_p_x;
+    s[13*w + k] = mu_p_y;
+    s[14*w + k] = mu_p_z;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void required_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
-    *terms, real *o)
+INLINE void required_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, const real *V, const real *A, real *terms, real
+    *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_upu v;
-        stage_upu_X(m, w, i, j, s, X, &v);
-        stage_upu_A_X(w, j, A, &v);
-        stage_upu_V_X(w, j, V, &v);
-        stage_upu_A_V_X(w, j, V, &v);
-        stage_upu_legs_required(m, i, &v);
-        /* (R_a) moment that actuators and external wrench must give */
-        const real upu_R_a_t = v.axis_y_upu_axes2_x*v.upu_G_m_in_axes2_y + v.upu_c_y*v.upu_q_z -
-            v.axis_x_upu_axes2_x*v.upu_c_m_in_axes2_x - v.upu_c_z*v.upu_q_y;
-        const real upu_R_a_t_2 = v.axis_y_upu_axes2_y*v.upu_G_m_in_axes2_y + v.upu_c_z*v.upu_q_x -
-            v.axis_x_upu_axes2_y*v.upu_c_m_in_axes2_x - v.upu_c_x*v.upu_q_z;
-        const real upu_R_a_t_3 = v.axis_y_upu_axes2_z*v.upu_G_m_in_axes2_y + v.upu_c_x*v.upu_q_y -
-            v.axis_x_upu_axes2_z*v.upu_c_m_in_axes2_x - v.upu_c_y*v.upu_q_x;
-        /* (upu-H_a_3) moment of the column's unit force about the platform origin */
-        const real upu_H_a_3_x = v.axis_x_upu_axes2_z*v.upu_q_y - v.axis_x_upu_axes2_y*v.upu_q_z;
-        const real upu_H_a_3_y = v.axis_x_upu_axes2_x*v.upu_q_z - v.axis_x_upu_axes2_z*v.upu_q_x;
-        const real upu_H_a_3_z = v.axis_x_upu_axes2_y*v.upu_q_x - v.axis_x_upu_axes2_x*v.upu_q_y;
-        /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real upu_Hk_a_1_x = v.axis_y_upu_axes2_x*v.upu_n_m1_in_axes2_y +
-            v.upu_n_c_z*v.upu_q_y - v.axis_x_upu_axes2_x*v.upu_end_p1_in_axes2_y -
-            v.upu_n_c_y*v.upu_q_z;
-        const real upu_Hk_a_1_y = v.axis_y_upu_axes2_y*v.upu_n_m1_in_axes2_y +
-            v.upu_n_c_x*v.upu_q_z - v.axis_x_upu_axes2_y*v.upu_end_p1_in_axes2_y -
-            v.upu_n_c_z*v.upu_q_x;
-        const real upu_Hk_a_1_z = v.axis_y_upu_axes2_z*v.upu_n_m1_in_axes2_y +
-            v.upu_n_c_y*v.upu_q_x - v.axis_x_upu_axes2_z*v.upu_end_p1_in_axes2_y -
-            v.upu_n_c_x*v.upu_q_y;
-        /* (R_t) force that actuators and external wrench must give */
-        gather(&terms[0*count + k], add, v.upu_c_x);  /* R_t_x_of_legs */
-        gather(&terms[1*count + k], add, v.upu_c_y);  /* R_t_y_of_legs */
-        gather(&terms[2*count + k], add, v.upu_c_z);  /* R_t_z_of_legs */
-        /* (R_a) moment that actuators and external wrench must give */
-        gather(&terms[3*count + k], add, upu_R_a_t);  /* R_a_x_of_legs */
-        gather(&terms[4*count + k], add, upu_R_a_t_2);  /* R_a_y_of_legs */
-        gather(&terms[5*count + k], add, upu_R_a_t_3);  /* R_a_z_of_legs */
-        /* (upu-w_3) force part of reciprocal wrench 3 */
-        o[0*count + k] = v.axis_x_upu_axes2_x;
-        o[1*count + k] = v.axis_x_upu_axes2_y;
-        o[2*count + k] = v.axis_x_upu_axes2_z;
-        /* (upu-H_a_3) moment of the column's unit force about the platform origin */
-        o[3*count + k] = upu_H_a_3_x;
-        o[4*count + k] = upu_H_a_3_y;
-        o[5*count + k] = upu_H_a_3_z;
-        /* (upu-n_c) force part, zero on the manifold, of the constraint moment */
-        o[6*count + k] = v.upu_n_c_x;
-        o[7*count + k] = v.upu_n_c_y;
-        o[8*count + k] = v.upu_n_c_z;
-        /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[9*count + k] = upu_Hk_a_1_x;
-        o[10*count + k] = upu_Hk_a_1_y;
-        o[11*count + k] = upu_Hk_a_1_z;
-        o[12*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
-            LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
-            LEAST_3);
-    }
+    values_upu v;
+    stage_upu_X(m, w, i, j, s, X, &v);
+    stage_upu_A_X(w, j, A, &v);
+    stage_upu_V_X(w, j, V, &v);
+    stage_upu_A_V_X(w, j, V, &v);
+    stage_upu_legs_required(m, i, &v);
+    /* (R_a) moment that actuators and external wrench must give */
+    const real upu_R_a_t = v.axis_y_upu_axes2_x*v.upu_G_m_in_axes2_y + v.upu_c_y*v.upu_q_z -
+        v.axis_x_upu_axes2_x*v.upu_c_m_in_axes2_x - v.upu_c_z*v.upu_q_y;
+    const real upu_R_a_t_2 = v.axis_y_upu_axes2_y*v.upu_G_m_in_axes2_y + v.upu_c_z*v.upu_q_x -
+        v.axis_x_upu_axes2_y*v.upu_c_m_in_axes2_x - v.upu_c_x*v.upu_q_z;
+    const real upu_R_a_t_3 = v.axis_y_upu_axes2_z*v.upu_G_m_in_axes2_y + v.upu_c_x*v.upu_q_y -
+        v.axis_x_upu_axes2_z*v.upu_c_m_in_axes2_x - v.upu_c_y*v.upu_q_x;
+    /* (upu-H_a_3) moment of the column's unit force about the platform origin */
+    const real upu_H_a_3_x = v.axis_x_upu_axes2_z*v.upu_q_y - v.axis_x_upu_axes2_y*v.upu_q_z;
+    const real upu_H_a_3_y = v.axis_x_upu_axes2_x*v.upu_q_z - v.axis_x_upu_axes2_z*v.upu_q_x;
+    const real upu_H_a_3_z = v.axis_x_upu_axes2_y*v.upu_q_x - v.axis_x_upu_axes2_x*v.upu_q_y;
+    /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
+    const real upu_Hk_a_1_x = v.axis_y_upu_axes2_x*v.upu_n_m1_in_axes2_y +
+        v.upu_n_c_z*v.upu_q_y - v.axis_x_upu_axes2_x*v.upu_end_p1_in_axes2_y -
+        v.upu_n_c_y*v.upu_q_z;
+    const real upu_Hk_a_1_y = v.axis_y_upu_axes2_y*v.upu_n_m1_in_axes2_y +
+        v.upu_n_c_x*v.upu_q_z - v.axis_x_upu_axes2_y*v.upu_end_p1_in_axes2_y -
+        v.upu_n_c_z*v.upu_q_x;
+    const real upu_Hk_a_1_z = v.axis_y_upu_axes2_z*v.upu_n_m1_in_axes2_y +
+        v.upu_n_c_y*v.upu_q_x - v.axis_x_upu_axes2_z*v.upu_end_p1_in_axes2_y -
+        v.upu_n_c_x*v.upu_q_y;
+    /* (R_t) force that actuators and external wrench must give */
+    gather(&terms[0*count + k], add, v.upu_c_x);  /* R_t_x_of_legs */
+    gather(&terms[1*count + k], add, v.upu_c_y);  /* R_t_y_of_legs */
+    gather(&terms[2*count + k], add, v.upu_c_z);  /* R_t_z_of_legs */
+    /* (R_a) */
+    gather(&terms[3*count + k], add, upu_R_a_t);  /* R_a_x_of_legs */
+    gather(&terms[4*count + k], add, upu_R_a_t_2);  /* R_a_y_of_legs */
+    gather(&terms[5*count + k], add, upu_R_a_t_3);  /* R_a_z_of_legs */
+    /* (upu-w_3) force part of reciprocal wrench 3 */
+    o[0*count + k] = v.axis_x_upu_axes2_x;
+    o[1*count + k] = v.axis_x_upu_axes2_y;
+    o[2*count + k] = v.axis_x_upu_axes2_z;
+    /* (upu-H_a_3) */
+    o[3*count + k] = upu_H_a_3_x;
+    o[4*count + k] = upu_H_a_3_y;
+    o[5*count + k] = upu_H_a_3_z;
+    /* (upu-n_c) force part, zero on the manifold, of the constraint moment */
+    o[6*count + k] = v.upu_n_c_x;
+    o[7*count + k] = v.upu_n_c_y;
+    o[8*count + k] = v.upu_n_c_z;
+    /* (upu-Hk_a_1) */
+    o[9*count + k] = upu_Hk_a_1_x;
+    o[10*count + k] = upu_Hk_a_1_y;
+    o[11*count + k] = upu_Hk_a_1_z;
+    o[12*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
+        LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
+        LEAST_3);
 }
 
-INLINE void required_place_upu(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *H, real *Hk, verdict *t)
+INLINE void required_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, const real
+    *o, real *H, real *Hk, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        H[(3*NU + leg)*w + k] = o[3*count + first + k];
-        H[(4*NU + leg)*w + k] = o[4*count + first + k];
-        H[(5*NU + leg)*w + k] = o[5*count + first + k];
-        Hk[leg*w + k] = o[6*count + first + k];
-        Hk[(NC + leg)*w + k] = o[7*count + first + k];
-        Hk[(2*NC + leg)*w + k] = o[8*count + first + k];
-        Hk[(3*NC + leg)*w + k] = o[9*count + first + k];
-        Hk[(4*NC + leg)*w + k] = o[10*count + first + k];
-        Hk[(5*NC + leg)*w + k] = o[11*count + first + k];
-        t->singular[k] += o[12*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    H[(3*NU + i)*w + k] = o[3*count + at];
+    H[(4*NU + i)*w + k] = o[4*count + at];
+    H[(5*NU + i)*w + k] = o[5*count + at];
+    Hk[i*w + k] = o[6*count + at];
+    Hk[(NC + i)*w + k] = o[7*count + at];
+    Hk[(2*NC + i)*w + k] = o[8*count + at];
+    Hk[(3*NC + i)*w + k] = o[9*count + at];
+    Hk[(4*NC + i)*w + k] = o[10*count + at];
+    Hk[(5*NC + i)*w + k] = o[11*count + at];
+    t->singular[k] += o[12*count + at];
 }
 
-INLINE void required_after(size_t w, const real *s, const real *sums, real *required)
+INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (R_t) force that actuators and external wrench must give */
-        const real R_t_x_of_legs = sums[0*w + k];
-        const real f_p_x = s[9*w + k];
-        const real R_t_x = f_p_x - R_t_x_of_legs;
-        const real R_t_y_of_legs = sums[1*w + k];
-        const real f_p_y = s[10*w + k];
-        const real R_t_y = f_p_y - R_t_y_of_legs;
-        const real R_t_z_of_legs = sums[2*w + k];
-        const real f_p_z = s[11*w + k];
-        const real R_t_z = f_p_z - R_t_z_of_legs;
-        /* (R_a) moment that actuators and external wrench must give */
-        const real R_a_x_of_legs = sums[3*w + k];
-        const real mu_p_x = s[12*w + k];
-        const real R_a_x = R_a_x_of_legs + mu_p_x;
-        const real R_a_y_of_legs = sums[4*w + k];
-        const real mu_p_y = s[13*w + k];
-        const real R_a_y = R_a_y_of_legs + mu_p_y;
-        const real R_a_z_of_legs = sums[5*w + k];
-        const real mu_p_z = s[14*w + k];
-        const real R_a_z = R_a_z_of_legs + mu_p_z;
-        /* (R_t) force that actuators and external wrench must give */
-        required[0*w + k] = R_t_x;
-        required[1*w + k] = R_t_y;
-        required[2*w + k] = R_t_z;
-        /* (R_a) moment that actuators and external wrench must give */
-        required[3*w + k] = R_a_x;
-        required[4*w + k] = R_a_y;
-        required[5*w + k] = R_a_z;
-    }
+    /* (R_t) */
+    const real R_t_x_of_legs = sums[0*w + k];
+    const real f_p_x = s[9*w + k];
+    const real R_t_x = f_p_x - R_t_x_of_legs;
+    const real R_t_y_of_legs = sums[1*w + k];
+    const real f_p_y = s[10*w + k];
+    const real R_t_y = f_p_y - R_t_y_of_legs;
+    const real R_t_z_of_legs = sums[2*w + k];
+    const real f_p_z = s[11*w + k];
+    const real R_t_z = f_p_z - R_t_z_of_legs;
+    /* (R_a) */
+    const real R_a_x_of_legs = sums[3*w + k];
+    const real mu_p_x = s[12*w + k];
+    const real R_a_x = R_a_x_of_legs + mu_p_x;
+    const real R_a_y_of_legs = sums[4*w + k];
+    const real mu_p_y = s[13*w + k];
+    const real R_a_y = R_a_y_of_legs + mu_p_y;
+    const real R_a_z_of_legs = sums[5*w + k];
+    const real mu_p_z = s[14*w + k];
+    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    /* (R_t) */
+    required[0*w + k] = R_t_x;
+    required[1*w + k] = R_t_y;
+    required[2*w + k] = R_t_z;
+    /* (R_a) */
+    required[3*w + k] = R_a_x;
+    required[4*w + k] = R_a_y;
+    required[5*w + k] = R_a_z;
 }
 
-INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, real *Hk, verdict *t)
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_upu[6*LEGS(LEGS_OF_upu)] = {0}, o_upu[13*LEGS(LEGS_OF_upu)] = {0};
-    required_before(m, 1, X, V, A, s, t);
-    required_legs_upu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_upu), 0, X, V, A, terms_upu, o_upu);
-    for (size_t leg = 0; leg < LEGS_OF_upu; ++leg) {
-        required_place_upu(1, LEGS(LEGS_OF_upu), o_upu, leg, leg, H, Hk, t);
+    required_before(m, 1, 0, X, V, A, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
+        required_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), 0, s, X, V, A, terms_upu, o_upu);
+    }
+    for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        required_place_upu(1, i, 0, i, LEGS(LEGS_OF_upu), o_upu, H, Hk, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_upu + n*LEGS(LEGS_OF_upu), LEGS_OF_upu);
     }
-    required_after(1, s, sums, required);
+    required_after(1, 0, s, sums, required);
 }
 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
-    real *required, real *H, real *Hk, verdict *t)
+    real *restrict required, real *restrict H, real *restrict Hk, verdict *restrict t)
 {
     real s[15*LANES], sums[6*LANES];
     real o_upu[13*LANES];
-    required_before(m, LANES, X, V, A, s, t);
-    clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < LEGS_OF_upu; ++leg) {
-        required_legs_upu(m, LANES, leg, 0, s, 1, LANES, 1, X, V, A, sums, o_upu);
-        required_place_upu(LANES, LANES, o_upu, leg, 0, H, Hk, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        required_before(m, LANES, k, X, V, A, s, t);
     }
-    required_after(LANES, s, sums, required);
+    clear(sums, 6*LANES);
+    for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            required_legs_upu(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_upu);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            required_place_upu(LANES, i, k, k, LANES, o_upu, H, Hk, t);
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        required_after(LANES, k, s, sums, required);
+    }
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, const real *X, real *s, verdict
-    *t)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, real
+    *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void inverse_kinematics_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, const real *X, real *o)
+INLINE void inverse_kinematics_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k,
+    size_t count, const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        /* (upu-S) from the base point to the connection point */
-        const real R_xx = s[0*w + j];
-        const real R_xy = s[1*w + j];
-        const real R_xz = s[2*w + j];
-        const real t_x = X[0*w + j];
-        const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_platform_point_x = m->upu_platform_point_x[i];
-        const real upu_platform_point_y = m->upu_platform_point_y[i];
-        const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real upu_S_x = t_x + R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
-            R_xz*upu_platform_point_z - upu_base_point_x;
-        const real R_yx = s[3*w + j];
-        const real R_yy = s[4*w + j];
-        const real R_yz = s[5*w + j];
-        const real t_y = X[1*w + j];
-        const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_S_y = t_y + R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
-            R_yz*upu_platform_point_z - upu_base_point_y;
-        const real R_zx = s[6*w + j];
-        const real R_zy = s[7*w + j];
-        const real R_zz = s[8*w + j];
-        const real t_z = X[2*w + j];
-        const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_S_z = t_z + R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
-            R_zz*upu_platform_point_z - upu_base_point_z;
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_S_in_turn1_x = upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx +
-            upu_S_z*upu_base_frame_zx;
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-        const real upu_S_in_turn1_y = upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy +
-            upu_S_z*upu_base_frame_zy;
-        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_S_in_turn1_z = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
-            upu_S_z*upu_base_frame_zz;
-        /* (upu-root_1) amplitude, the length across axis 1, with the sign of the branch */
-        const real upu_root_1_t = upu_S_in_turn1_x*upu_S_in_turn1_x +
-            upu_S_in_turn1_y*upu_S_in_turn1_y;
-        const real upu_branch_1 = m->upu_branch_1[i];
-        const real upu_root_1 = upu_branch_1*root(upu_root_1_t);
-        /* (upu-q_1) displacement of joint 1 */
-        const real inv_upu_root_1 = 1/upu_root_1;
-        const real upu_q_1 = angle(inv_upu_root_1*upu_S_in_turn1_y,
-            inv_upu_root_1*upu_S_in_turn1_x);
-        /* (upu-q_3) displacement of joint 3 */
-        const real upu_q_3_t = upu_S_in_turn1_z*upu_S_in_turn1_z + upu_root_1_t;
-        const real upu_branch_2 = m->upu_branch_2[i];
-        const real upu_q_3 = upu_branch_2*root(upu_q_3_t);
-        /* (upu-q_2) displacement of joint 2 */
-        const real inv_upu_q_3 = 1/upu_q_3;
-        const real upu_q_2 = angle(-inv_upu_q_3*upu_S_in_turn1_z, inv_upu_q_3*upu_root_1);
-        /* (upu-q_1) displacement of joint 1 */
-        o[0*count + k] = upu_q_1;
-        /* (upu-q_2) displacement of joint 2 */
-        o[1*count + k] = upu_q_2;
-        /* (upu-q_3) displacement of joint 3 */
-        o[2*count + k] = upu_q_3;
-        o[4*count + k] = upu_q_1 + (upu_q_2 + upu_q_3);
-        o[3*count + k] = UNLESS(magnitude(upu_root_1_t) > LEAST_1) + UNLESS(magnitude(upu_q_3_t) >
-            LEAST_1);
-    }
+    /* (upu-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real t_x = X[0*w + j];
+    const real upu_S_x = t_x + R_xx*m->upu_platform_point_x[i] +
+        R_xy*m->upu_platform_point_y[i] + R_xz*m->upu_platform_point_z[i] -
+        m->upu_base_point_x[i];
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real t_y = X[1*w + j];
+    const real upu_S_y = t_y + R_yx*m->upu_platform_point_x[i] +
+        R_yy*m->upu_platform_point_y[i] + R_yz*m->upu_platform_point_z[i] -
+        m->upu_base_point_y[i];
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real t_z = X[2*w + j];
+    const real upu_S_z = t_z + R_zx*m->upu_platform_point_x[i] +
+        R_zy*m->upu_platform_point_y[i] + R_zz*m->upu_platform_point_z[i] -
+        m->upu_base_point_z[i];
+    const real upu_S_in_turn1_x = upu_S_x*m->upu_base_frame_xx[i] +
+        upu_S_y*m->upu_base_frame_yx[i] + upu_S_z*m->upu_base_frame_zx[i];
+    const real upu_S_in_turn1_y = upu_S_x*m->upu_base_frame_xy[i] +
+        upu_S_y*m->upu_base_frame_yy[i] + upu_S_z*m->upu_base_frame_zy[i];
+    const real upu_S_in_turn1_z = upu_S_x*m->upu_base_frame_xz[i] +
+        upu_S_y*m->upu_base_frame_yz[i] + upu_S_z*m->upu_base_frame_zz[i];
+    /* (upu-root_1) amplitude, the length across axis 1, with the sign of the branch */
+    const real upu_root_1_t = upu_S_in_turn1_x*upu_S_in_turn1_x +
+        upu_S_in_turn1_y*upu_S_in_turn1_y;
+    const real upu_root_1 = m->upu_branch_1[i]*root(upu_root_1_t);
+    /* (upu-q_1) displacement of joint 1 */
+    const real inv_upu_root_1 = 1/upu_root_1;
+    const real upu_q_1 = angle(inv_upu_root_1*upu_S_in_turn1_y,
+        inv_upu_root_1*upu_S_in_turn1_x);
+    /* (upu-q_3) displacement of joint 3 */
+    const real upu_q_3_t = upu_S_in_turn1_z*upu_S_in_turn1_z + upu_root_1_t;
+    const real upu_q_3 = m->upu_branch_2[i]*root(upu_q_3_t);
+    /* (upu-q_2) displacement of joint 2 */
+    const real inv_upu_q_3 = 1/upu_q_3;
+    const real upu_q_2 = angle(-inv_upu_q_3*upu_S_in_turn1_z, inv_upu_q_3*upu_root_1);
+    /* (upu-q_1) */
+    o[0*count + k] = upu_q_1;
+    /* (upu-q_2) */
+    o[1*count + k] = upu_q_2;
+    /* (upu-q_3) */
+    o[2*count + k] = upu_q_3;
+    o[4*count + k] = upu_q_1 + (upu_q_2 + upu_q_3);
+    o[3*count + k] = UNLESS(magnitude(upu_root_1_t) > LEAST_1) + UNLESS(magnitude(upu_q_3_t) >
+        LEAST_1);
 }
 
-INLINE void inverse_kinematics_place_upu(size_t w, size_t count, const real *o, size_t leg, size_t
-    first, real *q, verdict *t)
+INLINE void inverse_kinematics_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count,
+    const real *o, real *q, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        q[3*leg*w + k] = o[0*count + first + k];
-        q[(1 + 3*leg)*w + k] = o[1*count + first + k];
-        q[(2 + 3*leg)*w + k] = o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
+    q[3*i*w + k] = o[0*count + at];
+    q[(1 + 3*i)*w + k] = o[1*count + at];
+    q[(2 + 3*i)*w + k] = o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
 }
 
-INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
+APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
     real s[9] = {0};
     real o_upu[5*LEGS(LEGS_OF_upu)] = {0};
-    inverse_kinematics_before(m, 1, X, s, t);
-    inverse_kinematics_legs_upu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_upu), X, o_upu);
-    for (size_t leg = 0; leg < LEGS_OF_upu; ++leg) {
-        inverse_kinematics_place_upu(1, LEGS(LEGS_OF_upu), o_upu, leg, leg, q, t);
+    inverse_kinematics_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
+        inverse_kinematics_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, o_upu);
+    }
+    for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        inverse_kinematics_place_upu(1, i, 0, i, LEGS(LEGS_OF_upu), o_upu, q, t);
     }
 }
 
-INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
+INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
+    verdict *restrict t)
 {
     real s[9*LANES];
     real o_upu[5*LANES];
-    inverse_kinematics_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_upu; ++leg) {
-        inverse_kinematics_legs_upu(m, LANES, leg, 0, s, 1, LANES, X, o_upu);
-        inverse_kinematics_place_upu(LANES, LANES, o_upu, leg, 0, q, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        inverse_kinematics_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_legs_upu(m, LANES, i, k, k, LANES, s, X, o_upu);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            inverse_kinematics_place_upu(LANES, i, k, k, LANES, o_upu, q, t);
+        }
     }
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void joint_rates_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, const real *X, const real *V, real *o)
+INLINE void joint_rates_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, const real *s, const real *X, const real *V, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_upu v;
-        stage_upu_X(m, w, i, j, s, X, &v);
-        /* (upu-S_dot) velocity of the connection point */
-        const real omega_y = V[4*w + j];
-        const real omega_z = V[5*w + j];
-        const real t_dot_x = V[0*w + j];
-        const real upu_S_dot_x = t_dot_x + omega_y*v.upu_q_z - omega_z*v.upu_q_y;
-        const real omega_x = V[3*w + j];
-        const real t_dot_y = V[1*w + j];
-        const real upu_S_dot_y = t_dot_y + omega_z*v.upu_q_x - omega_x*v.upu_q_z;
-        const real t_dot_z = V[2*w + j];
-        const real upu_S_dot_z = t_dot_z + omega_x*v.upu_q_y - omega_y*v.upu_q_x;
-        const real upu_S_dot_in_axes2_x = v.axis_x_upu_axes2_x*upu_S_dot_x +
-            v.axis_x_upu_axes2_y*upu_S_dot_y + v.axis_x_upu_axes2_z*upu_S_dot_z;
-        /* (upu-qd_1) rate of joint 1 */
-        const real upu_qd_1_t = v.axis_z_upu_axes2_x*upu_S_dot_x +
-            v.axis_z_upu_axes2_y*upu_S_dot_y + v.axis_z_upu_axes2_z*upu_S_dot_z +
-            v.upu_n_c_in_axes2_z*(v.upu_end_p1_in_axes2_y*(v.axis_x_upu_axes2_x*omega_x +
-            v.axis_x_upu_axes2_y*omega_y + v.axis_x_upu_axes2_z*omega_z) -
-            v.upu_n_m1_in_axes2_y*(v.axis_y_upu_axes2_x*omega_x + v.axis_y_upu_axes2_y*omega_y +
-            v.axis_y_upu_axes2_z*omega_z));
-        const real upu_qd_1 = upu_qd_1_t/v.upu_w_1_t;
-        /* (upu-qd_2) rate of joint 2 */
-        const real upu_qd_2 = v.inv_upu_q_3*(v.axis_y_upu_axes2_x*upu_S_dot_x +
-            v.axis_y_upu_axes2_y*upu_S_dot_y + v.axis_y_upu_axes2_z*upu_S_dot_z);
-        /* (upu-qd_1) rate of joint 1 */
-        o[0*count + k] = upu_qd_1;
-        /* (upu-qd_2) rate of joint 2 */
-        o[1*count + k] = upu_qd_2;
-        /* (upu-qd_3) rate of joint 3 */
-        o[2*count + k] = upu_S_dot_in_axes2_x;
-        o[4*count + k] = upu_qd_1 + (upu_qd_2 + upu_S_dot_in_axes2_x);
-        o[3*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
-            LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
-            LEAST_3);
-    }
+    values_upu v;
+    stage_upu_X(m, w, i, j, s, X, &v);
+    /* (upu-S_dot) velocity of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real t_dot_x = V[0*w + j];
+    const real upu_S_dot_x = t_dot_x + omega_y*v.upu_q_z - omega_z*v.upu_q_y;
+    const real omega_x = V[3*w + j];
+    const real t_dot_y = V[1*w + j];
+    const real upu_S_dot_y = t_dot_y + omega_z*v.upu_q_x - omega_x*v.upu_q_z;
+    const real t_dot_z = V[2*w + j];
+    const real upu_S_dot_z = t_dot_z + omega_x*v.upu_q_y - omega_y*v.upu_q_x;
+    const real upu_S_dot_in_axes2_x = v.axis_x_upu_axes2_x*upu_S_dot_x +
+        v.axis_x_upu_axes2_y*upu_S_dot_y + v.axis_x_upu_axes2_z*upu_S_dot_z;
+    /* (upu-qd_1) rate of joint 1 */
+    const real upu_qd_1_t = v.axis_z_upu_axes2_x*upu_S_dot_x +
+        v.axis_z_upu_axes2_y*upu_S_dot_y + v.axis_z_upu_axes2_z*upu_S_dot_z +
+        v.upu_n_c_in_axes2_z*(v.upu_end_p1_in_axes2_y*(v.axis_x_upu_axes2_x*omega_x +
+        v.axis_x_upu_axes2_y*omega_y + v.axis_x_upu_axes2_z*omega_z) -
+        v.upu_n_m1_in_axes2_y*(v.axis_y_upu_axes2_x*omega_x + v.axis_y_upu_axes2_y*omega_y +
+        v.axis_y_upu_axes2_z*omega_z));
+    const real upu_qd_1 = upu_qd_1_t/v.upu_w_1_t;
+    /* (upu-qd_2) rate of joint 2 */
+    const real upu_qd_2 = v.inv_upu_q_3*(v.axis_y_upu_axes2_x*upu_S_dot_x +
+        v.axis_y_upu_axes2_y*upu_S_dot_y + v.axis_y_upu_axes2_z*upu_S_dot_z);
+    /* (upu-qd_1) */
+    o[0*count + k] = upu_qd_1;
+    /* (upu-qd_2) */
+    o[1*count + k] = upu_qd_2;
+    /* (upu-qd_3) rate of joint 3 */
+    o[2*count + k] = upu_S_dot_in_axes2_x;
+    o[4*count + k] = upu_qd_1 + (upu_qd_2 + upu_S_dot_in_axes2_x);
+    o[3*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
+        LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
+        LEAST_3);
 }
 
-INLINE void joint_rates_place_upu(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *qd, verdict *t)
+INLINE void joint_rates_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, const
+    real *o, real *qd, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        qd[3*leg*w + k] = o[0*count + first + k];
-        qd[(1 + 3*leg)*w + k] = o[1*count + first + k];
-        qd[(2 + 3*leg)*w + k] = o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
+    qd[3*i*w + k] = o[0*count + at];
+    qd[(1 + 3*i)*w + k] = o[1*count + at];
+    qd[(2 + 3*i)*w + k] = o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
 }
 
-INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
+APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
     real s[9] = {0};
     real o_upu[5*LEGS(LEGS_OF_upu)] = {0};
-    joint_rates_before(m, 1, X, s, t);
-    joint_rates_legs_upu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_upu), X, V, o_upu);
-    for (size_t leg = 0; leg < LEGS_OF_upu; ++leg) {
-        joint_rates_place_upu(1, LEGS(LEGS_OF_upu), o_upu, leg, leg, qd, t);
+    joint_rates_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
+        joint_rates_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, V, o_upu);
+    }
+    for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        joint_rates_place_upu(1, i, 0, i, LEGS(LEGS_OF_upu), o_upu, qd, t);
     }
 }
 
-INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
-    verdict *t)
+INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
+    qd, verdict *restrict t)
 {
     real s[9*LANES];
     real o_upu[5*LANES];
-    joint_rates_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_upu; ++leg) {
-        joint_rates_legs_upu(m, LANES, leg, 0, s, 1, LANES, X, V, o_upu);
-        joint_rates_place_upu(LANES, LANES, o_upu, leg, 0, qd, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        joint_rates_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_legs_upu(m, LANES, i, k, k, LANES, s, X, V, o_upu);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_rates_place_upu(LANES, i, k, k, LANES, o_upu, qd, t);
+        }
     }
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, const real *X, real *s,
-    verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
+    *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void joint_accelerations_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
-    *o)
+INLINE void joint_accelerations_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t
+    k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_upu v;
-        stage_upu_X(m, w, i, j, s, X, &v);
-        stage_upu_A_X(w, j, A, &v);
-        stage_upu_V_X(w, j, V, &v);
-        stage_upu_A_V_X(w, j, V, &v);
-        /* (upu-bias) acceleration of the connection point at zero joint accelerations */
-        const real upu_bias_in_axes2_z = 2*v.upu_W_2_in_axes2_xz*v.upu_q_3 -
-            v.upu_bias_t*v.upu_omega_1_in_axes2_y;
-        /* (upu-rel) acceleration of the connection point left to the joint accelerations */
-        const real upu_rel_in_axes2_x = v.axis_x_upu_axes2_x*v.upu_S_ddot_x +
-            v.axis_x_upu_axes2_y*v.upu_S_ddot_y + v.axis_x_upu_axes2_z*v.upu_S_ddot_z +
-            v.upu_q_3*(v.upu_omega_1_in_axes2_y*v.upu_omega_1_in_axes2_y + v.upu_qd_2*v.upu_qd_2);
-        const real upu_rel_in_axes2_z = v.axis_z_upu_axes2_x*v.upu_S_ddot_x +
-            v.axis_z_upu_axes2_y*v.upu_S_ddot_y + v.axis_z_upu_axes2_z*v.upu_S_ddot_z -
-            upu_bias_in_axes2_z;
-        /* (upu-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real upu_nu_1_t = -v.upu_W_2_in_axes2_xz*v.upu_n_m1_in_axes2_y -
-            v.upu_end_p1_in_axes2_y*v.upu_omega_1_in_axes2_y*v.upu_qd_2;
-        const real upu_nu_1 = v.upu_nu_1_t_2 - upu_nu_1_t;
-        /* (upu-etad_1) acceleration with which the joints turn along moment direction 1 */
-        const real upu_etad_1 = upu_nu_1 - v.upu_etad_1_t;
-        /* (upu-qdd_1) acceleration of joint 1 */
-        const real upu_qdd_1_t = v.upu_w_1_in_axes2_z*(upu_etad_1*v.upu_n_c_in_axes2_z -
-            upu_rel_in_axes2_z);
-        /* (upu-qdd_2) acceleration of joint 2 */
-        const real upu_qdd_2 = v.inv_upu_q_3*(v.axis_y_upu_axes2_x*v.upu_S_ddot_x +
-            v.axis_y_upu_axes2_y*v.upu_S_ddot_y + v.axis_y_upu_axes2_z*v.upu_S_ddot_z -
-            v.upu_bias_t*v.upu_qd_2) - v.upu_omega_1_in_axes2_x*v.upu_omega_1_in_axes2_y;
-        /* (upu-qdd_1) acceleration of joint 1 */
-        o[0*count + k] = -upu_qdd_1_t;
-        /* (upu-qdd_2) acceleration of joint 2 */
-        o[1*count + k] = upu_qdd_2;
-        /* (upu-qdd_3) acceleration of joint 3 */
-        o[2*count + k] = upu_rel_in_axes2_x;
-        o[4*count + k] = upu_qdd_1_t + (upu_qdd_2 + upu_rel_in_axes2_x);
-        o[3*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
-            LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
-            LEAST_3);
-    }
+    values_upu v;
+    stage_upu_X(m, w, i, j, s, X, &v);
+    stage_upu_A_X(w, j, A, &v);
+    stage_upu_V_X(w, j, V, &v);
+    stage_upu_A_V_X(w, j, V, &v);
+    /* (upu-bias) acceleration of the connection point at zero joint accelerations */
+    const real upu_bias_in_axes2_z = 2*v.upu_W_2_in_axes2_xz*v.upu_q_3 -
+        v.upu_bias_t*v.upu_omega_1_in_axes2_y;
+    /* (upu-rel) acceleration of the connection point left to the joint accelerations */
+    const real upu_rel_in_axes2_x = v.axis_x_upu_axes2_x*v.upu_S_ddot_x +
+        v.axis_x_upu_axes2_y*v.upu_S_ddot_y + v.axis_x_upu_axes2_z*v.upu_S_ddot_z +
+        v.upu_q_3*(v.upu_omega_1_in_axes2_y*v.upu_omega_1_in_axes2_y + v.upu_qd_2*v.upu_qd_2);
+    const real upu_rel_in_axes2_z = v.axis_z_upu_axes2_x*v.upu_S_ddot_x +
+        v.axis_z_upu_axes2_y*v.upu_S_ddot_y + v.axis_z_upu_axes2_z*v.upu_S_ddot_z -
+        upu_bias_in_axes2_z;
+    /* (upu-nu_1) bias of the angular acceleration along moment direction 1 */
+    const real upu_nu_1_t = -v.upu_W_2_in_axes2_xz*v.upu_n_m1_in_axes2_y -
+        v.upu_end_p1_in_axes2_y*v.upu_omega_1_in_axes2_y*v.upu_qd_2;
+    const real upu_nu_1 = v.upu_nu_1_t_2 - upu_nu_1_t;
+    /* (upu-etad_1) acceleration with which the joints turn along moment direction 1 */
+    const real upu_etad_1 = upu_nu_1 - v.upu_etad_1_t;
+    /* (upu-qdd_1) acceleration of joint 1 */
+    const real upu_qdd_1_t = v.upu_w_1_in_axes2_z*(upu_etad_1*v.upu_n_c_in_axes2_z -
+        upu_rel_in_axes2_z);
+    /* (upu-qdd_2) acceleration of joint 2 */
+    const real upu_qdd_2 = v.inv_upu_q_3*(v.axis_y_upu_axes2_x*v.upu_S_ddot_x +
+        v.axis_y_upu_axes2_y*v.upu_S_ddot_y + v.axis_y_upu_axes2_z*v.upu_S_ddot_z -
+        v.upu_bias_t*v.upu_qd_2) - v.upu_omega_1_in_axes2_x*v.upu_omega_1_in_axes2_y;
+    /* (upu-qdd_1) */
+    o[0*count + k] = -upu_qdd_1_t;
+    /* (upu-qdd_2) */
+    o[1*count + k] = upu_qdd_2;
+    /* (upu-qdd_3) acceleration of joint 3 */
+    o[2*count + k] = upu_rel_in_axes2_x;
+    o[4*count + k] = upu_qdd_1_t + (upu_qdd_2 + upu_rel_in_axes2_x);
+    o[3*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
+        LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
+        LEAST_3);
 }
 
-INLINE void joint_accelerations_place_upu(size_t w, size_t count, const real *o, size_t leg,
-    size_t first, real *qdd, verdict *t)
+INLINE void joint_accelerations_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count,
+    const real *o, real *qdd, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        qdd[3*leg*w + k] = o[0*count + first + k];
-        qdd[(1 + 3*leg)*w + k] = o[1*count + first + k];
-        qdd[(2 + 3*leg)*w + k] = o[2*count + first + k];
-        t->singular[k] += o[3*count + first + k];
-        t->total[k] += o[4*count + first + k];
-    }
+    qdd[3*i*w + k] = o[0*count + at];
+    qdd[(1 + 3*i)*w + k] = o[1*count + at];
+    qdd[(2 + 3*i)*w + k] = o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
 }
 
-INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd, verdict *t)
+APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
+    real *qdd, verdict *t)
 {
     real s[9] = {0};
     real o_upu[5*LEGS(LEGS_OF_upu)] = {0};
-    joint_accelerations_before(m, 1, X, s, t);
-    joint_accelerations_legs_upu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_upu), X, V, A, o_upu);
-    for (size_t leg = 0; leg < LEGS_OF_upu; ++leg) {
-        joint_accelerations_place_upu(1, LEGS(LEGS_OF_upu), o_upu, leg, leg, qdd, t);
+    joint_accelerations_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
+        joint_accelerations_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, V, A, o_upu);
+    }
+    for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        joint_accelerations_place_upu(1, i, 0, i, LEGS(LEGS_OF_upu), o_upu, qdd, t);
     }
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *qdd, verdict *t)
+    real *A, real *restrict qdd, verdict *restrict t)
 {
     real s[9*LANES];
     real o_upu[5*LANES];
-    joint_accelerations_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_upu; ++leg) {
-        joint_accelerations_legs_upu(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_upu);
-        joint_accelerations_place_upu(LANES, LANES, o_upu, leg, 0, qdd, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        joint_accelerations_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_legs_upu(m, LANES, i, k, k, LANES, s, X, V, A, o_upu);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            joint_accelerations_place_upu(LANES, i, k, k, LANES, o_upu, qdd, t);
+        }
     }
 }
 
 /* ---- constraints ---- */
-INLINE void constraints_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void constraints_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void constraints_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, const real *X, real *o)
+INLINE void constraints_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, const real *s, const real *X, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        /* (upu-S) from the base point to the connection point */
-        const real R_xx = s[0*w + j];
-        const real R_xy = s[1*w + j];
-        const real R_xz = s[2*w + j];
-        const real t_x = X[0*w + j];
-        const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_platform_point_x = m->upu_platform_point_x[i];
-        const real upu_platform_point_y = m->upu_platform_point_y[i];
-        const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real upu_S_x = t_x + R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
-            R_xz*upu_platform_point_z - upu_base_point_x;
-        const real R_yx = s[3*w + j];
-        const real R_yy = s[4*w + j];
-        const real R_yz = s[5*w + j];
-        const real t_y = X[1*w + j];
-        const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_S_y = t_y + R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
-            R_yz*upu_platform_point_z - upu_base_point_y;
-        const real R_zx = s[6*w + j];
-        const real R_zy = s[7*w + j];
-        const real R_zz = s[8*w + j];
-        const real t_z = X[2*w + j];
-        const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_S_z = t_z + R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
-            R_zz*upu_platform_point_z - upu_base_point_z;
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_S_in_turn1_x = upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx +
-            upu_S_z*upu_base_frame_zx;
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-        const real upu_S_in_turn1_y = upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy +
-            upu_S_z*upu_base_frame_zy;
-        /* (upu-root_1) amplitude, the length across axis 1, with the sign of the branch */
-        const real upu_root_1_t = upu_S_in_turn1_x*upu_S_in_turn1_x +
-            upu_S_in_turn1_y*upu_S_in_turn1_y;
-        const real upu_branch_1 = m->upu_branch_1[i];
-        const real upu_root_1 = upu_branch_1*root(upu_root_1_t);
-        /* (upu-phi_c1) loop-closure residual about the constraint moment */
-        const real inv_upu_root_1 = 1/upu_root_1;
-        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
-        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
-        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
-        const real upu_phi_c1_t = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
-            R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
-            R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
-            R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real upu_phi_c1_t_2 = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
-            R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
-            R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
-            R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        const real upu_end_p1_in_axes2_z = inv_upu_root_1*upu_S_in_turn1_x*upu_phi_c1_t_2 -
-            inv_upu_root_1*upu_S_in_turn1_y*upu_phi_c1_t;
-        /* (upu-phi_c1) loop-closure residual about the constraint moment */
-        o[0*count + k] = -upu_end_p1_in_axes2_z;
-        o[2*count + k] = upu_end_p1_in_axes2_z;
-        o[1*count + k] = UNLESS(magnitude(upu_root_1_t) > LEAST_1);
-    }
+    /* (upu-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real t_x = X[0*w + j];
+    const real upu_S_x = t_x + R_xx*m->upu_platform_point_x[i] +
+        R_xy*m->upu_platform_point_y[i] + R_xz*m->upu_platform_point_z[i] -
+        m->upu_base_point_x[i];
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real t_y = X[1*w + j];
+    const real upu_S_y = t_y + R_yx*m->upu_platform_point_x[i] +
+        R_yy*m->upu_platform_point_y[i] + R_yz*m->upu_platform_point_z[i] -
+        m->upu_base_point_y[i];
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real t_z = X[2*w + j];
+    const real upu_S_z = t_z + R_zx*m->upu_platform_point_x[i] +
+        R_zy*m->upu_platform_point_y[i] + R_zz*m->upu_platform_point_z[i] -
+        m->upu_base_point_z[i];
+    const real upu_S_in_turn1_x = upu_S_x*m->upu_base_frame_xx[i] +
+        upu_S_y*m->upu_base_frame_yx[i] + upu_S_z*m->upu_base_frame_zx[i];
+    const real upu_S_in_turn1_y = upu_S_x*m->upu_base_frame_xy[i] +
+        upu_S_y*m->upu_base_frame_yy[i] + upu_S_z*m->upu_base_frame_zy[i];
+    /* (upu-root_1) amplitude, the length across axis 1, with the sign of the branch */
+    const real upu_root_1_t = upu_S_in_turn1_x*upu_S_in_turn1_x +
+        upu_S_in_turn1_y*upu_S_in_turn1_y;
+    const real upu_root_1 = m->upu_branch_1[i]*root(upu_root_1_t);
+    /* (upu-phi_c1) loop-closure residual about the constraint moment */
+    const real inv_upu_root_1 = 1/upu_root_1;
+    const real upu_phi_c1_t =
+        m->upu_platform_joint_axis_platform_x[i]*(R_xx*m->upu_base_frame_xx[i] +
+        R_yx*m->upu_base_frame_yx[i] + R_zx*m->upu_base_frame_zx[i]) +
+        m->upu_platform_joint_axis_platform_y[i]*(R_xy*m->upu_base_frame_xx[i] +
+        R_yy*m->upu_base_frame_yx[i] + R_zy*m->upu_base_frame_zx[i]) +
+        m->upu_platform_joint_axis_platform_z[i]*(R_xz*m->upu_base_frame_xx[i] +
+        R_yz*m->upu_base_frame_yx[i] + R_zz*m->upu_base_frame_zx[i]);
+    const real upu_phi_c1_t_2 =
+        m->upu_platform_joint_axis_platform_x[i]*(R_xx*m->upu_base_frame_xy[i] +
+        R_yx*m->upu_base_frame_yy[i] + R_zx*m->upu_base_frame_zy[i]) +
+        m->upu_platform_joint_axis_platform_y[i]*(R_xy*m->upu_base_frame_xy[i] +
+        R_yy*m->upu_base_frame_yy[i] + R_zy*m->upu_base_frame_zy[i]) +
+        m->upu_platform_joint_axis_platform_z[i]*(R_xz*m->upu_base_frame_xy[i] +
+        R_yz*m->upu_base_frame_yy[i] + R_zz*m->upu_base_frame_zy[i]);
+    const real upu_end_p1_in_axes2_z = inv_upu_root_1*upu_S_in_turn1_x*upu_phi_c1_t_2 -
+        inv_upu_root_1*upu_S_in_turn1_y*upu_phi_c1_t;
+    /* (upu-phi_c1) */
+    o[0*count + k] = -upu_end_p1_in_axes2_z;
+    o[2*count + k] = upu_end_p1_in_axes2_z;
+    o[1*count + k] = UNLESS(magnitude(upu_root_1_t) > LEAST_1);
 }
 
-INLINE void constraints_place_upu(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *constraints, verdict *t)
+INLINE void constraints_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, const
+    real *o, real *constraints, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        constraints[leg*w + k] = o[0*count + first + k];
-        t->singular[k] += o[1*count + first + k];
-        t->total[k] += o[2*count + first + k];
-    }
+    constraints[i*w + k] = o[0*count + at];
+    t->singular[k] += o[1*count + at];
+    t->total[k] += o[2*count + at];
 }
 
-INLINE void constraints_run(const prepared *m, const real *X, real *constraints, verdict *t)
+APART void constraints_run(const prepared *m, const real *X, real *constraints, verdict *t)
 {
     real s[9] = {0};
     real o_upu[3*LEGS(LEGS_OF_upu)] = {0};
-    constraints_before(m, 1, X, s, t);
-    constraints_legs_upu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_upu), X, o_upu);
-    for (size_t leg = 0; leg < LEGS_OF_upu; ++leg) {
-        constraints_place_upu(1, LEGS(LEGS_OF_upu), o_upu, leg, leg, constraints, t);
+    constraints_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
+        constraints_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, o_upu);
+    }
+    for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        constraints_place_upu(1, i, 0, i, LEGS(LEGS_OF_upu), o_upu, constraints, t);
     }
 }
 
-INLINE void constraints_run_lanes(const prepared *m, const real *X, real *constraints, verdict *t)
+INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restrict constraints,
+    verdict *restrict t)
 {
     real s[9*LANES];
     real o_upu[3*LANES];
-    constraints_before(m, LANES, X, s, t);
-    for (size_t leg = 0; leg < LEGS_OF_upu; ++leg) {
-        constraints_legs_upu(m, LANES, leg, 0, s, 1, LANES, X, o_upu);
-        constraints_place_upu(LANES, LANES, o_upu, leg, 0, constraints, t);
+    for (size_t k = 0; k < LANES; ++k) {
+        constraints_before(m, LANES, k, X, s, t);
+    }
+    for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            constraints_legs_upu(m, LANES, i, k, k, LANES, s, X, o_upu);
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            constraints_place_upu(LANES, i, k, k, LANES, o_upu, constraints, t);
+        }
     }
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void legs_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
+INLINE void legs_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
+    const real *s, const real *X, const real *V, const real *A, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_upu v;
-        stage_upu_X(m, w, i, j, s, X, &v);
-        stage_upu_A_X(w, j, A, &v);
-        stage_upu_V_X(w, j, V, &v);
-        stage_upu_A_V_X(w, j, V, &v);
-        stage_upu_legs_required(m, i, &v);
-        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real upu_n_m1_x = v.axis_y_upu_axes2_x*v.upu_n_m1_in_axes2_y -
-            v.axis_x_upu_axes2_x*v.upu_end_p1_in_axes2_y;
-        const real upu_n_m1_y = v.axis_y_upu_axes2_y*v.upu_n_m1_in_axes2_y -
-            v.axis_x_upu_axes2_y*v.upu_end_p1_in_axes2_y;
-        const real upu_n_m1_z = v.axis_y_upu_axes2_z*v.upu_n_m1_in_axes2_y -
-            v.axis_x_upu_axes2_z*v.upu_end_p1_in_axes2_y;
-        /* (upu-c_m) moment of the leg on the platform without actuation */
-        const real upu_c_m_x = v.axis_x_upu_axes2_x*v.upu_c_m_in_axes2_x -
-            v.axis_y_upu_axes2_x*v.upu_G_m_in_axes2_y;
-        const real upu_c_m_y = v.axis_x_upu_axes2_y*v.upu_c_m_in_axes2_x -
-            v.axis_y_upu_axes2_y*v.upu_G_m_in_axes2_y;
-        const real upu_c_m_z = v.axis_x_upu_axes2_z*v.upu_c_m_in_axes2_x -
-            v.axis_y_upu_axes2_z*v.upu_G_m_in_axes2_y;
-        /* (upu-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        o[0*count + k] = v.upu_c_x;
-        o[1*count + k] = v.upu_c_y;
-        o[2*count + k] = v.upu_c_z;
-        /* (upu-c_m) moment of the leg on the platform without actuation */
-        o[3*count + k] = upu_c_m_x;
-        o[4*count + k] = upu_c_m_y;
-        o[5*count + k] = upu_c_m_z;
-        /* (upu-w_3) force part of reciprocal wrench 3 */
-        o[6*count + k] = v.axis_x_upu_axes2_x;
-        o[7*count + k] = v.axis_x_upu_axes2_y;
-        o[8*count + k] = v.axis_x_upu_axes2_z;
-        /* (upu-n_c) force part, zero on the manifold, of the constraint moment */
-        o[9*count + k] = v.upu_n_c_x;
-        o[10*count + k] = v.upu_n_c_y;
-        o[11*count + k] = v.upu_n_c_z;
-        /* (upu-mu_c) moment that goes with it */
-        o[12*count + k] = upu_n_m1_x;
-        o[13*count + k] = upu_n_m1_y;
-        o[14*count + k] = upu_n_m1_z;
-        o[15*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
-            LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
-            LEAST_3);
-    }
+    values_upu v;
+    stage_upu_X(m, w, i, j, s, X, &v);
+    stage_upu_A_X(w, j, A, &v);
+    stage_upu_V_X(w, j, V, &v);
+    stage_upu_A_V_X(w, j, V, &v);
+    stage_upu_legs_required(m, i, &v);
+    /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+    const real upu_n_m1_x = v.axis_y_upu_axes2_x*v.upu_n_m1_in_axes2_y -
+        v.axis_x_upu_axes2_x*v.upu_end_p1_in_axes2_y;
+    const real upu_n_m1_y = v.axis_y_upu_axes2_y*v.upu_n_m1_in_axes2_y -
+        v.axis_x_upu_axes2_y*v.upu_end_p1_in_axes2_y;
+    const real upu_n_m1_z = v.axis_y_upu_axes2_z*v.upu_n_m1_in_axes2_y -
+        v.axis_x_upu_axes2_z*v.upu_end_p1_in_axes2_y;
+    /* (upu-c_m) moment of the leg on the platform without actuation */
+    const real upu_c_m_x = v.axis_x_upu_axes2_x*v.upu_c_m_in_axes2_x -
+        v.axis_y_upu_axes2_x*v.upu_G_m_in_axes2_y;
+    const real upu_c_m_y = v.axis_x_upu_axes2_y*v.upu_c_m_in_axes2_x -
+        v.axis_y_upu_axes2_y*v.upu_G_m_in_axes2_y;
+    const real upu_c_m_z = v.axis_x_upu_axes2_z*v.upu_c_m_in_axes2_x -
+        v.axis_y_upu_axes2_z*v.upu_G_m_in_axes2_y;
+    /* (upu-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    o[0*count + k] = v.upu_c_x;
+    o[1*count + k] = v.upu_c_y;
+    o[2*count + k] = v.upu_c_z;
+    /* (upu-c_m) */
+    o[3*count + k] = upu_c_m_x;
+    o[4*count + k] = upu_c_m_y;
+    o[5*count + k] = upu_c_m_z;
+    /* (upu-w_3) force part of reciprocal wrench 3 */
+    o[6*count + k] = v.axis_x_upu_axes2_x;
+    o[7*count + k] = v.axis_x_upu_axes2_y;
+    o[8*count + k] = v.axis_x_upu_axes2_z;
+    /* (upu-n_c) force part, zero on the manifold, of the constraint moment */
+    o[9*count + k] = v.upu_n_c_x;
+    o[10*count + k] = v.upu_n_c_y;
+    o[11*count + k] = v.upu_n_c_z;
+    /* (upu-mu_c) moment that goes with it */
+    o[12*count + k] = upu_n_m1_x;
+    o[13*count + k] = upu_n_m1_y;
+    o[14*count + k] = upu_n_m1_z;
+    o[15*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
+        LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
+        LEAST_3);
 }
 
-INLINE void legs_place_upu(size_t w, size_t count, const real *o, size_t leg, size_t first, real
-    *leg_force, real *actuator, real *constraint_direction, verdict *t)
+INLINE void legs_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *leg_force, real *actuator, real *constraint_direction, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        leg_force[6*leg*w + k] = o[0*count + first + k];
-        leg_force[(6*leg + 1)*w + k] = o[1*count + first + k];
-        leg_force[(6*leg + 2)*w + k] = o[2*count + first + k];
-        leg_force[(6*leg + 3)*w + k] = o[3*count + first + k];
-        leg_force[(6*leg + 4)*w + k] = o[4*count + first + k];
-        leg_force[(6*leg + 5)*w + k] = o[5*count + first + k];
-        actuator[6*leg*w + k] = o[6*count + first + k];
-        actuator[(6*leg + 1)*w + k] = o[7*count + first + k];
-        actuator[(6*leg + 2)*w + k] = o[8*count + first + k];
-        constraint_direction[6*leg*w + k] = o[9*count + first + k];
-        constraint_direction[(6*leg + 1)*w + k] = o[10*count + first + k];
-        constraint_direction[(6*leg + 2)*w + k] = o[11*count + first + k];
-        constraint_direction[(6*leg + 3)*w + k] = o[12*count + first + k];
-        constraint_direction[(6*leg + 4)*w + k] = o[13*count + first + k];
-        constraint_direction[(6*leg + 5)*w + k] = o[14*count + first + k];
-        t->singular[k] += o[15*count + first + k];
-    }
+    leg_force[6*i*w + k] = o[0*count + at];
+    leg_force[(6*i + 1)*w + k] = o[1*count + at];
+    leg_force[(6*i + 2)*w + k] = o[2*count + at];
+    leg_force[(6*i + 3)*w + k] = o[3*count + at];
+    leg_force[(6*i + 4)*w + k] = o[4*count + at];
+    leg_force[(6*i + 5)*w + k] = o[5*count + at];
+    actuator[6*i*w + k] = o[6*count + at];
+    actuator[(6*i + 1)*w + k] = o[7*count + at];
+    actuator[(6*i + 2)*w + k] = o[8*count + at];
+    constraint_direction[6*i*w + k] = o[9*count + at];
+    constraint_direction[(6*i + 1)*w + k] = o[10*count + at];
+    constraint_direction[(6*i + 2)*w + k] = o[11*count + at];
+    constraint_direction[(6*i + 3)*w + k] = o[12*count + at];
+    constraint_direction[(6*i + 4)*w + k] = o[13*count + at];
+    constraint_direction[(6*i + 5)*w + k] = o[14*count + at];
+    t->singular[k] += o[15*count + at];
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
@@ -4517,334 +4429,281 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     real s[9] = {0};
     real o_upu[16*LEGS(LEGS_OF_upu)] = {0};
     clear(actuator, 18);
-    legs_before(m, 1, X, s, t);
-    legs_legs_upu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_upu), X, V, A, o_upu);
-    for (size_t leg = 0; leg < LEGS_OF_upu; ++leg) {
-        legs_place_upu(1, LEGS(LEGS_OF_upu), o_upu, leg, leg, leg_force, actuator, constraint_direction, t);
+    legs_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
+        legs_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, V, A, o_upu);
+    }
+    for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        legs_place_upu(1, i, 0, i, LEGS(LEGS_OF_upu), o_upu, leg_force, actuator, constraint_direction, t);
     }
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
+    verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        /* (potential) potential energy */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real platform_mass = m->platform_mass;
-        const real t_x = X[0*w + k];
-        const real t_y = X[1*w + k];
-        const real t_z = X[2*w + k];
-        const real potential_t = gravity_x*(v.R_xx*h_star_in_platform_x +
-            v.R_xy*h_star_in_platform_y + v.R_xz*h_star_in_platform_z + platform_mass*t_x) +
-            gravity_y*(v.R_yx*h_star_in_platform_x + v.R_yy*h_star_in_platform_y +
-            v.R_yz*h_star_in_platform_z + platform_mass*t_y) +
-            gravity_z*(v.R_zx*h_star_in_platform_x + v.R_zy*h_star_in_platform_y +
-            v.R_zz*h_star_in_platform_z + platform_mass*t_z);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        s[9*w + k] = potential_t;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    /* (potential) potential energy */
+    const real t_x = X[0*w + k];
+    const real t_y = X[1*w + k];
+    const real t_z = X[2*w + k];
+    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x +
+        v.R_xy*m->h_star_in_platform_y + v.R_xz*m->h_star_in_platform_z +
+        m->platform_mass*t_x) + m->gravity_y*(v.R_yx*m->h_star_in_platform_x +
+        v.R_yy*m->h_star_in_platform_y + v.R_yz*m->h_star_in_platform_z +
+        m->platform_mass*t_y) + m->gravity_z*(v.R_zx*m->h_star_in_platform_x +
+        v.R_zy*m->h_star_in_platform_y + v.R_zz*m->h_star_in_platform_z +
+        m->platform_mass*t_z);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    s[9*w + k] = potential_t;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void potential_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void potential_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        /* (upu-S) from the base point to the connection point */
-        const real R_xx = s[0*w + j];
-        const real R_xy = s[1*w + j];
-        const real R_xz = s[2*w + j];
-        const real t_x = X[0*w + j];
-        const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_platform_point_x = m->upu_platform_point_x[i];
-        const real upu_platform_point_y = m->upu_platform_point_y[i];
-        const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real upu_S_x = t_x + R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
-            R_xz*upu_platform_point_z - upu_base_point_x;
-        const real R_yx = s[3*w + j];
-        const real R_yy = s[4*w + j];
-        const real R_yz = s[5*w + j];
-        const real t_y = X[1*w + j];
-        const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_S_y = t_y + R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
-            R_yz*upu_platform_point_z - upu_base_point_y;
-        const real R_zx = s[6*w + j];
-        const real R_zy = s[7*w + j];
-        const real R_zz = s[8*w + j];
-        const real t_z = X[2*w + j];
-        const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_S_z = t_z + R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
-            R_zz*upu_platform_point_z - upu_base_point_z;
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_S_in_turn1_x = upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx +
-            upu_S_z*upu_base_frame_zx;
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-        const real upu_S_in_turn1_y = upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy +
-            upu_S_z*upu_base_frame_zy;
-        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_S_in_turn1_z = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
-            upu_S_z*upu_base_frame_zz;
-        /* (upu-root_1) amplitude, the length across axis 1, with the sign of the branch */
-        const real upu_root_1_t = upu_S_in_turn1_x*upu_S_in_turn1_x +
-            upu_S_in_turn1_y*upu_S_in_turn1_y;
-        const real upu_branch_1 = m->upu_branch_1[i];
-        const real upu_root_1 = upu_branch_1*root(upu_root_1_t);
-        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_upu_root_1 = 1/upu_root_1;
-        const real upu_c_1 = inv_upu_root_1*upu_S_in_turn1_x;
-        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
-        const real upu_s_1 = inv_upu_root_1*upu_S_in_turn1_y;
-        /* (upu-q_3) displacement of joint 3 */
-        const real upu_q_3_t = upu_S_in_turn1_z*upu_S_in_turn1_z + upu_root_1_t;
-        const real upu_branch_2 = m->upu_branch_2[i];
-        const real upu_q_3 = upu_branch_2*root(upu_q_3_t);
-        /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_upu_q_3 = 1/upu_q_3;
-        const real upu_c_2 = inv_upu_q_3*upu_root_1;
-        /* (potential) potential energy */
-        const real upu_e_1_in_axes2_x = inv_upu_q_3*upu_S_in_turn1_z;
-        const real upu_acc_3_t = m->upu_acc_3_t[i];
-        const real upu_acc_3_t_2 = m->upu_acc_3_t_2[i];
-        const real upu_potential_t_4 = upu_acc_3_t*upu_c_1 + upu_acc_3_t_2*upu_s_1;
-        const real upu_potential_t = m->upu_potential_t[i];
-        const real upu_potential_t_2 = m->upu_potential_t_2[i];
-        const real upu_potential_t_5 = upu_c_1*upu_potential_t + upu_potential_t_2*upu_s_1;
-        const real upu_b_in_spec2_y = upu_c_1*upu_potential_t_2 - upu_potential_t*upu_s_1;
-        const real upu_potential_t_3 = m->upu_potential_t_3[i];
-        const real upu_b_in_spec2_x = upu_c_2*upu_potential_t_5 +
-            upu_e_1_in_axes2_x*upu_potential_t_3;
-        const real upu_b_in_spec2_z = upu_c_2*upu_potential_t_3 -
-            upu_e_1_in_axes2_x*upu_potential_t_5;
-        const real upu_acc_3_t_3 = m->upu_acc_3_t_3[i];
-        const real upu_h_2_in_spec2_x = m->upu_h_2_in_spec2_x[i];
-        const real upu_h_2_in_spec2_y = m->upu_h_2_in_spec2_y[i];
-        const real upu_h_2_in_spec2_z = m->upu_h_2_in_spec2_z[i];
-        const real upu_h_3_in_spec2_x = m->upu_h_3_in_spec2_x[i];
-        const real upu_h_3_in_spec2_y = m->upu_h_3_in_spec2_y[i];
-        const real upu_h_3_in_spec2_z = m->upu_h_3_in_spec2_z[i];
-        const real upu_link2_mass = m->upu_link2_mass[i];
-        const real upu_link3_mass = m->upu_link3_mass[i];
-        const real upu_potential_t_6 = (upu_e_1_in_axes2_x*upu_potential_t_4 -
-            upu_acc_3_t_3*upu_c_2)*(upu_h_2_in_spec2_z + upu_h_3_in_spec2_z +
-            upu_b_in_spec2_z*upu_link2_mass + upu_b_in_spec2_z*upu_link3_mass) -
-            (upu_acc_3_t_2*upu_c_1 - upu_acc_3_t*upu_s_1)*(upu_h_2_in_spec2_y + upu_h_3_in_spec2_y
-            + upu_b_in_spec2_y*upu_link2_mass + upu_b_in_spec2_y*upu_link3_mass) -
-            (upu_acc_3_t_3*upu_e_1_in_axes2_x + upu_c_2*upu_potential_t_4)*(upu_h_2_in_spec2_x +
-            upu_h_3_in_spec2_x + upu_b_in_spec2_x*upu_link2_mass +
-            upu_link3_mass*(upu_b_in_spec2_x + upu_q_3));
-        /* (potential) potential energy */
-        gather(&terms[0*count + k], add, upu_potential_t_6);  /* potential_of_legs */
-        o[0*count + k] = UNLESS(magnitude(upu_root_1_t) > LEAST_1) + UNLESS(magnitude(upu_q_3_t) >
-            LEAST_1);
-    }
+    /* (upu-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real t_x = X[0*w + j];
+    const real upu_S_x = t_x + R_xx*m->upu_platform_point_x[i] +
+        R_xy*m->upu_platform_point_y[i] + R_xz*m->upu_platform_point_z[i] -
+        m->upu_base_point_x[i];
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real t_y = X[1*w + j];
+    const real upu_S_y = t_y + R_yx*m->upu_platform_point_x[i] +
+        R_yy*m->upu_platform_point_y[i] + R_yz*m->upu_platform_point_z[i] -
+        m->upu_base_point_y[i];
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real t_z = X[2*w + j];
+    const real upu_S_z = t_z + R_zx*m->upu_platform_point_x[i] +
+        R_zy*m->upu_platform_point_y[i] + R_zz*m->upu_platform_point_z[i] -
+        m->upu_base_point_z[i];
+    const real upu_S_in_turn1_x = upu_S_x*m->upu_base_frame_xx[i] +
+        upu_S_y*m->upu_base_frame_yx[i] + upu_S_z*m->upu_base_frame_zx[i];
+    const real upu_S_in_turn1_y = upu_S_x*m->upu_base_frame_xy[i] +
+        upu_S_y*m->upu_base_frame_yy[i] + upu_S_z*m->upu_base_frame_zy[i];
+    const real upu_S_in_turn1_z = upu_S_x*m->upu_base_frame_xz[i] +
+        upu_S_y*m->upu_base_frame_yz[i] + upu_S_z*m->upu_base_frame_zz[i];
+    /* (upu-root_1) amplitude, the length across axis 1, with the sign of the branch */
+    const real upu_root_1_t = upu_S_in_turn1_x*upu_S_in_turn1_x +
+        upu_S_in_turn1_y*upu_S_in_turn1_y;
+    const real upu_root_1 = m->upu_branch_1[i]*root(upu_root_1_t);
+    /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real inv_upu_root_1 = 1/upu_root_1;
+    const real upu_c_1 = inv_upu_root_1*upu_S_in_turn1_x;
+    /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
+    const real upu_s_1 = inv_upu_root_1*upu_S_in_turn1_y;
+    /* (upu-q_3) displacement of joint 3 */
+    const real upu_q_3_t = upu_S_in_turn1_z*upu_S_in_turn1_z + upu_root_1_t;
+    const real upu_q_3 = m->upu_branch_2[i]*root(upu_q_3_t);
+    /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real inv_upu_q_3 = 1/upu_q_3;
+    const real upu_c_2 = inv_upu_q_3*upu_root_1;
+    /* (potential) */
+    const real upu_e_1_in_axes2_x = inv_upu_q_3*upu_S_in_turn1_z;
+    const real upu_potential_t_4 = m->upu_acc_3_t[i]*upu_c_1 + m->upu_acc_3_t_2[i]*upu_s_1;
+    const real upu_potential_t_5 = upu_c_1*m->upu_potential_t[i] +
+        m->upu_potential_t_2[i]*upu_s_1;
+    const real upu_b_in_spec2_y = upu_c_1*m->upu_potential_t_2[i] -
+        m->upu_potential_t[i]*upu_s_1;
+    const real upu_b_in_spec2_x = upu_c_2*upu_potential_t_5 +
+        upu_e_1_in_axes2_x*m->upu_potential_t_3[i];
+    const real upu_b_in_spec2_z = upu_c_2*m->upu_potential_t_3[i] -
+        upu_e_1_in_axes2_x*upu_potential_t_5;
+    const real upu_potential_t_6 = (upu_e_1_in_axes2_x*upu_potential_t_4 -
+        m->upu_acc_3_t_3[i]*upu_c_2)*(m->upu_h_2_in_spec2_z[i] + m->upu_h_3_in_spec2_z[i] +
+        upu_b_in_spec2_z*m->upu_link2_mass[i] + upu_b_in_spec2_z*m->upu_link3_mass[i]) -
+        (m->upu_acc_3_t_2[i]*upu_c_1 - m->upu_acc_3_t[i]*upu_s_1)*(m->upu_h_2_in_spec2_y[i] +
+        m->upu_h_3_in_spec2_y[i] + upu_b_in_spec2_y*m->upu_link2_mass[i] +
+        upu_b_in_spec2_y*m->upu_link3_mass[i]) - (m->upu_acc_3_t_3[i]*upu_e_1_in_axes2_x +
+        upu_c_2*upu_potential_t_4)*(m->upu_h_2_in_spec2_x[i] + m->upu_h_3_in_spec2_x[i] +
+        upu_b_in_spec2_x*m->upu_link2_mass[i] + m->upu_link3_mass[i]*(upu_b_in_spec2_x +
+        upu_q_3));
+    /* (potential) */
+    gather(&terms[0*count + k], add, upu_potential_t_6);  /* potential_of_legs */
+    o[0*count + k] = UNLESS(magnitude(upu_root_1_t) > LEAST_1) + UNLESS(magnitude(upu_q_3_t) >
+        LEAST_1);
 }
 
-INLINE void potential_place_upu(size_t w, size_t count, const real *o, size_t first, verdict *t)
+INLINE void potential_place_upu(size_t k, size_t at, size_t count, const real *o, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o[0*count + first + k];
-    }
+    t->singular[k] += o[0*count + at];
 }
 
-INLINE void potential_after(size_t w, const real *s, const real *sums, real *potential)
+INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (potential) potential energy */
-        const real potential_of_legs = sums[0*w + k];
-        const real potential_t = s[9*w + k];
-        const real potential_ = potential_of_legs - potential_t;
-        /* (potential) potential energy */
-        potential[0*w + k] = potential_;
-    }
+    /* (potential) */
+    const real potential_of_legs = sums[0*w + k];
+    const real potential_t = s[9*w + k];
+    const real potential_ = potential_of_legs - potential_t;
+    /* (potential) */
+    potential[0*w + k] = potential_;
 }
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
     real s[10] = {0}, sums[1] = {0};
     real terms_upu[LEGS(LEGS_OF_upu)] = {0}, o_upu[LEGS(LEGS_OF_upu)] = {0};
-    potential_before(m, 1, X, s, t);
-    potential_legs_upu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_upu), 0, X, terms_upu, o_upu);
-    for (size_t leg = 0; leg < LEGS_OF_upu; ++leg) {
-        potential_place_upu(1, LEGS(LEGS_OF_upu), o_upu, leg, t);
+    potential_before(m, 1, 0, X, s, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
+        potential_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), 0, s, X, terms_upu, o_upu);
+    }
+    for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        potential_place_upu(0, i, LEGS(LEGS_OF_upu), o_upu, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_upu + n*LEGS(LEGS_OF_upu), LEGS_OF_upu);
     }
-    potential_after(1, s, sums, potential);
+    potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
-    verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
+    *lengths, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        values v;
-        stage_X(m, w, k, X, &v);
-        s[0*w + k] = v.R_xx;
-        s[1*w + k] = v.R_xy;
-        s[2*w + k] = v.R_xz;
-        s[3*w + k] = v.R_yx;
-        s[4*w + k] = v.R_yy;
-        s[5*w + k] = v.R_yz;
-        s[6*w + k] = v.R_zx;
-        s[7*w + k] = v.R_zy;
-        s[8*w + k] = v.R_zz;
-        /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        const real legs_size = m->legs_size;
-        lengths[1*w + k] = legs_size;
-        t->total[k] += legs_size;
-        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
-    }
+    values v;
+    stage_X(m, w, k, X, &v);
+    s[0*w + k] = v.R_xx;
+    s[1*w + k] = v.R_xy;
+    s[2*w + k] = v.R_xz;
+    s[3*w + k] = v.R_yx;
+    s[4*w + k] = v.R_yy;
+    s[5*w + k] = v.R_yz;
+    s[6*w + k] = v.R_zx;
+    s[7*w + k] = v.R_zy;
+    s[8*w + k] = v.R_zz;
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    lengths[1*w + k] = m->legs_size;
+    t->total[k] += m->legs_size;
+    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
-INLINE void condition_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
+INLINE void condition_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
+    count, int add, const real *s, const real *X, real *terms, real *o)
 {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        values_upu v;
-        stage_upu_X(m, w, i, j, s, X, &v);
-        stage_upu_H_condition(m, i, &v);
-        /* (upu-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real upu_pivot_size = magnitude(v.upu_root_1_t);
-        const real upu_pivot_size_2 = magnitude(v.upu_q_3_t);
-        const real upu_pivot_size_3 = magnitude(v.upu_volume_c_t);
-        const real upu_pivot_size_4 = magnitude(v.upu_q_3);
-        const real upu_pivot_size_5 = magnitude(v.upu_w_1_t);
-        const real upu_least_pivots = lesser(lesser(lesser(lesser(R(1.25)*root(upu_pivot_size),
-            R(1.25)*root(upu_pivot_size_2)), R(1.5624999999999998)*upu_pivot_size_3),
-            R(1.25)*upu_pivot_size_4), R(1.25)*upu_pivot_size_5);
-        /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real upu_Hk_a_1_x = v.axis_y_upu_axes2_x*v.upu_n_m1_in_axes2_y +
-            v.upu_n_c_z*v.upu_q_y - v.upu_end_p1_in_axes2_y*v.upu_w_3_x - v.upu_n_c_y*v.upu_q_z;
-        const real upu_Hk_a_1_y = v.axis_y_upu_axes2_y*v.upu_n_m1_in_axes2_y +
-            v.upu_n_c_x*v.upu_q_z - v.upu_end_p1_in_axes2_y*v.upu_w_3_y - v.upu_n_c_z*v.upu_q_x;
-        const real upu_Hk_a_1_z = v.axis_y_upu_axes2_z*v.upu_n_m1_in_axes2_y +
-            v.upu_n_c_y*v.upu_q_x - v.upu_end_p1_in_axes2_y*v.upu_w_3_z - v.upu_n_c_x*v.upu_q_y;
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_in_platform_x = m->b_c_in_platform_x;
-        const real upu_platform_point_x = m->upu_platform_point_x[i];
-        const real upu_spread_t = b_c_in_platform_x - upu_platform_point_x;
-        const real b_c_in_platform_y = m->b_c_in_platform_y;
-        const real upu_platform_point_y = m->upu_platform_point_y[i];
-        const real upu_spread_t_2 = b_c_in_platform_y - upu_platform_point_y;
-        const real b_c_in_platform_z = m->b_c_in_platform_z;
-        const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real upu_spread_t_3 = b_c_in_platform_z - upu_platform_point_z;
-        const real upu_spread_t_4 = upu_spread_t*upu_spread_t + upu_spread_t_2*upu_spread_t_2 +
-            upu_spread_t_3*upu_spread_t_3;
-        /* (spread) rms distance of the platform points from their centroid */
-        gather(&terms[0*count + k], add, upu_spread_t_4);  /* spread_upu */
-        /* (upu-w_3) force part of reciprocal wrench 3 */
-        o[0*count + k] = v.upu_w_3_x;
-        o[1*count + k] = v.upu_w_3_y;
-        o[2*count + k] = v.upu_w_3_z;
-        /* (upu-H_a_3) moment of the column's unit force about the platform origin */
-        o[3*count + k] = v.upu_H_a_3_x;
-        o[4*count + k] = v.upu_H_a_3_y;
-        o[5*count + k] = v.upu_H_a_3_z;
-        /* (upu-n_c) force part, zero on the manifold, of the constraint moment */
-        o[6*count + k] = v.upu_n_c_x;
-        o[7*count + k] = v.upu_n_c_y;
-        o[8*count + k] = v.upu_n_c_z;
-        /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[9*count + k] = upu_Hk_a_1_x;
-        o[10*count + k] = upu_Hk_a_1_y;
-        o[11*count + k] = upu_Hk_a_1_z;
-        /* (upu-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        o[12*count + k] = upu_least_pivots;
-        o[14*count + k] = ((v.upu_w_3_x + (v.upu_w_3_y + v.upu_w_3_z)) + (v.upu_H_a_3_x +
-            (v.upu_H_a_3_y + v.upu_H_a_3_z))) + ((v.upu_n_c_x + (v.upu_n_c_y + v.upu_n_c_z)) +
-            ((upu_Hk_a_1_x + upu_Hk_a_1_y) + (upu_Hk_a_1_z + upu_least_pivots)));
-        o[13*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-            UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
-            LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
-            LEAST_3);
-    }
+    values_upu v;
+    stage_upu_X(m, w, i, j, s, X, &v);
+    stage_upu_H_condition(m, i, &v);
+    /* (upu-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real upu_pivot_size = magnitude(v.upu_root_1_t);
+    const real upu_pivot_size_2 = magnitude(v.upu_q_3_t);
+    const real upu_pivot_size_3 = magnitude(v.upu_volume_c_t);
+    const real upu_pivot_size_4 = magnitude(v.upu_q_3);
+    const real upu_pivot_size_5 = magnitude(v.upu_w_1_t);
+    const real upu_least_pivots = lesser(lesser(lesser(lesser(R(1.25)*root(upu_pivot_size),
+        R(1.25)*root(upu_pivot_size_2)), R(1.5624999999999998)*upu_pivot_size_3),
+        R(1.25)*upu_pivot_size_4), R(1.25)*upu_pivot_size_5);
+    /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
+    const real upu_Hk_a_1_x = v.axis_y_upu_axes2_x*v.upu_n_m1_in_axes2_y +
+        v.upu_n_c_z*v.upu_q_y - v.upu_end_p1_in_axes2_y*v.upu_w_3_x - v.upu_n_c_y*v.upu_q_z;
+    const real upu_Hk_a_1_y = v.axis_y_upu_axes2_y*v.upu_n_m1_in_axes2_y +
+        v.upu_n_c_x*v.upu_q_z - v.upu_end_p1_in_axes2_y*v.upu_w_3_y - v.upu_n_c_z*v.upu_q_x;
+    const real upu_Hk_a_1_z = v.axis_y_upu_axes2_z*v.upu_n_m1_in_axes2_y +
+        v.upu_n_c_y*v.upu_q_x - v.upu_end_p1_in_axes2_y*v.upu_w_3_z - v.upu_n_c_x*v.upu_q_y;
+    /* (spread) rms distance of the platform points from their centroid */
+    const real upu_spread_t = m->b_c_in_platform_x - m->upu_platform_point_x[i];
+    const real upu_spread_t_2 = m->b_c_in_platform_y - m->upu_platform_point_y[i];
+    const real upu_spread_t_3 = m->b_c_in_platform_z - m->upu_platform_point_z[i];
+    const real upu_spread_t_4 = upu_spread_t*upu_spread_t + upu_spread_t_2*upu_spread_t_2 +
+        upu_spread_t_3*upu_spread_t_3;
+    /* (spread) */
+    gather(&terms[0*count + k], add, upu_spread_t_4);  /* spread_upu */
+    /* (upu-w_3) force part of reciprocal wrench 3 */
+    o[0*count + k] = v.upu_w_3_x;
+    o[1*count + k] = v.upu_w_3_y;
+    o[2*count + k] = v.upu_w_3_z;
+    /* (upu-H_a_3) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v.upu_H_a_3_x;
+    o[4*count + k] = v.upu_H_a_3_y;
+    o[5*count + k] = v.upu_H_a_3_z;
+    /* (upu-n_c) force part, zero on the manifold, of the constraint moment */
+    o[6*count + k] = v.upu_n_c_x;
+    o[7*count + k] = v.upu_n_c_y;
+    o[8*count + k] = v.upu_n_c_z;
+    /* (upu-Hk_a_1) */
+    o[9*count + k] = upu_Hk_a_1_x;
+    o[10*count + k] = upu_Hk_a_1_y;
+    o[11*count + k] = upu_Hk_a_1_z;
+    /* (upu-G) */
+    o[12*count + k] = upu_least_pivots;
+    o[14*count + k] = ((v.upu_w_3_x + (v.upu_w_3_y + v.upu_w_3_z)) + (v.upu_H_a_3_x +
+        (v.upu_H_a_3_y + v.upu_H_a_3_z))) + ((v.upu_n_c_x + (v.upu_n_c_y + v.upu_n_c_z)) +
+        ((upu_Hk_a_1_x + upu_Hk_a_1_y) + (upu_Hk_a_1_z + upu_least_pivots)));
+    o[13*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
+        LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
+        LEAST_3);
 }
 
-INLINE void condition_place_upu(size_t w, size_t count, const real *o, size_t leg, size_t first,
-    real *H, real *Hk, real *pivots, verdict *t)
+INLINE void condition_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, const real
+    *o, real *H, real *Hk, real *pivots, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        H[leg*w + k] = o[0*count + first + k];
-        H[(NU + leg)*w + k] = o[1*count + first + k];
-        H[(2*NU + leg)*w + k] = o[2*count + first + k];
-        H[(3*NU + leg)*w + k] = o[3*count + first + k];
-        H[(4*NU + leg)*w + k] = o[4*count + first + k];
-        H[(5*NU + leg)*w + k] = o[5*count + first + k];
-        Hk[leg*w + k] = o[6*count + first + k];
-        Hk[(NC + leg)*w + k] = o[7*count + first + k];
-        Hk[(2*NC + leg)*w + k] = o[8*count + first + k];
-        Hk[(3*NC + leg)*w + k] = o[9*count + first + k];
-        Hk[(4*NC + leg)*w + k] = o[10*count + first + k];
-        Hk[(5*NC + leg)*w + k] = o[11*count + first + k];
-        pivots[leg*w + k] = o[12*count + first + k];
-        t->singular[k] += o[13*count + first + k];
-        t->total[k] += o[14*count + first + k];
-    }
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    H[(3*NU + i)*w + k] = o[3*count + at];
+    H[(4*NU + i)*w + k] = o[4*count + at];
+    H[(5*NU + i)*w + k] = o[5*count + at];
+    Hk[i*w + k] = o[6*count + at];
+    Hk[(NC + i)*w + k] = o[7*count + at];
+    Hk[(2*NC + i)*w + k] = o[8*count + at];
+    Hk[(3*NC + i)*w + k] = o[9*count + at];
+    Hk[(4*NC + i)*w + k] = o[10*count + at];
+    Hk[(5*NC + i)*w + k] = o[11*count + at];
+    pivots[i*w + k] = o[12*count + at];
+    t->singular[k] += o[13*count + at];
+    t->total[k] += o[14*count + at];
 }
 
-INLINE void condition_after(const prepared *m, size_t w, const real *sums, real *lengths, verdict
-    *t)
+INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
+    *lengths, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* (spread) rms distance of the platform points from their centroid */
-        const real spread_t = m->spread_t;
-        const real spread_upu = sums[0*w + k];
-        const real spread_ = spread_t*root(spread_upu);
-        /* (spread) rms distance of the platform points from their centroid */
-        lengths[0*w + k] = spread_;
-        t->total[k] += spread_;
-    }
+    /* (spread) */
+    const real spread_upu = sums[0*w + k];
+    const real spread_ = m->spread_t*root(spread_upu);
+    /* (spread) */
+    lengths[0*w + k] = spread_;
+    t->total[k] += spread_;
 }
 
-INLINE void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
+APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
     *pivots, real *reach, verdict *t)
 {
     real s[9] = {0}, sums[1] = {0};
     real terms_upu[LEGS(LEGS_OF_upu)] = {0}, o_upu[15*LEGS(LEGS_OF_upu)] = {0};
     clear(reach, NL);
-    condition_before(m, 1, X, s, lengths, t);
-    condition_legs_upu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_upu), 0, X, terms_upu, o_upu);
-    for (size_t leg = 0; leg < LEGS_OF_upu; ++leg) {
-        condition_place_upu(1, LEGS(LEGS_OF_upu), o_upu, leg, leg, H, Hk, pivots, t);
+    condition_before(m, 1, 0, X, s, lengths, t);
+    for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
+        condition_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), 0, s, X, terms_upu, o_upu);
+    }
+    for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        condition_place_upu(1, i, 0, i, LEGS(LEGS_OF_upu), o_upu, H, Hk, pivots, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_upu + n*LEGS(LEGS_OF_upu), LEGS_OF_upu);
     }
-    condition_after(m, 1, sums, lengths, t);
+    condition_after(m, 1, 0, sums, lengths, t);
 }
 
 /* ---- what users call, as steps over these ---- */
 
-INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
+int tripod_3upu_M(const prepared *m, const real *X, real *M_out)
 {
     verdict why;
     start(1, &why);
@@ -4853,9 +4712,11 @@ INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NV, M_out);
     }
+    return code;
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -4869,7 +4730,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
     deliver(NV*NV, M, M_out);
 }
 
-INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
+int tripod_3upu_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
     verdict why;
     start(1, &why);
@@ -4882,9 +4743,11 @@ INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, 
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, Z_out);
     }
+    return code;
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -4899,7 +4762,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
     deliver(NV, Z, Z_out);
 }
 
-INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
+int tripod_3upu_H(const prepared *m, const real *X, real *H_out)
 {
     verdict why;
     start(1, &why);
@@ -4908,9 +4771,11 @@ INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NU, H_out);
     }
+    return code;
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -4924,7 +4789,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
     deliver(NV*NU, H, H_out);
 }
 
-INLINE void Hk_one(const prepared *m, const real *X, real *Hk_out, int *code)
+int tripod_3upu_Hk(const prepared *m, const real *X, real *Hk_out)
 {
     verdict why;
     start(1, &why);
@@ -4933,9 +4798,11 @@ INLINE void Hk_one(const prepared *m, const real *X, real *Hk_out, int *code)
     if (!is_finite(why.total[0])) {
         check(NV*NC, 1, Hk_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NC, Hk_out);
     }
+    return code;
 }
 
 INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
@@ -4949,7 +4816,7 @@ INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
     deliver(NV*NC, Hk, Hk_out);
 }
 
-INLINE void constraints_one(const prepared *m, const real *X, real *constraints_out, int *code)
+int tripod_3upu_constraints(const prepared *m, const real *X, real *constraints_out)
 {
     verdict why;
     start(1, &why);
@@ -4958,9 +4825,11 @@ INLINE void constraints_one(const prepared *m, const real *X, real *constraints_
     if (!is_finite(why.total[0])) {
         check(3, 1, constraints_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(3, constraints_out);
     }
+    return code;
 }
 
 INLINE void constraints_lanes(const prepared *m, const real *X, real *constraints_out, int *code)
@@ -4974,8 +4843,8 @@ INLINE void constraints_lanes(const prepared *m, const real *X, real *constraint
     deliver(3, constraints, constraints_out);
 }
 
-INLINE void constraint_bias_one(const prepared *m, const real *X, const real *V, real
-    *constraint_bias_out, int *code)
+int tripod_3upu_constraint_bias(const prepared *m, const real *X, const real *V, real
+    *constraint_bias_out)
 {
     verdict why;
     start(1, &why);
@@ -4988,9 +4857,11 @@ INLINE void constraint_bias_one(const prepared *m, const real *X, const real *V,
     if (!is_finite(why.total[0])) {
         check(3, 1, constraint_bias_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(3, constraint_bias_out);
     }
+    return code;
 }
 
 INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *V, real
@@ -5006,7 +4877,7 @@ INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *
     deliver(3, constraint_bias, constraint_bias_out);
 }
 
-INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out, int *code)
+int tripod_3upu_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
     verdict why;
     start(1, &why);
@@ -5015,9 +4886,11 @@ INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, q_out);
     }
+    return code;
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -5031,8 +4904,7 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
     deliver(NJ, q, q_out);
 }
 
-INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
-    *code)
+int tripod_3upu_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     verdict why;
     start(1, &why);
@@ -5045,9 +4917,11 @@ INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, rea
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, qd_out);
     }
+    return code;
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -5063,8 +4937,8 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
     deliver(NJ, qd, qd_out);
 }
 
-INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out, int *code)
+int tripod_3upu_joint_accelerations(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out)
 {
     verdict why;
     start(1, &why);
@@ -5078,9 +4952,11 @@ INLINE void joint_accelerations_one(const prepared *m, const real *X, const real
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, qdd_out);
     }
+    return code;
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -5097,8 +4973,8 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
     deliver(NJ, qdd, qdd_out);
 }
 
-INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
-    *Z_out, real *H_out, int *code)
+int tripod_3upu_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
+    *Z_out, real *H_out)
 {
     real Hk[NV*NC] = {0}, constraint_bias[3] = {0};
     verdict why;
@@ -5116,11 +4992,13 @@ INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *
     }
     check(NV*NC, 1, Hk, why.overflow);
     check(3, 1, constraint_bias, why.overflow);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NV, M_out);
         refuse(NV, Z_out);
         refuse(NV*NU, H_out);
     }
+    return code;
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -5314,8 +5192,8 @@ INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real
 static const size_t order_solve_1[] = {0, 1, 2, 3, 4, 5};
 static const real sizes_solve_1[] = {0.25, 0.25, 1.0, 0.25, 0.25, 1.0};
 
-INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *tau_out, real *lambda_out, int *code)
+int tripod_3upu_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau_out, real *lambda_out)
 {
     real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0},
         beside_1[NV*NV] = {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, work[NV*PADDED(NV)];
@@ -5345,10 +5223,12 @@ INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V
     check(NC, 1, lambda_, why.overflow);
     copy(NU, tau, tau_out);
     copy(NC, lambda_, lambda_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, tau_out);
         refuse(NC, lambda_out);
     }
+    return code;
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -5378,8 +5258,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
     deliver(NC, lambda_, lambda_out);
 }
 
-INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
-    const real *wrench, real *A_out, real *lambda_out, int *code)
+int tripod_3upu_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau,
+    const real *wrench, real *A_out, real *lambda_out)
 {
     real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0},
         constraint_bias[3] = {0}, times_1[NV] = {0}, add_1[NV] = {0}, subtract_1[NV] = {0},
@@ -5414,10 +5294,12 @@ INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V
     check(NC, 1, lambda_, why.overflow);
     copy(NV, A, A_out);
     copy(NC, lambda_, lambda_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, A_out);
         refuse(NC, lambda_out);
     }
+    return code;
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -5456,21 +5338,28 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     deliver(NC, lambda_, lambda_out);
 }
 
-INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
+int tripod_3upu_complete_acceleration(const prepared *m, const real *X, const real *V, const real
+    *A, const real *wrench, real *completed_out)
 {
+    (void)m;
+    (void)X;
+    (void)V;
+    (void)wrench;
     verdict why;
     start(1, &why);
     check(NV, 1, A, why.invalid);
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, completed_out);
     }
+    return code;
 }
 
-INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces_out, int *code)
+int tripod_3upu_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
+    const real *wrench, real *forces_out)
 {
     static const size_t places_add_forces_1[] = {0, 1, 2};
     static const size_t places_forces[] = {0, 1, 2};
@@ -5511,13 +5400,15 @@ INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, c
     add_forces(NL, 6, 1, places_forces, split_2, constraint_direction, forces);
     check(NL*(NL + NC), 1, forces, why.overflow);
     copy(NL*(NL + NC), forces, forces_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NL*(NL + NC), forces_out);
     }
+    return code;
 }
 
-INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
-    *potential_out, int *code)
+int tripod_3upu_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
+    *potential_out)
 {
     real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
@@ -5535,15 +5426,17 @@ INLINE void energy_one(const prepared *m, const real *X, const real *V, real *ki
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, kinetic_out);
         refuse(1, potential_out);
     }
+    return code;
 }
 
-INLINE void condition_one(const prepared *m, const real *X, const real *length, real *sigma_out,
-    real *legs_out, int *code)
+int tripod_3upu_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
+    const real *length = NULL;
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real length_in[1], H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] =
         {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NU] = {0};
@@ -5570,15 +5463,18 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
     check(NL, 1, reach, why.overflow);
     copy(NU, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, sigma_out);
         refuse(NL, legs_out);
     }
+    return code;
 }
 
-INLINE void condition_constrained_one(const prepared *m, const real *X, const real *length, real
-    *sigma_out, real *legs_out, int *code)
+int tripod_3upu_condition_constrained(const prepared *m, const real *X, real *sigma_out, real
+    *legs_out)
 {
+    const real *length = NULL;
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real length_in[1], H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] =
         {0}, beside_1[NV*NV] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] = {0}, sigma[NV] =
@@ -5606,14 +5502,16 @@ INLINE void condition_constrained_one(const prepared *m, const real *X, const re
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, sigma_out);
         refuse(NL, legs_out);
     }
+    return code;
 }
 
-INLINE void manipulability_one(const prepared *m, const real *X, real *measure_out, real
-    *isotropy_out, int *code)
+int tripod_3upu_manipulability(const prepared *m, const real *X, real *measure_out, real
+    *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     static const size_t places_divide_rows_2[] = {3, 4, 5};
@@ -5662,14 +5560,16 @@ INLINE void manipulability_one(const prepared *m, const real *X, real *measure_o
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, measure_out);
         refuse(1, isotropy_out);
     }
+    return code;
 }
 
-INLINE void singularity_distance_one(const prepared *m, const real *X, real *actuators_out, real
-    *legs_out, int *code)
+int tripod_3upu_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
+    *legs_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
@@ -5700,14 +5600,15 @@ INLINE void singularity_distance_one(const prepared *m, const real *X, real *act
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, actuators_out);
         refuse(1, legs_out);
     }
+    return code;
 }
 
-static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
-    int *code)
+static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
 {
     real q[NJ] = {0}, q_of_inverse_kinematics_from_2[3] = {0}, subtract_1[NU] = {0}, constraints[3] =
         {0}, negative_1[3] = {0}, gap[6] = {0};
@@ -5730,12 +5631,14 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
     beside(1, NU, 3, subtract_1, negative_1, gap);
     check(6, 1, gap, why.overflow);
     copy(6, gap, gap_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(6, gap_out);
     }
+    return code;
 }
 
-static void slope_one(const prepared *m, const real *X, real *slope_out, int *code)
+static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
     real H[NV*NU] = {0}, Hk[NV*NC] = {0}, slope[NV*NV] = {0};
     verdict why;
@@ -5746,9 +5649,11 @@ static void slope_one(const prepared *m, const real *X, real *slope_out, int *co
     beside(NV, NU, NC, H, Hk, slope);
     check(NV*NV, 1, slope, why.overflow);
     copy(NV*NV, slope, slope_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NV, slope_out);
     }
+    return code;
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -5759,12 +5664,12 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    mismatch_one(m, found, q_actuated, gap, &code);
+    code = mismatch_one(m, found, q_actuated, gap);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > CLOSED; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        slope_one(m, found, slope, &code);
+        code = slope_one(m, found, slope);
         if (code != OK) {
             break;
         }
@@ -5778,7 +5683,7 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            mismatch_one(m, trial, q_actuated, next, &tried);
+            tried = mismatch_one(m, trial, q_actuated, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -5796,8 +5701,8 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 }
 
 
-INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
-    *X_out, int *code)
+int tripod_3upu_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real
+    *X_out)
 {
     real X[NQ] = {0};
     verdict why;
@@ -5810,12 +5715,14 @@ INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, co
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
-static void constraint_gap_one(const prepared *m, const real *X, real *gap_out, int *code)
+static int constraint_gap_one(const prepared *m, const real *X, real *gap_out)
 {
     real constraints[3] = {0}, gap[NC] = {0};
     verdict why;
@@ -5827,12 +5734,14 @@ static void constraint_gap_one(const prepared *m, const real *X, real *gap_out, 
     }
     check(NC, 1, gap, why.overflow);
     copy(NC, gap, gap_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NC, gap_out);
     }
+    return code;
 }
 
-static void constraint_slope_one(const prepared *m, const real *X, real *slope_out, int *code)
+static int constraint_slope_one(const prepared *m, const real *X, real *slope_out)
 {
     verdict why;
     start(1, &why);
@@ -5841,9 +5750,11 @@ static void constraint_slope_one(const prepared *m, const real *X, real *slope_o
     if (!is_finite(why.total[0])) {
         check(NV*NC, 1, slope_out, why.overflow);
     }
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV*NC, slope_out);
     }
+    return code;
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -5854,12 +5765,12 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
     real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
-    constraint_gap_one(m, found, gap, &code);
+    code = constraint_gap_one(m, found, gap);
     size = largest(gap, N);
     for (int steps = 0; steps < 50 && code == OK && size > MET; ++steps) {
         int better = 0, tried = OK;
         real part = 1;
-        constraint_slope_one(m, found, slope, &code);
+        code = constraint_slope_one(m, found, slope);
         if (code != OK) {
             break;
         }
@@ -5873,7 +5784,7 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
         for (int halving = 0; halving < TRIALS && !better; ++halving) {
             moved(found, step, part, trial);
             part /= 2;
-            constraint_gap_one(m, trial, next, &tried);
+            tried = constraint_gap_one(m, trial, next);
             better = TRIALS == 1 || (tried == OK && largest(next, N) < size);
         }
         if (!better) {
@@ -5891,7 +5802,7 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
 }
 
 
-INLINE void project_one(const prepared *m, const real *X, real *projected_out, int *code)
+int tripod_3upu_project(const prepared *m, const real *X, real *projected_out)
 {
     real projected[NQ] = {0};
     verdict why;
@@ -5900,13 +5811,18 @@ INLINE void project_one(const prepared *m, const real *X, real *projected_out, i
     blame(search_constraint_gap(m, X, projected), &why);
     check(NQ, 1, projected, why.overflow);
     copy(NQ, projected, projected_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, projected_out);
     }
+    return code;
 }
 
-INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
+int tripod_3upu_dissipation(const prepared *m, const real *X, const real *V, real
+    *dissipation_out)
 {
+    (void)m;
+    (void)X;
     real subtract_1[NV] = {0};
     verdict why;
     start(1, &why);
@@ -5917,13 +5833,14 @@ INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, dissipation_out);
     }
+    return code;
 }
 
-INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
-    *code)
+int tripod_3upu_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
     real M[NV*NV] = {0}, momentum[NV] = {0};
     verdict why;
@@ -5937,27 +5854,14 @@ INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, momentum_out);
     }
+    return code;
 }
 
-INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
-    int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], momentum[NV*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    M_run_lanes(m, X, M, &why);
-    product(NV, NV, 1, LANES, M, V, momentum);
-    add_up(NV, momentum, why.total);
-    suspect(&why, code);
-    deliver(NV, momentum, momentum_out);
-}
-
-INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
+int tripod_3upu_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
     real q[NJ] = {0}, margins[NJ] = {0};
@@ -5970,28 +5874,14 @@ INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_ou
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NJ, margins_out);
     }
+    return code;
 }
 
-INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
-{
-    static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
-    real X_in[NQ*LANES], q[NJ*LANES], margins[NJ*LANES];
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < NJ*LANES; ++i) {
-        margins[i] = q[i];
-    }
-    unlimited(NJ, NJ, LANES, places_margins, margins, why.invalid);
-    suspect(&why, code);
-    deliver(NJ, margins, margins_out);
-}
-
-INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
+int tripod_3upu_within_limits(const prepared *m, const real *X, real *within_out)
 {
     real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
     verdict why;
@@ -6004,28 +5894,14 @@ INLINE void within_limits_one(const prepared *m, const real *X, real *within_out
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, within_out);
     }
+    return code;
 }
 
-INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
-{
-    real X_in[NQ*LANES], q[NJ*LANES], subtract_1[NJ*LANES], within[LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < NJ*LANES; ++i) {
-        subtract_1[i] = q[i] - q[i];
-    }
-    not_negative(NJ, LANES, subtract_1, within, why.invalid);
-    add_up(1, within, why.total);
-    suspect(&why, code);
-    deliver(1, within, within_out);
-}
-
-INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
+int tripod_3upu_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
     real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
     verdict why;
@@ -6035,26 +5911,14 @@ INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out
     take(NU, 1, tripod_3upu_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, q_out);
     }
+    return code;
 }
 
-INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
-{
-    real X_in[NQ*LANES], q_of_inverse_kinematics[NJ*LANES], q[NU*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
-    take(NU, LANES, tripod_3upu_ACTUATED, q_of_inverse_kinematics, q);
-    add_up(NU, q, why.total);
-    suspect(&why, code);
-    deliver(NU, q, q_out);
-}
-
-INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
-    *code)
+int tripod_3upu_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
     real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
     verdict why;
@@ -6068,28 +5932,15 @@ INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, 
     take(NU, 1, tripod_3upu_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, qd_out);
     }
+    return code;
 }
 
-INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
-    int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], qd_of_joint_rates[NJ*LANES], qd[NU*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
-    take(NU, LANES, tripod_3upu_ACTUATED, qd_of_joint_rates, qd);
-    add_up(NU, qd, why.total);
-    suspect(&why, code);
-    deliver(NU, qd, qd_out);
-}
-
-INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
-    *A, real *qdd_out, int *code)
+int tripod_3upu_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
+    *A, real *qdd_out)
 {
     real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
     verdict why;
@@ -6104,30 +5955,15 @@ INLINE void actuator_accelerations_one(const prepared *m, const real *X, const r
     take(NU, 1, tripod_3upu_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NU, qdd_out);
     }
+    return code;
 }
 
-INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
-    real *A, real *qdd_out, int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd_of_joint_accelerations[NJ*LANES],
-        qdd[NU*LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    A = side_by_side(NV, A, A_in, why.total);
-    joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
-    take(NU, LANES, tripod_3upu_ACTUATED, qdd_of_joint_accelerations, qdd);
-    add_up(NU, qdd, why.total);
-    suspect(&why, code);
-    deliver(NU, qdd, qdd_out);
-}
-
-INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out, int *code)
+int tripod_3upu_power(const prepared *m, const real *X, const real *V, const real *tau, real
+    *power_out)
 {
     real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
     verdict why;
@@ -6143,30 +5979,14 @@ INLINE void power_one(const prepared *m, const real *X, const real *V, const rea
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(1, power_out);
     }
+    return code;
 }
 
-INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
-    *power_out, int *code)
-{
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0},
-        power[LANES] = {0};
-    verdict why;
-    start(LANES, &why);
-    X = side_by_side(NQ, X, X_in, why.total);
-    V = side_by_side(NV, V, V_in, why.total);
-    tau = side_by_side(NU, tau, tau_in, why.total);
-    H_run_lanes(m, X, H, &why);
-    product(NV, NU, 1, LANES, H, tau, times_1);
-    inner(NV, LANES, times_1, V, power);
-    add_up(1, power, why.total);
-    suspect(&why, code);
-    deliver(1, power, power_out);
-}
-
-INLINE void rotation_one(const real *X, real *R_out, int *code)
+int tripod_3upu_rotation(const real *X, real *R_out)
 {
     real R[9] = {0};
     verdict why;
@@ -6176,12 +5996,14 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     copy(9, R, R_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(9, R_out);
     }
+    return code;
 }
 
-INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
+int tripod_3upu_pose(const real *t, const real *R, real *X_out)
 {
     real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0};
     verdict why;
@@ -6196,12 +6018,14 @@ INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
-INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
+int tripod_3upu_X_dot(const real *X, const real *V, real *X_dot_out)
 {
     real quaternion_rate_1[4] = {0}, X_dot[NQ] = {0};
     verdict why;
@@ -6218,12 +6042,14 @@ INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
     beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_dot_out);
     }
+    return code;
 }
 
-INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *code)
+int tripod_3upu_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
     real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0};
     verdict why;
@@ -6238,12 +6064,14 @@ INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
-INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
+int tripod_3upu_retract(const real *X, const real *step, real *X_moved_out)
 {
     real turn_quaternion_1[4] = {0}, add_1[3] = {0}, X_moved[NQ] = {0};
     verdict why;
@@ -6264,12 +6092,14 @@ INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int 
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_moved_out);
     }
+    return code;
 }
 
-INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
+int tripod_3upu_difference(const real *X0, const real *X1, real *step_out)
 {
     real turn_between_1[3] = {0}, subtract_1[3] = {0}, step[NV] = {0};
     verdict why;
@@ -6290,12 +6120,14 @@ INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NV, step_out);
     }
+    return code;
 }
 
-INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
+int tripod_3upu_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
     real turn_between_1[3] = {0}, subtract_1[3] = {0}, join_1[6] = {0}, scale_1[6] = {0},
         turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
@@ -6330,848 +6162,237 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    if (judge(&why, code) != OK) {
+    const int code = judge(&why);
+    if (code != OK) {
         refuse(NQ, X_out);
     }
+    return code;
 }
 
 /* ---- one state, and batches ---- */
 
-int tripod_3upu_M(const prepared *model, const real *X, real *M)
+size_t tripod_3upu_M_batch(const prepared *m, size_t n, const real *X, real *M, int *status)
 {
-    int code;
-    M_one(model, X, M, &code);
-    return code;
+    SIDE_BY_SIDE(M_lanes(m, X + NQ*i, M + NV*NV*i, codes), tripod_3upu_M(m, X + NQ*j, M + NV*NV*j));
 }
 
-size_t tripod_3upu_M_batch(const prepared *model, size_t n, const real *X, real *M, int *status)
+size_t tripod_3upu_Z_batch(const prepared *m, size_t n, const real *X, const real *V, real *Z, int
+    *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3upu_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(Z_lanes(m, X + NQ*i, V + NV*i, Z + NV*i, codes), tripod_3upu_Z(m, X + NQ*j, V + NV*j,
+        Z + NV*j));
 }
 
-int tripod_3upu_Z(const prepared *model, const real *X, const real *V, real *Z)
+size_t tripod_3upu_H_batch(const prepared *m, size_t n, const real *X, real *H, int *status)
 {
-    int code;
-    Z_one(model, X, V, Z, &code);
-    return code;
+    SIDE_BY_SIDE(H_lanes(m, X + NQ*i, H + NV*NU*i, codes), tripod_3upu_H(m, X + NQ*j, H + NV*NU*j));
 }
 
-size_t tripod_3upu_Z_batch(const prepared *model, size_t n, const real *X, const real *V, real *Z,
+size_t tripod_3upu_Hk_batch(const prepared *m, size_t n, const real *X, real *Hk, int *status)
+{
+    SIDE_BY_SIDE(Hk_lanes(m, X + NQ*i, Hk + NV*NC*i, codes), tripod_3upu_Hk(m, X + NQ*j, Hk +
+        NV*NC*j));
+}
+
+size_t tripod_3upu_constraints_batch(const prepared *m, size_t n, const real *X, real *residual,
     int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3upu_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(constraints_lanes(m, X + NQ*i, residual + NC*i, codes), tripod_3upu_constraints(m, X
+        + NQ*j, residual + NC*j));
 }
 
-int tripod_3upu_H(const prepared *model, const real *X, real *H)
+size_t tripod_3upu_constraint_bias_batch(const prepared *m, size_t n, const real *X, const real
+    *V, real *bias, int *status)
 {
-    int code;
-    H_one(model, X, H, &code);
-    return code;
+    SIDE_BY_SIDE(constraint_bias_lanes(m, X + NQ*i, V + NV*i, bias + NC*i, codes),
+        tripod_3upu_constraint_bias(m, X + NQ*j, V + NV*j, bias + NC*j));
 }
 
-size_t tripod_3upu_H_batch(const prepared *model, size_t n, const real *X, real *H, int *status)
+size_t tripod_3upu_inverse_kinematics_batch(const prepared *m, size_t n, const real *X, real *q,
+    int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3upu_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(inverse_kinematics_lanes(m, X + NQ*i, q + NJ*i, codes),
+        tripod_3upu_inverse_kinematics(m, X + NQ*j, q + NJ*j));
 }
 
-int tripod_3upu_Hk(const prepared *model, const real *X, real *Hk)
+size_t tripod_3upu_joint_rates_batch(const prepared *m, size_t n, const real *X, const real *V,
+    real *rates, int *status)
 {
-    int code;
-    Hk_one(model, X, Hk, &code);
-    return code;
+    SIDE_BY_SIDE(joint_rates_lanes(m, X + NQ*i, V + NV*i, rates + NJ*i, codes),
+        tripod_3upu_joint_rates(m, X + NQ*j, V + NV*j, rates + NJ*j));
 }
 
-size_t tripod_3upu_Hk_batch(const prepared *model, size_t n, const real *X, real *Hk, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            Hk_lanes(model, X + NQ*i, Hk + NV*NC*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3upu_Hk(model, X + NQ*(i + k), Hk + NV*NC*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3upu_constraints(const prepared *model, const real *X, real *residual)
-{
-    int code;
-    constraints_one(model, X, residual, &code);
-    return code;
-}
-
-size_t tripod_3upu_constraints_batch(const prepared *model, size_t n, const real *X, real
-    *residual, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            constraints_lanes(model, X + NQ*i, residual + NC*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3upu_constraints(model, X + NQ*(i + k), residual + NC*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3upu_constraint_bias(const prepared *model, const real *X, const real *V, real *bias)
-{
-    int code;
-    constraint_bias_one(model, X, V, bias, &code);
-    return code;
-}
-
-size_t tripod_3upu_constraint_bias_batch(const prepared *model, size_t n, const real *X, const
-    real *V, real *bias, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            constraint_bias_lanes(model, X + NQ*i, V + NV*i, bias + NC*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3upu_constraint_bias(model, X + NQ*(i + k), V + NV*(i + k), bias + NC*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3upu_inverse_kinematics(const prepared *model, const real *X, real *q)
-{
-    int code;
-    inverse_kinematics_one(model, X, q, &code);
-    return code;
-}
-
-size_t tripod_3upu_inverse_kinematics_batch(const prepared *model, size_t n, const real *X, real
-    *q, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3upu_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3upu_joint_rates(const prepared *model, const real *X, const real *V, real *rates)
-{
-    int code;
-    joint_rates_one(model, X, V, rates, &code);
-    return code;
-}
-
-size_t tripod_3upu_joint_rates_batch(const prepared *model, size_t n, const real *X, const real
-    *V, real *rates, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3upu_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3upu_joint_accelerations(const prepared *model, const real *X, const real *V, const
-    real *A, real *accelerations)
-{
-    int code;
-    joint_accelerations_one(model, X, V, A, accelerations, &code);
-    return code;
-}
-
-size_t tripod_3upu_joint_accelerations_batch(const prepared *model, size_t n, const real *X, const
+size_t tripod_3upu_joint_accelerations_batch(const prepared *m, size_t n, const real *X, const
     real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3upu_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
-                    accelerations + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(joint_accelerations_lanes(m, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i,
+        codes), tripod_3upu_joint_accelerations(m, X + NQ*j, V + NV*j, A + NV*j, accelerations +
+        NJ*j));
 }
 
-int tripod_3upu_dynamics(const prepared *model, const real *X, const real *V, real *M, real *Z,
-    real *H)
+size_t tripod_3upu_dynamics_batch(const prepared *m, size_t n, const real *X, const real *V, real
+    *M, real *Z, real *H, int *status)
 {
-    int code;
-    dynamics_one(model, X, V, M, Z, H, &code);
-    return code;
+    SIDE_BY_SIDE(dynamics_lanes(m, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes),
+        tripod_3upu_dynamics(m, X + NQ*j, V + NV*j, M + NV*NV*j, Z + NV*j, H + NV*NU*j));
 }
 
-size_t tripod_3upu_dynamics_batch(const prepared *model, size_t n, const real *X, const real *V,
-    real *M, real *Z, real *H, int *status)
+size_t tripod_3upu_inverse_dynamics_batch(const prepared *m, size_t n, const real *X, const real
+    *V, const real *A, const real *wrench, real *tau, real *lambda, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3upu_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z +
-                    NV*(i + k), H + NV*NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    SIDE_BY_SIDE(inverse_dynamics_lanes(m, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i :
+        NULL, tau + NU*i, lambda + NC*i, codes), tripod_3upu_inverse_dynamics(m, X + NQ*j, V + NV*j, A
+        + NV*j, wrench ? wrench + NW*j : NULL, tau + NU*j, lambda + NC*j));
 }
 
-int tripod_3upu_inverse_dynamics(const prepared *model, const real *X, const real *V, const real
-    *A, const real *wrench, real *tau, real *lambda)
+size_t tripod_3upu_forward_dynamics_batch(const prepared *m, size_t n, const real *X, const real
+    *V, const real *tau, const real *wrench, real *A, real *lambda, int *status)
 {
-    int code;
-    inverse_dynamics_one(model, X, V, A, wrench, tau, lambda, &code);
-    return code;
+    SIDE_BY_SIDE(forward_dynamics_lanes(m, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i :
+        NULL, A + NV*i, lambda + NC*i, codes), tripod_3upu_forward_dynamics(m, X + NQ*j, V + NV*j, tau
+        + NU*j, wrench ? wrench + NW*j : NULL, A + NV*j, lambda + NC*j));
 }
 
-size_t tripod_3upu_inverse_dynamics_batch(const prepared *model, size_t n, const real *X, const
-    real *V, const real *A, const real *wrench, real *tau, real *lambda, int *status)
+size_t tripod_3upu_complete_acceleration_batch(const prepared *m, size_t n, const real *X, const
+    real *V, const real *A, const real *wrench, real *completed, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
-                NU*i, lambda + NC*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3upu_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
-                    wrench ? wrench + NW*(i + k) : NULL, tau + NU*(i + k), lambda + NC*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(tripod_3upu_complete_acceleration(m, X + NQ*j, V + NV*j, A + NV*j, wrench ? wrench +
+        NW*j : NULL, completed + NV*j));
 }
 
-int tripod_3upu_forward_dynamics(const prepared *model, const real *X, const real *V, const real
-    *tau, const real *wrench, real *A, real *lambda)
+size_t tripod_3upu_leg_reactions_batch(const prepared *m, size_t n, const real *X, const real *V,
+    const real *A, const real *wrench, real *forces, int *status)
 {
-    int code;
-    forward_dynamics_one(model, X, V, tau, wrench, A, lambda, &code);
-    return code;
+    ONE_BY_ONE(tripod_3upu_leg_reactions(m, X + NQ*j, V + NV*j, A + NV*j, wrench ? wrench + NW*j :
+        NULL, forces + 18*j));
 }
 
-size_t tripod_3upu_forward_dynamics_batch(const prepared *model, size_t n, const real *X, const
-    real *V, const real *tau, const real *wrench, real *A, real *lambda, int *status)
+size_t tripod_3upu_energy_batch(const prepared *m, size_t n, const real *X, const real *V, real
+    *kinetic, real *potential, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
-                NV*i, lambda + NC*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3upu_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k),
-                    wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k), lambda + NC*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(tripod_3upu_energy(m, X + NQ*j, V + NV*j, kinetic + j, potential + j));
 }
 
-int tripod_3upu_complete_acceleration(const prepared *model, const real *X, const real *V, const
-    real *A, const real *wrench, real *completed)
+size_t tripod_3upu_condition_batch(const prepared *m, size_t n, const real *X, real *sigma, real
+    *legs, int *status)
 {
-    int code;
-    (void)model, (void)X, (void)V, (void)wrench;
-    complete_acceleration_one(A, completed, &code);
-    return code;
+    ONE_BY_ONE(tripod_3upu_condition(m, X + NQ*j, sigma + 3*j, legs + 3*j));
 }
 
-size_t tripod_3upu_complete_acceleration_batch(const prepared *model, size_t n, const real *X,
-    const real *V, const real *A, const real *wrench, real *completed, int *status)
+size_t tripod_3upu_condition_constrained_batch(const prepared *m, size_t n, const real *X, real
+    *sigma, real *legs, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3upu_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
-            wrench + NW*i : NULL, completed + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(tripod_3upu_condition_constrained(m, X + NQ*j, sigma + 6*j, legs + 3*j));
 }
 
-int tripod_3upu_leg_reactions(const prepared *model, const real *X, const real *V, const real *A,
-    const real *wrench, real *forces)
+size_t tripod_3upu_manipulability_batch(const prepared *m, size_t n, const real *X, real *measure,
+    real *isotropy, int *status)
 {
-    int code;
-    leg_reactions_one(model, X, V, A, wrench, forces, &code);
-    return code;
+    ONE_BY_ONE(tripod_3upu_manipulability(m, X + NQ*j, measure + j, isotropy + j));
 }
 
-size_t tripod_3upu_leg_reactions_batch(const prepared *model, size_t n, const real *X, const real
-    *V, const real *A, const real *wrench, real *forces, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3upu_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench +
-            NW*i : NULL, forces + 18*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3upu_energy(const prepared *model, const real *X, const real *V, real *kinetic, real
-    *potential)
-{
-    int code;
-    energy_one(model, X, V, kinetic, potential, &code);
-    return code;
-}
-
-size_t tripod_3upu_energy_batch(const prepared *model, size_t n, const real *X, const real *V,
-    real *kinetic, real *potential, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3upu_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3upu_condition(const prepared *model, const real *X, real *sigma, real *legs)
-{
-    int code;
-    condition_one(model, X, NULL, sigma, legs, &code);
-    return code;
-}
-
-size_t tripod_3upu_condition_batch(const prepared *model, size_t n, const real *X, real *sigma,
-    real *legs, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3upu_condition(model, X + NQ*i, sigma + 3*i, legs + 3*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3upu_condition_constrained(const prepared *model, const real *X, real *sigma, real
-    *legs)
-{
-    int code;
-    condition_constrained_one(model, X, NULL, sigma, legs, &code);
-    return code;
-}
-
-size_t tripod_3upu_condition_constrained_batch(const prepared *model, size_t n, const real *X,
-    real *sigma, real *legs, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3upu_condition_constrained(model, X + NQ*i, sigma + 6*i, legs + 3*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3upu_manipulability(const prepared *model, const real *X, real *measure, real
-    *isotropy)
-{
-    int code;
-    manipulability_one(model, X, measure, isotropy, &code);
-    return code;
-}
-
-size_t tripod_3upu_manipulability_batch(const prepared *model, size_t n, const real *X, real
-    *measure, real *isotropy, int *status)
-{
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3upu_manipulability(model, X + NQ*i, measure + i, isotropy + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3upu_singularity_distance(const prepared *model, const real *X, real *actuators, real
-    *legs)
-{
-    int code;
-    singularity_distance_one(model, X, actuators, legs, &code);
-    return code;
-}
-
-size_t tripod_3upu_singularity_distance_batch(const prepared *model, size_t n, const real *X, real
+size_t tripod_3upu_singularity_distance_batch(const prepared *m, size_t n, const real *X, real
     *actuators, real *legs, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3upu_singularity_distance(model, X + NQ*i, actuators + i, legs + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(tripod_3upu_singularity_distance(m, X + NQ*j, actuators + j, legs + j));
 }
 
-int tripod_3upu_forward_kinematics(const prepared *model, const real *q_actuated, const real *X0,
-    real *X)
+size_t tripod_3upu_forward_kinematics_batch(const prepared *m, size_t n, const real *q_actuated,
+    const real *X0, real *X, int *status)
 {
-    int code;
-    forward_kinematics_one(model, q_actuated, X0, X, &code);
-    return code;
+    ONE_BY_ONE(tripod_3upu_forward_kinematics(m, q_actuated + NU*j, X0 + NQ*j, X + NQ*j));
 }
 
-size_t tripod_3upu_forward_kinematics_batch(const prepared *model, size_t n, const real
-    *q_actuated, const real *X0, real *X, int *status)
+size_t tripod_3upu_project_batch(const prepared *m, size_t n, const real *X, real *projected, int
+    *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3upu_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(tripod_3upu_project(m, X + NQ*j, projected + NQ*j));
 }
 
-int tripod_3upu_project(const prepared *model, const real *X, real *projected)
+size_t tripod_3upu_dissipation_batch(const prepared *m, size_t n, const real *X, const real *V,
+    real *dissipation, int *status)
 {
-    int code;
-    project_one(model, X, projected, &code);
-    return code;
+    ONE_BY_ONE(tripod_3upu_dissipation(m, X + NQ*j, V + NV*j, dissipation + j));
 }
 
-size_t tripod_3upu_project_batch(const prepared *model, size_t n, const real *X, real *projected,
+size_t tripod_3upu_momentum_batch(const prepared *m, size_t n, const real *X, const real *V, real
+    *momentum, int *status)
+{
+    ONE_BY_ONE(tripod_3upu_momentum(m, X + NQ*j, V + NV*j, momentum + NV*j));
+}
+
+size_t tripod_3upu_joint_margins_batch(const prepared *m, size_t n, const real *X, real *margins,
     int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3upu_project(model, X + NQ*i, projected + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(tripod_3upu_joint_margins(m, X + NQ*j, margins + NJ*j));
 }
 
-int tripod_3upu_dissipation(const prepared *model, const real *X, const real *V, real
-    *dissipation)
+size_t tripod_3upu_within_limits_batch(const prepared *m, size_t n, const real *X, real *within,
+    int *status)
 {
-    int code;
-    (void)model, (void)X;
-    dissipation_one(V, dissipation, &code);
-    return code;
+    ONE_BY_ONE(tripod_3upu_within_limits(m, X + NQ*j, within + j));
 }
 
-size_t tripod_3upu_dissipation_batch(const prepared *model, size_t n, const real *X, const real
-    *V, real *dissipation, int *status)
+size_t tripod_3upu_actuator_positions_batch(const prepared *m, size_t n, const real *X, real *q,
+    int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3upu_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(tripod_3upu_actuator_positions(m, X + NQ*j, q + NU*j));
 }
 
-int tripod_3upu_momentum(const prepared *model, const real *X, const real *V, real *momentum)
+size_t tripod_3upu_actuator_rates_batch(const prepared *m, size_t n, const real *X, const real *V,
+    real *rates, int *status)
 {
-    int code;
-    momentum_one(model, X, V, momentum, &code);
-    return code;
+    ONE_BY_ONE(tripod_3upu_actuator_rates(m, X + NQ*j, V + NV*j, rates + NU*j));
 }
 
-size_t tripod_3upu_momentum_batch(const prepared *model, size_t n, const real *X, const real *V,
-    real *momentum, int *status)
+size_t tripod_3upu_actuator_accelerations_batch(const prepared *m, size_t n, const real *X, const
+    real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3upu_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(tripod_3upu_actuator_accelerations(m, X + NQ*j, V + NV*j, A + NV*j, accelerations +
+        NU*j));
 }
 
-int tripod_3upu_joint_margins(const prepared *model, const real *X, real *margins)
+size_t tripod_3upu_power_batch(const prepared *m, size_t n, const real *X, const real *V, const
+    real *tau, real *power, int *status)
 {
-    int code;
-    joint_margins_one(model, X, margins, &code);
-    return code;
-}
-
-size_t tripod_3upu_joint_margins_batch(const prepared *model, size_t n, const real *X, real
-    *margins, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3upu_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3upu_within_limits(const prepared *model, const real *X, real *within)
-{
-    int code;
-    within_limits_one(model, X, within, &code);
-    return code;
-}
-
-size_t tripod_3upu_within_limits_batch(const prepared *model, size_t n, const real *X, real
-    *within, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            within_limits_lanes(model, X + NQ*i, within + i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3upu_within_limits(model, X + NQ*(i + k), within + (i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3upu_actuator_positions(const prepared *model, const real *X, real *q)
-{
-    int code;
-    actuator_positions_one(model, X, q, &code);
-    return code;
-}
-
-size_t tripod_3upu_actuator_positions_batch(const prepared *model, size_t n, const real *X, real
-    *q, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3upu_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3upu_actuator_rates(const prepared *model, const real *X, const real *V, real *rates)
-{
-    int code;
-    actuator_rates_one(model, X, V, rates, &code);
-    return code;
-}
-
-size_t tripod_3upu_actuator_rates_batch(const prepared *model, size_t n, const real *X, const real
-    *V, real *rates, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3upu_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3upu_actuator_accelerations(const prepared *model, const real *X, const real *V, const
-    real *A, real *accelerations)
-{
-    int code;
-    actuator_accelerations_one(model, X, V, A, accelerations, &code);
-    return code;
-}
-
-size_t tripod_3upu_actuator_accelerations_batch(const prepared *model, size_t n, const real *X,
-    const real *V, const real *A, real *accelerations, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3upu_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
-                    k), accelerations + NU*(i + k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3upu_power(const prepared *model, const real *X, const real *V, const real *tau, real
-    *power)
-{
-    int code;
-    power_one(model, X, V, tau, power, &code);
-    return code;
-}
-
-size_t tripod_3upu_power_batch(const prepared *model, size_t n, const real *X, const real *V,
-    const real *tau, real *power, int *status)
-{
-    size_t failed = 0, w;
-    for (size_t i = 0; i < n; i += w) {
-        int codes[LANES] = {INVALID};
-        w = LANES > 1 && i + LANES <= n ? LANES : 1;
-        if (w > 1) {
-            power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
-        }
-        for (size_t k = 0; k < w; ++k) {
-            if (codes[k] != OK) {
-                codes[k] = tripod_3upu_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power + (i +
-                    k));
-            }
-        }
-        failed += record(codes, w, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3upu_rotation(const real *X, real *R)
-{
-    int code;
-    rotation_one(X, R, &code);
-    return code;
+    ONE_BY_ONE(tripod_3upu_power(m, X + NQ*j, V + NV*j, tau + NU*j, power + j));
 }
 
 size_t tripod_3upu_rotation_batch(size_t n, const real *X, real *R, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3upu_rotation(X + NQ*i, R + 9*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3upu_pose(const real *t, const real *R, real *X)
-{
-    int code;
-    pose_one(t, R, X, &code);
-    return code;
+    ONE_BY_ONE(tripod_3upu_rotation(X + NQ*j, R + 9*j));
 }
 
 size_t tripod_3upu_pose_batch(size_t n, const real *t, const real *R, real *X, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3upu_pose(t + 3*i, R + 9*i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3upu_X_dot(const real *X, const real *V, real *X_dot)
-{
-    int code;
-    X_dot_one(X, V, X_dot, &code);
-    return code;
+    ONE_BY_ONE(tripod_3upu_pose(t + 3*j, R + 9*j, X + NQ*j));
 }
 
 size_t tripod_3upu_X_dot_batch(size_t n, const real *X, const real *V, real *X_dot, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3upu_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3upu_pose_from_rpy(const real *t, const real *rpy, real *X)
-{
-    int code;
-    pose_from_rpy_one(t, rpy, X, &code);
-    return code;
+    ONE_BY_ONE(tripod_3upu_X_dot(X + NQ*j, V + NV*j, X_dot + NQ*j));
 }
 
 size_t tripod_3upu_pose_from_rpy_batch(size_t n, const real *t, const real *rpy, real *X, int
     *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3upu_pose_from_rpy(t + 3*i, rpy + 3*i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3upu_retract(const real *X, const real *step, real *X_moved)
-{
-    int code;
-    retract_one(X, step, X_moved, &code);
-    return code;
+    ONE_BY_ONE(tripod_3upu_pose_from_rpy(t + 3*j, rpy + 3*j, X + NQ*j));
 }
 
 size_t tripod_3upu_retract_batch(size_t n, const real *X, const real *step, real *X_moved, int
     *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3upu_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3upu_difference(const real *X0, const real *X1, real *step)
-{
-    int code;
-    difference_one(X0, X1, step, &code);
-    return code;
+    ONE_BY_ONE(tripod_3upu_retract(X + NQ*j, step + NV*j, X_moved + NQ*j));
 }
 
 size_t tripod_3upu_difference_batch(size_t n, const real *X0, const real *X1, real *step, int
     *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3upu_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
-}
-
-int tripod_3upu_interpolate(const real *X0, const real *X1, const real *s, real *X)
-{
-    int code;
-    interpolate_one(X0, X1, s, X, &code);
-    return code;
+    ONE_BY_ONE(tripod_3upu_difference(X0 + NQ*j, X1 + NQ*j, step + NV*j));
 }
 
 size_t tripod_3upu_interpolate_batch(size_t n, const real *X0, const real *X1, const real *s, real
     *X, int *status)
 {
-    size_t failed = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3upu_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
-    }
-    return failed;
+    ONE_BY_ONE(tripod_3upu_interpolate(X0 + NQ*j, X1 + NQ*j, s + j, X + NQ*j));
 }
