@@ -73,10 +73,10 @@ def _base(derivation: Derivation) -> tuple[list[Assignment], list[Check]]:
         return [], []
     rows = sp.Matrix(3, 3, rotation)
     off = (rows * rows.T - sp.eye(3)).applyfunc(lambda e: e**2)
-    miss, turn = _symbol("base_miss"), _symbol("base_turn")
-    made.append(Assignment(miss, _NEAR**2 - sum(off), "base"))
+    margin, turn = _symbol("base_margin"), _symbol("base_turn")
+    made.append(Assignment(margin, _NEAR**2 - sum(off), "base"))
     made.append(Assignment(turn, rows.row(0).cross(rows.row(1)).dot(rows.row(2)), "base"))
-    return made, [Check("invalid", s, sp.S.One, 1, "base") for s in (miss, turn)]
+    return made, [Check("invalid", s, sp.S.One, 1, "base") for s in (margin, turn)]
 
 
 _NEAR = 1e-5

@@ -22,7 +22,7 @@ middle_#   | q^m_{#}          | LUMPING constant
     middle of the range of joint #
 half_#     | \varrho_{#}      | LUMPING constant
     half the range of joint #
-off_#      | e_{#}            | LIMIT | beyond the paper
+off_#      | \bar q_{#}       | LIMIT | beyond the paper
     displacement of joint # from the middle of its range
 off2_#     | \varsigma_{#}    | LIMIT | beyond the paper
     square of that displacement of joint #

@@ -15,7 +15,7 @@ from pne_sym.model.manipulator import Leg
 
 _PARAMETERS: dict[str, tuple[str, str, str, Rule]] = {
     "viscous": ("b_{{{j}}}", "{effort} s/{q}", "viscous friction of {joint}", Rule.MASS),
-    "coulomb": ("f_{{{j}}}", "{effort}", "Coulomb friction of {joint}", Rule.MASS),
+    "coulomb": (r"\hat f_{{{j}}}", "{effort}", "Coulomb friction of {joint}", Rule.MASS),
     "velocity_scale": (
         r"\epsilon_{{{j}}}",
         "{q}/s",

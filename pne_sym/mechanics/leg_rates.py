@@ -113,7 +113,7 @@ class RateWriter:
 
     @property
     def _closes(self) -> bool:
-        """Three joints with a closed form leave no gap, they miss right angles alone."""
+        """Three joints with a closed form leave no residual but that of right angles."""
         return bool(self.inverse.is_closed and self.g.pairs and self._dofs == 3)
 
     def _rod(self, j: int, following: Vector) -> Vector:

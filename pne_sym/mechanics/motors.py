@@ -88,6 +88,6 @@ def _matrix(book: Book, coupling: Any) -> None:
     )  # fmt: skip
     for k, symbol in enumerate(book.parameters.add(field)):
         row, column = divmod(k, count)
-        latex = f"C_{{{row + 1},{column + 1}}}"
+        latex = rf"\mathcal K_{{{row + 1},{column + 1}}}"
         book.note_quantity(Quantity(symbol.name, latex, meaning, parameter=True))
         book.outputs.append(Output("coupling", symbol, ((0, row),), ((0, column),)))

@@ -35,9 +35,10 @@ _COMMON = frozenset(
     )
 )
 # Symbols that mean the same in every report, though no quantity of a derivation has them.
-_TAKEN = (
+TAKEN = (
     r"\mathbf{E} \mathbf{M} \mathbf{Z} \mathbf{H} \mathbf{H}_{k} \mathbf{F} \mathbf{A} \mathbf{T}"
-    r" \boldsymbol\tau \boldsymbol\lambda \tau \lambda X V i j"
+    r" \mathbf{R} \mathbf{N} \mathbf{V} \mathbf{q}_{a} \mathbf{q}_{m} \mathbf{y} \boldsymbol\chi"
+    r" \boldsymbol\iota \boldsymbol\tau \boldsymbol\lambda \tau \lambda X V i j"
 ).split()
 # What follows a displacement, and the dots that it then has.
 _DERIVATIVES = {Role.RATE: "dot", Role.JOINT_ACCELERATION: "ddot"}
@@ -190,7 +191,7 @@ def _refuse_collision(
 ) -> None:
     """Refuse a symbol that another quantity of the same chapters has."""
     where, wanted = f"symbols.{symbol.key}", _plain(symbol.latex)
-    if wanted in map(_plain, _TAKEN):
+    if wanted in map(_plain, TAKEN):
         problem = f"{symbol.latex} means something in every report"
         raise SpecError(manipulator.name, where, problem, "another symbol")
     for other, latex in taken.items():

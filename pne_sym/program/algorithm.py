@@ -39,15 +39,18 @@ class Algorithm:
         if "M" in values:
             both = self.apply("product", columns, self.apply("transposed", columns))
             found["M"] = self.apply("add", values["M"], both)
-        for array, drives in (("Z", "actuated_bias"), ("required", "actuated_accelerations")):
-            if array in values and drives in values:
-                load = self.apply("times", columns, self._of_rotors(values, drives))
+        for array, motion in (
+            ("Z", "actuated_bias"),
+            ("required", "actuated_accelerations"),
+        ):
+            if array in values and motion in values:
+                load = self.apply("times", columns, self._of_rotors(values, motion))
                 found[array] = self.apply("add", values[array], load)
         return found
 
-    def _of_rotors(self, values: Mapping[str, Value], drives: str) -> Value:
+    def _of_rotors(self, values: Mapping[str, Value], motion: str) -> Value:
         """Torques of the rotors over the roots of their inertias."""
-        turning = self.apply("times", values["coupling"], values[drives])
+        turning = self.apply("times", values["coupling"], values[motion])
         return self.apply("multiply", values["rotor_roots"], turning)
 
     def without_rotors(self, tau: Value, values: Mapping[str, Value]) -> Value:

@@ -163,7 +163,7 @@ def test_drives_that_act_on_undriven_extra_coordinates(drives: int, tmp_path: Pa
 
 def test_fewer_drives_than_freedoms(tmp_path: Path) -> None:
     """No forces give any acceleration; everything else is as with more drives."""
-    manipulator = models.drawn("spherical_too_few_drives")
+    manipulator = models.drawn("spherical_too_few_actuators")
     assert describe(models.bundle(manipulator)).is_underactuated
     library = CLibrary(models.bundle(manipulator), tmp_path, flags=QUICK)
     given, module = near_home(manipulator, STATES), models.module(manipulator)

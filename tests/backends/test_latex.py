@@ -13,8 +13,9 @@ from pne_sym import manipulators
 from pne_sym.backends.glyphs import Glyph, visible_width
 from pne_sym.backends.latex import LatexPrinter
 from pne_sym.backends.report.names import printer_for
-from pne_sym.derivation import Derivation, Equation, full_name, leg_sums, names_in
+from pne_sym.derivation import Derivation, Equation, full_names, leg_sums, names_in
 from pne_sym.mechanics.derive import derive
+from pne_sym.mechanics.notation import TAKEN
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.vector import (
     Axial,
@@ -38,6 +39,7 @@ from pne_sym.vector import (
 from pne_sym.vector.evaluate import evaluate
 from tests.backends.formulas import Reader
 from tests.sampling import entries
+from tests.whole.test_coupling import coupled
 
 A, B, C = (VectorSymbol(name) for name in "abc")
 T, S = TensorSymbol("T"), TensorSymbol("S", True)
@@ -206,21 +208,40 @@ def _random(derivation: Derivation, name: str, rng: np.random.Generator) -> Any:
     return float(rng.uniform(1.0, 2.0))
 
 
+def test_symbols_of_what_acts_in_joints_are_distinct() -> None:
+    found = coupled("planar_3rpr")
+    are_distinct(found, derive(found))
+
+
 def test_symbols_are_distinct(manipulator: Manipulator, derivation: Derivation) -> None:
-    """Within a leg's chapters and the platform's no two quantities are written alike."""
+    are_distinct(manipulator, derivation)
+
+
+def are_distinct(manipulator: Manipulator, derivation: Derivation) -> None:
+    """Within a leg's chapters and the platform's no two quantities are written alike.
+
+    Letters are told apart without their weight.
+    """
     printer = printer_for(derivation)
     used = {
         n for e in derivation.equations() for x in (e.lhs, e.rhs, *e.forms) for n in names_in(x)
     }
     # those of the specification may be shared: checked where they are read
-    chosen = {full_name(derivation, name) for name, _ in manipulator.symbols}
+    chosen = {n for name, _ in manipulator.symbols for n in full_names(derivation, name)}
     directions = re.compile(rf"({'|'.join(t.name for t in derivation.leg_types)})_unit\d_")
     seen: dict[tuple[str, str], str] = {}
-    for name in sorted(used - chosen):
+    for name in sorted(used):
         if directions.match(name):
             continue  # coordinate directions: the same three, whatever they are used for
-        key = (str(Glyph.of(printer.symbols[name])), printer.per_leg.get(name, ""))
-        assert seen.setdefault(key, name) == name, f"{name} and {seen[key]} are both {key[0]}"
+        light = without_weight(str(Glyph.of(printer.symbols[name])))
+        assert light not in map(without_weight, TAKEN), name
+        key = (light, printer.per_leg.get(name, ""))
+        other = seen.setdefault(key, name)
+        assert other == name or {other, name} <= chosen, f"{name} and {other} are both {light}"
+
+
+def without_weight(latex: str) -> str:
+    return re.sub(r"\\(?:mathbf|boldsymbol)(?![a-z])|[{}\s]", "", latex)
 
 
 def test_every_quantity_has_notation(derivation: Derivation) -> None:

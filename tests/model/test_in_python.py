@@ -69,7 +69,7 @@ def test_errors_are_those_of_a_file(broken: Any, message: str, tmp_path: Path) -
     assert not (tmp_path / "out").exists()
 
 
-def test_too_few_drives_are_a_warning(tmp_path: Path) -> None:
+def test_too_few_actuators_are_a_warning(tmp_path: Path) -> None:
     legs = tuple(
         replace(leg, joints=tuple(replace(joint, actuated=False) for joint in leg.joints))
         for leg in PAIR.legs[:1]

@@ -295,13 +295,13 @@ class Interpreter:
 
     def _of_rotors(self, text: str) -> Any:
         """What stands beside the blocks: of coupled motors, by S, r, C and accelerations."""
-        if r"\mathbf S" not in text or not text.startswith(" + "):
+        if _COLUMNS not in text or not text.startswith(" + "):
             return 0.0
         C, r = np.asarray(self.numbers["coupling"]), self.array("rotor_roots")
         S = self.array("H") @ C.T @ np.diag(r)
-        if text == r" + \mathbf S\,\mathbf S^{\mathsf T}":
+        if text == rf" + {_COLUMNS}\,{_COLUMNS}^{{\mathsf T}}":
             return S @ S.T
-        start = r" + \mathbf S\,\mathrm{diag}(\mathbf r)\,\mathbf C\,"
+        start = rf" + {_COLUMNS}\,\mathrm{{diag}}({_ROOTS})\,{_COUPLING}\,"
         assert text.startswith(start), text
         drives = f"{text.removeprefix(start)} ="
         (name,) = (b.id for b in self.text.blocks if b.formula.startswith(drives))
@@ -339,6 +339,7 @@ def _cells(formula: str) -> list[list[str]]:
     return [[c.strip() for c in row if c.strip() not in (r"\cdots", "")] for row in rows]
 
 
+_COLUMNS, _ROOTS, _COUPLING = (rf"\boldsymbol{{\mathcal {letter}}}" for letter in "SRK")
 _OF_DRIVES = ("rotor_roots", "actuated_accelerations", "actuated_bias")
 
 

@@ -257,7 +257,7 @@ def rollers_in_space(order: str) -> Manipulator:
 
 
 @pytest.mark.parametrize("order", sampled(["elbow first", "roller first", "with moments"], 0))
-def test_redundant_drives_do_nothing_to_rollers_about_passive_elbows(order: str) -> None:
+def test_redundant_actuators_do_nothing_to_rollers_about_passive_elbows(order: str) -> None:
     """The elbow's freedom is the roller's: exactly nothing is done along it by what leaves it."""
     spec = checked(replace(rollers_in_space(order), name="rollers", title="rollers"))
     model = module(spec)

@@ -24,7 +24,7 @@ ROWS = {
     "point_4rrr_redundant": (0, 1),
     "spatial_2rr_2hr": (),  # fewer unknowns than conditions: no sign tells branches apart
     "spherical_2crp_redundant": (0, 1, 2),
-    "spherical_too_few_drives": (0, 1, 2),
+    "spherical_too_few_actuators": (0, 1, 2),
     "translational_pprhu_rr": (0, 1, 2, 3),
     "hexapod_6x6r": (0, 1, 2, 3, 4),
 }

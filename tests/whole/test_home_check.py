@@ -222,10 +222,10 @@ def test_iteration_that_does_not_converge(monkeypatch: pytest.MonkeyPatch) -> No
         check_home(bundle)
 
 
-def test_too_few_drives_are_named_once() -> None:
-    (message,) = warned(models.bundle(models.drawn("spherical_too_few_drives")))
+def test_too_few_actuators_are_named_once() -> None:
+    (message,) = warned(models.bundle(models.drawn("spherical_too_few_actuators")))
     assert message == (
-        "spherical_too_few_drives: inverse_dynamics, leg_reactions: NaN at every state: fewer "
+        "spherical_too_few_actuators: inverse_dynamics, leg_reactions: NaN at every state: fewer "
         "actuators than degrees of freedom, so that no forces give any acceleration"
     )
 

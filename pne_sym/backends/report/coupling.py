@@ -13,7 +13,9 @@ _MOTION = {
     "actuated_accelerations": r"\ddot{\mathbf q}_a",
     "actuated_bias": r"\ddot{\mathbf q}_a^{\circ}",
 }
-_LOAD = r"\mathbf S\,\mathrm{{diag}}(\mathbf r)\,\mathbf C\,{}"
+# letters that no quantity of a derivation has
+_K, _N, _S, _R = (rf"\boldsymbol{{\mathcal {letter}}}" for letter in "KDSR")
+_LOAD = rf"{_S}\,\mathrm{{diag}}({_R})\,{_K}\,"
 _BESIDE = {"Z": "actuated_bias", "required": "actuated_accelerations"}
 
 
@@ -23,9 +25,9 @@ def of_rotors(derivation: Derivation, array: str) -> tuple[str, ...]:
     if "rotor_roots" not in made:
         return ()
     if array == "M":
-        return (r"+ \mathbf S\,\mathbf S^{\mathsf T}",)
+        return (rf"+ {_S}\,{_S}^{{\mathsf T}}",)
     motion = _BESIDE.get(array, "")
-    return (f"+ {_LOAD.format(_MOTION[motion])}",) if motion in made else ()
+    return (f"+ {_LOAD}{_MOTION[motion]}",) if motion in made else ()
 
 
 def is_coupled(derivation: Derivation) -> bool:
@@ -44,12 +46,12 @@ def coupling_statements(derivation: Derivation, matrix: Matrix) -> Iterator[Stat
         return
     law = f"*{Law.COUPLING.value.capitalize()}, beyond the paper.*"
     yield Statement(
-        "**Coupled motors.** Before their gears, of the ratios N (1 where there is no motor), the "
-        "motors turn by the matrix C times the displacements of the actuated joints, in the order "
-        f"of tau, and their torques give tau. {law}",
+        f"**Coupled motors.** Before their gears, of the ratios $`{_N}`$ (1 where there is no "
+        f"motor), the motors turn by the matrix $`{_K}`$ times the displacements of the actuated "
+        f"joints, in the order of tau, and their torques give tau. {law}",
         (
-            r"\dot{\boldsymbol\theta} = \mathbf N\,\mathbf C\,\dot{\mathbf q}_a,",
-            r"\qquad \boldsymbol\tau = \mathbf C^{\mathsf T}\,\mathbf N\,\boldsymbol\tau_m",
+            rf"\dot{{\mathbf q}}_m = {_N}\,{_K}\,\dot{{\mathbf q}}_a,",
+            rf"\qquad \boldsymbol\tau = {_K}^{{\mathsf T}}\,{_N}\,\boldsymbol\tau_m",
         ),
     )
     yield from _rotor_statements(derivation, matrix, law)
@@ -61,11 +63,12 @@ def _rotor_statements(derivation: Derivation, matrix: Matrix, law: str) -> Itera
     if not found["rotor_roots"]:
         return
     yield Statement(
-        "**`rotor_roots`.** A column of S is what a motor's unit torque does to the platform, "
-        "times the root r of the inertia that is felt of its rotor (0 where there is no motor); "
-        r"so the rotors have the kinetic energy $`\tfrac12\,\mathbf V^{\mathsf T}\mathbf S\,"
-        rf"\mathbf S^{{\mathsf T}}\mathbf V`$, and $`{_ACCELERATED}`$. {law}",
-        (*matrix(found["rotor_roots"], r"\mathbf r"), r",\qquad", _COLUMNS),
+        f"**`rotor_roots`.** A column of $`{_S}`$ is what a motor's unit torque does to the "
+        f"platform, times the root $`{_R}`$ of the inertia that is felt of its rotor (0 where "
+        "there is no motor); so the rotors have the kinetic energy "
+        rf"$`\tfrac12\,\mathbf V^{{\mathsf T}}{_S}\,{_S}^{{\mathsf T}}\mathbf V`$, "
+        f"and $`{_ACCELERATED}`$. {law}",
+        (*matrix(found["rotor_roots"], _R), r",\qquad", _COLUMNS),
     )
     for array, latex in _MOTION.items():
         if found[array]:
@@ -75,4 +78,4 @@ def _rotor_statements(derivation: Derivation, matrix: Matrix, law: str) -> Itera
 
 
 _ACCELERATED = r"\ddot{\mathbf q}_a=\mathbf H^{\mathsf T}\mathbf A+\ddot{\mathbf q}_a^{\circ}"
-_COLUMNS = r"\mathbf S = \mathbf H\,\mathbf C^{\mathsf T}\,\mathrm{diag}(\mathbf r)"
+_COLUMNS = rf"{_S} = \mathbf H\,{_K}^{{\mathsf T}}\,\mathrm{{diag}}({_R})"

@@ -25,7 +25,7 @@ _SIZES = {
 
 
 def summary(bundle: Bundle) -> str:
-    """What moves, what carries it, what drives it."""
+    """What moves, what carries it, what is actuated."""
     manipulator = bundle.manipulator
     parts = []
     for info in bundle.derivation.leg_types:
