@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypedDict, Unpack
 
 import sympy as sp
 
@@ -30,6 +30,25 @@ from pne_sym.derivation.paper import check_reference
 from pne_sym.derivation.parameters import NameTakenError, ParameterTable
 from pne_sym.vector import LinearForm, Tensor, TensorSymbol, Vector, VectorSymbol
 from pne_sym.vector.dimensions import DimensionError, dimension_of_unit
+
+
+class Facts(TypedDict, total=False):
+    """What else there is to say of a quantity that an equation defines: fields of `Quantity`."""
+
+    body: str | None
+    parameter: bool
+    role: Role | None
+    joint: int
+    remainder_of: str
+
+
+def _defined(name: str, rhs: Any, *, symmetric: bool) -> tuple[Any, Any]:
+    """The symbol of what an expression defines, and the expression."""
+    if isinstance(rhs, Vector):
+        return VectorSymbol(name), rhs
+    if isinstance(rhs, Tensor):
+        return TensorSymbol(name, symmetric), rhs
+    return sp.Symbol(name, real=True), sp.sympify(rhs)
 
 
 class Book:
@@ -92,17 +111,13 @@ class Book:
         law: Law,
         *,
         reference: str = "",
-        body: str | None = None,
         forms: Sequence[Any] = (),
         linear: LinearForm | None = None,
         expanded: Any = None,
         conditions: Sequence[Condition] = (),
         symmetric: bool = False,
-        parameter: bool = False,
-        role: Role | None = None,
-        joint: int = 0,
-        remainder_of: str = "",
         like: Any = sp.S.Zero,
+        **facts: Unpack[Facts],
     ) -> Any:
         """Append an equation that defines a new name; returns its symbol.
 
@@ -113,31 +128,14 @@ class Book:
             ValueError: the paper has nothing of this law at the reference.
         """
         check_reference(reference, law)
-        symbol: Any
-        if isinstance(rhs, Vector):
-            symbol = VectorSymbol(name)
-        elif isinstance(rhs, Tensor):
-            symbol = TensorSymbol(name, symmetric)
-        else:
-            symbol, rhs = sp.Symbol(name, real=True), sp.sympify(rhs)
+        symbol, rhs = _defined(name, rhs, symmetric=symmetric)
+        role = facts.get("role")
         try:
             others = (*forms, like)
             unit = unit_of_equation(rhs, others, conditions, self._units, law=law, role=role)
         except DimensionError as error:
             raise DimensionError(f"{name}: {error}") from None
-        self.note_quantity(
-            Quantity(
-                name,
-                latex,
-                title,
-                unit,
-                body,
-                parameter,
-                role=role,
-                joint=joint,
-                remainder_of=remainder_of,
-            )
-        )
+        self.note_quantity(Quantity(name, latex, title, unit, **facts))
         self._chapters[-1][-1].append(
             Equation(
                 id=self._id(name),

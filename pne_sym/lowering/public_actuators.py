@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from pne_sym.lowering.public_writer import Writer
 from pne_sym.program.algorithm import Algorithm
 from pne_sym.program.public import PublicFunction
-
-if TYPE_CHECKING:
-    from pne_sym.lowering.public import Writer
 
 
 def actuator_functions(w: Writer) -> list[PublicFunction]:

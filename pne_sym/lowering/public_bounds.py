@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from pne_sym.lowering.public_forces import force_outputs, required_forces, shared_forces
+from pne_sym.lowering.public_writer import Writer
 from pne_sym.program.algorithm import Algorithm
 from pne_sym.program.public import PublicFunction, Value
-
-if TYPE_CHECKING:
-    from pne_sym.lowering.public import Writer
 
 
 def bounded_functions(w: Writer) -> list[PublicFunction]:
@@ -49,7 +46,7 @@ def _reachable(
     def limited(value: Value) -> Value:
         return a.apply("take", value, numbers=own) if len(own) < w.n["NU"] else value
 
-    (start, _), (way, matrix) = (w.shared_forces(a, f, actuators) for f in (needed, more))
+    (start, _), (way, matrix) = (shared_forces(w, a, f, actuators) for f in (needed, more))
     (limits,) = a.run("effort_limits", w.program, "effort_limits")
     operands = [limited(start), limited(way)]
     if w.redundancy:
@@ -85,13 +82,13 @@ def _force_distribution(w: Writer) -> PublicFunction:
         bounds = (w.given(name).value for name in ("tau_min", "tau_max"))
         return a.apply("nearest_within", nearest, free, *bounds)
 
-    forces = w.forces(a, needed, actuators, choose=chosen)
+    forces = required_forces(w, a, needed, actuators, choose=chosen)
     return w.function(
         "force_distribution",
         "Actuator forces from tau_min to tau_max for the acceleration A: the nearest to reference.",
         "X V A tau_min tau_max wrench reference",
         a,
-        *w.force_outputs(*forces),
+        *force_outputs(w, *forces),
         counted="required",
         also="the search",
     )

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from pne_sym.derivation import Coordinates, Derivation, Role
+from pne_sym.lowering.public_writer import Writer
 from pne_sym.program.algorithm import Algorithm
 from pne_sym.program.public import PublicFunction, Value
-
-if TYPE_CHECKING:
-    from pne_sym.lowering.public import Writer
 
 CONDITION = (
     "How far a pose is from singularities: singular values of H, rows of moments divided by a "
@@ -59,8 +55,13 @@ def _scaled(
 
 
 def conditioning_functions(w: Writer, rows: tuple[int, ...]) -> list[PublicFunction]:
-    """Numbers of what `condition` tells."""
-    return [*([_manipulability(w, rows)] if w.n["NU"] else []), _singularity_distance(w, rows)]
+    """How far a pose is from singularities, and numbers of what that tells."""
+    found = [_condition(w, "condition", CONDITION, ["H"], rows)]
+    if w.constrained:
+        both = ["H", "Hk"]
+        found.append(_condition(w, "condition_constrained", CONDITION_CONSTRAINED, both, rows))
+    found += [_manipulability(w, rows)] if w.n["NU"] else []
+    return [*found, _singularity_distance(w, rows)]
 
 
 def _manipulability(w: Writer, rows: tuple[int, ...]) -> PublicFunction:
@@ -108,4 +109,24 @@ def _singularity_distance(w: Writer, rows: tuple[int, ...]) -> PublicFunction:
         w.made(a.apply("least_entry", legs), "legs", "least pivot of all legs"),
         counted="condition",
         also="the singular values",
+    )
+
+
+def _condition(
+    w: Writer, name: str, meaning: str, matrices: list[str], rows: tuple[int, ...]
+) -> PublicFunction:
+    a = Algorithm()
+    lengths, legs, *found = a.run("condition", w.program, "lengths", "pivots", *matrices)
+    sigma = scaled_values(a, found, lengths, w.given("length").value, rows)
+    size = str(sigma.shape[0])
+    return w.function(
+        name,
+        meaning,
+        "X length",
+        a,
+        w.made(sigma, "sigma", "singular values, in descending order", size),
+        w.made(legs, "legs", "least pivots; a leg is refused at 1.5e-8", str(legs.size)),
+        counted="condition",
+        also="the singular values",
+        gives_status=True,
     )

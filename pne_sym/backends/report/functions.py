@@ -25,11 +25,25 @@ _W = r"\mathbf F_{\mathrm{ext}}"
 
 def function_statements(bundle: Bundle, printer: LatexPrinter) -> Iterator[Statement]:
     """Inverse and forward dynamics, constraints, extra coordinates."""
+    constrained = bundle.coordinates.sizes["NC"] > 0
+    yield from _inverse_dynamics(bundle, printer, constrained=constrained)
+    yield _forward_dynamics(constrained=constrained)
+    yield Statement(
+        "**Conditioning**: `condition` returns the singular values of H, moment rows divided by "
+        r"$`\ell_b`$ ($`\ell_s`$ where it vanishes), and for every leg the least of the values "
+        "that are tested below, over its scale."
+        + (" `condition_constrained` does so for [H H_k]." if constrained else ""),
+        (),
+    )
+    yield from _passive_statements(bundle.coordinates)
+
+
+def _inverse_dynamics(
+    bundle: Bundle, printer: LatexPrinter, *, constrained: bool
+) -> Iterator[Statement]:
     outputs = [o for o in bundle.derivation.outputs if o.array == "required"]
     required = block_matrix(outputs, _R, printer)
     beside = of_rotors(bundle.derivation, "required")
-    sizes = bundle.coordinates.sizes
-    constrained = sizes["NC"] > 0
     unknown = (
         r"\begin{bmatrix}\mathbf H & \mathbf H_k\end{bmatrix}"
         r"\begin{bmatrix}\boldsymbol\tau \\ \boldsymbol\lambda\end{bmatrix}"
@@ -42,38 +56,32 @@ def function_statements(bundle: Bundle, printer: LatexPrinter) -> Iterator[State
         r"$`\mathbf R`$; M is never formed.",
         (f"{unknown} = {_R} - {_W},", r"\qquad", *required, *beside),
     )
-    actuation = bundle.coordinates.actuation
+    actuation, sizes = bundle.coordinates.actuation, bundle.coordinates.sizes
     if actuation.is_determined and sizes["NU"] + sizes["NC"] > actuation.rank:
         yield Statement(
             "There are more unknowns than equations; of all solutions the smallest is taken.", ()
         )
-    if constrained:
-        yield Statement(
-            "**Forward dynamics** solves the equations of motion together with the constraints, "
-            "differentiated twice:",
-            (
-                r"\begin{bmatrix}\mathbf M & -\mathbf H_k \\",
-                r"\mathbf H_k^{\mathsf T} & \mathbf 0\end{bmatrix}",
-                r"\begin{bmatrix}\mathbf A \\ \boldsymbol\lambda\end{bmatrix}",
-                rf"= \begin{{bmatrix}}\mathbf H\,\boldsymbol\tau + {_W} - \mathbf Z \\",
-                r"-\boldsymbol\iota\end{bmatrix},",
-                r"\qquad \mathbf H_k^{\mathsf T}\,\mathbf V = \mathbf 0,",
-                r"\quad \mathbf H_k^{\mathsf T}\,\mathbf A + \boldsymbol\iota = \mathbf 0",
-            ),
-        )
-    else:
-        yield Statement(
+
+
+def _forward_dynamics(*, constrained: bool) -> Statement:
+    if not constrained:
+        return Statement(
             "**Forward dynamics** solves the equations of motion for the acceleration:",
             (rf"\mathbf M\,\mathbf A = \mathbf H\,\boldsymbol\tau + {_W} - \mathbf Z",),
         )
-    yield Statement(
-        "**Conditioning**: `condition` returns the singular values of H, moment rows divided by "
-        r"$`\ell_b`$ ($`\ell_s`$ where it vanishes), and for every leg the least of the values "
-        "that are tested below, over its scale."
-        + (" `condition_constrained` does so for [H H_k]." if constrained else ""),
-        (),
+    return Statement(
+        "**Forward dynamics** solves the equations of motion together with the constraints, "
+        "differentiated twice:",
+        (
+            r"\begin{bmatrix}\mathbf M & -\mathbf H_k \\",
+            r"\mathbf H_k^{\mathsf T} & \mathbf 0\end{bmatrix}",
+            r"\begin{bmatrix}\mathbf A \\ \boldsymbol\lambda\end{bmatrix}",
+            rf"= \begin{{bmatrix}}\mathbf H\,\boldsymbol\tau + {_W} - \mathbf Z \\",
+            r"-\boldsymbol\iota\end{bmatrix},",
+            r"\qquad \mathbf H_k^{\mathsf T}\,\mathbf V = \mathbf 0,",
+            r"\quad \mathbf H_k^{\mathsf T}\,\mathbf A + \boldsymbol\iota = \mathbf 0",
+        ),
     )
-    yield from _passive_statements(bundle.coordinates)
 
 
 def _passive_statements(coordinates: Coordinates) -> Iterator[Statement]:

@@ -1,0 +1,149 @@
+"""Components of vector expressions, by what they are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import sympy as sp
+
+from pne_sym.derivation import ReciprocalBasis
+from pne_sym.lowering.frames import Triple
+from pne_sym.lowering.interface import Components
+from pne_sym.lowering.rotation import XYZ, Tensor9, cross
+from pne_sym.lowering.scalars import divisor_of
+from pne_sym.lowering.statements import Atom
+from pne_sym.vector import nodes as n
+
+
+def _cross(of: Components, expr: Any, frame: str, hint: str) -> Triple:
+    return cross(of.b, of.vector(expr.args[0], frame), of.vector(expr.args[1], frame), hint)
+
+
+def _add(of: Components, expr: Any, frame: str, hint: str) -> Triple:
+    plain, duals = _split_duals(of, expr.args)
+    parts = [of.vector(term, frame) for term in plain]
+    for basis, weights in duals:
+        parts.append(_combination(of, basis, weights, frame))
+    return _sum(of, parts, hint)
+
+
+def _sum(of: Components, parts: Sequence[Triple], hint: str) -> Triple:
+    return tuple(
+        of.b.add([p[i] for p in parts], f"{hint}_{XYZ[i]}" if hint else "", named=bool(hint))
+        for i in range(3)
+    )
+
+
+def _split_duals(of: Components, terms: Iterable[Any]) -> tuple[list[Any], list[Any]]:
+    """Terms, and combinations of reciprocal vectors by basis."""
+    plain: list[Any] = []
+    weights: dict[int, tuple[ReciprocalBasis, list[Any]]] = {}
+    for term in terms:
+        factor, vector = n.split_scale(term)
+        found = of.bases.of(vector)
+        if found is None:
+            plain.append(term)
+            continue
+        basis, k = found
+        entry = weights.setdefault(id(basis), (basis, [sp.S.Zero] * len(basis.duals)))
+        entry[1][k] = entry[1][k] + factor
+    return plain, list(weights.values())
+
+
+def _scale(of: Components, expr: Any, frame: str, hint: str) -> Triple:
+    factor, vector = expr.args
+    if of.bases.of(vector) is not None:
+        return _add(of, n.VectorAdd(expr), frame, hint)
+    divisor = divisor_of(factor)
+    v = of.vector(vector, frame)
+    if divisor is not None:
+        bottom = of.scalar(divisor)
+        top = of.scalar(factor * divisor)
+        return tuple(
+            of.b.divide(of.b.mul(top, c), bottom, f"{hint}_{XYZ[i]}" if hint else "")
+            for i, c in enumerate(v)
+        )
+    if all(c == 0 for c in v):
+        return v
+    s = of.scalar(factor)
+    return tuple(of.b.mul(s, c, f"{hint}_{XYZ[i]}" if hint else "") for i, c in enumerate(v))
+
+
+def _apply(of: Components, expr: Any, frame: str, hint: str) -> Triple:
+    v = of.vector(expr.args[1], frame)
+    t = of.tensor(expr.args[0], frame)
+    return tuple(
+        of.b.add([of.b.mul(t[i][k], v[k]) for k in range(3)], f"{hint}_{XYZ[i]}" if hint else "")
+        for i in range(3)
+    )
+
+
+def _axial(of: Components, expr: Any, frame: str, hint: str) -> Triple:
+    """Of B S with symmetric S alone: nothing else has an axial vector in a derivation."""
+    inner = expr.args[0]
+    if not (isinstance(inner, n.Compose) and getattr(inner.args[1], "is_symmetric", False)):
+        raise TypeError("no components for the axial vector of a general tensor")
+    B, S = (of.tensor(factor, frame) for factor in inner.args)
+    return _moment_of(of, B, S, hint)
+
+
+def _moment_of(of: Components, B: Tensor9, S: Tensor9, hint: str) -> Triple:
+    """Axial(B S) for symmetric S, products of inertia taken out once."""
+    b = of.b
+
+    def entry(i: int) -> Atom:
+        j, k = (i + 1) % 3, (i + 2) % 3
+        return b.add(
+            (
+                b.mul(B[k][i], S[i][j]),
+                b.mul(B[k][j], S[j][j]),
+                b.mul(S[j][k], b.difference(B[k][k], B[j][j])),
+                -b.mul(B[j][i], S[i][k]),
+                -b.mul(B[j][k], S[k][k]),
+            ),
+            f"{hint}_{XYZ[i]}" if hint else "",
+        )
+
+    return (entry(0), entry(1), entry(2))
+
+
+def _total(of: Components, expr: Any, frame: str, hint: str) -> Triple:
+    value, leg_type = expr.args
+    v = of.vector(value, frame, f"{hint}_leg" if hint else "")
+    found = tuple(
+        of.b.total(c, leg_type.name, f"{hint or 'total'}_{leg_type.name}_{XYZ[i]}")
+        for i, c in enumerate(v)
+    )
+    of.note_total(expr, frame, found)
+    return found
+
+
+def _combination(
+    of: Components, basis: ReciprocalBasis, weights: Sequence[Any], frame: str
+) -> Triple:
+    """Force part of sum g_j (w_j; m_j)."""
+    x, y, z, *_ = of.bases.wrench(basis, weights)
+    return of.rotation.vector((x, y, z), of.bases.frame(basis), frame)
+
+
+def single(of: Components, basis: ReciprocalBasis, k: int, frame: str) -> Triple:
+    """Force part of reciprocal wrench k."""
+    x, y, z, *_ = of.bases.single(basis, k)
+    return of.rotation.vector((x, y, z), of.bases.frame(basis), frame)
+
+
+def _dual(of: Components, expr: Any, frame: str, _hint: str) -> Triple:
+    k, *screws = expr.args
+    return single(of, of.bases.of_screws(*screws), int(k), frame)
+
+
+OPERATIONS: dict[type, Any] = {
+    n.VectorAdd: _add,
+    n.VectorScale: _scale,
+    n.Cross: _cross,
+    n.Apply: _apply,
+    n.Axial: _axial,
+    n.DualVector: _dual,
+    n.VectorLegSum: _total,
+}
