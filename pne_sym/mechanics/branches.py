@@ -8,7 +8,7 @@ import numpy as np
 import sympy as sp
 
 from pne_sym.derivation import Book
-from pne_sym.mechanics.inverse_kinematics import InverseKinematics
+from pne_sym.mechanics.leg_displacements import InverseKinematics
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.scope import right_angles
 from pne_sym.model.errors import SpecError

@@ -1,12 +1,7 @@
 """Inverse kinematics of a leg, joint by joint, from invariants of the distal sub-chain.
 
-Joint j is found from an equation that the joints beyond it cannot change:
-
-* linear: a direction u fixed in link j, along all later revolute axes and
-  across all later slides; u . x keeps its value;
-* sphere: all later joints are revolutes through one centre; its distance to
-  the connection point is fixed;
-* direct: nothing follows.
+Joint j is found from an equation that the joints beyond it cannot change (`invariants`), or, where
+nothing follows, directly.
 
 Nothing here knows leg architectures; a joint without such an equation has no
 closed form by this route, and the reason is told.
@@ -21,56 +16,11 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.derivation import Book, Condition, Law, Trouble
+from pne_sym.mechanics.invariants import Invariants
+from pne_sym.mechanics.leg_displacements import Branch, InverseKinematics
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.terms import Writer, glossary
-from pne_sym.vector import Cross, Dot, Vector, ZeroVector, vector_sum
-
-
-@dataclass(frozen=True)
-class Branch:
-    """A root whose sign is that of home.
-
-    Attributes:
-        symbol: the sign's symbol.
-        joint: joint number.
-        root: expression with the sign that the branch has (uses the true
-            cosine and sine, or displacement, of the joint).
-        power: of a length that the root is.
-    """
-
-    symbol: sp.Symbol
-    joint: int
-    root: Any
-    power: int
-
-
-@dataclass(frozen=True)
-class InverseKinematics:
-    """How each joint of a leg is found.
-
-    Attributes:
-        q: displacement symbols by joint.
-        methods: joint -> "linear", "sphere", "direct", "given" or "numeric".
-        reasons: why a joint has no closed form.
-        branches: roots whose sign is that of home.
-        x: from the origin of a joint to the connection point, seen from the base.
-        S: from the base point to the connection point.
-        swings: all joints that turn swing the connection point in a plane across their axes, so
-            that its components there give their angles.
-    """
-
-    q: dict[int, Any]
-    methods: dict[int, str]
-    reasons: dict[int, str]
-    branches: list[Branch]
-    x: dict[int, Vector]
-    S: Vector = ZeroVector
-    swings: bool = False
-
-    @property
-    def is_closed(self) -> bool:
-        """Whether every joint has a closed form."""
-        return not self.reasons
+from pne_sym.vector import Dot, Vector, ZeroVector
 
 
 def invert(
@@ -218,6 +168,7 @@ class _Solver:
             for j in range(1, g.count + 1)
             if g.is_extra(j)
         }
+        self.invariants = Invariants(g, self.q)
         self.methods: dict[int, str] = {}
         self.reasons: dict[int, str] = {}
         self.branches: list[Branch] = []
@@ -234,7 +185,7 @@ class _Solver:
             pass
         elif g.is_unseen(j):
             self._orient(j)
-        elif g.acts_as_slide(j) or (g.slides(j) and not self._later(j)):
+        elif g.acts_as_slide(j) or (g.slides(j) and not self.invariants.later(j)):
             self._slide(j, x)
             if g.turns(j):
                 self._angle_of_displacement(j)
@@ -247,106 +198,9 @@ class _Solver:
             x = self.eq.named("x_#", x, j + 1, body=g.frame("axes", g.group[j]))
         return x
 
-    def _later(self, j: int) -> list[int]:
-        return [
-            k
-            for k in range(j + 1, self.g.count + 1)
-            if not self.g.is_extra(k) and not self.g.is_unseen(k)
-        ]
-
-    def _invariant(self, j: int) -> tuple[str, Vector, Any] | None:
-        """(method, vector u fixed in link j, value of u . x) for joint j."""
-        g, later = self.g, self._later(j)
-        turning = [k for k in later if not g.acts_as_slide(k)]
-        sliding = [k for k in later if g.acts_as_slide(k)]
-        if any(g.slides(k) for k in turning):
-            return None
-        if (
-            turning
-            and all(g.parallel(turning[0], k) for k in turning)
-            and all(g.perpendicular(turning[0], k) for k in sliding)
-            and self._useful(j, turning[0])
-        ):
-            return "linear", g.e[turning[0]], self._constant(j, turning[0])
-        if not turning and sliding and len(sliding) == 1:
-            found = self._across_slide(j, sliding[0])
-            if found is not None:
-                return found
-        if turning and not sliding:
-            return self._sphere(j, turning)
-        return None
-
-    def _useful(self, j: int, k: int) -> bool:
-        """Whether u = e_k tells joint j: not along its axis (R), not across it (P)."""
-        if not self.g.acts_as_slide(j):
-            return self.g.parallel(j, k) == 0
-        return not self.g.perpendicular(j, k)
-
-    def _constant(self, j: int, k: int) -> Any:
-        """u . (sum of later offsets) for u = e_k, each term in its own link."""
-        g = self.g
-        terms = []
-        for i in range(j + 1, g.count + 2):
-            if g.offset[i] == ZeroVector or self._lies_along(i, j):
-                continue
-            near = (*range(i - 1, j, -1), *([i] if i <= g.count else []))
-            own = next((m for m in near if g.turns(m) and g.parallel(m, k)), k)
-            terms.append(g.parallel(own, k) * Dot(g.e[own], g.offset[i]))
-        return sp.Add(*terms, *(y * Dot(g.e[k], axis) for y, axis in self._extra_slides(j)))
-
-    def _lies_along(self, i: int, j: int) -> bool:
-        """Whether offset i lies along the axis of a helical joint, across joint j's direction."""
-        opening = self.g.group[i - 1]
-        return opening > j and self.g.acts_as_slide(opening)
-
-    def _extra_slides(self, j: int) -> list[tuple[Any, Vector]]:
-        """Displacement and axis of the extra joints beyond joint j that slide."""
-        g = self.g
-        return [
-            (self.q[i] * g.advance(i), g.e[i])
-            for i in range(j + 1, g.count + 1)
-            if g.is_extra(i) and g.slides(i)
-        ]
-
-    def _beyond(self, j: int) -> Vector:
-        """From joint j to the connection point, if all joints beyond are extra or unseen."""
-        g = self.g
-        offsets = [g.offset[i] for i in range(j + 1, g.count + 2)]
-        return vector_sum([*offsets, *(y * axis for y, axis in self._extra_slides(j))])
-
-    def _across_slide(self, j: int, p: int) -> tuple[str, Vector, Any] | None:
-        g = self.g
-        if not g.acts_as_slide(j):
-            if g.parallel(j, p):
-                return None
-            u: Vector = Cross(g.e[j], g.e[p])
-        else:
-            if g.parallel(j, p):
-                return None
-            u = g.e[j] if g.perpendicular(j, p) else g.e[j] - Dot(g.e[j], g.e[p]) * g.e[p]
-        constant = sp.Add(
-            *(Dot(u, g.offset[i]) for i in range(j + 1, g.count + 2) if not self._lies_along(i, j)),
-            *(y * Dot(u, axis) for y, axis in self._extra_slides(j)),
-        )
-        return "linear", u, constant
-
-    def _sphere(self, j: int, turning: list[int]) -> tuple[str, Vector, Any] | None:
-        g = self.g
-        first = turning[0]
-        between = [g.offset[i] for i in range(first + 1, g.count + 1)]
-        if any(a != ZeroVector for a in between) or turning != list(range(first, g.count + 1)):
-            return None
-        centre = vector_sum(
-            [
-                *(g.offset[i] for i in range(j + 1, first + 1)),
-                *(self.q[i] * g.slide(i) for i in range(j + 1, first) if g.slides(i)),
-            ]
-        )
-        return "sphere", centre, g.offset[g.count + 1]
-
     def _turn(self, j: int, x: Vector) -> Vector:
-        later = self._later(j)
-        found = self._invariant(j)
+        later = self.invariants.later(j)
+        found = self.invariants.of_joint(j)
         if found is None and not later and not self.g.slides(j):
             return self._direct(j, x)
         if found is None or self.g.slides(j) or (found[0] == "sphere" and found[1] == ZeroVector):
@@ -376,7 +230,7 @@ class _Solver:
     def _projection(self, j: int, x: Vector, u: Vector, value: Any, method: str) -> Vector:
         """Solve u . x = value for the angle of joint j, u turning with link j."""
         g, e = self.g, self.g.e[j]
-        u_n, u_m, along_axis = self._pattern(j, method, u)
+        u_n, u_m, along_axis = self.invariants.pattern(j, method, u)
         fixed = value == 0 and along_axis == 0 and {abs(u_n or 0), abs(u_m or 0)} == {0, 1}
         self.swings.append(fixed and method == "linear")
         A, B, axial = self._in_turning_plane(j, x, named=not fixed)
@@ -389,28 +243,20 @@ class _Solver:
             K, N = self.eq.named("Kc_#", K, j), self.eq.named("Ks_#", N, j)
         along = sp.S.Zero if along_axis == 0 else Dot(u, e) * axial
         C = self.eq.named("Kr_#", value - along, j)
-        root = self._turned(j, K, N, C, method, reaches=fixed and u_m == 1 and self._reaches(j))
+        root = self._turned(
+            j, K, N, C, method, reaches=fixed and u_m == 1 and self.invariants.reaches(j)
+        )
         x_n, x_m = u_n * C + u_m * root, u_m * C - u_n * root
         length2 = self._constant_of_link("uu_#", j, u_n**2 + u_m**2)
         parts = x_n / length2, x_m / length2, axial
         self.resolved = _Resolved(j, parts)
-        if self._goes_on(j):
+        if self.invariants.goes_on(j):
             return x
         n, m = self._link_axes(j)
         resolved: Vector = self.eq(
             "xi_#", parts[0] * n + parts[1] * m + axial * e, j, body=g.frame("axes", j)
         )
         return resolved
-
-    def _goes_on(self, j: int) -> bool:
-        """Whether the joint after j is found from the components in link j's axes alone."""
-        g, k = self.g, j + 1
-        if k > g.count or g.offset[k] != ZeroVector or g.is_extra(k) or g.is_unseen(k):
-            return False
-        if g.turns(k):
-            found = None if g.slides(k) else self._invariant(k)
-            return found is not None and found[0] == "linear" and k in g.turn_axes
-        return k in self.q
 
     def _in_turning_plane(self, j: int, x: Vector, *, named: bool) -> tuple[Any, Any, Any]:
         """Components of x along and across the direction from which joint j's angle counts.
@@ -454,31 +300,6 @@ class _Solver:
         self.q[j + 1] = self.eq("q_#", value, j + 1, conditions=(regular,))
         return self.q[j + 1]
 
-    def _reaches(self, j: int) -> bool:
-        """Whether the next joint, the last, extends the leg from joint j to its end."""
-        g, k = self.g, j + 1
-        if k != g.count or g.turns(k) or g.is_extra(k):
-            return False
-        along = g.axis_pattern(j, k)
-        return g.offset[k] == g.offset[k + 1] == ZeroVector and along == (1, 0, 0)
-
-    def _pattern(self, j: int, method: str, u: Vector) -> tuple[Any, Any, Any]:
-        """Components of u in link j's canonical axes where the structure fixes them, else None."""
-        g = self.g
-        if method == "orientation":
-            return g.end_pattern
-        for k in range(1, g.count + 1):
-            if u == g.e[k]:
-                return g.axis_pattern(j, k)
-            if u == Cross(g.e[j], g.e[k]):
-                along_x, along_y, _ = g.axis_pattern(j, k)
-                turned = None if along_y is None else -along_y
-                return (turned, along_x, sp.S.Zero)
-            if method == "sphere" and u == g.offset[k] and g.group[k - 1] == j:
-                zero = g.offset_is_zero(j, k)
-                return tuple(sp.S.Zero if z else None for z in zero)  # type: ignore[return-value]
-        return (None, None, None)
-
     def _constant_of_link(self, stem: str, j: int, rhs: Any) -> Any:
         """A scalar made of parameters, and of extra coordinates where joints beyond have them."""
         if rhs.is_number:
@@ -498,7 +319,7 @@ class _Solver:
         g = self.g
         reference, across = self._turn_axes(j)
         n, m = self._link_axes(j)
-        tip = self._beyond(j)
+        tip = self.invariants.beyond(j)
         if tip == ZeroVector:
             self.reasons[j] = "the connection point lies on the joint's axis"
             self._numeric(j, self.reasons[j])
@@ -546,19 +367,7 @@ class _Solver:
 
     def _slide(self, j: int, x: Vector) -> None:
         g, e = self.g, self.g.e[j]
-        later = self._later(j)
-        found = (
-            self._invariant(j)
-            if later
-            else (
-                "direct",
-                e,
-                sp.Add(
-                    *(Dot(e, g.offset[i]) for i in range(j + 1, g.count + 2)),
-                    *(y * Dot(e, axis) for y, axis in self._extra_slides(j)),
-                ),
-            )
-        )
+        found = self.invariants.of_slide(j)
         if found is None:
             self._numeric(j)
             return

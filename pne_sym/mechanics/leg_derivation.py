@@ -15,10 +15,12 @@ from pne_sym.derivation.frames import BodyFrame, turned_about
 from pne_sym.mechanics.branches import branch_signs
 from pne_sym.mechanics.completion import completion_of
 from pne_sym.mechanics.constraints import axis_across, force_vanishes
-from pne_sym.mechanics.inverse_kinematics import InverseKinematics, given_displacements, invert
+from pne_sym.mechanics.inverse_kinematics import given_displacements, invert
 from pne_sym.mechanics.joint_forces import write_joint_forces
+from pne_sym.mechanics.leg_displacements import InverseKinematics
 from pne_sym.mechanics.leg_dynamics import DynamicsWriter
-from pne_sym.mechanics.leg_geometry import LegGeometry, build_geometry
+from pne_sym.mechanics.leg_frames import build_geometry
+from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.leg_motion import write_motion
 from pne_sym.mechanics.leg_outputs import closure_outputs, joint_outputs
 from pne_sym.mechanics.legs import Leg

@@ -11,8 +11,8 @@ from itertools import pairwise
 from typing import Any
 
 from pne_sym.derivation import Book
-from pne_sym.mechanics.inverse_kinematics import InverseKinematics
 from pne_sym.mechanics.joint_accelerations import JointAccelerations, write_joint_accelerations
+from pne_sym.mechanics.leg_displacements import InverseKinematics
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.leg_rates import RateWriter
 from pne_sym.mechanics.linear_writer import LinearWriter

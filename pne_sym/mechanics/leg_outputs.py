@@ -9,7 +9,7 @@ from pne_sym.derivation import (
     Law,
     Output,
 )
-from pne_sym.mechanics.inverse_kinematics import InverseKinematics
+from pne_sym.mechanics.leg_displacements import InverseKinematics
 from pne_sym.mechanics.legs import Leg
 from pne_sym.model.kinematics import TaskSpace
 from pne_sym.model.manipulator import Manipulator

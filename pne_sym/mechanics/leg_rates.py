@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from pne_sym.derivation import Book, Role
-from pne_sym.mechanics.inverse_kinematics import InverseKinematics
 from pne_sym.mechanics.leg_chain import LegChain
+from pne_sym.mechanics.leg_displacements import InverseKinematics
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.leg_screws import LegScrews, ScrewWriter
 from pne_sym.mechanics.platform_motion import PlatformMotion

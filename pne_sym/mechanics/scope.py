@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pne_sym.mechanics.leg_geometry import across
+from pne_sym.mechanics.platform_directions import across
 from pne_sym.mechanics.scales import home_lengths
 from pne_sym.mechanics.structure import LegType, is_coordinate
 from pne_sym.model.errors import SpecError

@@ -11,7 +11,7 @@ from pne_sym import manipulators
 from pne_sym.derivation import Book, Equation
 from pne_sym.mechanics.completion import Auxiliary, completion_at_home
 from pne_sym.mechanics.derive import derive
-from pne_sym.mechanics.leg_geometry import build_geometry
+from pne_sym.mechanics.leg_frames import build_geometry
 from pne_sym.mechanics.scales import SMALLEST, home_lengths, lever_arms, with_size
 from pne_sym.mechanics.structure import leg_types
 from pne_sym.model.manipulator import ZERO3, Body, Home, Joint, Leg, Manipulator

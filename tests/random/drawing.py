@@ -41,7 +41,7 @@ from tests.oracle.jets import Array, constant
 from tests.oracle.projection import project
 from tests.oracle.randomisation import matrix3, random_inertia, vector3
 from tests.random.central import guided, with_ends_at_origins
-from tests.random.effects import with_coupling, with_effects
+from tests.random.effects import with_coupling, with_effects, with_efforts
 
 LEG_QUALITY = 0.06
 """Least reciprocal condition number of a leg's freedoms."""
@@ -128,6 +128,8 @@ MOVING = 0.2
 """Of so many mechanisms the base moves."""
 COUPLED = 0.3
 """Of so many the motors are coupled."""
+BOUNDED = 0.3
+"""Of so many the actuators have limits of effort, all or some."""
 DOUBLED = 0.25
 """Of so many of those with constraints a leg stands there twice."""
 
@@ -146,7 +148,9 @@ def draw(seed: int, *, light: bool = False, anywhere: bool = True) -> Manipulato
     found = doubled(found, np.random.default_rng([seed, 7]))
     found = with_effects(replace(found, moving_base=moves), np.random.default_rng([seed, 4]))
     rng = np.random.default_rng([seed, 6])
-    return with_coupling(found, rng) if rng.random() < COUPLED else found
+    found = with_coupling(found, rng) if rng.random() < COUPLED else found
+    rng = np.random.default_rng([seed, 8])
+    return with_efforts(found, int(rng.integers(1, 3)), 300.0) if rng.random() < BOUNDED else found
 
 
 def _structured(seed: int, *, light: bool, anywhere: bool) -> Manipulator:

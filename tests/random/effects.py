@@ -54,6 +54,20 @@ def with_coupling(manipulator: Manipulator, rng: np.random.Generator) -> Manipul
     return replace(manipulator, coupling=rows if is_invertible(rows) else None)
 
 
+def with_efforts(manipulator: Manipulator, every: int = 1, effort: float = 60.0) -> Manipulator:
+    """The mechanism with limits of effort at one of so many actuators, beside its other limits."""
+    seen, legs = 0, []
+    for leg in manipulator.legs:
+        joints = []
+        for joint in leg.joints:
+            seen, limits = seen + joint.actuated, joint.limits
+            if joint.actuated and seen % every == 0:
+                limits = replace(limits or Limits(), effort=effort + seen)
+            joints.append(replace(joint, limits=limits))
+        legs.append(replace(leg, joints=tuple(joints)))
+    return replace(manipulator, legs=tuple(legs))
+
+
 def _rubbing(leg: Leg, first: Joint, space: Space) -> PlatformJoint:
     """The platform joint with the friction of the first joint, if it turns."""
     turns = space is not Space.POINT and len(leg.platform_joint.kind.right_angles) < 3

@@ -33,6 +33,7 @@ from tests.oracle.coordinates import (
     passive_extra_rows,
     platform_rotation,
 )
+from tests.oracle.effects import margins
 from tests.oracle.forces import RANK_TOLERANCE, are_held
 from tests.oracle.jets import Array
 from tests.oracle.projection import Result, accelerated, admissible, project
@@ -197,6 +198,7 @@ class _Comparison:
         note("accelerations", m.joint_accelerations(s.X, s.V, s.A, **guess), ours.qdd)
         self._dynamics()
         self._drives()
+        self._controller()
         Invariants(self.manipulator, m, s, self.rng, guess).check(self.verdict.note)
         kinetic, potential = m.energy(s.X, s.V, **guess)
         note("energy", np.array([kinetic, potential]), np.array([ours.kinetic, ours.potential]))
@@ -215,6 +217,24 @@ class _Comparison:
         whole = np.round((result - self.state.q) / (2 * np.pi)) * 2 * np.pi
         # Helical joints are not taken modulo a turn: it would move them along.
         return np.where(turning & revolute, result - whole, result)
+
+    def _controller(self) -> None:
+        """What a controller calls: actuators, limits, power."""
+        m, s, ours, guess = self.module, self.state, self.ours, self.guess
+        joints = [joint for leg in self.manipulator.legs for joint in leg.joints]
+        own = list(m.ACTUATED)
+        self.note("actuators", np.array([m.actuator_rates(s.X, s.V, **guess),
+                  m.actuator_accelerations(s.X, s.V, s.A, **guess)]),
+                  np.array([ours.qd[own], ours.qdd[own]]))  # fmt: skip
+        room, wanted = m.joint_margins(s.X, **guess), margins(joints, s.q)
+        limited = np.isfinite(wanted)
+        self.note("margins", np.where(limited, room, 0.0), np.where(limited, wanted, 0.0))
+        self.note("unlimited", np.isinf(room), ~limited)
+        inside = m.within_limits(s.X, **guess)
+        self.note("within limits", inside, float((wanted >= 0.0).all()))
+        tau = np.linspace(-3.0, 2.0, m.NU)
+        power = np.array([m.dissipation(s.X, s.V, **guess), m.power(s.X, s.V, tau, **guess)])
+        self.note("power", power, np.array([ours.dissipation, tau @ ours.qd[own]]))
 
     def _dynamics(self) -> None:
         m, s, ours, guess = self.module, self.state, self.ours, self.guess
@@ -312,7 +332,26 @@ _C_FUNCTIONS: dict[str, Callable[[Any, State, Array, dict[str, Array]], Any]] = 
         s.X, s.V, s.A, wrench=s.wrench, **q0
     ),
     "constraint_bias": lambda m, s, tau, q0: m.constraint_bias(s.X, s.V, **q0),
+    "dissipation": lambda m, s, tau, q0: m.dissipation(s.X, s.V, **q0),
+    "motor_rates": lambda m, s, tau, q0: m.motor_rates(s.X, s.V, **q0),
+    "motor_torques": lambda m, s, tau, q0: m.motor_torques(s.X, s.V, s.A, tau, **q0),
+    "reachable_wrench": lambda m, s, tau, q0: m.reachable_wrench(
+        s.X, s.V, s.A, s.wrench, wrench=s.wrench, **q0
+    ),
+    "force_distribution": lambda m, s, tau, q0: m.force_distribution(
+        s.X, s.V, s.A, *_bounds(m, s, q0), wrench=s.wrench, **q0
+    ),
 }
+
+
+def _bounds(module: Any, state: State, q0: dict[str, Array]) -> tuple[Array, Array]:
+    """Bounds of actuator forces, some of which are met."""
+    s = state
+    found = module.inverse_dynamics(s.X, s.V, s.A, wrench=s.wrench, **q0)
+    tau = np.nan_to_num(found[0] if module.NC else found)
+    size = np.max(np.abs(tau), initial=1.0)
+    around = size * np.where(np.arange(module.NU) % 2, 0.5, 0.05)
+    return tau - around, tau + 2.0 * size * np.where(np.arange(module.NU) % 3, -0.02, 1.0)
 
 
 def _judge_c(bundle: Bundle, module: Any, verdict: Verdict, states: list[State]) -> None:
@@ -325,6 +364,9 @@ def _judge_c(bundle: Bundle, module: Any, verdict: Verdict, states: list[State])
             arguments = {**state._asdict(), "tau": tau, "q0": state.q, "weights": weights}
             arguments["base"] = base_of(bundle.manipulator).flat
             guess = {"q0": state.q} if verdict.iterated else {}
+            arguments["wrench_direction"] = state.wrench
+            arguments["tau_min"], arguments["tau_max"] = _bounds(module, state, guess)
+            arguments["reference"] = np.zeros(module.NU)
             for name, call in _C_FUNCTIONS.items():
                 if name not in library.api:
                     continue
@@ -336,6 +378,8 @@ def _judge_c(bundle: Bundle, module: Any, verdict: Verdict, states: list[State])
                     theirs = np.ravel(theirs)
                     if np.isnan(theirs).all() and np.isnan(mine).all():
                         continue
+                    endless = np.isinf(theirs) & (mine == theirs)
+                    mine, theirs = (np.where(endless, 0.0, v) for v in (mine, theirs))
                     if name == "constraint_bias":  # its terms may cancel to nothing but rounding
                         one = np.ones(1)
                         mine, theirs = np.append(mine, one), np.append(theirs, one)

@@ -112,6 +112,8 @@ def features(manipulator: Manipulator) -> frozenset[str]:
             *("spring" for joint in joints if joint.spring),
             *({"payload"} if manipulator.payload else ()),
             *("motor" for joint in joints if joint.actuator),
+            *("limits of displacement" for joint in joints if joint.has_stroke),
+            *("limits of effort" for joint in joints if joint.limits and joint.limits.effort),
             *("platform friction" for leg in manipulator.legs if leg.platform_joint.friction),
             *({"moving base"} if manipulator.moving_base else ()),
             *({"coupled motors"} if manipulator.coupling else ()),

@@ -10,8 +10,8 @@ from pne_sym import manipulators
 from pne_sym.model.manipulator import Body
 from pne_sym.model.reader import checked
 from tests.backends.ext_module import assert_all_alike, pair
+from tests.random.effects import with_efforts
 from tests.targets.modules import functions
-from tests.whole.test_bounds import with_efforts
 from tests.whole.test_coupling import coupled
 
 

@@ -7,7 +7,6 @@ the limits of the specification alone.
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -17,7 +16,6 @@ import pytest
 from scipy.linalg import null_space
 from scipy.optimize import linprog, nnls
 
-from pne_sym.model.effects import Limits
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.model.reader import checked
 from pne_sym.program.distribution import factors, nearest
@@ -27,6 +25,7 @@ from tests.models import bundle, catalogue, live_parameters, module
 from tests.octave.conformance import conforms, octave
 from tests.program.test_public import interpreter
 from tests.program.test_public import states as arguments
+from tests.random.effects import with_efforts
 from tests.robots.test_robots import robot
 from tests.sampling import sampled
 
@@ -37,22 +36,7 @@ REDUNDANT = ("planar_4rpr", "fivebar_redundant", "quadrupod", "stewart_7ups", "p
 @cache
 def limited(name: str, every: int = 1, effort: float = 60.0) -> Manipulator:
     """An entry of the catalogue with limits of effort at one of so many actuators."""
-    return with_efforts(catalogue(name), every, effort)
-
-
-def with_efforts(spec: Manipulator, every: int = 1, effort: float = 60.0) -> Manipulator:
-    """The manipulator with limits of effort beside its others."""
-    seen, legs = 0, []
-    for leg in spec.legs:
-        joints = []
-        for joint in leg.joints:
-            seen += joint.actuated
-            limits = joint.limits
-            if joint.actuated and seen % every == 0:
-                limits = replace(limits or Limits(), effort=effort + seen)
-            joints.append(replace(joint, limits=limits))
-        legs.append(replace(leg, joints=tuple(joints)))
-    return checked(replace(spec, legs=tuple(legs)))
+    return checked(with_efforts(catalogue(name), every, effort))
 
 
 def efforts(spec: Manipulator) -> Array:

@@ -1,0 +1,172 @@
+"""Live parameters of a leg type's geometry, and the constant vectors made of them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import sympy as sp
+from numpy.typing import NDArray
+
+from pne_sym.derivation import Book, Frame, ParameterField, Quantity, Rule
+from pne_sym.mechanics.axis_relations import axis_relations
+from pne_sym.mechanics.directions import AXES, unit
+from pne_sym.mechanics.leg_geometry import LegGeometry
+from pne_sym.mechanics.structure import LegType, is_coordinate
+from pne_sym.mechanics.terms import Writer, filled, glossary
+from pne_sym.model.kinematics import rotation_about
+from pne_sym.model.manipulator import Leg, Vector3
+from pne_sym.vector import ZeroVector
+
+Array = NDArray[np.float64]
+
+_TERMS = glossary(r"""
+b             | \mathbf b       | given
+    base point of the leg
+q             | \mathbf p       | given
+    platform origin to connection point, fixed in the platform
+d_#           | \mathbf d_{#}   | given
+    offset of &, fixed in link %
+""")
+_FIELDS = {
+    "base_point": ("base_point", (3,), "m", "base point, base frame"),
+    "base_frame": ("base_frame", (3, 3), "-", "rotation from leg axes to base axes"),
+    "platform_point": ("platform_point", (3,), "m", "platform joint, platform frame"),
+    "joint#_axis": ("joints[%].axis", (3,), "-", "axis of joint #, preceding link's frame"),
+    "joint#_pitch": ("joints[%].pitch", (), "m/rad", "pitch of joint #"),
+    "joint#_offset": ("joints[%].offset", (3,), "m", "offset of joint #, preceding link's frame"),
+    "platform_joint_#": ("platform_joint.#", (3,), "-", "# of the platform joint"),
+    "platform_joint_offset": (
+        "platform_joint.offset",
+        (3,),
+        "m",
+        "offset of platform joint, preceding link's frame",
+    ),
+    "platform_joint_rotation": (
+        "platform_joint.rotation",
+        (3, 3),
+        "-",
+        "platform axes in the last link's frame",
+    ),
+}
+"""Live parameters of a leg: path in the leg, shape, unit, meaning."""
+
+
+class LegParameters:
+    """Writes the parameters of a leg type, in the order points, axes, offsets.
+
+    Attributes:
+        spec: components of axes in spec axes, by joint.
+        base_point, platform_point: vectors.
+    """
+
+    def __init__(self, book: Book, geometry: LegGeometry, *, planar: bool) -> None:
+        self.book, self.g, self.planar = book, geometry, planar
+        self.type = geometry.leg_type
+        self.spec: dict[int, Any] = {}
+        self.base_point: Any = None
+        self.platform_point: Any = None
+        self.eq = Writer(book, geometry, _TERMS)
+
+    def field(self, stem: str, *numbers: Any, **facts: Any) -> tuple[sp.Expr, ...]:
+        """A live parameter over the legs of the type; facts: its zeros and its rule."""
+        path, shape, unit, meaning = _FIELDS[stem]
+        path, meaning = (filled(text, numbers) for text in (path, meaning))
+        name = filled(self._labelled(stem, numbers), numbers)
+        own, paths = self.type.name, tuple(f"legs[{i}].{path}" for i in self.type.indices)
+        values = self.type.over_legs(lambda leg: value_at(leg, path))
+        return self.book.parameters.add(
+            ParameterField(f"{own}_{name}", own, shape, unit, meaning, paths, values, **facts)
+        )
+
+    def _labelled(self, stem: str, numbers: tuple[Any, ...]) -> str:
+        """A stem with the label of its joint."""
+        if "joint#" not in stem:
+            return stem
+        return stem.replace("joint#", self.type.part("joint", numbers[0]))
+
+    def _turned(self) -> Rule:
+        """What a frame must be."""
+        return Rule.PLANAR_ROTATION if self.planar else Rule.ROTATION
+
+    def points(self) -> None:
+        """Base point, platform point, leg axes."""
+        flat = (2,) if self.planar else ()
+        b = self.field("base_point", zeros=flat)
+        frame = self.field("base_frame", rule=self._turned())
+        p = self.field("platform_point", zeros=flat)
+        if self.planar:  # legs of the plane keep z along the plane's normal
+            frame = (*frame[:2], 0, *frame[3:5], 0, 0, 0, 1)
+        self.base_point = self.eq.give("b", "base", b)
+        self.platform_point = self.eq.give("q", "platform", p)
+        self.book.frames.append(Frame(self.g.frame("spec", 0), "base", frame))
+
+    def axes(self) -> None:
+        """Axes and pitches of the joints, and the groups of links that turn together."""
+        g, group = self.g, 0
+        g.group[0] = 0
+        for j, joint in enumerate(self.type.model.joints, 1):
+            if is_coordinate(joint.axis):
+                self.spec[j] = unit(joint.axis)
+            else:
+                zeros = (2,) if self.planar else ()
+                rule = Rule.UNIT
+                self.spec[j] = self.field("joint#_axis", j, j - 1, zeros=zeros, rule=rule)
+            if joint.kind.pitched:
+                (pitch,) = self.field("joint#_pitch", j, j - 1)
+                what = f"pitch of joint {j}: advance per angle"
+                latex = rf"\kappa_{{{j}}}"
+                self.book.note_quantity(Quantity(pitch.name, latex, what, "m/rad", parameter=True))
+                g.pitch[j] = pitch
+            group = j if g.turns(j) else group
+            g.group[j] = group
+        g.axes_at.extend(self._axes_with(extra) for extra in self._extra_draws())
+        self.book.parameters.relations.extend(axis_relations(self.type))
+
+    def _extra_draws(self) -> list[dict[int, float]]:
+        extras = [j for j in range(1, self.g.count + 1) if self.g.is_extra(j) and self.g.turns(j)]
+        if not extras:
+            return [{}]
+        return [{j: 0.7 + 0.9 * k + 0.3 * j for j in extras} for k in range(3)]
+
+    def _axes_with(self, turned: dict[int, float]) -> Array:
+        """Axis directions (legs, joints, 3) with the extra joints turned, all else at zero."""
+        result = np.zeros((self.type.count, self.g.count, 3))
+        for row, leg in enumerate(self.type.legs):
+            rotation = AXES
+            for j, joint in enumerate(leg.joints, 1):
+                axis = np.array(joint.axis)
+                result[row, j - 1] = rotation @ axis
+                if j in turned:
+                    rotation = rotation @ rotation_about(axis, joint.turn * turned[j])
+        return result
+
+    def offsets(self) -> None:
+        """From joint to joint, and to the connection point."""
+        for j in range(1, self.g.count + 2):
+            zeros = tuple(i for i, v in enumerate(offset_of(self.type, j)) if v == 0.0)
+            if len(zeros) == 3:
+                self.g.offset[j] = ZeroVector
+                continue
+            last = j == self.g.count + 1
+            stem = "platform_joint_offset" if last else "joint#_offset"
+            components = self.field(stem, j, j - 1, zeros=zeros)
+            frame, what = self.g.frame("spec", self.g.group[j - 1]), f"joint {j}"
+            what = "platform joint" if last else what
+            self.g.offset[j] = self.eq.give("d_#", frame, components, j, j - 1, what)
+
+
+def offset_of(leg_type: LegType, j: int) -> Vector3:
+    """Of joint j of the leg type's model; beyond the last one, of the platform joint."""
+    model = leg_type.model
+    return (*(joint.offset for joint in model.joints), model.platform_joint.offset)[j - 1]
+
+
+def value_at(leg: Leg, path: str) -> Any:
+    """A value of a leg by its path, such as `joints[2].axis`."""
+    value: Any = leg
+    for part in path.split("."):
+        name, _, index = part.partition("[")
+        value = getattr(value, name)
+        value = value[int(index[:-1])] if index else value
+    return value
