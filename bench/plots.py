@@ -10,6 +10,7 @@ import matplotlib as mpl
 
 mpl.use("svg")
 import matplotlib.pyplot as plt
+from matplotlib.ticker import FuncFormatter, LogLocator
 
 STYLE = {
     "svg.hashsalt": "pne_sym",
@@ -26,14 +27,16 @@ Curve = Sequence[Sequence[float]]
 
 def _plot(path: Path, xlabel: str, curves: Mapping[str, Curve], ticks: Sequence[int]) -> None:
     with mpl.rc_context(STYLE):
-        figure, axes = plt.subplots(figsize=(7, 4), layout="constrained")
+        figure, axes = plt.subplots(figsize=(9, 4.5), layout="constrained")
         for mark, (label, points) in zip("osv^Dx+*", curves.items(), strict=False):
             x, y = zip(*points, strict=True)
             axes.plot(x, [ns / 1e3 for ns in y], marker=mark, markersize=5, label=label)
         axes.set(xscale="log", yscale="log", xlabel=xlabel, ylabel="time per state [µs]")
+        axes.minorticks_off()
+        axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         if ticks:
             axes.set_xticks(ticks, labels=map(str, ticks))
-            axes.minorticks_off()
         axes.legend(fontsize=8, loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
         figure.savefig(path, metadata={"Date": None, "Creator": None})
         plt.close(figure)
