@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -122,17 +122,23 @@ def eigen() -> Path | None:
     return next((Path(p) for p in places if (Path(p) / "Eigen" / "Core").exists()), None)
 
 
-def projection(case: Case) -> Iterator[Program]:
-    """Pinocchio's C++ on the tree; nothing where it cannot be compiled."""
+def projection_program() -> str | None:
+    """Compile Pinocchio's projection, which takes minutes; None where there is no Eigen."""
     headers, prefix = eigen(), Path(pin.__file__).parents[4]
     if headers is None:
-        return
+        return None
     flags = f"-O3 -w {DEFINES} -I{prefix}/include -I{headers} -L{prefix}/lib"
     libraries = f"-Wl,-rpath,{prefix}/lib -Wl,--no-as-needed -lpinocchio_default"
-    program = compiled("pinocchio", "g++", [C_SOURCES / "pinocchio.cpp"], f"{flags} {libraries}")
+    return compiled("pinocchio", "g++", [C_SOURCES / "pinocchio.cpp"], f"{flags} {libraries}")
+
+
+def projection(case: Case, program: str | None) -> list[Program]:
+    """Pinocchio's C++ on the tree; nothing where it could not be compiled."""
+    if program is None:
+        return []
     tree = BUILD / f"{case.name}.tree"
     tree.write_bytes(Tree(case).numbers(case.states()).tobytes())
-    yield Program(case, "Pinocchio, projection", "gcc", (str(program), str(tree), str(ROUNDS)))
+    return [Program(case, "Pinocchio, projection", "gcc", (program, str(tree), str(ROUNDS)))]
 
 
 # ---- forward dynamics with constraints, from Python ------------------------------------------

@@ -19,8 +19,8 @@ import numpy as np
 from bench.cases import BUILD, FUNCTIONS, Array, Case, States
 from bench.peers import peers
 
-ROUNDS = 3
-SINGLES = 64
+ROUNDS = 9
+SINGLES = 16
 """States that are called one by one in a round; all are computed once, for the comparison."""
 Arrays = tuple[Array, ...]
 
