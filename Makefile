@@ -12,6 +12,8 @@ PYTHON ?= $(shell for python in python3 python3.13 python3.12 python3.11; do \
   && { echo "$$python"; break; }; done)
 VENV ?= .venv
 BIN := $(VENV)/bin
+# The environment of the benchmark, with what it compares with.
+BENCH ?= build/bench/venv
 KATEX := tests/tools/katex
 # The models that stand in generated/; `all` for the whole catalogue.
 MODELS ?= all
@@ -71,10 +73,16 @@ robots: $(VENV)/test.stamp ## Generate the robots of docs/robots.md and test the
 	$(BIN)/python -m pytest -n 0 -m "" tests/robots
 
 .PHONY: bench
-bench: $(VENV)/core.stamp ## Measure the generated code and the generator
-	$(BIN)/python bench/c_speed.py
-	$(BIN)/python bench/generation.py
-	$(BIN)/python bench/numpy_speed.py
+bench: $(BENCH)/bench.stamp ## Measure all code and its peers (ten minutes), write docs/benchmark.md
+	$(BENCH)/bin/python -m bench
+
+.PHONY: bench-page
+bench-page: $(BENCH)/bench.stamp ## Write docs/benchmark.md from bench/results.json
+	$(BENCH)/bin/python -m bench page
+
+.PHONY: stack
+stack: ## Stack and code of stewart.c on a Cortex-M4F (arm-none-eabi-gcc): is it within bounds?
+	$(or $(wildcard $(BIN)/python),$(PYTHON)) -m bench.stack generated/stewart
 
 .PHONY: generate
 generate: $(VENV)/core.stamp ## Write generated/
@@ -199,6 +207,12 @@ $(VENV)/test.stamp: $(VENV)/core.stamp
 
 $(VENV)/targets.stamp: $(VENV)/test.stamp
 	$(BIN)/python -m pip install --quiet --editable '.[test,targets]'
+	touch $@
+
+$(BENCH)/bench.stamp: pyproject.toml bench/requirements.txt
+	@test -n "$(PYTHON)" || { echo "Python 3.11 or newer is needed; name it: make PYTHON=/path/to/python3" >&2; exit 1; }
+	$(PYTHON) -m venv $(BENCH)
+	$(BENCH)/bin/python -m pip install --quiet --editable . --requirement bench/requirements.txt
 	touch $@
 
 $(VENV)/dev.stamp: $(VENV)/test.stamp

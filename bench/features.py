@@ -1,36 +1,26 @@
 """What friction, springs, motors and the rest add to inverse dynamics: operations, time of the C.
 
-python bench/features.py [MODEL] [--runs 15]
-
 Operations are those of the program.  Time is that of the C with and without friction (viscous and
 Coulomb) and motors at all actuated joints: processes take turns, the median of the ratios of
-neighbours counts; for states one by one and for a batch, gcc -O3 -march=native.
+neighbours counts.
 """
 
 from __future__ import annotations
 
-import argparse
-import statistics
-import sys
-import tempfile
 from dataclasses import replace
-from pathlib import Path
+from statistics import median
 from typing import Any
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
-
-from bench.c_speed import build, times
-from pne_sym import manipulators
+from bench.c_programs import our_program
+from bench.cases import Case
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.c_backend import CBackend
-from pne_sym.backends.describe import describe
 from pne_sym.model.effects import Actuator, Friction, Limits, Spring
 from pne_sym.model.manipulator import Body, Joint, Manipulator
 from pne_sym.model.reader import checked
 from pne_sym.pipeline import compile_bundle
 from pne_sym.program.count import count_function
 
-FLAGS = "-O3 -march=native"
+RUNS = 15
 LAW = Friction(200.0, 40.0, 1e-3)
 ASKED = {"friction": LAW, "actuator": Actuator(1e-4, 1257.0)}
 AT_ACTUATORS: dict[str, dict[str, Any]] = {
@@ -74,42 +64,26 @@ def operations(bundle: Bundle) -> int:
     return n.mul + n.add + n.div + n.sqrt + n.trig
 
 
-def program(bundle: Bundle, folder: Path) -> Path:
-    """The benchmark of the C as a program in a folder of its own."""
-    folder.mkdir()
-    for file, text in CBackend().emit(bundle).items():
-        (folder / file).write_text(text, encoding="utf-8")
-    constrained = int(bundle.coordinates.sizes["NC"] > 0)
-    options = argparse.Namespace(
-        compiler="gcc", real="double", multipliers=constrained,
-        iterated=int(describe(bundle).is_numeric),
-    )  # fmt: skip
-    return build(folder, bundle.name, options, FLAGS)
-
-
-def main() -> None:
-    """Print operations by feature, then ratios of times."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("model", nargs="?", default="stewart")
-    parser.add_argument("--runs", type=int, default=15)
-    options = parser.parse_args()
-    plain = manipulators.load(options.model)
-    base = compile_bundle(plain)
-    before = operations(base)
-    print(f"{options.model}, inverse dynamics: {before} operations")
+def counts(plain: Manipulator) -> dict[str, list[float]]:
+    """Operations of inverse dynamics that each adds, and per cent."""
+    before = operations(compile_bundle(plain))
+    found = {}
     for what, spec in variants(plain).items():
         more = operations(compile_bundle(spec)) - before
-        print(f"  {what}: {more:+d} ({100.0 * more / before:+.1f} %)")
-    with tempfile.TemporaryDirectory() as name:
-        loaded = compile_bundle(with_all(plain, ASKED))
-        pair = [program(b, Path(name) / str(k)) for k, b in enumerate((base, loaded))]
-        runs = [[times(each) for each in pair] for _ in range(options.runs)]
-    print(f"time with friction and rotors over time without ({FLAGS}, {options.runs} pairs):")
-    for function in ("inverse_dynamics", "inverse_dynamics_batch"):
-        ratios = sorted(after[function] / without[function] for without, after in runs)
-        middle, (least, *_, most) = statistics.median(ratios), ratios
-        print(f"  {function}: {middle:.3f} ({least:.3f} to {most:.3f})")
+        found[what] = [more, round(100.0 * more / before, 1)]
+    return found
 
 
-if __name__ == "__main__":
-    main()
+def time_ratios(plain: Manipulator) -> dict[str, list[float]]:
+    """Time of inverse dynamics with friction and rotors over that without: median, least, most."""
+    both = (plain, replace(with_all(plain, ASKED), name=f"{plain.name}_loaded"))
+    cases = [Case(each.name, each) for each in both]
+    for case in cases:
+        case.generate()
+    pair = [our_program(case) for case in cases]
+    runs = [[each.run(check=False) for each in pair] for _ in range(RUNS)]
+    found = {}
+    for key, what in (("inverse_dynamics", "one state"), ("inverse_dynamics_batch", "batches")):
+        ratios = [after[f"ours {key}"] / before[f"ours {key}"] for before, after in runs]
+        found[what] = [round(r, 3) for r in (median(ratios), min(ratios), max(ratios))]
+    return found

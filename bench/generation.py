@@ -1,22 +1,32 @@
-"""CPU time of `pne-gen MODEL` over that of `import sympy`, medians of runs that alternate.
-
-python bench/generation.py [MODEL ...] [--runs 5]
-"""
+"""Processor time of `pne-gen NAME` over that of `import sympy`, and of JAX's compiler."""
 
 from __future__ import annotations
 
-import argparse
 import os
-import statistics
 import subprocess
 import sys
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
+from statistics import median
+
+from bench.cases import FUNCTIONS, Case
 
 PNE_GEN = Path(sys.executable).with_name("pne-gen")
-ALONE = {"all": ("--jobs", "1")}  # what workers take is not counted
 MODELS = ("planar_3rpr", "stewart", "hexapod_6uhs", "hexapod_6x6r")
+RUNS = 3
+JAX = """
+import sys, time, importlib, numpy as np, jax, jax.numpy as jnp
+jax.config.update("jax_enable_x64", True)
+sys.path.insert(0, sys.argv[1])
+m = importlib.import_module(sys.argv[2])
+X, V = jnp.asarray([m.HOME_X]*8), jnp.zeros((8, m.NV))
+last = {"inverse_dynamics": (V,), "dynamics": (), "forward_dynamics": (V[:, :m.NU],)}
+for name in last:
+    start = time.process_time()
+    jax.jit(getattr(m, name)).lower(X, V, *last[name]).compile()
+    print(time.process_time() - start)
+"""
 
 
 def cpu_time(command: Sequence[str | Path]) -> float:
@@ -27,25 +37,24 @@ def cpu_time(command: Sequence[str | Path]) -> float:
     return sum(after[2:4]) - sum(before[2:4])
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("models", nargs="*", default=MODELS, help="names, spec files, or all")
-    parser.add_argument("--runs", type=int, default=5)
-    chosen = parser.parse_args()
+def generation_times() -> dict[str, list[float]]:
+    """Seconds and times `import sympy`, medians of runs that alternate."""
     with tempfile.TemporaryDirectory() as out:
         commands: dict[str, list[str | Path]] = {
             "import sympy": [sys.executable, "-c", "import sympy"],
-            **{name: [PNE_GEN, name, "--out", out, *ALONE.get(name, ())] for name in chosen.models},
+            **{name: [PNE_GEN, name, "--out", out] for name in MODELS},
         }
-        for command in commands.values():
-            cpu_time(command)  # compiles the sources
-        runs = [{n: cpu_time(c) for n, c in commands.items()} for _ in range(chosen.runs)]
-    print(f"{'':16} {'CPU s':>7} {'times import sympy':>20}")
-    for name in commands:
-        seconds = statistics.median(run[name] for run in runs)
-        ratio = statistics.median(run[name] / run["import sympy"] for run in runs)
-        print(f"{name:16} {seconds:7.2f} {ratio:20.1f}")
+        cpu_time(commands["planar_3rpr"])  # compiles the sources
+        runs = [{n: cpu_time(c) for n, c in commands.items()} for _ in range(RUNS)]
+    of = {n: median(run[n] for run in runs) for n in commands}
+    return {
+        n: [round(s, 2), round(median(run[n] / run["import sympy"] for run in runs), 1)]
+        for n, s in of.items()
+    }
 
 
-if __name__ == "__main__":
-    main()
+def jax_compile_times(case: Case) -> dict[str, float]:
+    """Seconds of the processor, all threads, to trace and compile under jax.jit."""
+    command = [sys.executable, "-c", JAX, str(case.folder), f"{case.name}_xp"]
+    said = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    return {n: round(float(s), 1) for n, s in zip(FUNCTIONS, said.split(), strict=True)}
