@@ -58,6 +58,7 @@ class Parts:
         self.passed, self.sums = stages.passed(function.name), self.slices.sums
         self.made = self.slices.made
         self.least = least_values(bundle)
+        self.known = stages.known(function.name)
 
     def _place(self, store: Store, index: str, name: str, tables: list[str], legs: int = 1) -> str:
         """Where an entry stands in its array: the row by the length of rows, and the column."""
@@ -79,7 +80,7 @@ class Parts:
     def before(self) -> Routine:
         """Names the inputs, computes what the legs share."""
         loads, members = entries(self.bundle, self.f, "k"), self.stages.members(self.name, "")
-        shared = Shared(members, "v.", self._prepared(self.f.shared))
+        shared = Shared(members, "v.", self._prepared(self.f.shared), self.known)
         first = self.first.assignments if self.first else ()
         own = self.stages.own(self.name, (*self.f.unpack, *first))
         lines = self._run(self.stages.used(self.name, ""))
@@ -104,7 +105,7 @@ class Parts:
         """Computes what needs the sums over the legs."""
         assert self.last is not None
         loads = self._passed("k") | {n: f"sums[{at}*w + k]" for at, n in enumerate(self.sums)}
-        shared = Shared(places=self._prepared(self.f.shared))
+        shared = Shared(places=self._prepared(self.f.shared), known=self.known)
         lines = statements(self.last.assignments, self.titles, shared, loads)
         lines += self._ends(self.last, self.last.checks, loads, shared)
         return self._routine("after", ("const real *s", "const real *sums"), lines)
@@ -158,7 +159,7 @@ class Parts:
         tables: list[str] = []
         prepared = self._prepared(self.f.per_leg.get(leg, ()), "[i]")
         prepared |= self._prepared(self.f.shared)
-        shared = Shared(self.stages.members(self.name, leg), "v.", prepared)
+        shared = Shared(self.stages.members(self.name, leg), "v.", prepared, self.known)
         own = self.stages.own(self.name, block.assignments)
         reads = symbols(replace(block, assignments=tuple(own)))
         loads = self._passed("j") | entries(self.bundle, self.f, "j")

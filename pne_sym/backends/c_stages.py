@@ -15,6 +15,7 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.backends.c_text import PRINTER, c_name
+from pne_sym.backends.waiting import WaitingPrinter, ready, ready_after
 from pne_sym.program.ir import Assignment, Function
 from pne_sym.program.slices import Slices, slices, symbols
 
@@ -68,17 +69,24 @@ class Shared:
         names: members of a structure.
         prefix: of these members.
         places: other names, with the text of what they are.
+        known: name -> cycles until it is known.
     """
 
     def __init__(
-        self, names: Collection[str] = (), prefix: str = "", places: Mapping[str, str] | None = None
+        self,
+        names: Collection[str] = (),
+        prefix: str = "",
+        places: Mapping[str, str] | None = None,
+        known: Mapping[str, int] | None = None,
     ) -> None:
         self.texts = {c_name(n): text for n, text in (places or {}).items()}
         self.texts |= {c_name(n): f"{prefix}{c_name(n)}" for n in names}
+        self.printer = WaitingPrinter(known) if known else PRINTER
 
     def text(self, expr: Any) -> str:
         """An expression as text."""
-        return re.sub(r"[A-Za-z_]\w*", lambda n: self.texts.get(n[0], n[0]), PRINTER.text(expr))
+        text = self.printer.text(expr)
+        return re.sub(r"[A-Za-z_]\w*", lambda n: self.texts.get(n[0], n[0]), text)
 
 
 class Stages:
@@ -94,6 +102,7 @@ class Stages:
         self.made: dict[str, dict[str, int]] = {}
         self.users: dict[int, set[str]] = {}
         self.kinds: list[frozenset[str]] = []
+        self.ready: list[int] = []
         self.parts = {f.name: slices(f) for f in functions}
         self.vectors = _vectors(p.function for p in self.parts.values())
         self.aliases = {n: e for p in self.parts.values() for n, e in aliases(p.function).items()}
@@ -120,9 +129,13 @@ class Stages:
                 if number == len(self.statements):
                     self.statements.append(statement)
                     self.kinds.append(self._kind(statement, names))
+                    self.ready.append(ready(a.expr, self._known(of)))
                 made[a.target.name] = number
                 self.users.setdefault(number, set()).add(function)
         self.made[function] = made
+
+    def _known(self, of: Iterable[tuple[str, int]]) -> dict[str, int]:
+        return {name: self.ready[number] for name, number in of}
 
     def _kind(self, statement: Statement, names: Iterable[str]) -> frozenset[str]:
         """What it depends on: vectors, and values of legs' own inputs."""
@@ -192,6 +205,19 @@ class Stages:
     def assignments(self, stage: Stage) -> list[Assignment]:
         """Statements of a stage."""
         return [self.statements[k].assignment for k in stage.numbers]
+
+    def known_in(self, stage: Stage) -> dict[str, int]:
+        """Cycles until what a stage reads is known."""
+        return self._known(pair for k in stage.numbers for pair in self.statements[k].of)
+
+    def known(self, function: str) -> dict[str, int]:
+        """The same for what a function makes, the sums over its legs and what follows these."""
+        own, known = self.parts[function], self._known(self.made[function].items())
+        for block in own.legs:
+            for target, value in block.sums:
+                wait = ready(sp.sympify(value), known)
+                known[target.name] = max(known.get(target.name, 0), wait)
+        return ready_after(own.after.assignments if own.after else (), known)
 
     def used(self, function: str, part: str) -> list[Stage]:
         """Stages that a part of a function runs, in order."""

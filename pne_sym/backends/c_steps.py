@@ -208,15 +208,16 @@ class Steps:
             given = f"{size}, {a.name}"
             if a.positive:
                 lines.append(f"require_positive({size}, {self.w}, {a.name}, why.invalid);")
-            if a.default or self.lanes:
+            if self.lanes:
                 self.buffers.append(self._buffer(own, size))
-            ends = f"{own}, why.{'total' if self.lanes else 'invalid'}"
+            ends = f"{own}, why.total" if self.lanes else "why.invalid"
             if a.default is Default.REST:
                 call = "motion_of_base_side_by_side" if self.lanes else "motion_of_base"
                 lines.append(f"{a.name} = {call}({a.name}, {ends});")
             elif a.default:
                 call = "optional_side_by_side" if self.lanes else "optional"
-                lines.append(f"{a.name} = {call}({given}, {FILL[a.default]}, {ends});")
+                fill = FILL[a.default] if self.lanes else self._filled(a, size)
+                lines.append(f"{a.name} = {call}({given}, {fill}, {ends});")
             elif self.lanes:
                 lines.append(f"{a.name} = side_by_side({given}, {ends});")
             else:
@@ -226,6 +227,12 @@ class Steps:
             body = indented(checks.values())
             return [*head, "if (!is_finite(total_in)) {", *body, "}", *lines]
         return [*checks.values(), *lines]
+
+    def _filled(self, a: Argument, size: str) -> str:
+        """A table of what stands for an input that is left out."""
+        entries = "0" if a.default is Default.ZEROS else ", ".join("1" * a.value.size)
+        self.tables += listing(f"static const real no_{a.name}[{size}] = {{", [entries], "};")
+        return f"no_{a.name}"
 
     # ---- steps -------------------------------------------------------------------------------
 

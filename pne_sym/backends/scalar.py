@@ -10,6 +10,8 @@ import sympy as sp
 from sympy.printing.precedence import PRECEDENCE, precedence
 from sympy.printing.str import StrPrinter
 
+Terms = tuple[tuple[bool, Any], ...]
+
 
 @dataclass(frozen=True)
 class Dialect:
@@ -77,9 +79,13 @@ class ScalarPrinter(StrPrinter):
             return self._print_Mul(expr)
         return self._print_Add(expr) if expr.is_Add else str(super()._print(expr, **settings))
 
+    def terms(self, expr: Any) -> Terms:
+        """Terms of a sum in their order: whether each is negative, and what it is without sign."""
+        return _terms(expr)
+
     def _print_Add(self, expr: Any, order: Any = None) -> str:
         text = ""
-        for negative, term in _terms(expr):
+        for negative, term in self.terms(expr):
             level = PRECEDENCE["Mul" if negative else "Add"]  # a sum behind a minus needs them
             body = self.parenthesize(term, level)
             text += (
@@ -149,8 +155,8 @@ class ScalarPrinter(StrPrinter):
 
 
 @lru_cache(1 << 16)
-def _terms(expr: Any) -> tuple[tuple[bool, Any], ...]:
-    """Terms of a sum as they are printed: whether each is negative, and what it is without sign."""
+def _terms(expr: Any) -> Terms:
+    """Those of a sum: positive ones first."""
     told = ((_is_negative(term), term) for term in expr.args)
     ordered = sorted(told, key=lambda t: (t[0], sort_key(t[1])))
     return tuple((minus, -term if minus else term) for minus, term in ordered)
