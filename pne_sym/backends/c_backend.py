@@ -10,6 +10,7 @@ from pne_sym.backends.c_functions import LANES, FunctionText, function_text
 from pne_sym.backends.c_model import (
     default_values,
     model_fields,
+    number,
     parameter_checks,
     parameter_fields,
     prepare_body,
@@ -137,8 +138,8 @@ def _view(bundle: Bundle) -> CView:
         model=tuple(model_fields(bundle)),
         prototypes=tuple(tuple(user.prototypes()) for user in users),
         defaults=tuple(default_values(bundle)),
-        home_x=", ".join(f"R({v})" for v in home[0]),
-        home_q=", ".join(f"R({v})" for v in home[1]),
+        home_x=", ".join(map(number, map(str, home[0]))),
+        home_q=", ".join(map(number, map(str, home[1]))),
         checks=checks,
         checked=needed(render("c/checks.c.jinja"), (*checks, operators)),
         prepare=tuple(prepare_body(bundle)),

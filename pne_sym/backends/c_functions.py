@@ -70,11 +70,18 @@ class _FunctionWriter:
             lines += [*over.definition(), "", *place.definition(), ""]
         if self.after:
             lines += [*self.after.definition(), ""]
-        one = self._run("1", _kind(single))
-        lanes = self._run("LANES", _kind(many)) if many else None
+        one = self._run("1", self._kind(single))
+        lanes = self._run("LANES", self._kind(many)) if many else None
         lines += one.definition()
         lines += ["", *lanes.definition()] if lanes else []
         return FunctionText("\n".join(lines), one, lanes)
+
+    def _kind(self, users: int) -> str:
+        """How the compiler is to treat what so many call.
+
+        Two that do more with it have it each, so that its buffers and theirs share the stack.
+        """
+        return "APART" if users > (1 if self.parts.summed else 2) else "INLINE"
 
     # ---- what runs the parts -------------------------------------------------------------
 
@@ -170,8 +177,3 @@ def _each(part: Routine, count: str, given: Mapping[str, str]) -> list[str]:
     if count == "1":
         return [part.call_with({**given, "k": "0"})]
     return [f"for (size_t k = 0; k < {count}; ++k) {{", f"    {part.call_with(given)}", "}"]
-
-
-def _kind(users: int) -> str:
-    """How the compiler is to treat what so many call."""
-    return "APART" if users > 1 else "INLINE"

@@ -19,7 +19,7 @@ from pne_sym.backends.c_text import (
 )
 from pne_sym.backends.describe import equation_titles, field_views
 from pne_sym.derivation import ParameterField, Rule
-from pne_sym.program.ir import Block
+from pne_sym.program.ir import Block, Store
 from pne_sym.program.slices import symbols
 
 
@@ -51,7 +51,12 @@ def _literal(row: str) -> str:
     """A nested list of numbers in Python as an initialiser of the real type."""
     text = row.replace("[", "{").replace("]", "}")
     parts = text.replace("{", "{ ").replace("}", " }").replace(",", " ,").split()
-    return "".join(p if p in "{}" else f"{p} " if p == "," else f"R({p})" for p in parts)
+    return "".join(p if p in "{}" else f"{p} " if p == "," else number(p) for p in parts)
+
+
+def number(text: str) -> str:
+    """A number in Python as a constant of the real type; zero and one are that in any type."""
+    return {"0.0": "0", "1.0": "1"}.get(text, f"R({text})")
 
 
 def model_fields(bundle: Bundle) -> list[str]:
@@ -96,7 +101,7 @@ class _Preparation:
     def _once(self, block: Block) -> list[str]:
         lines = statements(block.assignments, self.titles, self.printer)
         for store in block.stores:
-            lines.append(f"model->{c_name(store.array)} = {self.printer.text(store.value)};")
+            lines.append(self._kept("KEEP", f"model->{c_name(store.array)}", store))
         return lines
 
     def _legs(self, block: Block) -> list[str]:
@@ -104,7 +109,7 @@ class _Preparation:
         inner = self._parameters(symbols(block), leg)
         inner += statements(block.assignments, self.titles, self.printer)
         for store in block.stores:
-            inner.append(f"model->{c_name(store.array)}[leg] = {self.printer.text(store.value)};")
+            inner.append(self._kept("KEEP_OF_LEG", f"model->{c_name(store.array)}[leg]", store))
         count, legs = self.bundle.leg_counts[leg], count_of(leg)
         filled = capacity(count) > count
         for target, value in block.sums:
@@ -117,6 +122,11 @@ class _Preparation:
             inner.insert(0, f"const size_t own = {own};")
         every = f"FILLED({legs})" if filled else legs
         return [f"for (size_t leg = 0; leg < {every}; ++leg) {{", *indented(inner), "}"]
+
+    def _kept(self, macro: str, place: str, store: Store) -> str:
+        """A value kept in the model, mostly under its own name."""
+        name, value = c_name(store.array), self.printer.text(store.value)
+        return f"{macro}({name});" if value == name else f"{place} = {value};"
 
     def _parameters(self, used: set[str], leg: str | None) -> list[str]:
         """The entries of the parameters, and the signs of the branches, that are used."""

@@ -151,9 +151,9 @@ class Steps:
         lines = [*checks.values(), *more, *moves]
         if summed:
             lines[:0] = ["if (!is_finite(why.total[0])) {", *indented(summed), "}"]
-        refused = [f"refuse({self._size(o.value)}, {wanted[o.name]});" for o in outputs]
-        judged_so = ["const int code = judge(&why);", "if (code != OK) {", *indented(refused), "}"]
-        return [*lines, *judged_so, "return code;"]
+        refused = [f"{self._size(o.value)}, {wanted[o.name]}" for o in outputs]
+        *rest, last = (f"settled(&why, {text});" for text in refused)
+        return [*lines, *rest, f"return {last}"]
 
     def _unused(self) -> list[Value]:
         """Arrays that runs give and nothing uses: where they overflow the state is none either."""
