@@ -37,7 +37,7 @@ stored_#     | V^s_{#}                  | ENERGY   | beyond the paper
     energy of the spring at joint #
 rotor_#      | J^r_{#}                  | ROTOR constant | beyond the paper
     inertia of the rotor of joint #, along the joint
-motor_#      | \dot\theta_{#}           | ROTOR    | beyond the paper
+motor_#      | \dot\vartheta_{#}        | ROTOR    | beyond the paper
     rate of the motor of joint #
 per_turn_#   | n^{-1}_{#}               | LUMPING constant
     displacement of joint # per angle of its motor

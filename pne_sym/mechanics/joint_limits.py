@@ -26,7 +26,7 @@ off_#      | \bar q_{#}       | LIMIT | beyond the paper
     displacement of joint # from the middle of its range
 off2_#     | \varsigma_{#}    | LIMIT | beyond the paper
     square of that displacement of joint #
-margin_#   | \chi_{#}         | LIMIT | beyond the paper
+margin_#   | \bar\chi_{#}     | LIMIT | beyond the paper
     distance of joint # from the nearer limit
 """)
 _TEXT = (

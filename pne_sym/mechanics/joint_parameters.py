@@ -23,7 +23,7 @@ _PARAMETERS: dict[str, tuple[str, str, str, Rule]] = {
         Rule.POSITIVE,
     ),
     "stiffness": (
-        r"\kappa_{{{j}}}",
+        r"k^s_{{{j}}}",
         "{effort}/{q}",
         "stiffness of the spring at {joint}",
         Rule.MASS,

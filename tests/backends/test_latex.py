@@ -38,7 +38,7 @@ from pne_sym.vector import (
 )
 from pne_sym.vector.evaluate import evaluate
 from tests.backends.formulas import Reader
-from tests.sampling import entries
+from tests.sampling import entries, sampled
 from tests.whole.test_coupling import coupled
 
 A, B, C = (VectorSymbol(name) for name in "abc")
@@ -208,8 +208,11 @@ def _random(derivation: Derivation, name: str, rng: np.random.Generator) -> Any:
     return float(rng.uniform(1.0, 2.0))
 
 
-def test_symbols_of_what_acts_in_joints_are_distinct() -> None:
-    found = coupled("planar_3rpr")
+@pytest.mark.parametrize(
+    "name", sampled(manipulators.names(), 0, keep=("planar_3rpr", "hybrid_3rrrs"))
+)
+def test_symbols_of_what_acts_in_joints_are_distinct(name: str) -> None:
+    found = coupled(name)
     are_distinct(found, derive(found))
 
 

@@ -62,7 +62,7 @@ def test_margins() -> None:
     bundle, state = models.bundle(manipulator), models.state_at(manipulator, 1)
     text = ReportBackend().emit(bundle)["planar_3rpr.md"]
     found = Interpreter(text, numbers_of(bundle, state))
-    margins = [found.legs[i + 1].base[rf"\chi_{j + 1}"] for i, j in bundle.coordinates.joints]
+    margins = [found.legs[i + 1].base[rf"\bar\chi_{j + 1}"] for i, j in bundle.coordinates.joints]
     close(np.array(margins), models.module(manipulator).joint_margins(state.X), "margins")
 
 
