@@ -2,24 +2,14 @@
 
 from pne_sym.derivation.actuation import Actuation
 from pne_sym.derivation.book import Book
+from pne_sym.derivation.coordinates import Coordinates, LegTypeInfo, Output
+from pne_sym.derivation.derivation import Chapter, Derivation, full_name, full_names
 from pne_sym.derivation.equation import (
-    PLATFORM,
-    Chapter,
     Condition,
-    Coordinates,
-    Derivation,
     Equation,
-    Frame,
-    Given,
     Law,
-    LegTypeInfo,
-    Output,
-    Quantity,
     ReciprocalBasis,
-    Role,
     Trouble,
-    full_name,
-    full_names,
     leg_sums,
     names_in,
 )
@@ -31,6 +21,7 @@ from pne_sym.derivation.parameters import (
     ParameterTable,
     Rule,
 )
+from pne_sym.derivation.quantity import PLATFORM, Frame, Given, Quantity, Role
 
 __all__ = [
     "PLATFORM",

@@ -8,26 +8,14 @@ from typing import Any, TypedDict, Unpack
 
 import sympy as sp
 
+from pne_sym.derivation.coordinates import Coordinates, LegTypeInfo, Output
+from pne_sym.derivation.derivation import Chapter, Derivation
 from pne_sym.derivation.dimensions import Dimensions, unit_of_components, unit_of_equation
-from pne_sym.derivation.equation import (
-    Chapter,
-    Condition,
-    Coordinates,
-    Derivation,
-    Equation,
-    Frame,
-    Given,
-    Law,
-    LegTypeInfo,
-    Output,
-    Quantity,
-    ReciprocalBasis,
-    Role,
-    names_in,
-)
+from pne_sym.derivation.equation import Condition, Equation, Law, ReciprocalBasis, names_in
 from pne_sym.derivation.frames import BodyFrame
 from pne_sym.derivation.paper import check_reference
 from pne_sym.derivation.parameters import NameTakenError, ParameterTable
+from pne_sym.derivation.quantity import Frame, Given, Quantity, Role
 from pne_sym.vector import LinearForm, Tensor, TensorSymbol, Vector, VectorSymbol
 from pne_sym.vector.dimensions import DimensionError, dimension_of_unit
 

@@ -8,8 +8,9 @@ from typing import Any
 
 import sympy as sp
 
-from pne_sym.derivation.equation import Condition, Law, Quantity, Role, Trouble
+from pne_sym.derivation.equation import Condition, Law, Trouble
 from pne_sym.derivation.parameters import ParameterTable
+from pne_sym.derivation.quantity import Quantity, Role
 from pne_sym.vector import Tensor
 from pne_sym.vector.dimensions import (
     NONE,

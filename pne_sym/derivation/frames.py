@@ -15,7 +15,9 @@ import sympy as sp
 from pne_sym.vector import Compose, Identity, Outer, Skew, Vector, vector_sum
 
 if TYPE_CHECKING:
-    from pne_sym.derivation.equation import Derivation, Equation, Frame, Given
+    from pne_sym.derivation.derivation import Derivation
+    from pne_sym.derivation.equation import Equation
+    from pne_sym.derivation.quantity import Frame, Given
 
 
 @dataclass(frozen=True)
