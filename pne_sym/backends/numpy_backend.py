@@ -26,7 +26,10 @@ from pne_sym.backends.templating import FIXED, render
 from pne_sym.program.ir import Closure
 from pne_sym.program.slices import symbols
 
-_SUPPORT = ("modes", "recording", "operations", "linear", "bounds", "iteration", "rotations")
+_SUPPORT = (
+    *("modes", "recording", "replay"),
+    *("operations", "linear", "bounds", "iteration", "rotations"),
+)
 """Templates of plain Python, of which a module gets what it needs."""
 
 

@@ -61,7 +61,7 @@ def test_what_is_not_like_home_is_in_doubt() -> None:
         assert not any(solved(a)[1] for a in odd)
 
 
-@pytest.mark.parametrize("count", [1, 30, 3000])  # floats, arrays, a record that is replayed
+@pytest.mark.parametrize("count", [1, 30, 3000])  # floats, steps in groups, step by step
 def test_what_is_in_doubt_is_solved_with_a_choice_of_rows(count: int) -> None:
     manipulator = models.catalogue("planar_3rpr")
     m, wary = models.module(manipulator), ModuleType("wary")
