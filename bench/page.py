@@ -61,7 +61,8 @@ class Table:
             rows = [r for r in self.rows if (r["who"], r["compiler"]) == (who, compiler)]
             worst = max(row["error"] for row in rows)
             name = who.removesuffix(", batch") + (f", {compiler}" if compiler else "")
-            lines.append(f"| {name} | {' | '.join(cells)} | {worst:.0e} |")
+            shown = f"{worst:.0e}" if worst else "reference"
+            lines.append(f"| {name} | {' | '.join(cells)} | {shown} |")
         return lines
 
     def shares(self) -> list[str]:

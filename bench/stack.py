@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -80,6 +81,8 @@ def measured(model: Path) -> dict[str, Any]:
 
 def main() -> None:
     """Print a table and keep it for the page; an error where a bound is missed."""
+    if shutil.which(COMPILER) is None:
+        sys.exit(f"stack: {COMPILER} is not installed (Debian: gcc-arm-none-eabi)")
     found = measured(Path(sys.argv[1]))
     FOUND.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
     missed = []
