@@ -1,14 +1,12 @@
-"""Directions that complete a leg's degrees of freedom to a basis, and wrenches reciprocal to them.
+"""Directions that complete a leg's degrees of freedom to a basis.
 
 A leg with fewer degrees of freedom than its platform joint leaves to be determined restricts the
-platform.  Auxiliary directions, fixed in the last link, complete its degrees of freedom to a basis;
-the reciprocal wrench of an auxiliary direction does no work along any degree of freedom.  Which
-directions serve is settled at home, where the basis must be well conditioned for every leg.
+platform.  Auxiliary directions, fixed in the last link, complete its degrees of freedom to a basis,
+whose reciprocal wrenches `reciprocal_wrenches` writes.  Which directions serve is settled at home,
+where the basis must be well conditioned for every leg.
 
 Some of these wrenches may do no work along any motion of the platform: a moment where the
 platform cannot turn, a force through the fixed centre.  They constrain nothing.
-
-Reference: section 3.7, Eqs. 35 to 37.
 """
 
 from __future__ import annotations
@@ -17,15 +15,11 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import combinations, product
-from typing import Any
 
 import numpy as np
-import sympy as sp
 
-from pne_sym.derivation import Book, Condition, ReciprocalBasis, Trouble
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.scope import moment_directions
-from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.model.closure import least_norm, leg_residual
 from pne_sym.model.kinematics import (
     TASK_SPACES,
@@ -37,17 +31,6 @@ from pne_sym.model.kinematics import (
     pose_at,
 )
 from pne_sym.model.manipulator import Manipulator, Space
-from pne_sym.vector import (
-    Cross,
-    Dot,
-    DualScalar,
-    DualVector,
-    Vector,
-    VectorSymbol,
-    ZeroVector,
-    norm,
-    vector_sum,
-)
 
 _PURE = 1e-6  # relative size of what counts as zero
 _BETTER = 1.01  # a choice replaces an earlier one only if it is better by this factor
@@ -232,172 +215,3 @@ def _state(manipulator: Manipulator, g: LegGeometry, row: int, q: Array, pose: P
 
 def _rank(rows: Array) -> int:
     return int(np.sum(np.linalg.svd(rows)[1] > _PURE)) if rows.size else 0
-
-
-_TERMS = glossary(r"""
-a_c#        | \hat{\mathbf a}_{c#} | given
-    coordinate direction of the last link, to complete the leg's degrees of freedom
-t_c#        | \mathbf t_{c#}      | GEOMETRY
-    velocity of the connection point as it turns about the fixed centre
-f_c#        | \mathbf n'_{c#}     | RECIPROCITY | Eq. 35
-    force part of constraint wrench #
-m#_c%       | \upsilon'_{c%#}     | RECIPROCITY | Eq. 35
-    moment part # of constraint wrench %
-size_c#     | \psi_{c#}           | GEOMETRY
-    size of the %
-n_c#        | \mathbf n_{c#}      | GEOMETRY | Eq. 35
-    unit force of the constraint wrench
-mu#_c%      | \upsilon_{c%#}      | GEOMETRY | Eq. 35
-    moment along direction # that goes with it
-mu_c#       | \mathbf o_{c#}      | GEOMETRY | Eq. 35
-    the moment that goes with it
-""")
-
-
-@dataclass(frozen=True)
-class ConstraintWrench:
-    """A wrench that does no work along a leg's degrees of freedom: lambda is its coefficient.
-
-    Attributes:
-        force: of the leg on the platform at the connection point, per unit lambda.
-        coefficients: along the moment directions, per unit lambda.
-        moment: the moment that they make.
-        acts: it does work along some motion of the platform.
-        of_moment: lambda is a moment, not a force.
-    """
-
-    force: Vector
-    coefficients: tuple[Any, ...] = ()
-    moment: Vector = ZeroVector
-    acts: bool = True
-    of_moment: bool = False
-
-
-@dataclass(frozen=True)
-class DegreesOfFreedom:
-    """Degrees of freedom of a leg as columns that are to be completed.
-
-    Attributes:
-        vectors: velocity of the connection point, per joint that is not extra.
-        rows: per moment direction, the part of each joint's axis along it.
-        scales: sizes of the velocity vectors.
-        directions: of the moments that the platform joint transmits.
-        frame: of the last link.
-    """
-
-    vectors: list[Any]
-    rows: list[list[Any]]
-    scales: list[Any]
-    directions: list[Any]
-    frame: str
-
-
-def completed_wrenches(
-    book: Book, g: LegGeometry, chosen: Sequence[Auxiliary], dofs: DegreesOfFreedom
-) -> list[ConstraintWrench]:
-    """The wrenches reciprocal to a leg's degrees of freedom: of unit force, or unit moments."""
-    columns = [_column(book, g, auxiliary, dofs) for auxiliary in chosen]
-    vectors = [*(vector for vector, _ in columns), *dofs.vectors]
-    rows = [[*(entries[i] for _, entries in columns), *row] for i, row in enumerate(dofs.rows)]
-    screws = sp.Tuple(*vectors), sp.Tuple(*(sp.Tuple(*row) for row in rows))
-    writer = _WrenchWriter(book, g, dofs.directions, dofs.frame)
-    parts = [writer.reciprocal(k, a, screws, len(rows)) for k, a in enumerate(chosen)]
-    found = [writer.of_unit_size(k, a, *parts[k]) for k, a in enumerate(chosen)]
-    frames = dict.fromkeys(g.frame("axes", g.group[j]) for j in range(g.count, -1, -1))
-    book.bases.append(
-        ReciprocalBasis(
-            g.leg_type.name,
-            tuple(vectors),
-            tuple(force for force, _ in parts),
-            (*(_column_size(g, a) for a in chosen), *dofs.scales),
-            tuple(frames),
-            tuple(tuple(row) for row in rows),
-            tuple(coefficients for _, coefficients in parts),
-            g.size,
-        )
-    )
-    return found
-
-
-def _column(
-    book: Book, g: LegGeometry, auxiliary: Auxiliary, dofs: DegreesOfFreedom
-) -> tuple[Any, list[Any]]:
-    """Velocity of the connection point, and angular velocity along the moment directions."""
-    number = auxiliary.number
-    if auxiliary.kind is Kind.RIGHT_ANGLE:
-        return ZeroVector, [sp.Integer(int(i == number)) for i in range(len(dofs.rows))]
-    a = direction(book, g, number, dofs.frame)
-    if auxiliary.kind is Kind.SLIDE:
-        return a, [sp.S.Zero for _ in dofs.rows]
-    eq = Writer(book, g, _TERMS)
-    velocity = eq("t_c#", Cross(a, g.platform_point), number + 1, body=dofs.frame)
-    return velocity, [Dot(a, n) for n in dofs.directions]
-
-
-def _column_size(g: LegGeometry, auxiliary: Auxiliary) -> Any:
-    """What the column of an auxiliary direction is measured by: turns move points by lengths."""
-    return sp.S.One if auxiliary.kind is Kind.SLIDE else g.size
-
-
-def direction(book: Book, g: LegGeometry, axis: int, frame: str) -> VectorSymbol:
-    """A coordinate direction of the last link."""
-    symbol = VectorSymbol(g.name(f"a_c{axis + 1}"))
-    if symbol.name in book.notation:
-        return symbol
-    components = (sp.Integer(int(i == axis)) for i in range(3))
-    return Writer(book, g, _TERMS).give("a_c#", frame, components, axis + 1)
-
-
-class _WrenchWriter:
-    """Defines the wrenches reciprocal to auxiliary directions."""
-
-    def __init__(self, book: Book, g: LegGeometry, directions: list[Any], frame: str) -> None:
-        self.g, self.directions, self.frame = g, directions, frame
-        self.eq = Writer(book, g, _TERMS)
-
-    def reciprocal(
-        self, k: int, auxiliary: Auxiliary, screws: tuple[Any, Any], transmitted: int
-    ) -> tuple[Any, tuple[Any, ...]]:
-        """The reciprocal wrench of auxiliary direction k: force, moment coefficients."""
-        value = DualVector(sp.Integer(k), *screws)
-        force = self.eq("f_c#", value, k + 1, body=self.frame)
-        duals = (DualScalar(sp.Integer(k), sp.Integer(i), *screws) for i in range(transmitted))
-        return force, tuple(self.eq("m#_c%", dual, i, k + 1) for i, dual in enumerate(duals, 1))
-
-    def of_unit_size(
-        self, k: int, auxiliary: Auxiliary, force: Any, coefficients: tuple[Any, ...]
-    ) -> ConstraintWrench:
-        """The same wrench for a force, or a moment, of size one."""
-        number, acts, of_force = k + 1, auxiliary.acts, auxiliary.of_force
-        size = self._size(number, auxiliary, force, coefficients)
-        n = self.eq("n_c#", force / size, number, body=self.frame)
-        moments = tuple(
-            self.eq("mu#_c%", coefficient / size, i, number)
-            for i, coefficient in enumerate(coefficients, 1)
-        )
-        if not moments:
-            return ConstraintWrench(n, acts=acts, of_moment=not of_force)
-        total = vector_sum(m * n for m, n in zip(moments, self.directions, strict=True))
-        moment = self.eq("mu_c#", total, number, body=self.frame)
-        return ConstraintWrench(n, moments, moment, acts, not of_force)
-
-    def _size(
-        self, number: int, auxiliary: Auxiliary, force: Any, coefficients: tuple[Any, ...]
-    ) -> Any:
-        """Size of the force, or of the moment: singular where it vanishes."""
-        if auxiliary.of_force:
-            size, what, slides_unit, turns_unit = norm(force), "force", 0, -1
-        else:
-            size, what, slides_unit, turns_unit = _size(coefficients), "moment", 1, 0
-        power_of_length = slides_unit if auxiliary.kind is Kind.SLIDE else turns_unit
-        regular = Condition(Trouble.SINGULAR, size, self.g.size**power_of_length)
-        return self.eq("size_c#", size, number, what, conditions=(regular,))
-
-
-def _size(coefficients: tuple[Any, ...]) -> Any:
-    """Size of a moment by its parts along orthonormal directions; a single one keeps its sign."""
-    return (
-        coefficients[0]
-        if len(coefficients) == 1
-        else sp.sqrt(sp.Add(*(a**2 for a in coefficients)))
-    )

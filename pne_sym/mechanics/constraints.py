@@ -12,13 +12,13 @@ import numpy as np
 import sympy as sp
 
 from pne_sym.derivation import Book, Condition, Trouble
-from pne_sym.mechanics.completion import (
+from pne_sym.mechanics.leg_geometry import LegGeometry
+from pne_sym.mechanics.reciprocal_wrenches import (
     ConstraintWrench,
     DegreesOfFreedom,
     completed_wrenches,
     direction,
 )
-from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.scope import moment_directions
 from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.model.kinematics import at_home, chain_pose

@@ -12,13 +12,17 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.derivation import Book, ReciprocalBasis
-from pne_sym.mechanics.completion import ConstraintWrench, DegreesOfFreedom, completed_wrenches
 from pne_sym.mechanics.constraints import (
     constraint_directions,
     constraint_wrenches,
     plane_normal,
 )
 from pne_sym.mechanics.leg_chain import LegChain
+from pne_sym.mechanics.reciprocal_wrenches import (
+    ConstraintWrench,
+    DegreesOfFreedom,
+    completed_wrenches,
+)
 from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.vector import Cross, Dot, DualScalar, DualVector, Vector, VectorSymbol, vector_sum
 

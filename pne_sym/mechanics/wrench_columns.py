@@ -11,9 +11,9 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.derivation import Book
-from pne_sym.mechanics.completion import ConstraintWrench
 from pne_sym.mechanics.legs import Leg
 from pne_sym.mechanics.placing import Placer, Rows, indices
+from pne_sym.mechanics.reciprocal_wrenches import ConstraintWrench
 from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.vector import Cross, Dot, ZeroVector
 

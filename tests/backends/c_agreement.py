@@ -82,6 +82,8 @@ def from_numpy(module: Any, name: str, given: Mapping[str, Array], p: Any) -> li
 
 def compared(name: str, array: Array, module: Any) -> Array:
     """What of an output is determined: of a basis, the projector on the space it spans."""
+    if name == "constraints":  # rounding where loops close: beside lengths of the order of one
+        return np.hstack([array, np.ones((len(array), 1))])
     if name != "null_space":
         return array
     basis = array.reshape(len(array), module.NU, -1)
