@@ -25,7 +25,7 @@ SAMPLE = (
 )
 """Entries of the catalogue, each of a structure of its own: tests of a run share what they derive.
 
-Space translational; more drives than freedoms; screws; planar, with slides and
+Space translational; more actuators than degrees of freedom; screws; planar, with slides and
 with none; legs of several types; a redundant
 leg and extra coordinates; spherical; the ordinary one; passive extra coordinates; constrained;
 constrained, with two axes at the platform.

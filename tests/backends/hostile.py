@@ -109,7 +109,7 @@ def _size(library: CLibrary, name: str, given: dict[str, Array], found: list[Arr
 
 
 def bounds(name: str, given: dict[str, Array]) -> tuple[Array, Array]:
-    """1e-12 times the condition of the legs, and of the legs and the drives together."""
+    """1e-12 times the condition of the legs, and of the legs and the actuators together."""
     model = module(catalogue(name))
     function = getattr(model, "condition_constrained", model.condition)
     guess = {"q0": given["q0"]} if "q0" in model.M.__code__.co_varnames else {}
@@ -126,8 +126,8 @@ def compared(
     rng = np.random.default_rng(seed)
     for function in FUNCTIONS:
         given = inputs(name, count, rng, X)
-        legs, drives = bounds(name, given)
-        bound = drives if function == "inverse_dynamics" else legs
+        legs, actuators = bounds(name, given)
+        bound = actuators if function == "inverse_dynamics" else legs
         if function == "forward_dynamics":
             bound = legs * _condition_of_masses(name, given)
         yield function, given, compare(library, function, given, bound)

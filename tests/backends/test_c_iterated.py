@@ -22,8 +22,15 @@ STATES = 11  # a lane of 8 states, and a remainder
 STRUCTURES = {
     # file: legs; (rows, unknowns) of the closure, closed legs too?, constraints, redundant, extras
     "planar_3rrr": ("planar, 3 RRR", (2, 2), False, 0, False, 3),
-    "point_4rrr_redundant": ("point, 4 RRR, redundant drives", (2, 2), False, 0, True, 4),
-    "spherical_2crp_redundant": ("spherical, 2 CRP, redundant drives", (3, 3), False, 0, True, 2),
+    "point_4rrr_redundant": ("point, 4 RRR, redundant actuators", (2, 2), False, 0, True, 4),
+    "spherical_2crp_redundant": (
+        "spherical, 2 CRP, redundant actuators",
+        (3, 3),
+        False,
+        0,
+        True,
+        2,
+    ),
     "translational_pprhu_rr": ("translational, PPRH-U and RR", (4, 4), True, 1, True, 0),
     "spatial_2rr_2hr": (
         "2 RR and 2 HR, fewer unknowns than rows",
@@ -135,23 +142,23 @@ def test_precisions(planar: Manipulator, library: CLibrary, tmp_path: Path) -> N
         assert np.abs(found - want).max() < tolerance * np.abs(want).max()
 
 
-@pytest.mark.parametrize("drives", [3, 6])
-def test_drives_that_act_on_undriven_extra_coordinates(drives: int, tmp_path: Path) -> None:
-    """Planar, 3 RRP with the last displacement a coordinate of its own, one or two drives a leg.
+@pytest.mark.parametrize("actuators", [3, 6])
+def test_actuators_that_act_on_unactuated_extra_coordinates(actuators: int, tmp_path: Path) -> None:
+    """Planar, 3 RRP with the last displacement a coordinate of its own, one or two actuators a leg.
 
-    With two, the drives hold these coordinates too: every acceleration has forces.
+    With two, the actuators hold these coordinates too: every acceleration has forces.
     """
     drawn = models.drawn("planar_3rrp_extra")
     legs = tuple(
         replace(leg, joints=(leg.joints[0], replace(leg.joints[1], actuated=False), leg.joints[2]))
         for leg in drawn.legs
     )
-    manipulator = drawn if drives == 6 else replace(drawn, legs=legs)
+    manipulator = drawn if actuators == 6 else replace(drawn, legs=legs)
     found = describe(models.bundle(manipulator)).actuation
-    assert (found.is_coupled, found.passive, found.rank) == (True, (3, 4, 5), drives)
+    assert (found.is_coupled, found.passive, found.rank) == (True, (3, 4, 5), actuators)
     library = CLibrary(models.bundle(manipulator), tmp_path, flags=QUICK)
     given, module = near_home(manipulator, STATES), models.module(manipulator)
-    if drives == 6:
+    if actuators == 6:
         X, q0, V, A, wrench = (given[name] for name in ("X", "q0", "V", "A", "wrench"))
         (completed,), status = library.batch("complete_acceleration", X, q0, V, A, wrench)
         assert (status == OK).all()
@@ -161,8 +168,8 @@ def test_drives_that_act_on_undriven_extra_coordinates(drives: int, tmp_path: Pa
     assert assert_agree(library, module, given) >= 12
 
 
-def test_fewer_drives_than_freedoms(tmp_path: Path) -> None:
-    """No forces give any acceleration; everything else is as with more drives."""
+def test_fewer_actuators_than_freedoms(tmp_path: Path) -> None:
+    """No forces give any acceleration; everything else is as with more actuators."""
     manipulator = models.drawn("spherical_too_few_actuators")
     assert describe(models.bundle(manipulator)).is_underactuated
     library = CLibrary(models.bundle(manipulator), tmp_path, flags=QUICK)

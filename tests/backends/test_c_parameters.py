@@ -24,11 +24,11 @@ from tests.sampling import sampled
 
 RUBBING = "planar_3rpr_rubbing"
 PLACES: dict[Rule, tuple[str, str]] = {
-    Rule.FREE: ("stewart", "gravity"),
-    Rule.MASS: ("stewart", "ups_link2_mass"),
-    Rule.INERTIA: ("stewart", "ups_link2_inertia"),
+    Rule.FREE: ("tripod_3upu", "gravity"),
+    Rule.MASS: ("tripod_3upu", "upu_link2_mass"),
+    Rule.INERTIA: ("tripod_3upu", "upu_link2_inertia"),
     Rule.PLANAR_INERTIA: ("planar_3rrr", "platform_inertia"),
-    Rule.ROTATION: ("stewart", "ups_base_frame"),
+    Rule.ROTATION: ("tripod_3upu", "upu_base_frame"),
     Rule.PLANAR_ROTATION: ("planar_3rrr", "rrr_base_frame"),
     Rule.UNIT: ("tripod_3upu", "upu_platform_joint_axis_platform"),
     Rule.POSITIVE: (RUBBING, "rpr_joint1_velocity_scale"),

@@ -214,7 +214,7 @@ def test_singular_leg(stewart: Case) -> None:
     assert stewart.statuses("H", X=X) == expected(s5=SINGULAR)
 
 
-def test_singular_drives_concern_inverse_dynamics_only(planar: Case) -> None:
+def test_singular_actuators_concern_inverse_dynamics_only(planar: Case) -> None:
     """Connection points that coincide: three forces through a point hold no moment."""
     p = planar.module.Parameters()
     name = next(f.name for f in planar.library.fields if f.name.endswith("platform_point"))

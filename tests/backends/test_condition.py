@@ -14,7 +14,7 @@ from tests.models import bundle, catalogue, module, random_spec, state_at
 from tests.oracle.coordinates import displaced, platform_position, platform_rotation
 from tests.sampling import entries, sampled
 from tests.whole.cases import guess_of
-from tests.whole.test_impossible import pose_of_singular_drives
+from tests.whole.test_impossible import pose_of_singular_actuators
 
 EPSILON = float(np.finfo(float).eps)
 CONSTANT = 50.0
@@ -113,10 +113,10 @@ def test_wrong_lengths(length: Any) -> None:
 
 
 def near_singular(name: str, rng: np.random.Generator, count: int) -> Array:
-    """Poses at distances of 1e-12 to 1 from singular drives, or from a first leg of no length."""
+    """Poses at distances of 1e-12 to 1 from singular actuators, or a first leg of no length."""
     spec, model = catalogue(name), module(catalogue(name))
     off = 10.0 ** rng.uniform(-12.0, 0.0, (count, 1))
-    found = pose_of_singular_drives(model) + off * rng.normal(0.0, 1.0, (count, model.NQ))
+    found = pose_of_singular_actuators(model) + off * rng.normal(0.0, 1.0, (count, model.NQ))
     leg = spec.legs[0]
     for k in range(count // 2):
         x = model.HOME_X + rng.normal(0.0, 0.1, model.NQ)

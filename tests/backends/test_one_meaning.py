@@ -20,7 +20,7 @@ from tests import models
 # What the report's own statements are written in, and of which dimension it is.
 STANDING = {
     "X": "coordinates", "V": "velocities", "A": "accelerations", "F": "N",
-    r"\tau": "drive", r"\lambda": "multiplier", "M": "matrix", "Z": "matrix", "H": "matrix",
+    r"\tau": "actuator", r"\lambda": "multiplier", "M": "matrix", "Z": "matrix", "H": "matrix",
     "R": "required", "E": "identity",
 }  # fmt: skip
 # Letters whose dimension depends on what moves along the joint, or on the method: of these names.

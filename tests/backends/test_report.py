@@ -319,7 +319,7 @@ def test_one_more_leg_is_a_small_change() -> None:
     assert moved(before, after) <= 2 * 8 + 2 + 2 * functions + 2 * 3
 
 
-def test_a_driven_joint_is_a_small_change() -> None:
+def test_an_actuated_joint_is_a_small_change() -> None:
     """Which joint is driven moves what names the leg, and the columns of H."""
     manipulator = models.catalogue("planar_3rpr")
     legs = tuple(

@@ -15,7 +15,7 @@ from tests.backends.c_library import FAST, INVALID, OK, SINGULAR, Array, CLibrar
 from tests.backends.hostile import compare, compared, inputs
 from tests.models import bundle, catalogue, module
 from tests.sampling import sampled
-from tests.whole.test_impossible import pose_of_singular_drives
+from tests.whole.test_impossible import pose_of_singular_actuators
 
 COUNT = 4000
 NAMES = sampled(("stewart", "hexaglide", "tripod_3rps"), 3)
@@ -43,12 +43,12 @@ def test_hostile_states(library: CLibrary) -> None:
 
 @pytest.mark.parametrize("name", sampled(["stewart", "planar_3rpr"], 2))
 def test_around_the_threshold(name: str, tmp_path: Path) -> None:
-    """Closer and closer to singular drives: both sides of the threshold, and right at it."""
+    """Closer and closer to singular actuators: both sides of the threshold, and right at it."""
     made, model = bundle(catalogue(name)), module(catalogue(name))
     library = CLibrary(made, tmp_path, flags=FAST)
     rng = np.random.default_rng(5)
     off = 10.0 ** rng.uniform(-13.5, -10.0, (COUNT, 1)) * rng.normal(0.0, 1.0, (COUNT, model.NQ))
-    X: Array = pose_of_singular_drives(model) + off
+    X: Array = pose_of_singular_actuators(model) + off
     given = inputs(name, COUNT, rng, X)
     given |= {n: rng.uniform(-1.0, 1.0, given[n].shape) for n in ("V", "A", "wrench")}
     found = compare(library, "inverse_dynamics", given, np.ones(COUNT))

@@ -153,7 +153,7 @@ def warned(spec: dict[str, Any], folder: Path) -> str:
     return done.stderr
 
 
-def test_fewer_drives_than_freedoms_are_a_warning(tmp_path: Path) -> None:
+def test_fewer_actuators_than_freedoms_are_a_warning(tmp_path: Path) -> None:
     spec = planar()
     spec["legs"][1]["joints"] = {"1": {"actuated": False}}
     assert "pair: legs: fewer actuators than degrees of freedom: 1 for 2" in warned(spec, tmp_path)

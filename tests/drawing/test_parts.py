@@ -64,7 +64,7 @@ def test_the_last_joint_sits_on_the_platform(name: str) -> None:
         np.testing.assert_allclose(last.point, place, atol=1e-9)
 
 
-def test_driven_and_extra_joints_are_known() -> None:
+def test_actuated_and_extra_joints_are_known() -> None:
     parts = scene("planar_redundant").legs[0].parts
     slide = parts[0]
     assert isinstance(slide, Slide)

@@ -84,7 +84,7 @@ def interface_text(model: Interface, actuated: tuple[int, ...]) -> str:
         "} function;",
     ]
     home = json.dumps([0.0] * sizes["NU"]).strip("[]")
-    lines.append(f"static real home_drives[] = {{{home}}};")
+    lines.append(f"static real home_actuators[] = {{{home}}};")
     for f in model.functions:
         arguments = [f"in[{k}]" for k in range(len(f.inputs))]
         arguments += [f"out[{k}]" for k in range(len(f.outputs))]
@@ -107,13 +107,13 @@ def interface_text(model: Interface, actuated: tuple[int, ...]) -> str:
             f"{{{ins}}}, {{{outs}}}, {int(f.endless)}}},"
         )
     lines += ["};", "static void find_home(void)", "{"]
-    lines += [f"    home_drives[{k}] = {name}_HOME_Q[{q}];" for k, q in enumerate(actuated)]
+    lines += [f"    home_actuators[{k}] = {name}_HOME_Q[{q}];" for k, q in enumerate(actuated)]
     return "\n".join([*lines, "}", ""])
 
 
 def _array_text(model: Interface, a: Array) -> str:
     homes = dict.fromkeys(("X", "X0", "X1"), f"{model.name}_HOME_X")
-    homes |= {"q0": f"{model.name}_HOME_Q", "q_actuated": "home_drives"}
+    homes |= {"q0": f"{model.name}_HOME_Q", "q_actuated": "home_actuators"}
     pose = a.name in ("X", "X0", "X1") and model.quaternion is not None
     quaternion = model.quaternion if pose else "(size_t)-1"
     flags = f"{int(a.optional)}, {int(a.positive)}"

@@ -15,7 +15,7 @@ from tests.hostile.campaign import BUILDS, CODES, Line, compile_engine, run
 from tests.hostile.interface import read_header
 from tests.sampling import sampled
 
-STATES = 20_000
+STATES = 10_000
 
 
 def written(bundle: Bundle, folder: Path) -> Path:

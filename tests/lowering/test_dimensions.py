@@ -100,11 +100,11 @@ def _conjugate(stored: dict[Entry, Dimension], c: Coordinates) -> Iterator[str]:
             yield f"row {k} of Z in {force.get(k)}"
     rate = {k: POWER / unit for k, unit in force.items()}
     rates_of_q = {row: unit for (array, row, _), unit in stored.items() if array == "qd"}
-    drive = {k: POWER / rates_of_q[c.joints.index(j)] for k, j in enumerate(c.actuators)}
+    actuator = {k: POWER / rates_of_q[c.joints.index(j)] for k, j in enumerate(c.actuators)}
     reaction = {k: dimension_of_unit(unit) for k, unit in enumerate(c.constraint_units)}
     factor = {
         "M": {k: unit / SECOND for k, unit in rate.items()},
-        "H": drive,
+        "H": actuator,
         "Hk": reaction,
         "required": {0: dimension_of_unit("-")},
     }

@@ -799,7 +799,7 @@ def _c(f: Facts, j: int) -> Any:
 
 @value_of("c_true")
 def _c_true(f: Facts, j: int) -> Any:
-    """The reaction less what the drives (and lambda) contribute."""
+    """The reaction less what the actuators (and lambda) contribute."""
     force = f.result.reaction[:3].copy()
     tau, lam = iter(f.s.oracle.tau), f.s.oracle.lam
     for index, leg in enumerate(f.manipulator.legs):

@@ -12,7 +12,7 @@ from pne_sym.model.reader import checked
 from tests.oracle.mechanisms import mechanism
 from tests.oracle.test_oracle import STRUCTURES as COMMON
 
-_TWO = ["Rz* Ry Px* | S"] * 2  # legs that fill up the drives
+_TWO = ["Rz* Ry Px* | S"] * 2  # legs that fill up the actuators
 
 STRUCTURES: dict[str, tuple[str, list[str]]] = COMMON | {
     "extra slide between": ("spatial", ["Rz* Px*+ Ry Px* | S", *_TWO]),
@@ -28,7 +28,7 @@ STRUCTURES: dict[str, tuple[str, list[str]]] = COMMON | {
     "tilted universal and slide": ("spatial", ["Rt* Rt Pt* | S", *_TWO]),
     "tilted revolutes": ("spatial", ["Rt* Rt* Rt | S", *_TWO]),
     "tilted slide at the base": ("spatial", ["Pt* Rt* Rt | S", *_TWO]),
-    "offset universal, rotary drives": ("spatial", ["Rz* Rx0* Ry | S", *_TWO]),
+    "offset universal, rotary actuators": ("spatial", ["Rz* Rx0* Ry | S", *_TWO]),
     "cylindrical at the base": ("spatial", ["Rz* Pz* Ry | S", *_TWO]),
     "slide last across": ("spatial", ["Ry* Rz* Py | S", *_TWO]),
     "planar, extra slides": (

@@ -18,7 +18,7 @@ from tests.oracle.coordinates import joint_slices, twist_basis
 from tests.oracle.mechanisms import mechanism
 from tests.whole.rewriting import Rewriting, drawn_shifts
 
-# freedoms, drives, constraints, extra coordinates, passive ones, cases of section 3
+# freedoms, actuators, constraints, extra coordinates, passive ones, cases of section 3
 KNOWN: dict[str, tuple[int, int, int, int, int, tuple[str, ...]]] = {
     "stewart": (6, 6, 0, 0, 0, ("3.1",)),
     "stewart_sps": (12, 6, 0, 6, 6, ("3.6",)),
@@ -105,7 +105,7 @@ def test_far_origins_change_nothing(name: str) -> None:
     assert mobility(Rewriting(spec, far).after) == mobility(spec)
 
 
-def without_drives(manipulator: Manipulator) -> Manipulator:
+def without_actuators(manipulator: Manipulator) -> Manipulator:
     legs = tuple(
         replace(leg, joints=tuple(replace(joint, actuated=False) for joint in leg.joints))
         for leg in manipulator.legs
@@ -113,13 +113,13 @@ def without_drives(manipulator: Manipulator) -> Manipulator:
     return replace(manipulator, legs=legs)
 
 
-def test_fewer_drives_than_freedoms_are_a_warning() -> None:
+def test_fewer_actuators_than_freedoms_are_a_warning() -> None:
     with pytest.warns(SpecWarning, match="fewer actuators than degrees of freedom: 0 for 3"):
-        found = check_mobility(without_drives(manipulators.load("planar_3rpr")))
+        found = check_mobility(without_actuators(manipulators.load("planar_3rpr")))
     assert (found.actuators, found.unheld) == (0, 3)
 
 
-def test_dependent_drives_are_a_warning() -> None:
+def test_dependent_actuators_are_a_warning() -> None:
     """Three legs through one point cannot resist a turn about it."""
     manipulator = manipulators.load("planar_3rpr")
     legs = tuple(replace(leg, platform_point=(0.0, 0.0, 0.0)) for leg in manipulator.legs)
@@ -197,6 +197,6 @@ def test_an_extra_joint_that_a_guided_platform_holds_is_refused() -> None:
 
 
 @pytest.mark.parametrize("name", ["delta", "stewart"])
-def test_a_mechanism_without_drives_is_refused(name: str) -> None:
+def test_a_mechanism_without_actuators_is_refused(name: str) -> None:
     with pytest.raises(SpecError, match="no joint is actuated; expected actuated = true"):
-        derive(without_drives(manipulators.load(name)))
+        derive(without_actuators(manipulators.load(name)))

@@ -77,9 +77,8 @@ def test_closed_if_any_choice_makes_it_so(name: str) -> None:
         except SpecError:  # singular for these axes, or not reached with the extra coordinate
             return False
 
-    others = [closed(axes) for axes in map("".join, itertools.permutations("xyz"))]
     assert is_closed(spec(name))
-    assert not all(others)
+    assert not all(closed(axes) for axes in map("".join, itertools.permutations("xyz")))
 
 
 @pytest.mark.parametrize("name", LEGS)

@@ -77,7 +77,7 @@ def extra_indices(manipulator: Manipulator) -> list[int]:
 
 
 def actuated_indices(manipulator: Manipulator) -> list[int]:
-    """Indices in the flat q of the driven joints: the order of tau."""
+    """Indices in the flat q of the actuated joints: the order of tau."""
     joints = [joint for leg in manipulator.legs for joint in leg.joints]
     return [index for index, joint in enumerate(joints) if joint.actuated]
 

@@ -23,7 +23,7 @@ def rank(matrix: Array) -> int:
 
 
 def idle_rows(K: Array) -> Array:
-    """(i, NV): combinations of rows on which neither drives nor constraints act."""
+    """(i, NV): combinations of rows on which neither actuators nor constraints act."""
     scaled, size = _scaled(K)
     left, _, _ = np.linalg.svd(scaled)
     return np.asarray((left[:, rank(K) :] / size[:, None]).T)
@@ -65,7 +65,7 @@ def completion(M: Array, demand: Array, K: Array, passive: list[int]) -> Array:
         return np.zeros(len(passive))
     effect = idle @ M[:, passive]
     if not are_held(K, passive) or rank(effect) < len(idle):
-        raise OracleError("the drives leave the passive extra coordinates undetermined")
+        raise OracleError("the actuators leave the passive extra coordinates undetermined")
     factor = np.linalg.cholesky(M[np.ix_(passive, passive)])
     change = -np.linalg.pinv(effect @ np.linalg.inv(factor.T)) @ (idle @ demand)
     return np.asarray(np.linalg.solve(factor.T, change))

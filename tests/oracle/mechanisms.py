@@ -60,7 +60,7 @@ def mechanism(
             is regular so.  False: about half of all components of offsets vanish.
 
     Returns:
-        A manipulator that is regular at home: legs and drives are not near a singularity.
+        A manipulator that is regular at home: legs and actuators are not near a singularity.
 
     Raises:
         OracleError: no regular geometry was found.
@@ -71,9 +71,9 @@ def mechanism(
         state = project(
             candidate, np.array(candidate.home.X), np.array(candidate.home.q), np.zeros(nv)
         )
-        drives = np.hstack([state.H, state.Hk])
-        reached = np.abs(drives).max(axis=1) > 1e-12
-        values = np.linalg.svd(drives[reached], compute_uv=False)
+        actuators = np.hstack([state.H, state.Hk])
+        reached = np.abs(actuators).max(axis=1) > 1e-12
+        values = np.linalg.svd(actuators[reached], compute_uv=False)
         if values.min() > _LEAST_DRIVE_QUALITY * values.max():
             return candidate
     raise OracleError(f"no regular geometry for {space}: {', '.join(legs)}")

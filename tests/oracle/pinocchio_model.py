@@ -117,7 +117,7 @@ class PinocchioModel:
         self._data: Any = self.model.createData()
         self.task = task_size(manipulator.space)
         self._extra = [self.task + index for index in extra_indices(manipulator)]
-        self._driven = [self.task + index for index in actuated_indices(manipulator)]
+        self._actuated = [self.task + index for index in actuated_indices(manipulator)]
 
     def dynamics(
         self,
@@ -138,7 +138,7 @@ class PinocchioModel:
         inertia, bias = self._tree(configuration, v)
         still = self._tree_acceleration(closures, X, V, np.zeros_like(V))
         moving = self._tree_acceleration(closures, X, V, A)
-        selection = np.eye(self.model.nv)[:, self._driven]
+        selection = np.eye(self.model.nv)[:, self._actuated]
         load = inertia @ moving + bias - self._tree_load(X, wrench)
         return TreeDynamics(
             M=G.T @ inertia @ G,
@@ -146,7 +146,7 @@ class PinocchioModel:
             H=G.T @ selection,
             qd=v[self.task :],
             qdd=moving[self.task :],
-            tau=self._drives(closures, selection, load),
+            tau=self._actuators(closures, selection, load),
             kinetic=float(pin.computeKineticEnergy(self.model, self._data, configuration, v)),
             potential=float(pin.computePotentialEnergy(self.model, self._data, configuration)),
         )
@@ -162,7 +162,7 @@ class PinocchioModel:
         closures = self._closures(configuration, v)
         inertia, bias = self._tree(configuration, v)
         load = self._tree_load(X, wrench) - bias
-        load[self._driven] += tau
+        load[self._actuated] += tau
         C = closures.jacobian
         system = np.block([[inertia, C.T], [C, np.zeros((C.shape[0],) * 2)]])
         solution = np.linalg.lstsq(system, np.concatenate([load, -closures.drift]), rcond=1e-14)[0]
@@ -282,10 +282,10 @@ class PinocchioModel:
         acceleration[free] = -np.linalg.pinv(closures.jacobian[:, free]) @ demand
         return acceleration
 
-    def _drives(self, closures: _Closures, selection: Array, load: Array) -> Array:
+    def _actuators(self, closures: _Closures, selection: Array, load: Array) -> Array:
         """Least-norm driving forces from the virtual motions that closures allow.
 
-        The acceleration must have forces: that of extra coordinates without a drive, too.
+        The acceleration must have forces: that of extra coordinates without an actuator, too.
         """
         _, values, right = np.linalg.svd(closures.jacobian)
         rank = int((values > _RCOND * values.max()).sum())

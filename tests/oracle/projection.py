@@ -74,12 +74,12 @@ class LegResult:
 class Result:
     """Everything about one state.  Flat orders as in the description: legs, then joints.
 
-    nv velocities (platform, then extra), nj joints, nu driven joints, nc multipliers.
+    nv velocities (platform, then extra), nj joints, nu actuated joints, nc multipliers.
 
     Attributes:
         M: (nv, nv) inertia matrix.
         Z: (nv,) velocity terms minus gravity.
-        H: (nv, nu) of the driven joints.
+        H: (nv, nu) of the actuated joints.
         Hk: (nv, nc) of the multipliers.  Sign, and for several multipliers of one leg the
             basis, are arbitrary.
         constraint_bias: (nc,) with Hk^T A + constraint_bias = 0.
@@ -257,9 +257,9 @@ def complete_acceleration(
     A: Array,
     wrench: Array | None = None,
 ) -> Array:
-    """Change entries of A that belong to extra coordinates without a drive, so that forces exist.
+    """Change entries of A that belong to passive extra coordinates, so that forces exist.
 
-    Where drives and constraints together have full rank, nothing changes.  Else M A + Z - W is
+    Where actuators and constraints together have full rank, nothing changes.  Else M A + Z - W is
     brought into their range, by the least change in the metric of M.
 
     Returns:
@@ -481,8 +481,8 @@ def _leg_results(
     tau: Array,
     lam: Array,
 ) -> tuple[LegResult, ...]:
-    drives = np.zeros(moving.qd.size)
-    drives[actuated_indices(manipulator)] = tau
+    actuators = np.zeros(moving.qd.size)
+    actuators[actuated_indices(manipulator)] = tau
     results, first = [], 0
     parts = zip(
         legs, moving.links, moving.in_space, joint_slices(manipulator), moving.dragged, strict=True
@@ -493,7 +493,7 @@ def _leg_results(
         forces = virtual_forces(leg.bodies, in_space, moving.gravity)
         forces += _in_joints(leg, moving.qd[where], moving.rotors[where]) + _against(leg, moment)
         # Virtual power of joint j: reaction . v_j = tau_j - Gamma_j.
-        power = (drives[where] - forces)[leg.free]
+        power = (actuators[where] - forces)[leg.free]
         reaction = np.linalg.pinv(leg.jacobian[:, leg.free].T) @ power
         results.append(
             LegResult(

@@ -51,7 +51,7 @@ class State(NamedTuple):
         X: (nq,) pose and extra coordinates.
         q: (nj,) displacements on the branch of home; revolute ones in (-pi, pi].
         V: (nv,) velocity, admissible.
-        A: (nv,) acceleration, admissible; extra coordinates without a drive consistent.
+        A: (nv,) acceleration, admissible; extra coordinates without an actuator consistent.
         wrench: (nw,) external force and moment about the platform origin.
     """
 
@@ -270,14 +270,14 @@ def random_state(manipulator: Manipulator, rng: np.random.Generator, spread: flo
 
 
 class _Quality(NamedTuple):
-    """Reciprocal condition numbers, of the legs and of the drives; multipliers' number.
+    """Reciprocal condition numbers, of the legs and of the actuators; multipliers' number.
 
     And the sides of their singularities that the legs are on: sign of the determinant.
     """
 
     legs: tuple[float, ...]
     sides: tuple[float, ...]
-    drives: float
+    actuators: float
     multipliers: int
     axes_agree: bool
 
@@ -292,18 +292,18 @@ def _quality(manipulator: Manipulator, X: Array, q: Array) -> _Quality:
     ]
     jacobians = [leg.jacobian[:, columns] for leg, columns in zip(state.legs, free, strict=True)]
     legs = tuple(map(_reciprocal_condition, jacobians))
-    drives = _reciprocal_condition(_drive_matrix(state))
+    actuators = _reciprocal_condition(_actuator_matrix(state))
     return _Quality(
         legs,
         tuple(map(_side, jacobians)),
-        drives,
+        actuators,
         state.Hk.shape[1],
         _axes_agree(manipulator, X, state),
     )
 
 
-def _drive_matrix(state: Result) -> Array:
-    """[H Hk], constraints of length one, without the rows that no drive reaches."""
+def _actuator_matrix(state: Result) -> Array:
+    """[H Hk], constraints of length one, without the rows that no actuator reaches."""
     both = np.hstack([state.H, state.Hk / np.linalg.norm(state.Hk, axis=0)])
     reach = np.abs(both).max(axis=1)
     return np.delete(both, np.flatnonzero(reach <= 1e-12 * reach.max()), axis=0)
@@ -339,7 +339,7 @@ def _acceptable(quality: _Quality, nominal: _Quality) -> bool:
         and quality.multipliers == nominal.multipliers
         and quality.sides == nominal.sides
         and all(a > 0.3 * b for a, b in zip(quality.legs, nominal.legs, strict=True))
-        and quality.drives > 0.3 * nominal.drives
+        and quality.actuators > 0.3 * nominal.actuators
     )
 
 
@@ -418,7 +418,7 @@ def _random_motion(
         A = A - np.linalg.pinv(Hk.T) @ (Hk.T @ A + bias)
     try:
         A = complete_acceleration(manipulator, X, q, V, A, wrench)
-    except OracleError:  # too few drives: not every acceleration has forces
+    except OracleError:  # too few actuators: not every acceleration has forces
         moving = project(manipulator, X, q, V, A, wrench)
         A = accelerated(manipulator, moving, rng.uniform(-20.0, 20.0, moving.H.shape[1]))
     return V, A, wrench

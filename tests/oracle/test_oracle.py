@@ -49,7 +49,7 @@ STRUCTURES: dict[str, tuple[str, list[str]]] = {
         "spatial",
         ["Rz Px* Ry*+ | S", "Rz Px* | S", "Rz Ry* Px* | S"],
     ),
-    "constrained, more drives than freedoms": (
+    "constrained, more actuators than freedoms": (
         "spatial",
         ["Rz* Px* | S", "Rz Px* | S", "Rz* Px* | S"],
     ),
@@ -73,11 +73,11 @@ STRUCTURES: dict[str, tuple[str, list[str]]] = {
     "planar, rigid at the platform": ("planar", ["Rz* Px Rz | rigid", "Rz Px* | R", "Rz* Rz | S"]),
     "planar, constrained": ("planar", ["Rz* Px | rigid", "Rz Px* | R", "Rz Rz | R"]),
     "planar, driven extra": ("planar", ["Rz* Rz+* Px | R", "Rz Px* | R", "Rz* Rz | R"]),
-    "passive extra coordinate held by a surplus drive": (
+    "passive extra coordinate held by a surplus actuator": (
         "spatial",
         ["Rz* Ry* Ry* Ry+ | S", "Rz* Ry* Ry | S", "Rz* Ry* Ry | S"],
     ),
-    "planar, two passive extra, one surplus drive": (
+    "planar, two passive extra, one surplus actuator": (
         "planar",
         ["Rz* Rz* Rz+ Rz+ | R", "Rz* Px* | R"],
     ),

@@ -4,7 +4,7 @@ Sections 4.1, 4.2, 5.2 and 5.4: leg matrices Q, leg vectors U, and the assembled
 Hk).  `U` takes the errata that are to be left in as printed; with none of them it is the
 corrected formula.  Symbols are the paper's.
 
-A leg's force on the platform is F = (what its drives give) - Q a_p - U.
+A leg's force on the platform is F = (what its actuators give) - Q a_p - U.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def planar_turn(angle: float) -> Array:
     return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
 
 
-# ---- section 4.1: five-bar, prismatic drives -------------------------------------------------
+# ---- section 4.1: five-bar, prismatic actuators -------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -116,11 +116,11 @@ class PrismaticLeg:
         return -first * s - second / L * s_p
 
     def h(self) -> list[Array]:
-        """What a unit of each drive gives."""
+        """What a unit of each actuator gives."""
         return [self.s]
 
 
-# ---- section 4.2: five-bar, revolute drives --------------------------------------------------
+# ---- section 4.2: five-bar, revolute actuators --------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -228,7 +228,7 @@ class RevoluteLeg:
         return np.asarray(-(G @ self.g - V) / (low * u * sin))
 
     def h(self) -> list[Array]:
-        """What a unit of each drive gives."""
+        """What a unit of each actuator gives."""
         return [self.d / (self.low * self.sin)]
 
 
@@ -372,7 +372,7 @@ class SpatialLeg:
         return float(np.max(np.abs(terms)))
 
     def h(self) -> list[Array]:
-        """What a unit of each drive gives."""
+        """What a unit of each actuator gives."""
         return [self.k, self.s] if self.slides else [self.s]
 
 
@@ -431,7 +431,7 @@ def assemble_spatial(
 
 
 def columns(legs: Sequence[SpatialLeg], directions: Sequence[Sequence[Array]]) -> Array:
-    """Columns (direction; q x direction): H and Hs of the drives, Hk of the k.
+    """Columns (direction; q x direction): H and Hs of the actuators, Hk of the k.
 
     Leg by leg; the paper's H of section 5.2 has the columns of all k first.
     """

@@ -108,9 +108,9 @@ def test_leg_forces_of_the_generated_code(name: str) -> None:
         efforts = model.inverse_dynamics(sample.X, sample.V, A, p)
         tau, lam = efforts if name == "tripod_3rps" else (efforts, None)
         forces = model.leg_reactions(sample.X, sample.V, A, p)[..., :size]
-        drives = iter(range(tau.shape[-1]))
+        actuators = iter(range(tau.shape[-1]))
         for index, leg in enumerate(legs):
-            given = sum(tau[:, [next(drives)]] * h for h in leg.h())
+            given = sum(tau[:, [next(actuators)]] * h for h in leg.h())
             if lam is not None:
                 given = given + lam[:, [index]] * leg.k
             passive = given - forces[:, index]

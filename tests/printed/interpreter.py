@@ -303,8 +303,8 @@ class Interpreter:
             return S @ S.T
         start = rf" + {_COLUMNS}\,\mathrm{{diag}}({_ROOTS})\,{_COUPLING}\,"
         assert text.startswith(start), text
-        drives = f"{text.removeprefix(start)} ="
-        (name,) = (b.id for b in self.text.blocks if b.formula.startswith(drives))
+        actuators = f"{text.removeprefix(start)} ="
+        (name,) = (b.id for b in self.text.blocks if b.formula.startswith(actuators))
         return S @ np.diag(r) @ C @ self.array(name)
 
     def joint_displacements(self) -> Any:

@@ -16,7 +16,7 @@ from pne_sym.program.operations import OPERATIONS
 from pne_sym.program.public import Argument, PublicFunction, Value
 from tests import models
 from tests.program.test_public import interpreter, states
-from tests.whole.test_impossible import pose_of_singular_drives
+from tests.whole.test_impossible import pose_of_singular_actuators
 
 OK, UNREACHABLE, SINGULAR, INVALID, NOT_CONVERGED = Status
 
@@ -65,9 +65,9 @@ def test_what_is_not_finite_spoils_what_depends_on_it(name: str) -> None:
 
 
 def test_the_first_cause_is_told() -> None:
-    """Of singular drives and an input that is not finite, the input; the leg before the drives."""
+    """Of singular actuators and an input not finite, the input; the leg before the actuators."""
     run, given = at_home("planar_3rpr")
-    given["X"][1] = pose_of_singular_drives(models.module(models.catalogue("planar_3rpr")))
+    given["X"][1] = pose_of_singular_actuators(models.module(models.catalogue("planar_3rpr")))
     assert call(run, "inverse_dynamics", given) == [OK, SINGULAR, OK]
     assert call(run, "forward_dynamics", given) == [OK, OK, OK]
     given["V"][1] = np.inf

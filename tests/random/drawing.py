@@ -1,7 +1,7 @@
 """Mechanisms drawn at random: the structure first, then a geometry that closes at a home.
 
 Legs of one plan have one structure (leg type) and geometries of their own.  A drawn geometry
-is kept if legs, drives, constraints and inertia are away from singularities at home.
+is kept if legs, actuators, constraints and inertia are away from singularities at home.
 """
 
 from __future__ import annotations
@@ -46,9 +46,9 @@ from tests.random.effects import with_coupling, with_effects, with_efforts
 LEG_QUALITY = 0.06
 """Least reciprocal condition number of a leg's freedoms."""
 DRIVE_QUALITY = 0.02
-"""Least reciprocal condition number of drives and constraints together."""
+"""Least reciprocal condition number of actuators and constraints together."""
 INERTIA_QUALITY = 1e-5
-"""Least reciprocal condition number of the inertia matrix that drives see."""
+"""Least reciprocal condition number of the inertia matrix that actuators see."""
 GUIDED = 25
 """Of so many mechanisms one hangs on a central guide."""
 
@@ -141,7 +141,8 @@ def draw(seed: int, *, light: bool = False, anywhere: bool = True) -> Manipulato
         seed: of the generator.
         light: few leg types and short chains only, for a quick run.
         anywhere: whether every second mechanism, and nearly all with extra coordinates, have
-            drives anywhere, in any number; False: as many as freedoms, or one or two more or less.
+            actuators anywhere, in any number; False: as many as degrees of freedom, or one or two
+            more or less.
     """
     found = _structured(seed, light=light, anywhere=anywhere)
     moves = bool(np.random.default_rng([seed, 5]).random() < MOVING)
@@ -161,7 +162,7 @@ def _structured(seed: int, *, light: bool, anywhere: bool) -> Manipulator:
     rng = np.random.default_rng([seed, 1])
     if not anywhere or rng.random() < (0.1 if extra_indices(drawn) else 0.5):
         return drawn
-    return driven_anywhere(drawn, rng) or drawn
+    return actuated_anywhere(drawn, rng) or drawn
 
 
 def _drawn(seed: int, *, light: bool) -> Manipulator:
@@ -342,7 +343,7 @@ class _Drawing:
                 return np.asarray(drawn / size)
 
     def _geometry(self, plans: list[_LegPlan]) -> Manipulator:
-        """Legs of these plans, closed at a random home, all joints without drives."""
+        """Legs of these plans, closed at a random home, all joints without actuators."""
         rng = self.rng
         point = self.space is Space.POINT
         inertia = random_inertia(rng, 0.05)
@@ -489,12 +490,12 @@ class _Drawing:
     # ---- marks -----------------------------------------------------------------------
 
     def _marks(self, found: Manipulator, owner: list[int]) -> Manipulator | None:
-        """The mechanism with drives: as many as freedoms, more, or fewer; None if singular."""
+        """The mechanism with actuators: as many as freedoms, more, or fewer; None if singular."""
         rng = self.rng
         all_driven = [[True] * len(leg.joints) for leg in found.legs]
         nv = task_size(found.space) + len(extra_indices(found))
         X, q = np.array(found.home.X), np.array(found.home.q)
-        free = project(_driven(found, all_driven), X, q, np.zeros(nv))
+        free = project(_actuated(found, all_driven), X, q, np.zeros(nv))
         if not _regular(free.Hk.T) and free.Hk.size:
             return None
         freedoms = nv - free.Hk.shape[1]
@@ -505,10 +506,14 @@ class _Drawing:
         by_leg = not self.light and len(found.legs) < 4 and rng.random() < 0.3
         for _ in range(60):
             marks = self._some_marks(found, owner, by_leg=by_leg)
-            drives = sum(map(sum, marks))
-            if not drives or drives > freedoms + max(wish, 0) or drives < freedoms + min(wish, 0):
+            actuators = sum(map(sum, marks))
+            if (
+                not actuators
+                or actuators > freedoms + max(wish, 0)
+                or actuators < freedoms + min(wish, 0)
+            ):
                 continue
-            made = _driven(found, marks)
+            made = _actuated(found, marks)
             try:
                 if self._good(made, np.array(made.home.X), np.array(made.home.q)):
                     return made
@@ -524,23 +529,23 @@ class _Drawing:
         for leg, kind in zip(found.legs, owner, strict=True):
             if by_leg or kind not in types:
                 size = len(leg.joints)
-                drives = rng.permutation(size)[
+                actuators = rng.permutation(size)[
                     : int(rng.choice([0, 1, 2, 3], p=[0.1, 0.6, 0.2, 0.1]))
                 ]
-                types[kind] = [index in drives for index in range(size)]
+                types[kind] = [index in actuators for index in range(size)]
             marks.append(types[kind])
         return marks
 
     def _good(self, made: Manipulator, X: Array, q: Array) -> bool:
-        """Whether drives and inertia are away from singularities."""
+        """Whether actuators and inertia are away from singularities."""
         nv = task_size(made.space) + len(extra_indices(made))
         state = project(made, X, q, np.zeros(nv))
         passive = passive_extra_rows(made)
         rows = [row for row in range(nv) if row not in passive]
-        drives = np.hstack([state.H, state.Hk])[rows]
-        if not _regular(drives):
+        actuators = np.hstack([state.H, state.Hk])[rows]
+        if not _regular(actuators):
             return False
-        if np.linalg.svd(drives, compute_uv=False)[-1] < 0.02:
+        if np.linalg.svd(actuators, compute_uv=False)[-1] < 0.02:
             return False
         values = np.linalg.eigvalsh(state.M)
         return bool(values[0] > INERTIA_QUALITY * values[-1])
@@ -567,8 +572,8 @@ def _lacks(leg: Leg, *, planar: bool) -> bool:
     return len(leg.joints) < most and not any(joint.extra for joint in leg.joints)
 
 
-def driven_anywhere(drawn: Manipulator, rng: np.random.Generator) -> Manipulator | None:
-    """The mechanism with other drives: in any joints, in any number; None if all are singular."""
+def actuated_anywhere(drawn: Manipulator, rng: np.random.Generator) -> Manipulator | None:
+    """The mechanism with other actuators: anywhere, in any number; None if all are singular."""
     for _ in range(30):
         chance = float(rng.choice([0.3, 0.5, 0.7, 0.9]))
         marks = [
@@ -577,7 +582,7 @@ def driven_anywhere(drawn: Manipulator, rng: np.random.Generator) -> Manipulator
         ]
         if not any(map(any, marks)):
             continue
-        made = _driven(drawn, marks)
+        made = _actuated(drawn, marks)
         if is_clear(made, np.array(made.home.X), np.array(made.home.q)):
             return made
     return None
@@ -610,7 +615,7 @@ def _regular(matrix: Array) -> bool:
     return bool(values[-1] > DRIVE_QUALITY * values[0])
 
 
-def _driven(manipulator: Manipulator, marks: list[list[bool]]) -> Manipulator:
+def _actuated(manipulator: Manipulator, marks: list[list[bool]]) -> Manipulator:
     legs = tuple(
         replace(
             leg,

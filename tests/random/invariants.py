@@ -55,12 +55,12 @@ class Invariants:
         A = accelerated(self.manipulator, ours, self.rng.uniform(-20.0, 20.0, m.NU))
         self._null_space(note)
         if not are_held(np.hstack([ours.H, ours.Hk]), self.passive):
-            note("too few drives", 0.0 if np.isnan(self._forces(A)).all() else np.inf)
+            note("too few actuators", 0.0 if np.isnan(self._forces(A)).all() else np.inf)
             found = self._completed(A)
             empty = np.isnan(found).all() if self.passive else np.array_equal(found, A)
-            note("completed for too few drives", 0.0 if empty else np.inf)
+            note("completed for too few actuators", 0.0 if empty else np.inf)
             return
-        note("completed A of drives", _off(self._completed(A), A))
+        note("completed A of actuators", _off(self._completed(A), A))
         self._round_trip(note, ours, A)
         N, c = admissible(ours)
         any_A = c + N @ self.rng.uniform(-5.0, 5.0, N.shape[1])

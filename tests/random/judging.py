@@ -42,7 +42,7 @@ from tests.oracle.specs import State, random_state
 from tests.random.invariants import Invariants
 
 TOLERANCE = 1e-9
-"""Largest error of a right answer; legs and drives of what is drawn are well conditioned."""
+"""Largest error of a right answer; legs and actuators of what is drawn are well conditioned."""
 GUESS = 0.02
 """How far the first guess of an iterated leg is off, m or rad."""
 
@@ -106,7 +106,7 @@ def judge(
         verdict.stateless = True
         home = np.array(manipulator.home.X), np.array(manipulator.home.q)
         drawn = [_at_home(manipulator, rng, *home)]
-    drawn = [_under_drives(manipulator, rng, state) for state in drawn]
+    drawn = [_under_actuators(manipulator, rng, state) for state in drawn]
     verdict.iterated = any(not info.is_closed for info in bundle.derivation.leg_types)
     verdict.constrained = module.NC > 0
     verdict.overconstrained = module.OVERCONSTRAINED > 0
@@ -135,16 +135,16 @@ def _at_home(manipulator: Manipulator, rng: np.random.Generator, X: Array, q: Ar
     wrench = rng.uniform(-20.0, 20.0, nv - len(extra_indices(manipulator)))
     try:
         A = complete(manipulator, X, q, V, A, wrench)
-    except OracleError:  # too few drives leave passive coordinates open
+    except OracleError:  # too few actuators leave passive coordinates open
         A = _caused(manipulator, rng, State(X, q, V, A, wrench))
     return State(X, q, V, A, wrench)
 
 
-def _under_drives(manipulator: Manipulator, rng: np.random.Generator, state: State) -> State:
+def _under_actuators(manipulator: Manipulator, rng: np.random.Generator, state: State) -> State:
     """The state, with an acceleration that passive extra coordinates and constraints both obey.
 
     Where constraints hold passive coordinates, completing A from their rows could leave the
-    manifold; what drives and wrench cause does not.
+    manifold; what actuators and wrench cause does not.
     """
     moving = project(manipulator, *state)
     passive = passive_extra_rows(manipulator)
@@ -154,7 +154,7 @@ def _under_drives(manipulator: Manipulator, rng: np.random.Generator, state: Sta
 
 
 def _caused(manipulator: Manipulator, rng: np.random.Generator, state: State) -> Array:
-    """The acceleration that random drives cause at a state."""
+    """The acceleration that random actuators cause at a state."""
     moving = project(manipulator, *state)
     return accelerated(manipulator, moving, rng.uniform(-20.0, 20.0, moving.H.shape[1]))
 
@@ -197,7 +197,7 @@ class _Comparison:
         note("rates", m.joint_rates(s.X, s.V, **guess), ours.qd)
         note("accelerations", m.joint_accelerations(s.X, s.V, s.A, **guess), ours.qdd)
         self._dynamics()
-        self._drives()
+        self._actuators()
         self._controller()
         Invariants(self.manipulator, m, s, self.rng, guess).check(self.verdict.note)
         kinetic, potential = m.energy(s.X, s.V, **guess)
@@ -261,8 +261,8 @@ class _Comparison:
         size = 1.0 + np.abs(ours.constraint_bias).max(initial=0.0) + np.abs(s.A).max()
         self.verdict.note("constraint bias", float(np.abs(left).max() / size))
 
-    def _drives(self) -> None:
-        """Inverse and forward dynamics, reactions: where the drives determine them."""
+    def _actuators(self) -> None:
+        """Inverse and forward dynamics, reactions: where the actuators determine them."""
         m, s, ours, guess = self.module, self.state, self.ours, self.guess
         motion = m.forward_dynamics(s.X, s.V, ours.tau, wrench=s.wrench, **guess)
         expected = accelerated(self.manipulator, ours, ours.tau)

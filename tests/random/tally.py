@@ -123,7 +123,7 @@ def features(manipulator: Manipulator) -> frozenset[str]:
 
 
 def _ranks(manipulator: Manipulator) -> set[str]:
-    """What the drives hold at home."""
+    """What the actuators hold at home."""
     twist = task_size(manipulator.space) + len(extra_indices(manipulator))
     home = np.array(manipulator.home.X), np.array(manipulator.home.q)
     try:
@@ -132,12 +132,12 @@ def _ranks(manipulator: Manipulator) -> set[str]:
         return set()
     K, passive = np.hstack([state.H, state.Hk]), passive_extra_rows(manipulator)
     if not are_held(K, passive):
-        return {"too few drives"}
-    found = {"redundant drives"} if K.shape[1] > rank(K) else set()
+        return {"too few actuators"}
+    found = {"redundant actuators"} if K.shape[1] > rank(K) else set()
     if passive:
         least = twist - len(passive)
         what = "all" if rank(K) == twist else "some" if rank(K) > least else "none"
-        found.add(f"passive extra, {what} held by surplus drives")
+        found.add(f"passive extra, {what} held by surplus actuators")
     return found
 
 

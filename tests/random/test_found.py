@@ -180,7 +180,7 @@ def planar_leg_in_space() -> Manipulator:
 
 
 def rollers() -> Manipulator:
-    """Four driven planar legs, each with a roller about its elbow: more drives than needed."""
+    """Four driven planar legs, each with a roller about its elbow: more actuators than needed."""
     chain = (joint(R, Z, driven=True), joint(R, Z, (0.4, 0.0, 0.0)))
     passive = replace(joint(R, Z), extra=True)
     seats = [(0.1, 0.1, 0.0), (-0.1, 0.1, 0.0), (-0.1, -0.2, 0.0), (0.2, -0.1, 0.0)]
@@ -235,7 +235,7 @@ def test_a_singular_leg_that_transmits_moments_is_refused() -> None:
 
 
 def rollers_in_space(order: str) -> Manipulator:
-    """Seven driven legs, each with a roller about its tilted elbow: one drive too many."""
+    """Seven driven legs, each with a roller about its tilted elbow: one actuator too many."""
     rng = np.random.default_rng(1)
     elbow, beyond = joint(R, TILTED), [joint(P, X, (0.05, 0.02, 0.01), driven=True)]
     pair = [elbow, replace(elbow, extra=True)]

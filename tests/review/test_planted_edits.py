@@ -13,7 +13,7 @@ from tests.review.folders import Edit, compared, diff, edit, pair, texts
 from tests.sampling import sampled
 
 MODEL = "planar_3rpr"
-FILES = tuple(sorted(texts(MODEL)))
+FILES = ("__init__.py", *(f"{MODEL}.{kind}" for kind in ("c", "h", "json", "md", "py")))
 PER_FILE = 9
 
 
@@ -85,6 +85,10 @@ def test_a_named_edit_is_found(case: str, tmp_path: Path) -> None:
     assert f"{file}: differs, line" in done.output
     assert "values not compared" in done.output
     assert diff(after, before, "--quiet").exit_code == 1
+
+
+def test_all_files_are_edited() -> None:
+    assert sorted(texts(MODEL)) == sorted(FILES)
 
 
 def mutated(text: str, rng: random.Random) -> str:

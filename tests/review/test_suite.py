@@ -107,7 +107,7 @@ EDITS: dict[str, tuple[Replaced, str, int]] = {
         "leg type rpr: joint 2 (R) inserted",
         165,
     ),
-    "drive moved": (
+    "actuator moved": (
         (("actuated = true\n", ""), ('kind = "R"\n', 'kind = "R"\nactuated = true\n')),
         "leg type rpr: actuated joint moved from joint 2 to joint 1",
         80,

@@ -19,7 +19,7 @@ from pne_sym.model.reader import from_text, read_spec
 from pne_sym.starter import PointsFile, Rings, parse_legs, starter_text, write_starter
 from tests.sampling import sampled
 
-# architecture, space, freedoms, drives, constraints, extra coordinates
+# architecture, space, freedoms, actuators, constraints, extra coordinates
 KNOWN: list[tuple[str, str | None, int, int, int, int]] = [
     ("6-UPS", None, 6, 6, 0, 0),
     ("7-UPS", None, 6, 7, 0, 0),

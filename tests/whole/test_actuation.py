@@ -43,7 +43,7 @@ class Case(NamedTuple):
 
 
 CASES = {
-    "an extra joint held by a surplus drive": Case(
+    "an extra joint held by a surplus actuator": Case(
         "spatial", ["Rz* Ry* Ry* Ry+ | S", ARM, ARM], (7, 7, 7), plain=True
     ),
     "spins that nothing acts on": Case(
@@ -54,22 +54,22 @@ CASES = {
         coupled=False, plain=True,
     ),
     "planar, held": Case("planar", ["Rz* Rz* Rz+ | R", "Rz* Px* | R"], (4, 4, 4)),
-    "planar, held, more drives": Case(
+    "planar, held, more actuators": Case(
         "planar", ["Rz* Rz* Rz+ | R", "Rz* Px* | R", "Rz* Px | R"], (4, 5, 4)
     ),
-    "two extra joints of a leg, one surplus drive": Case(
+    "two extra joints of a leg, one surplus actuator": Case(
         "planar", ["Rz* Rz* Rz+ Rz+ | R", "Rz* Px* | R"], (5, 4, 4)
     ),
-    "three extra joints, one surplus drive and two": Case(
+    "three extra joints, one surplus actuator and two": Case(
         "planar", ["Rz* Rz* Rz+ Rz+ | R", "Rz* Px* Rz+ | R"], (6, 4, 4)
     ),
-    "extra joints of two legs, one surplus drive": Case(
+    "extra joints of two legs, one surplus actuator": Case(
         "planar", ["Rz* Rz+ Rz* | R", "Rz* Rz+ Px | R", "Rz* Px | R"], (5, 4, 4)
     ),
-    "an extra joint held, another out of reach, and a drive to spare": Case(
+    "an extra joint held, another out of reach, and an actuator to spare": Case(
         "planar", ["Rz* Rz* Rz+ | R", "Rz* Px* | R", "Rz* Px | R", "Rz Px Rz+ | R"], (5, 5, 4)
     ),
-    "drives that act on an extra joint, as many as other rows": Case(
+    "actuators that act on an extra joint, as many as other rows": Case(
         "planar", ["Rz* Rz Rz+ | R", "Rz* Px* | R"], (4, 3, 3)
     ),
     "the constraint holds the extra joint": Case(
@@ -78,10 +78,10 @@ CASES = {
     "the constraint acts on the extra joint": Case(
         "planar", ["Rz+ Rz* | R", "Rz* Px | R"], (4, 3, 3)
     ),
-    "constrained, two extra joints, one surplus drive": Case(
+    "constrained, two extra joints, one surplus actuator": Case(
         "planar", ["Rz* | R", "Rz* Rz* Rz+ Rz+ | R"], (5, 4, 4)
     ),
-    "constrained, an extra joint held, another out of reach, and a drive to spare": Case(
+    "constrained, an extra joint held, another out of reach, and an actuator to spare": Case(
         "planar", ["Rz* | R", "Rz* Rz* Rz+ | R", "Rz* Px | R", "Rz Px Rz+ | R"], (5, 5, 4)
     ),
     "too few": Case("planar", ["Rz* Rz Rz+ | R", "Rz* Px | R"], (4, 2, 2), held=False),
@@ -98,7 +98,7 @@ CASES = {
     ),
 }  # fmt: skip
 
-RUN = ("planar, held", "constrained, two extra joints, one surplus drive", "too few")
+RUN = ("planar, held", "constrained, two extra joints, one surplus actuator", "too few")
 """In every run."""
 
 

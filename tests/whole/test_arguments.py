@@ -15,7 +15,7 @@ from tests.whole.calls import NOT_VECTORS, functions, states
 from tests.whole.cases import Array, case
 
 NAMES = ("fivebar_redundant", "hexapod_6x6r", "planar_3rpr", "spherical_3ups", "tripod_3rps")
-"""Redundant drives, iteration, a plane, a fixed centre, constraints."""
+"""Redundant actuators, iteration, a plane, a fixed centre, constraints."""
 REQUIRED = {"X", "V", "A", "tau", "q_actuated", "X0", "X1", "step", "s", "t", "R", "rpy", "p"}
 REQUIRED |= {"direction", "wrench_direction", "tau_min", "tau_max"}
 
@@ -157,7 +157,7 @@ def test_options_are_given_by_keyword(name: str) -> None:
 
 
 def test_weights_are_positive_numbers() -> None:
-    """Also where the drives are not redundant, and they have no effect."""
+    """Also where the actuators are not redundant, and they have no effect."""
     for name in ("fivebar_redundant", "stewart", "hexapod_6x6r"):
         model = module(catalogue(name))
         still = np.zeros(model.NV)
@@ -170,7 +170,7 @@ def test_weights_are_positive_numbers() -> None:
 
 @pytest.mark.parametrize("name", ["fivebar_redundant", "planar_4rpr"])
 def test_weights_of_every_state(name: str) -> None:
-    """Also where there are as many states as rows of H, or drives."""
+    """Also where there are as many states as rows of H, or actuators."""
     c = case(name, 3)
     for count in (2, c.model.NV, c.model.NU):
         v = states(c, (count,), seed=2)

@@ -275,7 +275,7 @@ def test_manipulability(name: str) -> None:
     np.testing.assert_allclose(isotropy, sigma[:, -1] / sigma[:, 0], rtol=1e-9)
 
 
-def test_at_singular_drives() -> None:
+def test_at_singular_actuators() -> None:
     """The measure and the distance vanish with the least singular value; legs are as they were."""
     m = module(catalogue("planar_3rpr"))
     poses = m.HOME_X + np.array([0.0, 0.0, 1.0]) * np.linspace(-3.0, 3.0, 2001)[:, None]

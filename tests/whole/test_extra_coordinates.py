@@ -110,8 +110,8 @@ def test_inertia_is_partitioned(name: str, seed: int) -> None:
 
 @pytest.mark.parametrize("name", EXTRA)
 @pytest.mark.parametrize("seed", SEEDS)
-def test_drives_are_partitioned(name: str, seed: int) -> None:
-    """tau . q' of the drives is V . H tau: H_y tells what they do with the platform held."""
+def test_actuators_are_partitioned(name: str, seed: int) -> None:
+    """tau . q' of the actuators is V . H tau: H_y tells what they do with the platform held."""
     c = case(name, seed)
     H, rng = c.blocks()[2], np.random.default_rng(seed)
     driven = c.joints("actuated")
@@ -124,7 +124,7 @@ def test_drives_are_partitioned(name: str, seed: int) -> None:
 
 @pytest.mark.parametrize("name", PASSIVE)
 @pytest.mark.parametrize("seed", SEEDS)
-def test_no_drive_reaches_a_passive_spin(name: str, seed: int) -> None:
+def test_no_actuator_reaches_a_passive_spin(name: str, seed: int) -> None:
     """Eq. 7: H_y is zero, and the platform's columns are those without spin."""
     c = case(name, seed)
     assert not c.blocks()[2][c.y].any()
@@ -132,8 +132,8 @@ def test_no_drive_reaches_a_passive_spin(name: str, seed: int) -> None:
 
 @pytest.mark.parametrize("name", DRIVEN)
 @pytest.mark.parametrize("seed", SEEDS)
-def test_drives_reach_a_redundant_joint(name: str, seed: int) -> None:
-    """Eq. 6: its own drive by 1, those of its leg by the motion that it forces on them."""
+def test_actuators_reach_a_redundant_joint(name: str, seed: int) -> None:
+    """Eq. 6: its own actuator by 1, those of its leg by the motion that it forces on them."""
     c = case(name, seed)
     H = c.blocks()[2]
     own = [c.joints("actuated").index(k) for k in c.joints("extra")]
@@ -180,7 +180,7 @@ def test_complete_acceleration(name: str, seed: int) -> None:
 
 
 @pytest.mark.parametrize("name", DRIVEN)
-def test_complete_acceleration_leaves_driven_coordinates(name: str) -> None:
+def test_complete_acceleration_leaves_actuated_coordinates(name: str) -> None:
     c = case(name, 1)
     X, _, V, A, _ = c.state
     assert np.array_equal(c.model.complete_acceleration(X, V, A, c.p), A)
@@ -254,7 +254,7 @@ def test_spins_keep_turning(name: str) -> None:
 
 @pytest.mark.parametrize("name", EXTRA)
 def test_a_simulated_second_keeps_its_energy(name: str) -> None:
-    """Forward dynamics in motion: energy changes by the work of the drives."""
+    """Forward dynamics in motion: energy changes by the work of the actuators."""
     model = module(catalogue(name))
     spec = catalogue(name)
     joints = [joint for leg in spec.legs for joint in leg.joints]

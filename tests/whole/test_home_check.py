@@ -230,7 +230,7 @@ def test_too_few_actuators_are_named_once() -> None:
     )
 
 
-def test_singular_drives_are_told_with_the_reason() -> None:
+def test_singular_actuators_are_told_with_the_reason() -> None:
     """Two legs driven along one line, the third not at all."""
     spec = models.catalogue("planar_4rpr")
     driven = (True, True, False, True)

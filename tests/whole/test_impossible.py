@@ -107,7 +107,7 @@ def test_a_leg_that_does_not_reach(name: str, count: int) -> None:
 
 
 @pytest.mark.parametrize("name", ["delta", "fivebar_revolute", "hybrid_3rrrs"])
-def test_drives_that_no_pose_fits(name: str) -> None:
+def test_actuators_that_no_pose_fits(name: str) -> None:
     """Forward kinematics fails rather than giving the nearest pose."""
     c = case(name, 1)
     vectors = states(c, (FEW,))
@@ -149,10 +149,10 @@ def _pose_with_first_leg_singular(c: Case, X: Array, off: float) -> Array:
 
 
 @pytest.mark.parametrize("name", ["planar_3rpr", "stewart"])
-def test_singular_drives(name: str) -> None:
+def test_singular_actuators(name: str) -> None:
     """Where det H = 0 inverse dynamics fails; M, Z, H and forward dynamics do not."""
     model = module(catalogue(name))
-    X = pose_of_singular_drives(model)
+    X = pose_of_singular_actuators(model)
     V, tau = np.linspace(-1.0, 1.0, model.NV), np.linspace(-5.0, 9.0, model.NU)
     for count in (1, MANY):
         poses = np.tile(np.array(model.HOME_X), (count, 1))
@@ -166,7 +166,7 @@ def test_singular_drives(name: str) -> None:
         assert np.isfinite(model.forward_dynamics(poses, V, tau)).all()
 
 
-def pose_of_singular_drives(model: Any) -> Array:
+def pose_of_singular_actuators(model: Any) -> Array:
     """From home about the vertical: where the determinant of H changes its sign."""
 
     def turned(yaw: float) -> Array:

@@ -93,7 +93,7 @@ def test_forward_kinematics_undoes_inverse_kinematics(name: str) -> None:
     q = c.state.q[actuated_indices(c.spec)]
     X0 = np.array(c.spec.home.X)
     if c.spec.name == "stewart_sps":
-        X0[7:] = c.state.X[7:]  # spins, which no drive determines, stay
+        X0[7:] = c.state.X[7:]  # spins, which no actuator determines, stay
     found = c.model.forward_kinematics(q, X0, c.p)
     assert np.abs(found - X0).max() > 1e-2
     assert np.abs(step_between(c.spec, c.state.X, found)).max() < 1e-9

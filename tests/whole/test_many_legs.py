@@ -60,7 +60,7 @@ def test_right(count: int) -> None:
     assert relative_error(model.inverse_kinematics(X), state.q) < TOLERANCE
     assert relative_error(model.joint_accelerations(X, V, A), oracle.qdd) < TOLERANCE
     tau = model.inverse_dynamics(X, V, A, wrench=wrench)
-    if count < 6:  # no forces of five drives give any acceleration
+    if count < 6:  # no forces of five actuators give any acceleration
         assert np.isnan(tau).all()
     else:
         assert relative_error(tau, oracle.tau) < TOLERANCE

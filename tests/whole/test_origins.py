@@ -76,7 +76,7 @@ def test_a_central_leg_at_the_origins(name: str, residue: float) -> None:
 
 @pytest.mark.parametrize("name", sampled(["tricept", "quadrupod"], 2))
 def test_reactions_and_lambda_of_a_central_leg(name: str) -> None:
-    """What the constraints do, and forces in the drives, by the independent projection."""
+    """What the constraints do, and forces in the actuators, by the independent projection."""
     spec = catalogue(name)
     m = module(spec)
     for seed in range(3):

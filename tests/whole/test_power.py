@@ -1,4 +1,4 @@
-"""Energy: its rate is the power of drives and wrench; a free motion keeps it."""
+"""Energy: its rate is the power of actuators and wrench; a free motion keeps it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ FREE = ("delta", "fivebar_offset", "planar_redundant", "spherical_3ups", "stewar
 
 @pytest.mark.parametrize("name", entries())
 def test_power_balance(name: str) -> None:
-    """d/dt (kinetic + potential) = tau . qd of the drives + wrench . V; lambda does no work."""
+    """d/dt (kinetic + potential) = tau . qd of the actuators + wrench . V; lambda does no work."""
     c = case(name, 2)
     m, p, s = c.model, c.p, c.state
 

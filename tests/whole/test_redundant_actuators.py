@@ -1,4 +1,4 @@
-"""More drives than freedoms: least effort, weights, forces that cancel each other."""
+"""More actuators than freedoms: least effort, weights, forces that cancel each other."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.oracle.specs import State
 
 Array = NDArray[np.float64]
 REDUNDANT = {"planar_4rpr": 1, "fivebar_redundant": 1, "stewart_7ups": 1}
-"""Name -> how many drives more than freedoms."""
+"""Name -> how many actuators more than freedoms."""
 FREE = {"planar_4rpr_free": "planar_4rpr", "stewart_7ups_free": "stewart_7ups"}
 SEEDS = (1, 2, 3)
 
@@ -29,7 +29,7 @@ class Case(NamedTuple):
 
     @property
     def force(self) -> Array:
-        """What the drives must give, with the wrench."""
+        """What the actuators must give, with the wrench."""
         X, _, V, A, wrench = self.state
         M, Z, _ = self.model.dynamics(X, V, self.p)
         return np.asarray(M @ A + Z - wrench)
@@ -84,8 +84,8 @@ def test_equal_weights_are_no_weights(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", REDUNDANT)
-def test_a_heavy_drive_rests(name: str) -> None:
-    """A weight beyond all others takes a drive out: its force goes to zero."""
+def test_a_heavy_actuator_rests(name: str) -> None:
+    """A weight beyond all others takes an actuator out: its force goes to zero."""
     c = case(name, 2)
     weights = np.ones(c.model.NU)
     weights[0] = 1e8
@@ -151,7 +151,7 @@ def test_no_redundancy_no_null_space() -> None:
 @pytest.mark.parametrize(("name", "driven"), FREE.items())
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_free_leg_has_no_column_but_its_inertia(name: str, driven: str, seed: int) -> None:
-    """Section 3.3: with its drive off, the same M and Z, and H without a column."""
+    """Section 3.3: with its actuator off, the same M and Z, and H without a column."""
     c = case(driven, seed)
     free = module(catalogue(name))
     p = live_parameters(catalogue(name), c.spec)
@@ -164,8 +164,8 @@ def test_a_free_leg_has_no_column_but_its_inertia(name: str, driven: str, seed: 
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_an_elbow_driven_too(seed: int) -> None:
-    """Section 3.4: the column of the elbow's drive is -S / (l u sin(elbow))."""
+def test_an_elbow_actuated_too(seed: int) -> None:
+    """Section 3.4: the column of the elbow's actuator is -S / (l u sin(elbow))."""
     c = case("fivebar_redundant", seed)
     leg, q = c.spec.legs[0], c.model.inverse_kinematics(c.state.X, c.p)
     S = c.state.X - np.array(leg.base_point)[:2]

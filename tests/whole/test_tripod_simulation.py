@@ -30,7 +30,7 @@ class Run(NamedTuple):
     Attributes:
         gap, slip: largest residual of the constraints and of their rate, step by step.
         energy: kinetic and potential, step by step.
-        work: of drives and wrench, step by step.
+        work: of actuators and wrench, step by step.
         speed: largest entry of V, step by step.
     """
 
@@ -58,7 +58,7 @@ class Rig:
         self.swing = 0.06 if name.startswith("tripod") else 0.25
 
     def control(self, X: Array, V: Array, time: float) -> tuple[Array, float]:
-        """Drive forces, and the power of drives and wrench."""
+        """Actuator forces, and the power of actuators and wrench."""
         q = self.model.inverse_kinematics(X)[self.driven]
         qd = self.model.joint_rates(X, V)[self.driven]
         phase = 2 * np.pi * (1.5 * time + np.arange(len(self.driven)) / 3)
@@ -150,7 +150,7 @@ def test_stays_on_its_constraints(name: str, method: str) -> None:
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("method", ["baumgarte", "projection"])
 def test_energy_is_accounted_for(name: str, method: str) -> None:
-    """Kinetic and potential energy change by the work of drives and wrench."""
+    """Kinetic and potential energy change by the work of actuators and wrench."""
     run = simulated(name, method)
     turned_over = np.ptp(run.energy)
     assert turned_over > 0.3
