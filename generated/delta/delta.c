@@ -231,15 +231,12 @@ INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *t
 }
 
 /* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
-INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+INLINE const real *optional(size_t size, const real *x, const real *none, real *flags)
 {
-    for (size_t e = 0; e < size && !x; ++e) {
-        own[e] = none;
-    }
     if (x) {
         check(size, 1, x, flags);
     }
-    return x ? x : own;
+    return x ? x : none;
 }
 
 INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
@@ -296,6 +293,16 @@ APART void refuse(size_t size, real *out)
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
     }
+}
+
+/* The status of a state; an output is refused where it is impossible. */
+INLINE int settled(const verdict *t, size_t size, real *out)
+{
+    const int code = judge(t);
+    if (code != OK) {
+        refuse(size, out);
+    }
+    return code;
 }
 
 /* Outputs of a state where the user wants them, and of states side by side, state by state. */
@@ -425,34 +432,34 @@ INLINE int all_rotations(const real *x, size_t n)
 /* ---- parameters ---- */
 
 const delta_params delta_default_params = {
-    {R(0.0), R(0.0), R(-9.81)},  /* gravity */
+    {0, 0, R(-9.81)},  /* gravity */
     R(12.0),  /* platform_mass */
-    {R(0.0), R(0.0), R(0.04)},  /* platform_centre_of_mass */
-    {{R(0.35), R(0.0), R(0.0)}, {R(0.0), R(0.35), R(0.0)}, {R(0.0), R(0.0), R(0.6)}},  /* platform_inertia */
+    {0, 0, R(0.04)},  /* platform_centre_of_mass */
+    {{R(0.35), 0, 0}, {0, R(0.35), 0}, {0, 0, R(0.6)}},  /* platform_inertia */
     {  /* rus_base_point */
         {R(0.1802178809433753), R(0.0963096790064947), R(-0.05509077993660594)},
         {R(-0.13485531508379248), R(0.10559791553422637), R(-0.05509077993660594)},
         {R(0.014637434140417075), R(-0.17190759454072108), R(-0.05509077993660594)},
     },
     {  /* rus_base_frame */
-        {{R(0.0), R(0.9950041652780258), R(-0.09983341664682815)}, {R(0.0), R(0.09983341664682815), R(0.9950041652780258)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.5839603576017622), R(-0.8117821756786866)}, {R(0.0), R(0.8117821756786866), R(-0.5839603576017622)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.4110438076762642), R(0.9116155923255144)}, {R(0.0), R(-0.9116155923255144), R(-0.4110438076762642)}, {R(1.0), R(0.0), R(0.0)}},
+        {{0, R(0.9950041652780258), R(-0.09983341664682815)}, {0, R(0.09983341664682815), R(0.9950041652780258)}, {1, 0, 0}},
+        {{0, R(-0.5839603576017622), R(-0.8117821756786866)}, {0, R(0.8117821756786866), R(-0.5839603576017622)}, {1, 0, 0}},
+        {{0, R(-0.4110438076762642), R(0.9116155923255144)}, {0, R(-0.9116155923255144), R(-0.4110438076762642)}, {1, 0, 0}},
     },
     {  /* rus_platform_point */
-        {R(0.1194004998333631), R(0.011980009997619378), R(0.0)},
-        {R(-0.07007524291221147), R(0.09741386108144238), R(0.0)},
-        {R(-0.0493252569211517), R(-0.10939387107906172), R(0.0)},
+        {R(0.1194004998333631), R(0.011980009997619378), 0},
+        {R(-0.07007524291221147), R(0.09741386108144238), 0},
+        {R(-0.0493252569211517), R(-0.10939387107906172), 0},
     },
     {  /* rus_joint2_offset */
-        {R(0.2), R(0.0), R(0.0)},
-        {R(0.2), R(0.0), R(0.0)},
-        {R(0.2), R(0.0), R(0.0)},
+        {R(0.2), 0, 0},
+        {R(0.2), 0, 0},
+        {R(0.2), 0, 0},
     },
     {  /* rus_platform_joint_offset */
-        {R(0.7), R(0.0), R(0.0)},
-        {R(0.7), R(0.0), R(0.0)},
-        {R(0.7), R(0.0), R(0.0)},
+        {R(0.7), 0, 0},
+        {R(0.7), 0, 0},
+        {R(0.7), 0, 0},
     },
     {  /* rus_link1_mass */
         R(1.2),
@@ -460,14 +467,14 @@ const delta_params delta_default_params = {
         R(1.2),
     },
     {  /* rus_link1_centre_of_mass */
-        {R(0.1), R(0.0), R(0.0)},
-        {R(0.1), R(0.0), R(0.0)},
-        {R(0.1), R(0.0), R(0.0)},
+        {R(0.1), 0, 0},
+        {R(0.1), 0, 0},
+        {R(0.1), 0, 0},
     },
     {  /* rus_link1_inertia */
-        {{R(0.00024), R(0.0), R(0.0)}, {R(0.0), R(0.00412), R(0.0)}, {R(0.0), R(0.0), R(0.00412)}},
-        {{R(0.00024), R(0.0), R(0.0)}, {R(0.0), R(0.00412), R(0.0)}, {R(0.0), R(0.0), R(0.00412)}},
-        {{R(0.00024), R(0.0), R(0.0)}, {R(0.0), R(0.00412), R(0.0)}, {R(0.0), R(0.0), R(0.00412)}},
+        {{R(0.00024), 0, 0}, {0, R(0.00412), 0}, {0, 0, R(0.00412)}},
+        {{R(0.00024), 0, 0}, {0, R(0.00412), 0}, {0, 0, R(0.00412)}},
+        {{R(0.00024), 0, 0}, {0, R(0.00412), 0}, {0, 0, R(0.00412)}},
     },
     {  /* rus_link3_mass */
         R(1.1),
@@ -475,14 +482,14 @@ const delta_params delta_default_params = {
         R(1.1),
     },
     {  /* rus_link3_centre_of_mass */
-        {R(0.35), R(0.0), R(0.0)},
-        {R(0.35), R(0.0), R(0.0)},
-        {R(0.35), R(0.0), R(0.0)},
+        {R(0.35), 0, 0},
+        {R(0.35), 0, 0},
+        {R(0.35), 0, 0},
     },
     {  /* rus_link3_inertia */
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.04502666666666666), R(0.0)}, {R(0.0), R(0.0), R(0.04502666666666666)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.04502666666666666), R(0.0)}, {R(0.0), R(0.0), R(0.04502666666666666)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.04502666666666666), R(0.0)}, {R(0.0), R(0.0), R(0.04502666666666666)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.04502666666666666), 0}, {0, 0, R(0.04502666666666666)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.04502666666666666), 0}, {0, 0, R(0.04502666666666666)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.04502666666666666), 0}, {0, 0, R(0.04502666666666666)}},
     },
 };
 
@@ -527,6 +534,9 @@ static int acceptable(const delta_params *p)
     return ok;
 }
 
+#define KEEP(name) model->name = name
+#define KEEP_OF_LEG(name) model->name[leg] = name
+
 int delta_prepare(const delta_params *params, delta_model *model)
 {
     if (!acceptable(params)) {
@@ -554,10 +564,10 @@ int delta_prepare(const delta_params *params, delta_model *model)
     const real h_star_t_3 = platform_centre_of_mass_z*platform_mass;
     /* (spread) rms distance of the platform points from their centroid */
     const real spread_t = R(0.3333333333333333)*root(3);
-    model->gravity_x = gravity_x;
-    model->gravity_y = gravity_y;
-    model->gravity_z = gravity_z;
-    model->spread_t = spread_t;
+    KEEP(gravity_x);
+    KEEP(gravity_y);
+    KEEP(gravity_z);
+    KEEP(spread_t);
     for (size_t leg = 0; leg < FILLED(LEGS_OF_rus); ++leg) {
         const size_t own = leg < LEGS_OF_rus ? leg : 0;
         const real rus_base_point_x = params->rus_base_point[own][0];
@@ -684,63 +694,63 @@ int delta_prepare(const delta_params *params, delta_model *model)
             rus_base_frame_yy*rus_base_point_y + rus_base_frame_zy*rus_base_point_z;
         const real rus_potential_t_3 = rus_link1_mass*(rus_base_frame_xz*rus_base_point_x +
             rus_base_frame_yz*rus_base_point_y + rus_base_frame_zz*rus_base_point_z);
-        model->inv_rus_rho2_1_t[leg] = inv_rus_rho2_1_t;
-        model->inv_rus_size[leg] = inv_rus_size;
-        model->inv_rus_size_t[leg] = inv_rus_size_t;
-        model->inv_rus_size_t_2[leg] = inv_rus_size_t_2;
-        model->inv_rus_size_t_3[leg] = inv_rus_size_t_3;
-        model->rus_J_1_in_spec1_zz[leg] = rus_J_1_in_spec1_zz;
-        model->rus_J_3_in_spec3_xx[leg] = rus_J_3_in_spec3_xx;
-        model->rus_J_3_in_spec3_xy[leg] = rus_J_3_in_spec3_xy;
-        model->rus_J_3_in_spec3_xz[leg] = rus_J_3_in_spec3_xz;
-        model->rus_J_3_in_spec3_yz[leg] = rus_J_3_in_spec3_yz;
-        model->rus_J_3_in_spec3_zz[leg] = rus_J_3_in_spec3_zz;
-        model->rus_J_3_t[leg] = rus_J_3_t;
-        model->rus_J_3_t_2[leg] = rus_J_3_t_2;
-        model->rus_Sigma_3_in_axes3_xx[leg] = rus_Sigma_3_in_axes3_xx;
-        model->rus_Sigma_3_in_axes3_yy[leg] = rus_Sigma_3_in_axes3_yy;
-        model->rus_Sigma_3_in_axes3_zz[leg] = rus_Sigma_3_in_axes3_zz;
-        model->rus_base_frame_xx[leg] = rus_base_frame_xx;
-        model->rus_base_frame_xy[leg] = rus_base_frame_xy;
-        model->rus_base_frame_xz[leg] = rus_base_frame_xz;
-        model->rus_base_frame_yx[leg] = rus_base_frame_yx;
-        model->rus_base_frame_yy[leg] = rus_base_frame_yy;
-        model->rus_base_frame_yz[leg] = rus_base_frame_yz;
-        model->rus_base_frame_zx[leg] = rus_base_frame_zx;
-        model->rus_base_frame_zy[leg] = rus_base_frame_zy;
-        model->rus_base_frame_zz[leg] = rus_base_frame_zz;
-        model->rus_base_point_x[leg] = rus_base_point_x;
-        model->rus_base_point_y[leg] = rus_base_point_y;
-        model->rus_base_point_z[leg] = rus_base_point_z;
-        model->rus_branch_1[leg] = rus_branch_1;
-        model->rus_branch_2[leg] = rus_branch_2;
-        model->rus_d_Gamma_3_in_axes3_y[leg] = rus_d_Gamma_3_in_axes3_y;
-        model->rus_d_Gamma_3_t[leg] = rus_d_Gamma_3_t;
-        model->rus_d_c_in_axes3_yy[leg] = rus_d_c_in_axes3_yy;
-        model->rus_d_phi_3_in_axes3_xy[leg] = rus_d_phi_3_in_axes3_xy;
-        model->rus_g_in_axes1_z[leg] = rus_g_in_axes1_z;
-        model->rus_h_1_in_spec1_x[leg] = rus_h_1_in_spec1_x;
-        model->rus_h_1_in_spec1_y[leg] = rus_h_1_in_spec1_y;
-        model->rus_h_1_in_spec1_z[leg] = rus_h_1_in_spec1_z;
-        model->rus_h_3_in_spec3_x[leg] = rus_h_3_in_spec3_x;
-        model->rus_h_3_in_spec3_y[leg] = rus_h_3_in_spec3_y;
-        model->rus_h_3_in_spec3_z[leg] = rus_h_3_in_spec3_z;
-        model->rus_joint2_offset_x[leg] = rus_joint2_offset_x;
-        model->rus_link1_mass[leg] = rus_link1_mass;
-        model->rus_link3_mass[leg] = rus_link3_mass;
-        model->rus_mu_1_t[leg] = rus_mu_1_t;
-        model->rus_mu_1_t_2[leg] = rus_mu_1_t_2;
-        model->rus_platform_joint_offset_x[leg] = rus_platform_joint_offset_x;
-        model->rus_platform_point_x[leg] = rus_platform_point_x;
-        model->rus_platform_point_y[leg] = rus_platform_point_y;
-        model->rus_platform_point_z[leg] = rus_platform_point_z;
-        model->rus_potential_t[leg] = rus_potential_t;
-        model->rus_potential_t_2[leg] = rus_potential_t_2;
-        model->rus_potential_t_3[leg] = rus_potential_t_3;
-        model->rus_rho2_1_t[leg] = rus_rho2_1_t;
-        model->rus_size[leg] = rus_size;
-        model->rus_size_t_3[leg] = rus_size_t_3;
-        model->rus_w_3_in_axes3_y[leg] = rus_w_3_in_axes3_y;
+        KEEP_OF_LEG(inv_rus_rho2_1_t);
+        KEEP_OF_LEG(inv_rus_size);
+        KEEP_OF_LEG(inv_rus_size_t);
+        KEEP_OF_LEG(inv_rus_size_t_2);
+        KEEP_OF_LEG(inv_rus_size_t_3);
+        KEEP_OF_LEG(rus_J_1_in_spec1_zz);
+        KEEP_OF_LEG(rus_J_3_in_spec3_xx);
+        KEEP_OF_LEG(rus_J_3_in_spec3_xy);
+        KEEP_OF_LEG(rus_J_3_in_spec3_xz);
+        KEEP_OF_LEG(rus_J_3_in_spec3_yz);
+        KEEP_OF_LEG(rus_J_3_in_spec3_zz);
+        KEEP_OF_LEG(rus_J_3_t);
+        KEEP_OF_LEG(rus_J_3_t_2);
+        KEEP_OF_LEG(rus_Sigma_3_in_axes3_xx);
+        KEEP_OF_LEG(rus_Sigma_3_in_axes3_yy);
+        KEEP_OF_LEG(rus_Sigma_3_in_axes3_zz);
+        KEEP_OF_LEG(rus_base_frame_xx);
+        KEEP_OF_LEG(rus_base_frame_xy);
+        KEEP_OF_LEG(rus_base_frame_xz);
+        KEEP_OF_LEG(rus_base_frame_yx);
+        KEEP_OF_LEG(rus_base_frame_yy);
+        KEEP_OF_LEG(rus_base_frame_yz);
+        KEEP_OF_LEG(rus_base_frame_zx);
+        KEEP_OF_LEG(rus_base_frame_zy);
+        KEEP_OF_LEG(rus_base_frame_zz);
+        KEEP_OF_LEG(rus_base_point_x);
+        KEEP_OF_LEG(rus_base_point_y);
+        KEEP_OF_LEG(rus_base_point_z);
+        KEEP_OF_LEG(rus_branch_1);
+        KEEP_OF_LEG(rus_branch_2);
+        KEEP_OF_LEG(rus_d_Gamma_3_in_axes3_y);
+        KEEP_OF_LEG(rus_d_Gamma_3_t);
+        KEEP_OF_LEG(rus_d_c_in_axes3_yy);
+        KEEP_OF_LEG(rus_d_phi_3_in_axes3_xy);
+        KEEP_OF_LEG(rus_g_in_axes1_z);
+        KEEP_OF_LEG(rus_h_1_in_spec1_x);
+        KEEP_OF_LEG(rus_h_1_in_spec1_y);
+        KEEP_OF_LEG(rus_h_1_in_spec1_z);
+        KEEP_OF_LEG(rus_h_3_in_spec3_x);
+        KEEP_OF_LEG(rus_h_3_in_spec3_y);
+        KEEP_OF_LEG(rus_h_3_in_spec3_z);
+        KEEP_OF_LEG(rus_joint2_offset_x);
+        KEEP_OF_LEG(rus_link1_mass);
+        KEEP_OF_LEG(rus_link3_mass);
+        KEEP_OF_LEG(rus_mu_1_t);
+        KEEP_OF_LEG(rus_mu_1_t_2);
+        KEEP_OF_LEG(rus_platform_joint_offset_x);
+        KEEP_OF_LEG(rus_platform_point_x);
+        KEEP_OF_LEG(rus_platform_point_y);
+        KEEP_OF_LEG(rus_platform_point_z);
+        KEEP_OF_LEG(rus_potential_t);
+        KEEP_OF_LEG(rus_potential_t_2);
+        KEEP_OF_LEG(rus_potential_t_3);
+        KEEP_OF_LEG(rus_rho2_1_t);
+        KEEP_OF_LEG(rus_size);
+        KEEP_OF_LEG(rus_size_t_3);
+        KEEP_OF_LEG(rus_w_3_in_axes3_y);
         m_star_of_legs += leg < LEGS_OF_rus ? rus_link3_mass : 0;
         h_star_x_of_legs += leg < LEGS_OF_rus ? rus_h_star_t : 0;
         h_star_y_of_legs += leg < LEGS_OF_rus ? rus_h_star_t_2 : 0;
@@ -766,17 +776,17 @@ int delta_prepare(const delta_params *params, delta_model *model)
     const real b_c_in_platform_z = R(0.3333333333333333)*b_c_rus_in_platform_z;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = root(legs_size_rus)*spread_t;
-    model->Z_p_x = Z_p_x;
-    model->Z_p_y = Z_p_y;
-    model->Z_p_z = Z_p_z;
-    model->b_c_in_platform_x = b_c_in_platform_x;
-    model->b_c_in_platform_y = b_c_in_platform_y;
-    model->b_c_in_platform_z = b_c_in_platform_z;
-    model->h_star_x = h_star_x;
-    model->h_star_y = h_star_y;
-    model->h_star_z = h_star_z;
-    model->legs_size = legs_size;
-    model->m_star = m_star;
+    KEEP(Z_p_x);
+    KEEP(Z_p_y);
+    KEEP(Z_p_z);
+    KEEP(b_c_in_platform_x);
+    KEEP(b_c_in_platform_y);
+    KEEP(b_c_in_platform_z);
+    KEEP(h_star_x);
+    KEEP(h_star_y);
+    KEEP(h_star_z);
+    KEEP(legs_size);
+    KEEP(m_star);
     return OK;
 }
 
@@ -1217,7 +1227,7 @@ INLINE void stage_rus_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 1 */
     const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-    const real rus_Kd_1 = m->rus_J_3_t[i] + R(0.5)*rus_Kd_1_t - m->rus_J_3_t_2[i];
+    const real rus_Kd_1 = m->rus_J_3_t[i] - m->rus_J_3_t_2[i] + R(0.5)*rus_Kd_1_t;
     /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
     const real rus_Kc_1 = m->rus_joint2_offset_x[i]*(rus_S_x*m->rus_base_frame_xx[i] +
         rus_S_y*m->rus_base_frame_yx[i] + rus_S_z*m->rus_base_frame_zx[i]);
@@ -1234,7 +1244,7 @@ INLINE void stage_rus_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real inv_rus_rho2_1 = 1/rus_rho2_1;
     const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
     /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
+    const real rus_s_1 = inv_rus_rho2_1*(rus_Kd_1*rus_Ks_1 + rus_Kc_1*rus_root_1);
     /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
     const real rus_xi_1_t = m->inv_rus_size_t[i]*m->rus_joint2_offset_x[i]*rus_root_1;
     /* (rus-x_2) from the origin of joint 2 to the connection point */
@@ -1264,9 +1274,9 @@ INLINE void stage_rus_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t;
     const real rus_v_1_t_2 = rus_c_3*rus_r_1_in_axes3_z;
     const real rus_v_1_in_axes3_y = -rus_e_1_in_axes3_x*rus_r_1_in_axes3_z;
-    const real rus_v_1_in_axes3_z = rus_c_3*(rus_c_3*rus_v_1_t +
-        rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
-        rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_c_3*rus_r_1_in_axes1_z);
+    const real rus_v_1_in_axes3_z = rus_c_3*(rus_e_1_in_axes3_x*rus_r_1_in_axes1_z +
+        rus_c_3*rus_v_1_t) + rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t -
+        rus_c_3*rus_r_1_in_axes1_z);
     /* (rus-w_1) reciprocal vector 1 */
     const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
     /* (rus-w_2) reciprocal vector 2 */
@@ -1294,12 +1304,12 @@ INLINE void stage_rus_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rus_w_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t;
     const real rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4;
     const real rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4;
-    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*rus_w_1_t_5 +
-        m->rus_base_frame_xy[i]*rus_w_1_t_6 - m->rus_base_frame_xz[i]*rus_c_3;
-    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*rus_w_1_t_5 +
-        m->rus_base_frame_yy[i]*rus_w_1_t_6 - m->rus_base_frame_yz[i]*rus_c_3;
-    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*rus_w_1_t_5 +
-        m->rus_base_frame_zy[i]*rus_w_1_t_6 - m->rus_base_frame_zz[i]*rus_c_3;
+    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*rus_w_1_t_5 -
+        m->rus_base_frame_xz[i]*rus_c_3 + m->rus_base_frame_xy[i]*rus_w_1_t_6;
+    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*rus_w_1_t_5 -
+        m->rus_base_frame_yz[i]*rus_c_3 + m->rus_base_frame_yy[i]*rus_w_1_t_6;
+    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*rus_w_1_t_5 -
+        m->rus_base_frame_zz[i]*rus_c_3 + m->rus_base_frame_zy[i]*rus_w_1_t_6;
     v->rus_S_x = rus_S_x;
     v->rus_S_y = rus_S_y;
     v->rus_S_z = rus_S_z;
@@ -1376,7 +1386,7 @@ INLINE void stage_rus_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real rus_J_3_t_5 = m->rus_platform_point_z[i] + t_z - m->rus_base_point_z[i];
     const real rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 +
         rus_J_3_t_5*rus_J_3_t_5;
-    const real rus_J_3_t_7 = m->rus_J_3_t[i] + R(0.5)*rus_J_3_t_6 - m->rus_J_3_t_2[i];
+    const real rus_J_3_t_7 = m->rus_J_3_t[i] - m->rus_J_3_t_2[i] + R(0.5)*rus_J_3_t_6;
     const real rus_J_3_t_8 = m->rus_joint2_offset_x[i]*(rus_J_3_t_3*m->rus_base_frame_xx[i] +
         rus_J_3_t_4*m->rus_base_frame_yx[i] + rus_J_3_t_5*m->rus_base_frame_zx[i]);
     const real rus_J_3_t_9 = m->rus_joint2_offset_x[i]*(rus_J_3_t_3*m->rus_base_frame_xy[i] +
@@ -1387,7 +1397,7 @@ INLINE void stage_rus_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real rus_J_3_t_13 = m->inv_rus_size_t[i]*rus_J_3_t_12*m->rus_joint2_offset_x[i];
     const real rus_J_3_t_14 = m->inv_rus_size_t[i]*rus_J_3_t_7*m->rus_joint2_offset_x[i] -
         m->rus_joint2_offset_x[i];
-    const real rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14;
+    const real rus_J_3_t_15 = rus_J_3_t_14*rus_J_3_t_14 + rus_J_3_t_13*rus_J_3_t_13;
     const real rus_J_3_t_16 = root(rus_J_3_t_15)*m->rus_branch_2[i];
     const real rus_J_3_t_17 =
         m->inv_rus_size_t_2[i]*rus_J_3_t_16*m->rus_platform_joint_offset_x[i];
@@ -1406,8 +1416,8 @@ INLINE void stage_rus_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 -
         rus_J_3_t_12*rus_J_3_t_9);
     /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 +
-        rus_J_3_t_7*rus_J_3_t_9);
+    const real rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_9 +
+        rus_J_3_t_12*rus_J_3_t_8);
     /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
     const real inv_rus_J_3_t_15 = 1/rus_J_3_t_15;
     const real rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16;
@@ -1423,9 +1433,9 @@ INLINE void stage_rus_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t;
     const real rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z;
     const real rus_v_1_in_axes3_y = -rus_e_1_in_axes3_x*rus_r_1_in_axes3_z;
-    const real rus_v_1_in_axes3_z = rus_J_3_t_17*(rus_J_3_t_17*rus_v_1_t +
-        rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
-        rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z);
+    const real rus_v_1_in_axes3_z = rus_J_3_t_17*(rus_e_1_in_axes3_x*rus_r_1_in_axes1_z +
+        rus_J_3_t_17*rus_v_1_t) + rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t -
+        rus_J_3_t_17*rus_r_1_in_axes1_z);
     /* (rus-w_1) reciprocal vector 1 */
     const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
     /* (rus-w_2) reciprocal vector 2 */
@@ -1441,8 +1451,8 @@ INLINE void stage_rus_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
        inertia and weight */
     const real rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_yz*rus_w_2_in_axes3_z;
     const real rus_d_Gamma_3_in_axes3_x = m->rus_h_3_in_spec3_z[i] -
-        inv_rus_v_1_t_2*(rus_J_3_in_axes2_yz - rus_d_Gamma_3_in_axes3_z*rus_v_1_in_axes3_z -
-        m->rus_d_Gamma_3_t[i]*rus_v_1_in_axes3_y);
+        inv_rus_v_1_t_2*(rus_J_3_in_axes2_yz - m->rus_d_Gamma_3_t[i]*rus_v_1_in_axes3_y -
+        rus_d_Gamma_3_in_axes3_z*rus_v_1_in_axes3_z);
     /* (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
        inertia and weight */
     const real rus_d_Gamma_2_t = rus_J_3_t_17*m->rus_h_3_in_spec3_y[i];
@@ -1450,29 +1460,30 @@ INLINE void stage_rus_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real rus_d_Gamma_2_t_3 = rus_J_3_in_axes2_yz*m->rus_w_3_in_axes3_y[i];
     const real rus_d_Gamma_2_t_4 = rus_d_Gamma_2_t_2*rus_v_1_in_axes3_z;
     const real rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_in_axes3_y;
-    const real rus_d_Gamma_2_in_axes3_x = inv_rus_v_1_t_2*(rus_d_Gamma_2_t_4 +
-        rus_d_Gamma_2_t_5 - rus_J_3_in_axes1_zz) - rus_d_Gamma_2_t;
+    const real rus_d_Gamma_2_in_axes3_x = inv_rus_v_1_t_2*(rus_d_Gamma_2_t_5 -
+        rus_J_3_in_axes1_zz + rus_d_Gamma_2_t_4) - rus_d_Gamma_2_t;
     const real rus_d_Gamma_2_in_axes3_y = rus_d_Gamma_2_t_3 -
         rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_y[i];
-    const real rus_d_Gamma_2_in_axes3_z = rus_d_Gamma_2_t_2 +
-        rus_J_3_t_17*m->rus_h_3_in_spec3_x[i] - rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_z[i];
+    const real rus_d_Gamma_2_in_axes3_z = rus_J_3_t_17*m->rus_h_3_in_spec3_x[i] -
+        rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_z[i] + rus_d_Gamma_2_t_2;
     /* (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
-    const real rus_d_Gamma_1_in_axes3_x = inv_rus_v_1_t_2*(rus_d_Gamma_2_t_4 +
-        rus_d_Gamma_2_t_5 - m->rus_J_1_in_spec1_zz[i] - rus_J_3_in_axes1_zz) -
+    const real rus_d_Gamma_1_in_axes3_x = inv_rus_v_1_t_2*(rus_d_Gamma_2_t_5 -
+        m->rus_J_1_in_spec1_zz[i] - rus_J_3_in_axes1_zz + rus_d_Gamma_2_t_4) -
         rus_d_Gamma_2_t;
     /* (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
        without the mass at the connection point */
     const real rus_d_c_in_axes3_xx = inv_rus_v_1_t_2*rus_d_Gamma_1_in_axes3_x -
         rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
         rus_d_Gamma_3_in_axes3_x*rus_w_3_in_axes3_x -
+        m->rus_h_3_in_spec3_z[i]*rus_w_3_in_axes3_x -
         m->rus_h_3_in_spec3_y[i]*(inv_rus_v_1_t_2*rus_J_3_t_17 -
-        rus_J_3_t_17*rus_w_2_in_axes3_x) - m->rus_h_3_in_spec3_z[i]*rus_w_3_in_axes3_x;
+        rus_J_3_t_17*rus_w_2_in_axes3_x);
     const real rus_d_c_in_axes3_xy = inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_y -
         m->rus_d_phi_3_in_axes3_xy[i] - rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_x -
         m->rus_d_Gamma_3_in_axes3_y[i]*rus_w_3_in_axes3_x;
-    const real rus_d_c_in_axes3_xz = inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z +
-        rus_d_alpha_3_t*m->rus_h_3_in_spec3_y[i] - rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x
+    const real rus_d_c_in_axes3_xz = rus_d_alpha_3_t*m->rus_h_3_in_spec3_y[i] +
+        inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z - rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x
         - rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_x;
     const real rus_d_c_in_axes3_yz = rus_d_alpha_3_in_axes3_xz*m->rus_h_3_in_spec3_y[i] -
         rus_d_Gamma_3_in_axes3_z*m->rus_w_3_in_axes3_y[i];
@@ -1550,14 +1561,14 @@ INLINE void stage_rus_legs_required(const prepared *m, size_t w, size_t i, size_
     const real rus_bias_t_2 = v->rus_bias_t*v->rus_c_3*rus_omega_1_in_axes3_y -
         v->rus_bias_t*v->rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
     const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*m->rus_platform_joint_offset_x[i];
-    const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y -
-        rus_bias_t_2*rus_omega_1_in_axes3_y - rus_qd_3*rus_qd_3_t;
+    const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t
+        - rus_bias_t_2*rus_omega_1_in_axes3_y;
     const real rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
         rus_bias_t_3*rus_omega_2_in_axes3_x;
-    const real rus_bias_in_axes3_z = rus_W_3_in_axes3_xz*m->rus_platform_joint_offset_x[i] +
-        rus_omega_2_in_axes3_x*rus_qd_3_t -
+    const real rus_bias_in_axes3_z = rus_omega_2_in_axes3_x*rus_qd_3_t -
         v->rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-        v->rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
+        v->rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y +
+        rus_W_3_in_axes3_xz*m->rus_platform_joint_offset_x[i];
     /* (rus-rel) acceleration of the connection point left to the joint accelerations */
     const real rus_rel_in_axes3_x = rus_S_ddot_in_axes3_x - rus_bias_in_axes3_x;
     const real rus_rel_in_axes3_y = rus_S_ddot_in_axes3_y - rus_bias_in_axes3_y;
@@ -1593,33 +1604,32 @@ INLINE void stage_rus_legs_required(const prepared *m, size_t w, size_t i, size_
     const real rus_mu_3_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
     const real rus_mu_3_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
     const real rus_mu_3_t_3 = rus_qd_3*rus_qd_3;
-    const real rus_mu_3_in_axes3_x = rus_B_3_in_axes3_yx*m->rus_J_3_in_spec3_xy[i] +
-        rus_B_3_in_axes3_zx*m->rus_J_3_in_spec3_xz[i] +
-        rus_B_3_in_axes3_zy*m->rus_Sigma_3_in_axes3_yy[i] +
-        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_in_axes3_x -
-        m->rus_J_3_in_spec3_yz[i]*(rus_mu_3_t_2 - rus_mu_3_t_3) -
+    const real rus_mu_3_in_axes3_x = rus_B_3_in_axes3_yx*m->rus_J_3_in_spec3_xy[i] -
+        rus_acc_3_in_axes3_z*m->rus_h_3_in_spec3_z[i] -
         rus_acc_3_in_axes3_y*m->rus_h_3_in_spec3_y[i] -
-        rus_acc_3_in_axes3_z*m->rus_h_3_in_spec3_z[i];
-    const real rus_mu_3_in_axes3_y = rus_B_3_in_axes3_xy*m->rus_J_3_in_spec3_yz[i] +
-        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_in_axes3_y +
-        rus_acc_3_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
+        m->rus_J_3_in_spec3_yz[i]*(rus_mu_3_t_2 - rus_mu_3_t_3) +
+        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_in_axes3_x +
+        rus_B_3_in_axes3_zx*m->rus_J_3_in_spec3_xz[i] +
+        rus_B_3_in_axes3_zy*m->rus_Sigma_3_in_axes3_yy[i];
+    const real rus_mu_3_in_axes3_y = rus_acc_3_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
+        rus_acc_3_in_axes3_z*m->rus_h_3_in_spec3_x[i] - m->rus_J_3_in_spec3_xy[i]*(rus_mu_3_t
+        - rus_mu_3_t_3) + rus_B_3_in_axes3_xy*m->rus_J_3_in_spec3_yz[i] +
+        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_in_axes3_y -
         rus_B_3_in_axes3_zx*m->rus_Sigma_3_in_axes3_xx[i] -
-        rus_B_3_in_axes3_zy*m->rus_J_3_in_spec3_xz[i] - m->rus_J_3_in_spec3_xy[i]*(rus_mu_3_t
-        - rus_mu_3_t_3) - rus_acc_3_in_axes3_z*m->rus_h_3_in_spec3_x[i];
-    const real rus_mu_3_in_axes3_z = rus_B_3_in_axes3_yx*m->rus_Sigma_3_in_axes3_xx[i] +
-        m->rus_J_3_in_spec3_xy[i]*rus_alpha_2_in_axes3_x +
-        rus_acc_3_in_axes3_x*m->rus_h_3_in_spec3_z[i] +
-        rus_acc_3_in_axes3_y*m->rus_h_3_in_spec3_x[i] -
+        rus_B_3_in_axes3_zy*m->rus_J_3_in_spec3_xz[i];
+    const real rus_mu_3_in_axes3_z = rus_acc_3_in_axes3_y*m->rus_h_3_in_spec3_x[i] +
+        rus_acc_3_in_axes3_x*m->rus_h_3_in_spec3_z[i] - m->rus_J_3_in_spec3_xz[i]*(rus_mu_3_t
+        - rus_mu_3_t_2) + rus_B_3_in_axes3_yx*m->rus_Sigma_3_in_axes3_xx[i] +
+        m->rus_J_3_in_spec3_xy[i]*rus_alpha_2_in_axes3_x -
         rus_B_3_in_axes3_xy*m->rus_Sigma_3_in_axes3_yy[i] -
-        m->rus_J_3_in_spec3_xz[i]*(rus_mu_3_t - rus_mu_3_t_2) -
         m->rus_J_3_in_spec3_yz[i]*rus_alpha_2_in_axes3_y;
     const real rus_mu_3_in_axes1_z = v->rus_e_1_in_axes3_x*rus_mu_3_in_axes3_x -
         v->rus_c_3*rus_mu_3_in_axes3_y;
     /* (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points */
     const real rus_mu_1_in_axes1_z = m->rus_h_1_in_spec1_y[i]*(v->rus_c_1*m->rus_mu_1_t[i] +
-        m->rus_mu_1_t_2[i]*v->rus_s_1) - m->rus_J_1_in_spec1_zz[i]*rus_qdd_1_t -
-        m->rus_h_1_in_spec1_x[i]*(v->rus_c_1*m->rus_mu_1_t_2[i] -
-        m->rus_mu_1_t[i]*v->rus_s_1);
+        m->rus_mu_1_t_2[i]*v->rus_s_1) -
+        m->rus_h_1_in_spec1_x[i]*(v->rus_c_1*m->rus_mu_1_t_2[i] - m->rus_mu_1_t[i]*v->rus_s_1)
+        - m->rus_J_1_in_spec1_zz[i]*rus_qdd_1_t;
     /* (rus-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real rus_N_1_in_axes1_z = rus_mu_1_in_axes1_z + rus_mu_3_in_axes1_z;
@@ -1629,16 +1639,17 @@ INLINE void stage_rus_legs_required(const prepared *m, size_t w, size_t i, size_
     const real rus_G_in_axes3_y = rus_mu_3_in_axes3_z*m->rus_w_3_in_axes3_y[i];
     /* (rus-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rus_c_in_axes3_x = v->inv_rus_v_1_t_2*(rus_N_1_in_axes1_z -
-        rus_G_in_axes3_y*v->rus_v_1_in_axes3_y - rus_G_in_axes3_z*v->rus_v_1_in_axes3_z) +
-        rus_B_3_in_axes3_xy*m->rus_h_3_in_spec3_z[i] + m->rus_h_3_in_spec3_x[i]*(rus_mu_3_t_2
-        + rus_mu_3_t_3) - rus_alpha_2_in_axes3_y*m->rus_h_3_in_spec3_y[i];
+    const real rus_c_in_axes3_x = m->rus_h_3_in_spec3_x[i]*(rus_mu_3_t_3 + rus_mu_3_t_2) +
+        rus_B_3_in_axes3_xy*m->rus_h_3_in_spec3_z[i] -
+        rus_alpha_2_in_axes3_y*m->rus_h_3_in_spec3_y[i] +
+        v->inv_rus_v_1_t_2*(rus_N_1_in_axes1_z - rus_G_in_axes3_y*v->rus_v_1_in_axes3_y -
+        rus_G_in_axes3_z*v->rus_v_1_in_axes3_z);
     const real rus_c_in_axes3_y = rus_alpha_2_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
-        rus_G_in_axes3_y - rus_B_3_in_axes3_yx*m->rus_h_3_in_spec3_x[i] -
-        m->rus_h_3_in_spec3_z[i]*(rus_mu_3_t + rus_mu_3_t_3);
-    const real rus_c_in_axes3_z = rus_B_3_in_axes3_zy*m->rus_h_3_in_spec3_z[i] +
-        m->rus_h_3_in_spec3_y[i]*(rus_mu_3_t + rus_mu_3_t_2) - rus_G_in_axes3_z -
-        rus_B_3_in_axes3_zx*m->rus_h_3_in_spec3_x[i];
+        m->rus_h_3_in_spec3_z[i]*(rus_mu_3_t_3 + rus_mu_3_t) -
+        rus_B_3_in_axes3_yx*m->rus_h_3_in_spec3_x[i] - rus_G_in_axes3_y;
+    const real rus_c_in_axes3_z = m->rus_h_3_in_spec3_y[i]*(rus_mu_3_t + rus_mu_3_t_2) +
+        rus_B_3_in_axes3_zy*m->rus_h_3_in_spec3_z[i] -
+        rus_B_3_in_axes3_zx*m->rus_h_3_in_spec3_x[i] - rus_G_in_axes3_z;
     v->axis_x_rus_axes3_x = axis_x_rus_axes3_x;
     v->axis_x_rus_axes3_y = axis_x_rus_axes3_y;
     v->axis_x_rus_axes3_z = axis_x_rus_axes3_z;
@@ -1656,10 +1667,6 @@ INLINE void stage_rus_legs_required(const prepared *m, size_t w, size_t i, size_
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before()
-{
-}
-
 INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, int add, const real *X, const real *V, real *terms, real *o)
 {
@@ -1678,12 +1685,12 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
     const real rus_w_1_t_4 = v.rus_e_1_in_axes3_x*v.rus_s_2_t;
     const real rus_w_1_t_5 = v.rus_c_1*rus_w_1_t_3 + v.rus_s_1*rus_w_1_t_4;
     const real rus_w_1_t_6 = v.rus_s_1*rus_w_1_t_3 - v.rus_c_1*rus_w_1_t_4;
-    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*rus_w_1_t_5 +
-        m->rus_base_frame_xy[i]*rus_w_1_t_6 - v.rus_J_3_t_17*m->rus_base_frame_xz[i];
-    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*rus_w_1_t_5 +
-        m->rus_base_frame_yy[i]*rus_w_1_t_6 - v.rus_J_3_t_17*m->rus_base_frame_yz[i];
-    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*rus_w_1_t_5 +
-        m->rus_base_frame_zy[i]*rus_w_1_t_6 - v.rus_J_3_t_17*m->rus_base_frame_zz[i];
+    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*rus_w_1_t_5 -
+        v.rus_J_3_t_17*m->rus_base_frame_xz[i] + m->rus_base_frame_xy[i]*rus_w_1_t_6;
+    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*rus_w_1_t_5 -
+        v.rus_J_3_t_17*m->rus_base_frame_yz[i] + m->rus_base_frame_yy[i]*rus_w_1_t_6;
+    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*rus_w_1_t_5 -
+        v.rus_J_3_t_17*m->rus_base_frame_zz[i] + m->rus_base_frame_zy[i]*rus_w_1_t_6;
     const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
         axis_y_rus_axes3_z*axis_z_rus_axes3_y;
     const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
@@ -1722,14 +1729,14 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
     const real rus_bias_t_2 = v.rus_J_3_t_17*rus_bias_t*rus_omega_1_in_axes3_y -
         rus_bias_t*v.rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
     const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*m->rus_platform_joint_offset_x[i];
-    const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y -
-        rus_bias_t_2*rus_omega_1_in_axes3_y - rus_qd_3*rus_qd_3_t;
+    const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t
+        - rus_bias_t_2*rus_omega_1_in_axes3_y;
     const real rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
         rus_bias_t_3*rus_omega_2_in_axes3_x;
-    const real rus_bias_in_axes3_z = rus_W_3_in_axes3_xz*m->rus_platform_joint_offset_x[i] +
-        rus_omega_2_in_axes3_x*rus_qd_3_t -
+    const real rus_bias_in_axes3_z = rus_omega_2_in_axes3_x*rus_qd_3_t -
         rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-        rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
+        rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y +
+        rus_W_3_in_axes3_xz*m->rus_platform_joint_offset_x[i];
     /* (rus-qdd_1_o) remainder of: acceleration of joint 1 */
     const real rus_qdd_1_o = v.inv_rus_v_1_t_2*rus_bias_in_axes3_x;
     /* (rus-qdd_3_o) remainder of: acceleration of joint 3 */
@@ -1759,32 +1766,31 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
         axis_y_rus_axes3_y*m->gravity_y + axis_y_rus_axes3_z*m->gravity_z;
     const real rus_g_in_axes3_z = axis_z_rus_axes3_x*m->gravity_x +
         axis_z_rus_axes3_y*m->gravity_y + axis_z_rus_axes3_z*m->gravity_z;
-    const real rus_mu_3_o_in_axes3_x = rus_B_3_o_in_axes3_yx*m->rus_J_3_in_spec3_xy[i] +
-        rus_B_3_o_in_axes3_zx*m->rus_J_3_in_spec3_xz[i] +
-        rus_B_3_o_in_axes3_zy*m->rus_Sigma_3_in_axes3_yy[i] +
+    const real rus_mu_3_o_in_axes3_x = rus_g_in_axes3_z*m->rus_h_3_in_spec3_z[i] +
+        rus_g_in_axes3_y*m->rus_h_3_in_spec3_y[i] - m->rus_J_3_in_spec3_yz[i]*(rus_mu_3_o_t_2
+        - rus_mu_3_o_t_3) + rus_B_3_o_in_axes3_yx*m->rus_J_3_in_spec3_xy[i] +
         m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_x +
-        rus_g_in_axes3_y*m->rus_h_3_in_spec3_y[i] + rus_g_in_axes3_z*m->rus_h_3_in_spec3_z[i]
-        - m->rus_J_3_in_spec3_yz[i]*(rus_mu_3_o_t_2 - rus_mu_3_o_t_3);
-    const real rus_mu_3_o_in_axes3_y = rus_B_3_o_in_axes3_xy*m->rus_J_3_in_spec3_yz[i] +
-        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_y +
-        rus_g_in_axes3_z*m->rus_h_3_in_spec3_x[i] -
+        rus_B_3_o_in_axes3_zx*m->rus_J_3_in_spec3_xz[i] +
+        rus_B_3_o_in_axes3_zy*m->rus_Sigma_3_in_axes3_yy[i];
+    const real rus_mu_3_o_in_axes3_y = rus_g_in_axes3_z*m->rus_h_3_in_spec3_x[i] -
+        rus_g_in_axes3_x*m->rus_h_3_in_spec3_y[i] - m->rus_J_3_in_spec3_xy[i]*(rus_mu_3_o_t -
+        rus_mu_3_o_t_3) + rus_B_3_o_in_axes3_xy*m->rus_J_3_in_spec3_yz[i] +
+        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_y -
         rus_B_3_o_in_axes3_zx*m->rus_Sigma_3_in_axes3_xx[i] -
-        rus_B_3_o_in_axes3_zy*m->rus_J_3_in_spec3_xz[i] -
-        m->rus_J_3_in_spec3_xy[i]*(rus_mu_3_o_t - rus_mu_3_o_t_3) -
-        rus_g_in_axes3_x*m->rus_h_3_in_spec3_y[i];
-    const real rus_mu_3_o_in_axes3_z = rus_B_3_o_in_axes3_yx*m->rus_Sigma_3_in_axes3_xx[i] +
+        rus_B_3_o_in_axes3_zy*m->rus_J_3_in_spec3_xz[i];
+    const real rus_mu_3_o_in_axes3_z = rus_B_3_o_in_axes3_yx*m->rus_Sigma_3_in_axes3_xx[i] -
+        rus_g_in_axes3_y*m->rus_h_3_in_spec3_x[i] - rus_g_in_axes3_x*m->rus_h_3_in_spec3_z[i]
+        - m->rus_J_3_in_spec3_xz[i]*(rus_mu_3_o_t - rus_mu_3_o_t_2) +
         m->rus_J_3_in_spec3_xy[i]*rus_alpha_2_o_in_axes3_x -
         rus_B_3_o_in_axes3_xy*m->rus_Sigma_3_in_axes3_yy[i] -
-        m->rus_J_3_in_spec3_xz[i]*(rus_mu_3_o_t - rus_mu_3_o_t_2) -
-        m->rus_J_3_in_spec3_yz[i]*rus_alpha_2_o_in_axes3_y -
-        rus_g_in_axes3_x*m->rus_h_3_in_spec3_z[i] - rus_g_in_axes3_y*m->rus_h_3_in_spec3_x[i];
+        m->rus_J_3_in_spec3_yz[i]*rus_alpha_2_o_in_axes3_y;
     const real rus_mu_3_o_in_axes1_z = v.rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x -
         v.rus_J_3_t_17*rus_mu_3_o_in_axes3_y;
     /* (rus-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
-    const real rus_mu_1_o_in_axes1_z = m->rus_J_1_in_spec1_zz[i]*rus_qdd_1_o +
-        m->rus_h_1_in_spec1_y[i]*(v.rus_c_1*m->rus_mu_1_t[i] + m->rus_mu_1_t_2[i]*v.rus_s_1) -
-        m->rus_h_1_in_spec1_x[i]*(v.rus_c_1*m->rus_mu_1_t_2[i] - m->rus_mu_1_t[i]*v.rus_s_1);
+    const real rus_mu_1_o_in_axes1_z = m->rus_h_1_in_spec1_y[i]*(v.rus_c_1*m->rus_mu_1_t[i] +
+        m->rus_mu_1_t_2[i]*v.rus_s_1) - m->rus_h_1_in_spec1_x[i]*(v.rus_c_1*m->rus_mu_1_t_2[i]
+        - m->rus_mu_1_t[i]*v.rus_s_1) + m->rus_J_1_in_spec1_zz[i]*rus_qdd_1_o;
     /* (rus-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
        connection point left out */
     const real rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z;
@@ -1794,31 +1800,30 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
     const real rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*m->rus_w_3_in_axes3_y[i];
     /* (rus-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
-    const real rus_c_o_in_axes3_x = v.inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z -
-        rus_G_o_in_axes3_y*v.rus_v_1_in_axes3_y - rus_G_o_in_axes3_z*v.rus_v_1_in_axes3_z) +
-        rus_B_3_o_in_axes3_xy*m->rus_h_3_in_spec3_z[i] +
-        m->rus_h_3_in_spec3_x[i]*(rus_mu_3_o_t_2 + rus_mu_3_o_t_3) -
-        rus_alpha_2_o_in_axes3_y*m->rus_h_3_in_spec3_y[i];
+    const real rus_c_o_in_axes3_x = m->rus_h_3_in_spec3_x[i]*(rus_mu_3_o_t_3 + rus_mu_3_o_t_2)
+        + rus_B_3_o_in_axes3_xy*m->rus_h_3_in_spec3_z[i] -
+        rus_alpha_2_o_in_axes3_y*m->rus_h_3_in_spec3_y[i] +
+        v.inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z - rus_G_o_in_axes3_y*v.rus_v_1_in_axes3_y -
+        rus_G_o_in_axes3_z*v.rus_v_1_in_axes3_z);
     const real rus_c_o_in_axes3_y = rus_alpha_2_o_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
-        rus_G_o_in_axes3_y - rus_B_3_o_in_axes3_yx*m->rus_h_3_in_spec3_x[i] -
-        m->rus_h_3_in_spec3_z[i]*(rus_mu_3_o_t + rus_mu_3_o_t_3);
-    const real rus_c_o_in_axes3_z = rus_B_3_o_in_axes3_zy*m->rus_h_3_in_spec3_z[i] +
-        m->rus_h_3_in_spec3_y[i]*(rus_mu_3_o_t + rus_mu_3_o_t_2) - rus_G_o_in_axes3_z -
-        rus_B_3_o_in_axes3_zx*m->rus_h_3_in_spec3_x[i];
+        m->rus_h_3_in_spec3_z[i]*(rus_mu_3_o_t_3 + rus_mu_3_o_t) -
+        rus_B_3_o_in_axes3_yx*m->rus_h_3_in_spec3_x[i] - rus_G_o_in_axes3_y;
+    const real rus_c_o_in_axes3_z = m->rus_h_3_in_spec3_y[i]*(rus_mu_3_o_t + rus_mu_3_o_t_2) +
+        rus_B_3_o_in_axes3_zy*m->rus_h_3_in_spec3_z[i] -
+        rus_B_3_o_in_axes3_zx*m->rus_h_3_in_spec3_x[i] - rus_G_o_in_axes3_z;
     /* (rus-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real rus_Q_t = v.rus_d_c_in_axes3_xx - m->rus_d_c_in_axes3_yy[i];
     const real rus_Q_t_2 = R(0.5)*rus_Q_t;
-    const real rus_Q_t_3 = v.rus_d_c_in_axes3_xx +
-        v.rus_d_Gamma_2_in_axes3_z*v.rus_w_2_in_axes3_z +
-        v.rus_d_alpha_3_t*m->rus_h_3_in_spec3_x[i] -
-        v.rus_d_alpha_3_in_axes3_xz*m->rus_h_3_in_spec3_z[i];
+    const real rus_Q_t_3 = v.rus_d_alpha_3_t*m->rus_h_3_in_spec3_x[i] -
+        v.rus_d_alpha_3_in_axes3_xz*m->rus_h_3_in_spec3_z[i] +
+        v.rus_d_Gamma_2_in_axes3_z*v.rus_w_2_in_axes3_z + v.rus_d_c_in_axes3_xx;
     const real rus_Q_t_4 = R(0.5)*rus_Q_t_3;
-    const real rus_Q_t_5 = axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xy +
-        axis_z_rus_axes3_x*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_x*rus_Q_t_2;
-    const real rus_Q_t_6 = axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xy +
-        axis_z_rus_axes3_y*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_y*rus_Q_t_2;
-    const real rus_Q_t_7 = axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xy +
-        axis_z_rus_axes3_z*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_z*rus_Q_t_2;
+    const real rus_Q_t_5 = axis_z_rus_axes3_x*v.rus_d_c_in_axes3_yz +
+        axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xy - axis_y_rus_axes3_x*rus_Q_t_2;
+    const real rus_Q_t_6 = axis_z_rus_axes3_y*v.rus_d_c_in_axes3_yz +
+        axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xy - axis_y_rus_axes3_y*rus_Q_t_2;
+    const real rus_Q_t_7 = axis_z_rus_axes3_z*v.rus_d_c_in_axes3_yz +
+        axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xy - axis_y_rus_axes3_z*rus_Q_t_2;
     const real rus_Q_t_8 = axis_z_rus_axes3_x*rus_Q_t_4 -
         axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xz;
     const real rus_Q_t_9 = axis_z_rus_axes3_y*rus_Q_t_4 -
@@ -1826,24 +1831,24 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
     const real rus_Q_t_10 = axis_z_rus_axes3_z*rus_Q_t_4 -
         axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xz;
     const real rus_Q_t_11 = axis_y_rus_axes3_x*rus_Q_t_5 - axis_z_rus_axes3_x*rus_Q_t_8;
-    const real rus_Q_xx = -2*rus_Q_t_11 - v.rus_d_c_in_axes3_xx;
+    const real rus_Q_xx = -v.rus_d_c_in_axes3_xx - 2*rus_Q_t_11;
     const real rus_Q_xy = axis_z_rus_axes3_x*rus_Q_t_9 + axis_z_rus_axes3_y*rus_Q_t_8 -
         axis_y_rus_axes3_x*rus_Q_t_6 - axis_y_rus_axes3_y*rus_Q_t_5;
     const real rus_Q_xz = axis_z_rus_axes3_x*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_8 -
         axis_y_rus_axes3_x*rus_Q_t_7 - axis_y_rus_axes3_z*rus_Q_t_5;
     const real rus_Q_t_12 = axis_y_rus_axes3_y*rus_Q_t_6 - axis_z_rus_axes3_y*rus_Q_t_9;
-    const real rus_Q_yy = -2*rus_Q_t_12 - v.rus_d_c_in_axes3_xx;
+    const real rus_Q_yy = -v.rus_d_c_in_axes3_xx - 2*rus_Q_t_12;
     const real rus_Q_yz = axis_z_rus_axes3_y*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_9 -
         axis_y_rus_axes3_y*rus_Q_t_7 - axis_y_rus_axes3_z*rus_Q_t_6;
     const real rus_Q_t_13 = axis_y_rus_axes3_z*rus_Q_t_7 - axis_z_rus_axes3_z*rus_Q_t_10;
-    const real rus_Q_zz = -2*rus_Q_t_13 - v.rus_d_c_in_axes3_xx;
+    const real rus_Q_zz = -v.rus_d_c_in_axes3_xx - 2*rus_Q_t_13;
     /* (rus-U) velocity and gravity terms of the leg force */
-    const real rus_U_x = -axis_x_rus_axes3_x*rus_c_o_in_axes3_x -
-        axis_y_rus_axes3_x*rus_c_o_in_axes3_y - axis_z_rus_axes3_x*rus_c_o_in_axes3_z;
-    const real rus_U_y = -axis_x_rus_axes3_y*rus_c_o_in_axes3_x -
-        axis_y_rus_axes3_y*rus_c_o_in_axes3_y - axis_z_rus_axes3_y*rus_c_o_in_axes3_z;
-    const real rus_U_z = -axis_x_rus_axes3_z*rus_c_o_in_axes3_x -
-        axis_y_rus_axes3_z*rus_c_o_in_axes3_y - axis_z_rus_axes3_z*rus_c_o_in_axes3_z;
+    const real rus_U_x = -axis_y_rus_axes3_x*rus_c_o_in_axes3_y -
+        axis_z_rus_axes3_x*rus_c_o_in_axes3_z - axis_x_rus_axes3_x*rus_c_o_in_axes3_x;
+    const real rus_U_y = -axis_y_rus_axes3_y*rus_c_o_in_axes3_y -
+        axis_z_rus_axes3_y*rus_c_o_in_axes3_z - axis_x_rus_axes3_y*rus_c_o_in_axes3_x;
+    const real rus_U_z = -axis_y_rus_axes3_z*rus_c_o_in_axes3_y -
+        axis_z_rus_axes3_z*rus_c_o_in_axes3_z - axis_x_rus_axes3_z*rus_c_o_in_axes3_x;
     /* (M_tt) translational block of M */
     gather(&terms[0*count + k], add, rus_Q_xx);  /* M_tt_xx_of_legs */
     gather(&terms[1*count + k], add, rus_Q_xy);  /* M_tt_xy */
@@ -1884,11 +1889,11 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *su
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (Z_t) */
     const real Z_t_x_of_legs = sums[6*w + k];
     const real Z_t_x = m->Z_p_x + Z_t_x_of_legs;
@@ -1954,10 +1959,6 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before()
-{
-}
-
 INLINE void M_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *X, real *terms, real *o)
 {
@@ -1976,12 +1977,12 @@ INLINE void M_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real rus_Q_t_4 = v.rus_e_1_in_axes3_x*v.rus_s_2_t;
     const real rus_Q_t_5 = rus_Q_t_3*v.rus_c_1 + rus_Q_t_4*v.rus_s_1;
     const real rus_Q_t_6 = rus_Q_t_3*v.rus_s_1 - rus_Q_t_4*v.rus_c_1;
-    const real axis_y_rus_axes3_x = rus_Q_t_5*m->rus_base_frame_xx[i] +
-        rus_Q_t_6*m->rus_base_frame_xy[i] - v.rus_J_3_t_17*m->rus_base_frame_xz[i];
-    const real axis_y_rus_axes3_y = rus_Q_t_5*m->rus_base_frame_yx[i] +
-        rus_Q_t_6*m->rus_base_frame_yy[i] - v.rus_J_3_t_17*m->rus_base_frame_yz[i];
-    const real axis_y_rus_axes3_z = rus_Q_t_5*m->rus_base_frame_zx[i] +
-        rus_Q_t_6*m->rus_base_frame_zy[i] - v.rus_J_3_t_17*m->rus_base_frame_zz[i];
+    const real axis_y_rus_axes3_x = rus_Q_t_5*m->rus_base_frame_xx[i] -
+        v.rus_J_3_t_17*m->rus_base_frame_xz[i] + rus_Q_t_6*m->rus_base_frame_xy[i];
+    const real axis_y_rus_axes3_y = rus_Q_t_5*m->rus_base_frame_yx[i] -
+        v.rus_J_3_t_17*m->rus_base_frame_yz[i] + rus_Q_t_6*m->rus_base_frame_yy[i];
+    const real axis_y_rus_axes3_z = rus_Q_t_5*m->rus_base_frame_zx[i] -
+        v.rus_J_3_t_17*m->rus_base_frame_zz[i] + rus_Q_t_6*m->rus_base_frame_zy[i];
     const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
         axis_y_rus_axes3_z*axis_z_rus_axes3_y;
     const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
@@ -1990,17 +1991,16 @@ INLINE void M_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
         axis_y_rus_axes3_y*axis_z_rus_axes3_x;
     const real rus_Q_t_7 = v.rus_d_c_in_axes3_xx - m->rus_d_c_in_axes3_yy[i];
     const real rus_Q_t_8 = R(0.5)*rus_Q_t_7;
-    const real rus_Q_t_9 = v.rus_d_c_in_axes3_xx +
-        v.rus_d_Gamma_2_in_axes3_z*v.rus_w_2_in_axes3_z +
-        v.rus_d_alpha_3_t*m->rus_h_3_in_spec3_x[i] -
-        v.rus_d_alpha_3_in_axes3_xz*m->rus_h_3_in_spec3_z[i];
+    const real rus_Q_t_9 = v.rus_d_alpha_3_t*m->rus_h_3_in_spec3_x[i] -
+        v.rus_d_alpha_3_in_axes3_xz*m->rus_h_3_in_spec3_z[i] +
+        v.rus_d_Gamma_2_in_axes3_z*v.rus_w_2_in_axes3_z + v.rus_d_c_in_axes3_xx;
     const real rus_Q_t_10 = R(0.5)*rus_Q_t_9;
-    const real rus_Q_t_11 = axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xy +
-        axis_z_rus_axes3_x*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_x*rus_Q_t_8;
-    const real rus_Q_t_12 = axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xy +
-        axis_z_rus_axes3_y*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_y*rus_Q_t_8;
-    const real rus_Q_t_13 = axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xy +
-        axis_z_rus_axes3_z*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_z*rus_Q_t_8;
+    const real rus_Q_t_11 = axis_z_rus_axes3_x*v.rus_d_c_in_axes3_yz +
+        axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xy - axis_y_rus_axes3_x*rus_Q_t_8;
+    const real rus_Q_t_12 = axis_z_rus_axes3_y*v.rus_d_c_in_axes3_yz +
+        axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xy - axis_y_rus_axes3_y*rus_Q_t_8;
+    const real rus_Q_t_13 = axis_z_rus_axes3_z*v.rus_d_c_in_axes3_yz +
+        axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xy - axis_y_rus_axes3_z*rus_Q_t_8;
     const real rus_Q_t_14 = axis_z_rus_axes3_x*rus_Q_t_10 -
         axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xz;
     const real rus_Q_t_15 = axis_z_rus_axes3_y*rus_Q_t_10 -
@@ -2008,17 +2008,17 @@ INLINE void M_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real rus_Q_t_16 = axis_z_rus_axes3_z*rus_Q_t_10 -
         axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xz;
     const real rus_Q_t_17 = axis_y_rus_axes3_x*rus_Q_t_11 - axis_z_rus_axes3_x*rus_Q_t_14;
-    const real rus_Q_xx = -2*rus_Q_t_17 - v.rus_d_c_in_axes3_xx;
+    const real rus_Q_xx = -v.rus_d_c_in_axes3_xx - 2*rus_Q_t_17;
     const real rus_Q_xy = axis_z_rus_axes3_x*rus_Q_t_15 + axis_z_rus_axes3_y*rus_Q_t_14 -
         axis_y_rus_axes3_x*rus_Q_t_12 - axis_y_rus_axes3_y*rus_Q_t_11;
     const real rus_Q_xz = axis_z_rus_axes3_x*rus_Q_t_16 + axis_z_rus_axes3_z*rus_Q_t_14 -
         axis_y_rus_axes3_x*rus_Q_t_13 - axis_y_rus_axes3_z*rus_Q_t_11;
     const real rus_Q_t_18 = axis_y_rus_axes3_y*rus_Q_t_12 - axis_z_rus_axes3_y*rus_Q_t_15;
-    const real rus_Q_yy = -2*rus_Q_t_18 - v.rus_d_c_in_axes3_xx;
+    const real rus_Q_yy = -v.rus_d_c_in_axes3_xx - 2*rus_Q_t_18;
     const real rus_Q_yz = axis_z_rus_axes3_y*rus_Q_t_16 + axis_z_rus_axes3_z*rus_Q_t_15 -
         axis_y_rus_axes3_y*rus_Q_t_13 - axis_y_rus_axes3_z*rus_Q_t_12;
     const real rus_Q_t_19 = axis_y_rus_axes3_z*rus_Q_t_13 - axis_z_rus_axes3_z*rus_Q_t_16;
-    const real rus_Q_zz = -2*rus_Q_t_19 - v.rus_d_c_in_axes3_xx;
+    const real rus_Q_zz = -v.rus_d_c_in_axes3_xx - 2*rus_Q_t_19;
     /* (M_tt) translational block of M */
     gather(&terms[0*count + k], add, rus_Q_xx);  /* M_tt_xx_of_legs */
     gather(&terms[1*count + k], add, rus_Q_xy);  /* M_tt_xy */
@@ -2044,11 +2044,11 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, rea
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
     const real M_tt_xy = sums[1*w + k];
@@ -2100,10 +2100,6 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 }
 
 /* ---- Z ---- */
-INLINE void Z_before()
-{
-}
-
 INLINE void Z_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *X, const real *V, real *terms, real *o)
 {
@@ -2116,12 +2112,12 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
         m->rus_base_frame_yy[i]*v.rus_qd_1_t_2;
     const real axis_z_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t +
         m->rus_base_frame_zy[i]*v.rus_qd_1_t_2;
-    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*v.rus_qd_1_t_5 +
-        m->rus_base_frame_xy[i]*v.rus_qd_1_t_6 - m->rus_base_frame_xz[i]*v.rus_c_3;
-    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*v.rus_qd_1_t_5 +
-        m->rus_base_frame_yy[i]*v.rus_qd_1_t_6 - m->rus_base_frame_yz[i]*v.rus_c_3;
-    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t_5 +
-        m->rus_base_frame_zy[i]*v.rus_qd_1_t_6 - m->rus_base_frame_zz[i]*v.rus_c_3;
+    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*v.rus_qd_1_t_5 -
+        m->rus_base_frame_xz[i]*v.rus_c_3 + m->rus_base_frame_xy[i]*v.rus_qd_1_t_6;
+    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*v.rus_qd_1_t_5 -
+        m->rus_base_frame_yz[i]*v.rus_c_3 + m->rus_base_frame_yy[i]*v.rus_qd_1_t_6;
+    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t_5 -
+        m->rus_base_frame_zz[i]*v.rus_c_3 + m->rus_base_frame_zy[i]*v.rus_qd_1_t_6;
     const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
         axis_y_rus_axes3_z*axis_z_rus_axes3_y;
     const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
@@ -2154,14 +2150,14 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real rus_bias_t_2 = v.rus_bias_t*v.rus_c_3*rus_omega_1_in_axes3_y -
         v.rus_bias_t*v.rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
     const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*m->rus_platform_joint_offset_x[i];
-    const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y -
-        rus_bias_t_2*rus_omega_1_in_axes3_y - rus_qd_3*rus_qd_3_t;
+    const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t
+        - rus_bias_t_2*rus_omega_1_in_axes3_y;
     const real rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
         rus_bias_t_3*rus_omega_2_in_axes3_x;
-    const real rus_bias_in_axes3_z = rus_W_3_in_axes3_xz*m->rus_platform_joint_offset_x[i] +
-        rus_omega_2_in_axes3_x*rus_qd_3_t -
+    const real rus_bias_in_axes3_z = rus_omega_2_in_axes3_x*rus_qd_3_t -
         v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-        v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
+        v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y +
+        rus_W_3_in_axes3_xz*m->rus_platform_joint_offset_x[i];
     /* (rus-qdd_1_o) remainder of: acceleration of joint 1 */
     const real rus_qdd_1_o = v.inv_rus_v_1_t_2*rus_bias_in_axes3_x;
     /* (rus-qdd_3_o) remainder of: acceleration of joint 3 */
@@ -2191,32 +2187,31 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
         axis_y_rus_axes3_y*m->gravity_y + axis_y_rus_axes3_z*m->gravity_z;
     const real rus_g_in_axes3_z = axis_z_rus_axes3_x*m->gravity_x +
         axis_z_rus_axes3_y*m->gravity_y + axis_z_rus_axes3_z*m->gravity_z;
-    const real rus_mu_3_o_in_axes3_x = rus_B_3_o_in_axes3_yx*m->rus_J_3_in_spec3_xy[i] +
-        rus_B_3_o_in_axes3_zx*m->rus_J_3_in_spec3_xz[i] +
-        rus_B_3_o_in_axes3_zy*m->rus_Sigma_3_in_axes3_yy[i] +
+    const real rus_mu_3_o_in_axes3_x = rus_g_in_axes3_z*m->rus_h_3_in_spec3_z[i] +
+        rus_g_in_axes3_y*m->rus_h_3_in_spec3_y[i] - m->rus_J_3_in_spec3_yz[i]*(rus_mu_3_o_t_2
+        - rus_mu_3_o_t_3) + rus_B_3_o_in_axes3_yx*m->rus_J_3_in_spec3_xy[i] +
         m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_x +
-        rus_g_in_axes3_y*m->rus_h_3_in_spec3_y[i] + rus_g_in_axes3_z*m->rus_h_3_in_spec3_z[i]
-        - m->rus_J_3_in_spec3_yz[i]*(rus_mu_3_o_t_2 - rus_mu_3_o_t_3);
-    const real rus_mu_3_o_in_axes3_y = rus_B_3_o_in_axes3_xy*m->rus_J_3_in_spec3_yz[i] +
-        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_y +
-        rus_g_in_axes3_z*m->rus_h_3_in_spec3_x[i] -
+        rus_B_3_o_in_axes3_zx*m->rus_J_3_in_spec3_xz[i] +
+        rus_B_3_o_in_axes3_zy*m->rus_Sigma_3_in_axes3_yy[i];
+    const real rus_mu_3_o_in_axes3_y = rus_g_in_axes3_z*m->rus_h_3_in_spec3_x[i] -
+        rus_g_in_axes3_x*m->rus_h_3_in_spec3_y[i] - m->rus_J_3_in_spec3_xy[i]*(rus_mu_3_o_t -
+        rus_mu_3_o_t_3) + rus_B_3_o_in_axes3_xy*m->rus_J_3_in_spec3_yz[i] +
+        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_y -
         rus_B_3_o_in_axes3_zx*m->rus_Sigma_3_in_axes3_xx[i] -
-        rus_B_3_o_in_axes3_zy*m->rus_J_3_in_spec3_xz[i] -
-        m->rus_J_3_in_spec3_xy[i]*(rus_mu_3_o_t - rus_mu_3_o_t_3) -
-        rus_g_in_axes3_x*m->rus_h_3_in_spec3_y[i];
-    const real rus_mu_3_o_in_axes3_z = rus_B_3_o_in_axes3_yx*m->rus_Sigma_3_in_axes3_xx[i] +
+        rus_B_3_o_in_axes3_zy*m->rus_J_3_in_spec3_xz[i];
+    const real rus_mu_3_o_in_axes3_z = rus_B_3_o_in_axes3_yx*m->rus_Sigma_3_in_axes3_xx[i] -
+        rus_g_in_axes3_y*m->rus_h_3_in_spec3_x[i] - rus_g_in_axes3_x*m->rus_h_3_in_spec3_z[i]
+        - m->rus_J_3_in_spec3_xz[i]*(rus_mu_3_o_t - rus_mu_3_o_t_2) +
         m->rus_J_3_in_spec3_xy[i]*rus_alpha_2_o_in_axes3_x -
         rus_B_3_o_in_axes3_xy*m->rus_Sigma_3_in_axes3_yy[i] -
-        m->rus_J_3_in_spec3_xz[i]*(rus_mu_3_o_t - rus_mu_3_o_t_2) -
-        m->rus_J_3_in_spec3_yz[i]*rus_alpha_2_o_in_axes3_y -
-        rus_g_in_axes3_x*m->rus_h_3_in_spec3_z[i] - rus_g_in_axes3_y*m->rus_h_3_in_spec3_x[i];
+        m->rus_J_3_in_spec3_yz[i]*rus_alpha_2_o_in_axes3_y;
     const real rus_mu_3_o_in_axes1_z = v.rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x -
         v.rus_c_3*rus_mu_3_o_in_axes3_y;
     /* (rus-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
-    const real rus_mu_1_o_in_axes1_z = m->rus_J_1_in_spec1_zz[i]*rus_qdd_1_o +
-        m->rus_h_1_in_spec1_y[i]*(v.rus_c_1*m->rus_mu_1_t[i] + m->rus_mu_1_t_2[i]*v.rus_s_1) -
-        m->rus_h_1_in_spec1_x[i]*(v.rus_c_1*m->rus_mu_1_t_2[i] - m->rus_mu_1_t[i]*v.rus_s_1);
+    const real rus_mu_1_o_in_axes1_z = m->rus_h_1_in_spec1_y[i]*(v.rus_c_1*m->rus_mu_1_t[i] +
+        m->rus_mu_1_t_2[i]*v.rus_s_1) - m->rus_h_1_in_spec1_x[i]*(v.rus_c_1*m->rus_mu_1_t_2[i]
+        - m->rus_mu_1_t[i]*v.rus_s_1) + m->rus_J_1_in_spec1_zz[i]*rus_qdd_1_o;
     /* (rus-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
        connection point left out */
     const real rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z;
@@ -2226,24 +2221,24 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*m->rus_w_3_in_axes3_y[i];
     /* (rus-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
-    const real rus_c_o_in_axes3_x = v.inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z -
-        rus_G_o_in_axes3_y*v.rus_v_1_in_axes3_y - rus_G_o_in_axes3_z*v.rus_v_1_in_axes3_z) +
-        rus_B_3_o_in_axes3_xy*m->rus_h_3_in_spec3_z[i] +
-        m->rus_h_3_in_spec3_x[i]*(rus_mu_3_o_t_2 + rus_mu_3_o_t_3) -
-        rus_alpha_2_o_in_axes3_y*m->rus_h_3_in_spec3_y[i];
+    const real rus_c_o_in_axes3_x = m->rus_h_3_in_spec3_x[i]*(rus_mu_3_o_t_3 + rus_mu_3_o_t_2)
+        + rus_B_3_o_in_axes3_xy*m->rus_h_3_in_spec3_z[i] -
+        rus_alpha_2_o_in_axes3_y*m->rus_h_3_in_spec3_y[i] +
+        v.inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z - rus_G_o_in_axes3_y*v.rus_v_1_in_axes3_y -
+        rus_G_o_in_axes3_z*v.rus_v_1_in_axes3_z);
     const real rus_c_o_in_axes3_y = rus_alpha_2_o_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
-        rus_G_o_in_axes3_y - rus_B_3_o_in_axes3_yx*m->rus_h_3_in_spec3_x[i] -
-        m->rus_h_3_in_spec3_z[i]*(rus_mu_3_o_t + rus_mu_3_o_t_3);
-    const real rus_c_o_in_axes3_z = rus_B_3_o_in_axes3_zy*m->rus_h_3_in_spec3_z[i] +
-        m->rus_h_3_in_spec3_y[i]*(rus_mu_3_o_t + rus_mu_3_o_t_2) - rus_G_o_in_axes3_z -
-        rus_B_3_o_in_axes3_zx*m->rus_h_3_in_spec3_x[i];
+        m->rus_h_3_in_spec3_z[i]*(rus_mu_3_o_t_3 + rus_mu_3_o_t) -
+        rus_B_3_o_in_axes3_yx*m->rus_h_3_in_spec3_x[i] - rus_G_o_in_axes3_y;
+    const real rus_c_o_in_axes3_z = m->rus_h_3_in_spec3_y[i]*(rus_mu_3_o_t + rus_mu_3_o_t_2) +
+        rus_B_3_o_in_axes3_zy*m->rus_h_3_in_spec3_z[i] -
+        rus_B_3_o_in_axes3_zx*m->rus_h_3_in_spec3_x[i] - rus_G_o_in_axes3_z;
     /* (rus-U) velocity and gravity terms of the leg force */
-    const real rus_U_x = -axis_x_rus_axes3_x*rus_c_o_in_axes3_x -
-        axis_y_rus_axes3_x*rus_c_o_in_axes3_y - axis_z_rus_axes3_x*rus_c_o_in_axes3_z;
-    const real rus_U_y = -axis_x_rus_axes3_y*rus_c_o_in_axes3_x -
-        axis_y_rus_axes3_y*rus_c_o_in_axes3_y - axis_z_rus_axes3_y*rus_c_o_in_axes3_z;
-    const real rus_U_z = -axis_x_rus_axes3_z*rus_c_o_in_axes3_x -
-        axis_y_rus_axes3_z*rus_c_o_in_axes3_y - axis_z_rus_axes3_z*rus_c_o_in_axes3_z;
+    const real rus_U_x = -axis_y_rus_axes3_x*rus_c_o_in_axes3_y -
+        axis_z_rus_axes3_x*rus_c_o_in_axes3_z - axis_x_rus_axes3_x*rus_c_o_in_axes3_x;
+    const real rus_U_y = -axis_y_rus_axes3_y*rus_c_o_in_axes3_y -
+        axis_z_rus_axes3_y*rus_c_o_in_axes3_z - axis_x_rus_axes3_y*rus_c_o_in_axes3_x;
+    const real rus_U_z = -axis_y_rus_axes3_z*rus_c_o_in_axes3_y -
+        axis_z_rus_axes3_z*rus_c_o_in_axes3_z - axis_x_rus_axes3_z*rus_c_o_in_axes3_x;
     /* (Z_t) translational part of Z */
     gather(&terms[0*count + k], add, rus_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, rus_U_y);  /* Z_t_y_of_legs */
@@ -2313,10 +2308,6 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before()
-{
-}
-
 INLINE void H_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *X, real *o)
 {
@@ -2371,7 +2362,7 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *A, real *s)
+INLINE void required_between(const prepared *m, size_t w, size_t k, const real *A, real *s)
 {
     /* (a_t) acceleration of the platform origin, less gravity */
     const real t_ddot_x = A[0*w + k];
@@ -2397,12 +2388,12 @@ INLINE void required_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
     stage_rus_legs_required(m, w, i, j, V, A, &v);
     /* (rus-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rus_c_x = v.axis_x_rus_axes3_x*v.rus_c_in_axes3_x +
-        v.axis_y_rus_axes3_x*v.rus_c_in_axes3_y + v.axis_z_rus_axes3_x*v.rus_c_in_axes3_z;
-    const real rus_c_y = v.axis_x_rus_axes3_y*v.rus_c_in_axes3_x +
-        v.axis_y_rus_axes3_y*v.rus_c_in_axes3_y + v.axis_z_rus_axes3_y*v.rus_c_in_axes3_z;
-    const real rus_c_z = v.axis_x_rus_axes3_z*v.rus_c_in_axes3_x +
-        v.axis_y_rus_axes3_z*v.rus_c_in_axes3_y + v.axis_z_rus_axes3_z*v.rus_c_in_axes3_z;
+    const real rus_c_x = v.axis_y_rus_axes3_x*v.rus_c_in_axes3_y +
+        v.axis_z_rus_axes3_x*v.rus_c_in_axes3_z + v.axis_x_rus_axes3_x*v.rus_c_in_axes3_x;
+    const real rus_c_y = v.axis_y_rus_axes3_y*v.rus_c_in_axes3_y +
+        v.axis_z_rus_axes3_y*v.rus_c_in_axes3_z + v.axis_x_rus_axes3_y*v.rus_c_in_axes3_x;
+    const real rus_c_z = v.axis_y_rus_axes3_z*v.rus_c_in_axes3_y +
+        v.axis_z_rus_axes3_z*v.rus_c_in_axes3_z + v.axis_x_rus_axes3_z*v.rus_c_in_axes3_x;
     /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, rus_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, rus_c_y);  /* R_t_y_of_legs */
@@ -2446,12 +2437,11 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[2*w + k] = R_t_z;
 }
 
-APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
     real s[3] = {0}, sums[3] = {0};
     real terms_rus[3*LEGS(LEGS_OF_rus)] = {0}, o_rus[5*LEGS(LEGS_OF_rus)] = {0};
-    required_before(m, 1, 0, A, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         required_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, X, V, A, terms_rus, o_rus);
     }
@@ -2461,6 +2451,7 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
+    required_between(m, 1, 0, A, s);
     required_after(1, 0, s, sums, required);
 }
 
@@ -2470,7 +2461,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real s[3*LANES], sums[3*LANES];
     real o_rus[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        required_before(m, LANES, k, A, s);
+        required_between(m, LANES, k, A, s);
     }
     clear(sums, 3*LANES);
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
@@ -2487,18 +2478,14 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before()
-{
-}
-
 INLINE void inverse_kinematics_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *X, real *o)
 {
     values_rus v;
     stage_rus_X(m, w, i, j, X, &v);
     /* (rus-q_1) displacement of joint 1 */
-    const real rus_q_1 = angle(v.inv_rus_rho2_1*(v.rus_Kc_1*v.rus_root_1 +
-        v.rus_Kd_1*v.rus_Ks_1), v.inv_rus_rho2_1*(v.rus_Kc_1*v.rus_Kd_1 -
+    const real rus_q_1 = angle(v.inv_rus_rho2_1*(v.rus_Kd_1*v.rus_Ks_1 +
+        v.rus_Kc_1*v.rus_root_1), v.inv_rus_rho2_1*(v.rus_Kc_1*v.rus_Kd_1 -
         v.rus_Ks_1*v.rus_root_1));
     /* (rus-q_2) displacement of joint 2 */
     const real rus_q_2 = angle(-v.inv_rus_rho2_2*v.rus_root_2*v.rus_xi_1_t,
@@ -2557,10 +2544,6 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before()
-{
-}
-
 INLINE void joint_rates_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *X, const real *V, real *o)
 {
@@ -2575,12 +2558,12 @@ INLINE void joint_rates_legs_rus(const prepared *m, size_t w, size_t i, size_t j
         m->rus_base_frame_yy[i]*v.rus_qd_1_t_2;
     const real axis_z_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t +
         m->rus_base_frame_zy[i]*v.rus_qd_1_t_2;
-    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*v.rus_qd_1_t_5 +
-        m->rus_base_frame_xy[i]*v.rus_qd_1_t_6 - m->rus_base_frame_xz[i]*v.rus_c_3;
-    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*v.rus_qd_1_t_5 +
-        m->rus_base_frame_yy[i]*v.rus_qd_1_t_6 - m->rus_base_frame_yz[i]*v.rus_c_3;
-    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t_5 +
-        m->rus_base_frame_zy[i]*v.rus_qd_1_t_6 - m->rus_base_frame_zz[i]*v.rus_c_3;
+    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*v.rus_qd_1_t_5 -
+        m->rus_base_frame_xz[i]*v.rus_c_3 + m->rus_base_frame_xy[i]*v.rus_qd_1_t_6;
+    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*v.rus_qd_1_t_5 -
+        m->rus_base_frame_yz[i]*v.rus_c_3 + m->rus_base_frame_yy[i]*v.rus_qd_1_t_6;
+    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t_5 -
+        m->rus_base_frame_zz[i]*v.rus_c_3 + m->rus_base_frame_zy[i]*v.rus_qd_1_t_6;
     const real t_dot_x = V[0*w + j];
     const real t_dot_y = V[1*w + j];
     const real t_dot_z = V[2*w + j];
@@ -2593,9 +2576,9 @@ INLINE void joint_rates_legs_rus(const prepared *m, size_t w, size_t i, size_t j
     /* (rus-qd_2) rate of joint 2 */
     const real rus_qd_2_t = v.rus_c_2*v.rus_r_1_in_axes1_x + v.rus_r_1_t_2*v.rus_s_2_t;
     const real rus_qd_2_t_2 = axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
-        axis_z_rus_axes3_z*t_dot_z + rus_qd_1_t_7*(v.rus_c_3*(v.rus_c_3*rus_qd_2_t +
-        v.rus_e_1_in_axes3_x*v.rus_r_1_in_axes1_z) +
-        v.rus_e_1_in_axes3_x*(v.rus_e_1_in_axes3_x*rus_qd_2_t -
+        axis_z_rus_axes3_z*t_dot_z +
+        rus_qd_1_t_7*(v.rus_c_3*(v.rus_e_1_in_axes3_x*v.rus_r_1_in_axes1_z +
+        v.rus_c_3*rus_qd_2_t) + v.rus_e_1_in_axes3_x*(v.rus_e_1_in_axes3_x*rus_qd_2_t -
         v.rus_c_3*v.rus_r_1_in_axes1_z));
     const real rus_qd_2 = rus_qd_2_t_2/v.rus_r_1_t;
     /* (rus-qd_3) rate of joint 3 */
@@ -2653,10 +2636,6 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before()
-{
-}
-
 INLINE void joint_accelerations_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *X, const real *V, const real *A, real *o)
 {
@@ -2669,12 +2648,12 @@ INLINE void joint_accelerations_legs_rus(const prepared *m, size_t w, size_t i, 
         m->rus_base_frame_yy[i]*v.rus_qd_1_t_2;
     const real axis_z_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t +
         m->rus_base_frame_zy[i]*v.rus_qd_1_t_2;
-    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*v.rus_qd_1_t_5 +
-        m->rus_base_frame_xy[i]*v.rus_qd_1_t_6 - m->rus_base_frame_xz[i]*v.rus_c_3;
-    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*v.rus_qd_1_t_5 +
-        m->rus_base_frame_yy[i]*v.rus_qd_1_t_6 - m->rus_base_frame_yz[i]*v.rus_c_3;
-    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t_5 +
-        m->rus_base_frame_zy[i]*v.rus_qd_1_t_6 - m->rus_base_frame_zz[i]*v.rus_c_3;
+    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*v.rus_qd_1_t_5 -
+        m->rus_base_frame_xz[i]*v.rus_c_3 + m->rus_base_frame_xy[i]*v.rus_qd_1_t_6;
+    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*v.rus_qd_1_t_5 -
+        m->rus_base_frame_yz[i]*v.rus_c_3 + m->rus_base_frame_yy[i]*v.rus_qd_1_t_6;
+    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t_5 -
+        m->rus_base_frame_zz[i]*v.rus_c_3 + m->rus_base_frame_zy[i]*v.rus_qd_1_t_6;
     const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
         axis_y_rus_axes3_z*axis_z_rus_axes3_y;
     const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
@@ -2703,14 +2682,14 @@ INLINE void joint_accelerations_legs_rus(const prepared *m, size_t w, size_t i, 
     const real rus_bias_t_2 = v.rus_bias_t*v.rus_c_3*rus_omega_1_in_axes3_y -
         v.rus_bias_t*v.rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
     const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*m->rus_platform_joint_offset_x[i];
-    const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y -
-        rus_bias_t_2*rus_omega_1_in_axes3_y - rus_qd_3*rus_qd_3_t;
+    const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t
+        - rus_bias_t_2*rus_omega_1_in_axes3_y;
     const real rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
         rus_bias_t_3*rus_omega_2_in_axes3_x;
-    const real rus_bias_in_axes3_z = rus_omega_2_in_axes3_x*rus_qd_3_t +
-        rus_omega_2_in_axes3_x*m->rus_platform_joint_offset_x[i]*rus_qd_3 -
+    const real rus_bias_in_axes3_z = rus_omega_2_in_axes3_x*rus_qd_3_t -
         v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-        v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
+        v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y +
+        rus_omega_2_in_axes3_x*m->rus_platform_joint_offset_x[i]*rus_qd_3;
     /* (rus-rel) acceleration of the connection point left to the joint accelerations */
     const real t_ddot_x = A[0*w + j];
     const real t_ddot_y = A[1*w + j];
@@ -2781,10 +2760,6 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before()
-{
-}
-
 INLINE void legs_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *X, const real *V, const real *A, real *o)
 {
@@ -2798,15 +2773,15 @@ INLINE void legs_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_
         v.rus_acc_3_in_axes3_y*m->rus_link3_mass[i];
     const real rus_c_true_in_axes3_z = v.rus_c_in_axes3_z -
         v.rus_acc_3_in_axes3_z*m->rus_link3_mass[i];
-    const real rus_c_true_x = v.axis_x_rus_axes3_x*rus_c_true_in_axes3_x +
-        v.axis_y_rus_axes3_x*rus_c_true_in_axes3_y +
-        v.axis_z_rus_axes3_x*rus_c_true_in_axes3_z;
-    const real rus_c_true_y = v.axis_x_rus_axes3_y*rus_c_true_in_axes3_x +
-        v.axis_y_rus_axes3_y*rus_c_true_in_axes3_y +
-        v.axis_z_rus_axes3_y*rus_c_true_in_axes3_z;
-    const real rus_c_true_z = v.axis_x_rus_axes3_z*rus_c_true_in_axes3_x +
-        v.axis_y_rus_axes3_z*rus_c_true_in_axes3_y +
-        v.axis_z_rus_axes3_z*rus_c_true_in_axes3_z;
+    const real rus_c_true_x = v.axis_y_rus_axes3_x*rus_c_true_in_axes3_y +
+        v.axis_z_rus_axes3_x*rus_c_true_in_axes3_z +
+        v.axis_x_rus_axes3_x*rus_c_true_in_axes3_x;
+    const real rus_c_true_y = v.axis_y_rus_axes3_y*rus_c_true_in_axes3_y +
+        v.axis_z_rus_axes3_y*rus_c_true_in_axes3_z +
+        v.axis_x_rus_axes3_y*rus_c_true_in_axes3_x;
+    const real rus_c_true_z = v.axis_y_rus_axes3_z*rus_c_true_in_axes3_y +
+        v.axis_z_rus_axes3_z*rus_c_true_in_axes3_z +
+        v.axis_x_rus_axes3_z*rus_c_true_in_axes3_x;
     /* (rus-c_true) */
     o[0*count + k] = rus_c_true_x;
     o[1*count + k] = rus_c_true_y;
@@ -2848,7 +2823,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
     /* (potential) potential energy */
     const real t_x = X[0*w + k];
@@ -2869,16 +2844,16 @@ INLINE void potential_legs_rus(const prepared *m, size_t w, size_t i, size_t j, 
     const real rus_potential_t_4 = v.rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_z[i] -
         v.rus_c_3*m->rus_h_3_in_spec3_x[i];
     const real rus_potential_t_5 = m->rus_g_in_axes1_z[i]*(m->rus_h_1_in_spec1_z[i] +
-        m->rus_potential_t_3[i] + v.rus_c_3*m->rus_h_3_in_spec3_z[i] +
-        v.rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_x[i]) + (v.rus_c_1*m->rus_mu_1_t[i] +
+        m->rus_potential_t_3[i] + v.rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_x[i] +
+        v.rus_c_3*m->rus_h_3_in_spec3_z[i]) + (v.rus_c_1*m->rus_mu_1_t[i] +
         m->rus_mu_1_t_2[i]*v.rus_s_1)*(m->rus_h_1_in_spec1_x[i] +
-        m->rus_h_3_in_spec3_y[i]*v.rus_s_2_t +
         m->rus_link1_mass[i]*(v.rus_c_1*m->rus_potential_t[i] +
-        m->rus_potential_t_2[i]*v.rus_s_1) - v.rus_c_2*rus_potential_t_4) +
-        (v.rus_c_1*m->rus_mu_1_t_2[i] - m->rus_mu_1_t[i]*v.rus_s_1)*(m->rus_h_1_in_spec1_y[i]
-        + v.rus_c_2*m->rus_h_3_in_spec3_y[i] +
+        m->rus_potential_t_2[i]*v.rus_s_1) + m->rus_h_3_in_spec3_y[i]*v.rus_s_2_t -
+        v.rus_c_2*rus_potential_t_4) + (v.rus_c_1*m->rus_mu_1_t_2[i] -
+        m->rus_mu_1_t[i]*v.rus_s_1)*(m->rus_h_1_in_spec1_y[i] +
         m->rus_link1_mass[i]*(v.rus_c_1*m->rus_potential_t_2[i] -
-        m->rus_potential_t[i]*v.rus_s_1) + rus_potential_t_4*v.rus_s_2_t);
+        m->rus_potential_t[i]*v.rus_s_1) + v.rus_c_2*m->rus_h_3_in_spec3_y[i] +
+        rus_potential_t_4*v.rus_s_2_t);
     /* (potential) */
     gather(&terms[0*count + k], add, rus_potential_t_5);  /* potential_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
@@ -2897,7 +2872,7 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     /* (potential) */
     const real potential_of_legs = sums[0*w + k];
     const real potential_t = s[0*w + k];
-    const real potential_ = -potential_of_legs - potential_t;
+    const real potential_ = -potential_t - potential_of_legs;
     /* (potential) */
     potential[0*w + k] = potential_;
 }
@@ -2906,7 +2881,6 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 {
     real s[1] = {0}, sums[1] = {0};
     real terms_rus[LEGS(LEGS_OF_rus)] = {0}, o_rus[2*LEGS(LEGS_OF_rus)] = {0};
-    potential_before(m, 1, 0, X, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         potential_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, X, terms_rus, o_rus);
     }
@@ -2916,6 +2890,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
+    potential_between(m, 1, 0, X, s);
     potential_after(1, 0, s, sums, potential);
 }
 
@@ -3020,11 +2995,7 @@ int delta_M(const prepared *m, const real *X, real *M_out)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-    }
-    return code;
+    return settled(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -3051,11 +3022,7 @@ int delta_Z(const prepared *m, const real *X, const real *V, real *Z_out)
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, Z_out);
-    }
-    return code;
+    return settled(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -3079,11 +3046,7 @@ int delta_H(const prepared *m, const real *X, real *H_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -3106,11 +3069,7 @@ int delta_inverse_kinematics(const prepared *m, const real *X, real *q_out)
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, q_out);
-    }
-    return code;
+    return settled(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -3137,11 +3096,7 @@ int delta_joint_rates(const prepared *m, const real *X, const real *V, real *qd_
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qd_out);
-    }
-    return code;
+    return settled(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -3172,11 +3127,7 @@ int delta_joint_accelerations(const prepared *m, const real *X, const real *V, c
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qdd_out);
-    }
-    return code;
+    return settled(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -3209,13 +3160,9 @@ int delta_dynamics(const prepared *m, const real *X, const real *V, real *M_out,
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-        refuse(NV, Z_out);
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    settled(&why, NV*NV, M_out);
+    settled(&why, NV, Z_out);
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -3286,7 +3233,8 @@ static const real sizes_tau[] = {1.0, 1.0, 4.0};
 int delta_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A, const
     real *wrench, real *tau_out)
 {
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    static const real no_wrench[NW] = {0};
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
@@ -3296,7 +3244,7 @@ int delta_inverse_dynamics(const prepared *m, const real *X, const real *V, cons
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -3310,11 +3258,7 @@ int delta_inverse_dynamics(const prepared *m, const real *X, const real *V, cons
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, tau_out);
-    }
-    return code;
+    return settled(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -3343,8 +3287,9 @@ static const real sizes_A[] = {16.0, 16.0, 16.0};
 int delta_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau, const
     real *wrench, real *A_out)
 {
-    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] =
-        {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    static const real no_wrench[NW] = {0};
+    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
+        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
@@ -3353,7 +3298,7 @@ int delta_forward_dynamics(const prepared *m, const real *X, const real *V, cons
         check(NV, 1, V, why.invalid);
         check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     for (size_t i = 0; i < NV; ++i) {
@@ -3371,11 +3316,7 @@ int delta_forward_dynamics(const prepared *m, const real *X, const real *V, cons
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, A_out);
-    }
-    return code;
+    return settled(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -3416,18 +3357,15 @@ int delta_complete_acceleration(const prepared *m, const real *X, const real *V,
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, completed_out);
-    }
-    return code;
+    return settled(&why, NV, completed_out);
 }
 
 int delta_leg_reactions(const prepared *m, const real *X, const real *V, const real *A, const real
     *wrench, real *forces_out)
 {
+    static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2};
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
         unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[9] = {0}, forces[NL*NL] = {0},
         work[NV*PADDED(NV)];
     verdict why;
@@ -3438,7 +3376,7 @@ int delta_leg_reactions(const prepared *m, const real *X, const real *V, const r
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -3456,11 +3394,7 @@ int delta_leg_reactions(const prepared *m, const real *X, const real *V, const r
     add_forces(NL, 3, 1, places_forces, solve_1, actuator, forces);
     check(NL*NL, 1, forces, why.overflow);
     copy(NL*NL, forces, forces_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NL*NL, forces_out);
-    }
-    return code;
+    return settled(&why, NL*NL, forces_out);
 }
 
 int delta_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
@@ -3482,12 +3416,8 @@ int delta_energy(const prepared *m, const real *X, const real *V, real *kinetic_
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, kinetic_out);
-        refuse(1, potential_out);
-    }
-    return code;
+    settled(&why, 1, kinetic_out);
+    return settled(&why, 1, potential_out);
 }
 
 int delta_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
@@ -3505,12 +3435,8 @@ int delta_condition(const prepared *m, const real *X, real *sigma_out, real *leg
     check(2, 1, lengths, why.overflow);
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, sigma_out);
-        refuse(NL, legs_out);
-    }
-    return code;
+    settled(&why, NV, sigma_out);
+    return settled(&why, NL, legs_out);
 }
 
 int delta_manipulability(const prepared *m, const real *X, real *measure_out, real *isotropy_out)
@@ -3530,12 +3456,8 @@ int delta_manipulability(const prepared *m, const real *X, real *measure_out, re
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, measure_out);
-        refuse(1, isotropy_out);
-    }
-    return code;
+    settled(&why, 1, measure_out);
+    return settled(&why, 1, isotropy_out);
 }
 
 int delta_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
@@ -3556,12 +3478,8 @@ int delta_singularity_distance(const prepared *m, const real *X, real *actuators
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, actuators_out);
-        refuse(1, legs_out);
-    }
-    return code;
+    settled(&why, 1, actuators_out);
+    return settled(&why, 1, legs_out);
 }
 
 static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
@@ -3586,11 +3504,7 @@ static int mismatch_one(const prepared *m, const real *X, const real *q_actuated
     wrap_turns(NU, 1, places_gap, gap);
     check(NU, 1, gap, why.overflow);
     copy(NU, gap, gap_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, gap_out);
-    }
-    return code;
+    return settled(&why, NU, gap_out);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
@@ -3602,11 +3516,7 @@ static int slope_one(const prepared *m, const real *X, real *slope_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, slope_out);
-    }
-    return code;
+    return settled(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -3668,11 +3578,7 @@ int delta_forward_kinematics(const prepared *m, const real *q_actuated, const re
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int delta_dissipation(const prepared *m, const real *X, const real *V, real *dissipation_out)
@@ -3689,11 +3595,7 @@ int delta_dissipation(const prepared *m, const real *X, const real *V, real *dis
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, dissipation_out);
-    }
-    return code;
+    return settled(&why, 1, dissipation_out);
 }
 
 int delta_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
@@ -3710,11 +3612,7 @@ int delta_momentum(const prepared *m, const real *X, const real *V, real *moment
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, momentum_out);
-    }
-    return code;
+    return settled(&why, NV, momentum_out);
 }
 
 int delta_joint_margins(const prepared *m, const real *X, real *margins_out)
@@ -3730,11 +3628,7 @@ int delta_joint_margins(const prepared *m, const real *X, real *margins_out)
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, margins_out);
-    }
-    return code;
+    return settled(&why, NJ, margins_out);
 }
 
 int delta_within_limits(const prepared *m, const real *X, real *within_out)
@@ -3750,11 +3644,7 @@ int delta_within_limits(const prepared *m, const real *X, real *within_out)
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, within_out);
-    }
-    return code;
+    return settled(&why, 1, within_out);
 }
 
 int delta_actuator_positions(const prepared *m, const real *X, real *q_out)
@@ -3767,11 +3657,7 @@ int delta_actuator_positions(const prepared *m, const real *X, real *q_out)
     take(NU, 1, delta_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, q_out);
-    }
-    return code;
+    return settled(&why, NU, q_out);
 }
 
 int delta_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
@@ -3788,11 +3674,7 @@ int delta_actuator_rates(const prepared *m, const real *X, const real *V, real *
     take(NU, 1, delta_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qd_out);
-    }
-    return code;
+    return settled(&why, NU, qd_out);
 }
 
 int delta_actuator_accelerations(const prepared *m, const real *X, const real *V, const real *A,
@@ -3811,11 +3693,7 @@ int delta_actuator_accelerations(const prepared *m, const real *X, const real *V
     take(NU, 1, delta_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qdd_out);
-    }
-    return code;
+    return settled(&why, NU, qdd_out);
 }
 
 int delta_power(const prepared *m, const real *X, const real *V, const real *tau, real *power_out)
@@ -3834,11 +3712,7 @@ int delta_power(const prepared *m, const real *X, const real *V, const real *tau
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, power_out);
-    }
-    return code;
+    return settled(&why, 1, power_out);
 }
 
 int delta_retract(const real *X, const real *step, real *X_moved_out)
@@ -3856,11 +3730,7 @@ int delta_retract(const real *X, const real *step, real *X_moved_out)
     }
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_moved_out);
-    }
-    return code;
+    return settled(&why, NQ, X_moved_out);
 }
 
 int delta_difference(const real *X0, const real *X1, real *step_out)
@@ -3878,11 +3748,7 @@ int delta_difference(const real *X0, const real *X1, real *step_out)
     }
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, step_out);
-    }
-    return code;
+    return settled(&why, NV, step_out);
 }
 
 int delta_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
@@ -3907,11 +3773,7 @@ int delta_interpolate(const real *X0, const real *X1, const real *s, real *X_out
     }
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 /* ---- one state, and batches ---- */

@@ -232,15 +232,12 @@ INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *t
 }
 
 /* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
-INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+INLINE const real *optional(size_t size, const real *x, const real *none, real *flags)
 {
-    for (size_t e = 0; e < size && !x; ++e) {
-        own[e] = none;
-    }
     if (x) {
         check(size, 1, x, flags);
     }
-    return x ? x : own;
+    return x ? x : none;
 }
 
 INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
@@ -297,6 +294,16 @@ APART void refuse(size_t size, real *out)
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
     }
+}
+
+/* The status of a state; an output is refused where it is impossible. */
+INLINE int settled(const verdict *t, size_t size, real *out)
+{
+    const int code = judge(t);
+    if (code != OK) {
+        refuse(size, out);
+    }
+    return code;
 }
 
 /* Outputs of a state where the user wants them, and of states side by side, state by state. */
@@ -424,63 +431,63 @@ INLINE int all_planar_inertias(const real *x, size_t n)
 /* ---- parameters ---- */
 
 const fivebar_offset_params fivebar_offset_default_params = {
-    {R(0.0), R(-9.81), R(0.0)},  /* gravity */
-    R(1.0),  /* platform_mass */
-    {R(-0.025), R(0.0), R(0.0)},  /* platform_centre_of_mass */
-    {{R(0.0), R(0.0), R(0.0)}, {R(0.0), R(0.0169), R(0.0)}, {R(0.0), R(0.0), R(0.0169)}},  /* platform_inertia */
+    {0, R(-9.81), 0},  /* gravity */
+    1,  /* platform_mass */
+    {R(-0.025), 0, 0},  /* platform_centre_of_mass */
+    {{0, 0, 0}, {0, R(0.0169), 0}, {0, 0, R(0.0169)}},  /* platform_inertia */
     {  /* crank_base_point */
-        {R(0.13999795483447225), R(-0.019230288934706907), R(0.0)},
+        {R(0.13999795483447225), R(-0.019230288934706907), 0},
     },
     {  /* crank_base_frame */
-        {{R(1.0), R(0.0), R(0.0)}, {R(0.0), R(1.0), R(0.0)}, {R(0.0), R(0.0), R(1.0)}},
+        {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
     },
     {  /* crank_platform_point */
-        {R(-0.25), R(0.0), R(0.0)},
+        {R(-0.25), 0, 0},
     },
     {  /* crank_platform_joint_offset */
-        {R(0.4), R(0.0), R(0.0)},
+        {R(0.4), 0, 0},
     },
     {  /* crank_link1_mass */
         R(1.5),
     },
     {  /* crank_link1_centre_of_mass */
-        {R(0.2), R(0.0), R(0.0)},
+        {R(0.2), 0, 0},
     },
     {  /* crank_link1_inertia */
-        {{R(0.0003), R(0.0), R(0.0)}, {R(0.0), R(0.020150000000000005), R(0.0)}, {R(0.0), R(0.0), R(0.020150000000000005)}},
+        {{R(0.0003), 0, 0}, {0, R(0.020150000000000005), 0}, {0, 0, R(0.020150000000000005)}},
     },
     {  /* rrr_base_point */
-        {R(0.12294408279208127), R(-0.0658492239970534), R(0.0)},
+        {R(0.12294408279208127), R(-0.0658492239970534), 0},
     },
     {  /* rrr_base_frame */
-        {{R(1.0), R(0.0), R(0.0)}, {R(0.0), R(1.0), R(0.0)}, {R(0.0), R(0.0), R(1.0)}},
+        {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
     },
     {  /* rrr_platform_point */
-        {R(0.2), R(0.0), R(0.0)},
+        {R(0.2), 0, 0},
     },
     {  /* rrr_joint2_offset */
-        {R(0.4), R(0.0), R(0.0)},
+        {R(0.4), 0, 0},
     },
     {  /* rrr_platform_joint_offset */
-        {R(0.45), R(0.0), R(0.0)},
+        {R(0.45), 0, 0},
     },
     {  /* rrr_link1_mass */
         R(1.5),
     },
     {  /* rrr_link1_centre_of_mass */
-        {R(0.2), R(0.0), R(0.0)},
+        {R(0.2), 0, 0},
     },
     {  /* rrr_link1_inertia */
-        {{R(0.0003), R(0.0), R(0.0)}, {R(0.0), R(0.020150000000000005), R(0.0)}, {R(0.0), R(0.0), R(0.020150000000000005)}},
+        {{R(0.0003), 0, 0}, {0, R(0.020150000000000005), 0}, {0, 0, R(0.020150000000000005)}},
     },
     {  /* rrr_link2_mass */
         R(1.5),
     },
     {  /* rrr_link2_centre_of_mass */
-        {R(0.225), R(0.0), R(0.0)},
+        {R(0.225), 0, 0},
     },
     {  /* rrr_link2_inertia */
-        {{R(0.0003), R(0.0), R(0.0)}, {R(0.0), R(0.025462500000000002), R(0.0)}, {R(0.0), R(0.0), R(0.025462500000000002)}},
+        {{R(0.0003), 0, 0}, {0, R(0.025462500000000002), 0}, {0, 0, R(0.025462500000000002)}},
     },
 };
 
@@ -547,6 +554,9 @@ static int acceptable(const fivebar_offset_params *p)
     return ok;
 }
 
+#define KEEP(name) model->name = name
+#define KEEP_OF_LEG(name) model->name[leg] = name
+
 int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_model *model)
 {
     if (!acceptable(params)) {
@@ -578,8 +588,8 @@ int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_m
     const real J_star_t_2 = J_star_t + platform_centre_of_mass_x*platform_centre_of_mass_x;
     const real J_star_t_3 = J_star_t*platform_mass;
     const real J_star_t_4 = J_star_t_2*platform_mass;
-    model->gravity_x = gravity_x;
-    model->gravity_y = gravity_y;
+    KEEP(gravity_x);
+    KEEP(gravity_y);
     for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
         const size_t own = leg;
         const real crank_base_point_x = params->crank_base_point[own][0];
@@ -623,28 +633,28 @@ int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_m
         /* (potential) potential energy */
         const real crank_potential_t = crank_base_point_x*crank_link1_mass;
         const real crank_potential_t_2 = crank_base_point_y*crank_link1_mass;
-        model->crank_J_1_in_spec1_zz[leg] = crank_J_1_in_spec1_zz;
-        model->crank_base_frame_xx[leg] = crank_base_frame_xx;
-        model->crank_base_frame_xy[leg] = crank_base_frame_xy;
-        model->crank_base_frame_yx[leg] = crank_base_frame_yx;
-        model->crank_base_frame_yy[leg] = crank_base_frame_yy;
-        model->crank_base_point_x[leg] = crank_base_point_x;
-        model->crank_base_point_y[leg] = crank_base_point_y;
-        model->crank_d_G_in_axes1_yy[leg] = crank_d_G_in_axes1_yy;
-        model->crank_h_1_in_spec1_x[leg] = crank_h_1_in_spec1_x;
-        model->crank_h_1_in_spec1_y[leg] = crank_h_1_in_spec1_y;
-        model->crank_mu_1_t[leg] = crank_mu_1_t;
-        model->crank_mu_1_t_2[leg] = crank_mu_1_t_2;
-        model->crank_n_c_in_axes1_x[leg] = crank_n_c_in_axes1_x;
-        model->crank_platform_joint_offset_x[leg] = crank_platform_joint_offset_x;
-        model->crank_platform_point_x[leg] = crank_platform_point_x;
-        model->crank_platform_point_y[leg] = crank_platform_point_y;
-        model->crank_potential_t[leg] = crank_potential_t;
-        model->crank_potential_t_2[leg] = crank_potential_t_2;
-        model->crank_root_1_t[leg] = crank_root_1_t;
-        model->crank_size_t[leg] = crank_size_t;
-        model->crank_w_1_in_axes1_y[leg] = crank_w_1_in_axes1_y;
-        model->inv_crank_root_1_t[leg] = inv_crank_root_1_t;
+        KEEP_OF_LEG(crank_J_1_in_spec1_zz);
+        KEEP_OF_LEG(crank_base_frame_xx);
+        KEEP_OF_LEG(crank_base_frame_xy);
+        KEEP_OF_LEG(crank_base_frame_yx);
+        KEEP_OF_LEG(crank_base_frame_yy);
+        KEEP_OF_LEG(crank_base_point_x);
+        KEEP_OF_LEG(crank_base_point_y);
+        KEEP_OF_LEG(crank_d_G_in_axes1_yy);
+        KEEP_OF_LEG(crank_h_1_in_spec1_x);
+        KEEP_OF_LEG(crank_h_1_in_spec1_y);
+        KEEP_OF_LEG(crank_mu_1_t);
+        KEEP_OF_LEG(crank_mu_1_t_2);
+        KEEP_OF_LEG(crank_n_c_in_axes1_x);
+        KEEP_OF_LEG(crank_platform_joint_offset_x);
+        KEEP_OF_LEG(crank_platform_point_x);
+        KEEP_OF_LEG(crank_platform_point_y);
+        KEEP_OF_LEG(crank_potential_t);
+        KEEP_OF_LEG(crank_potential_t_2);
+        KEEP_OF_LEG(crank_root_1_t);
+        KEEP_OF_LEG(crank_size_t);
+        KEEP_OF_LEG(crank_w_1_in_axes1_y);
+        KEEP_OF_LEG(inv_crank_root_1_t);
         b_c_crank_in_platform_x += crank_platform_point_x;
         b_c_crank_in_platform_y += crank_platform_point_y;
         legs_size_crank += crank_size_t_2;
@@ -739,43 +749,43 @@ int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_m
             rrr_base_frame_yx*rrr_base_point_y;
         const real rrr_potential_t_2 = rrr_base_frame_xy*rrr_base_point_x +
             rrr_base_frame_yy*rrr_base_point_y;
-        model->inv_rrr_rho2_1_t[leg] = inv_rrr_rho2_1_t;
-        model->inv_rrr_size[leg] = inv_rrr_size;
-        model->inv_rrr_size_t[leg] = inv_rrr_size_t;
-        model->inv_rrr_size_t_2[leg] = inv_rrr_size_t_2;
-        model->rrr_J_1_in_spec1_zz[leg] = rrr_J_1_in_spec1_zz;
-        model->rrr_J_2_in_spec2_zz[leg] = rrr_J_2_in_spec2_zz;
-        model->rrr_Jc_1_in_axes1_zz[leg] = rrr_Jc_1_in_axes1_zz;
-        model->rrr_Kd_1_t[leg] = rrr_Kd_1_t;
-        model->rrr_Kd_1_t_2[leg] = rrr_Kd_1_t_2;
-        model->rrr_base_frame_xx[leg] = rrr_base_frame_xx;
-        model->rrr_base_frame_xy[leg] = rrr_base_frame_xy;
-        model->rrr_base_frame_yx[leg] = rrr_base_frame_yx;
-        model->rrr_base_frame_yy[leg] = rrr_base_frame_yy;
-        model->rrr_base_point_x[leg] = rrr_base_point_x;
-        model->rrr_base_point_y[leg] = rrr_base_point_y;
-        model->rrr_branch_1[leg] = rrr_branch_1;
-        model->rrr_d_Gamma_2_in_axes2_y[leg] = rrr_d_Gamma_2_in_axes2_y;
-        model->rrr_d_Gamma_2_t[leg] = rrr_d_Gamma_2_t;
-        model->rrr_d_c_in_axes2_yy[leg] = rrr_d_c_in_axes2_yy;
-        model->rrr_d_phi_2_t[leg] = rrr_d_phi_2_t;
-        model->rrr_h_1_in_spec1_x[leg] = rrr_h_1_in_spec1_x;
-        model->rrr_h_1_in_spec1_y[leg] = rrr_h_1_in_spec1_y;
-        model->rrr_h_2_in_spec2_x[leg] = rrr_h_2_in_spec2_x;
-        model->rrr_h_2_in_spec2_y[leg] = rrr_h_2_in_spec2_y;
-        model->rrr_joint2_offset_x[leg] = rrr_joint2_offset_x;
-        model->rrr_link1_mass[leg] = rrr_link1_mass;
-        model->rrr_link2_mass[leg] = rrr_link2_mass;
-        model->rrr_mu_1_t[leg] = rrr_mu_1_t;
-        model->rrr_mu_1_t_2[leg] = rrr_mu_1_t_2;
-        model->rrr_platform_joint_offset_x[leg] = rrr_platform_joint_offset_x;
-        model->rrr_platform_point_x[leg] = rrr_platform_point_x;
-        model->rrr_platform_point_y[leg] = rrr_platform_point_y;
-        model->rrr_potential_t[leg] = rrr_potential_t;
-        model->rrr_potential_t_2[leg] = rrr_potential_t_2;
-        model->rrr_rho2_1_t[leg] = rrr_rho2_1_t;
-        model->rrr_size[leg] = rrr_size;
-        model->rrr_w_2_in_axes2_y[leg] = rrr_w_2_in_axes2_y;
+        KEEP_OF_LEG(inv_rrr_rho2_1_t);
+        KEEP_OF_LEG(inv_rrr_size);
+        KEEP_OF_LEG(inv_rrr_size_t);
+        KEEP_OF_LEG(inv_rrr_size_t_2);
+        KEEP_OF_LEG(rrr_J_1_in_spec1_zz);
+        KEEP_OF_LEG(rrr_J_2_in_spec2_zz);
+        KEEP_OF_LEG(rrr_Jc_1_in_axes1_zz);
+        KEEP_OF_LEG(rrr_Kd_1_t);
+        KEEP_OF_LEG(rrr_Kd_1_t_2);
+        KEEP_OF_LEG(rrr_base_frame_xx);
+        KEEP_OF_LEG(rrr_base_frame_xy);
+        KEEP_OF_LEG(rrr_base_frame_yx);
+        KEEP_OF_LEG(rrr_base_frame_yy);
+        KEEP_OF_LEG(rrr_base_point_x);
+        KEEP_OF_LEG(rrr_base_point_y);
+        KEEP_OF_LEG(rrr_branch_1);
+        KEEP_OF_LEG(rrr_d_Gamma_2_in_axes2_y);
+        KEEP_OF_LEG(rrr_d_Gamma_2_t);
+        KEEP_OF_LEG(rrr_d_c_in_axes2_yy);
+        KEEP_OF_LEG(rrr_d_phi_2_t);
+        KEEP_OF_LEG(rrr_h_1_in_spec1_x);
+        KEEP_OF_LEG(rrr_h_1_in_spec1_y);
+        KEEP_OF_LEG(rrr_h_2_in_spec2_x);
+        KEEP_OF_LEG(rrr_h_2_in_spec2_y);
+        KEEP_OF_LEG(rrr_joint2_offset_x);
+        KEEP_OF_LEG(rrr_link1_mass);
+        KEEP_OF_LEG(rrr_link2_mass);
+        KEEP_OF_LEG(rrr_mu_1_t);
+        KEEP_OF_LEG(rrr_mu_1_t_2);
+        KEEP_OF_LEG(rrr_platform_joint_offset_x);
+        KEEP_OF_LEG(rrr_platform_point_x);
+        KEEP_OF_LEG(rrr_platform_point_y);
+        KEEP_OF_LEG(rrr_potential_t);
+        KEEP_OF_LEG(rrr_potential_t_2);
+        KEEP_OF_LEG(rrr_rho2_1_t);
+        KEEP_OF_LEG(rrr_size);
+        KEEP_OF_LEG(rrr_w_2_in_axes2_y);
         m_star_of_legs += rrr_link2_mass;
         h_star_in_platform_x_of_legs += rrr_h_star_t;
         h_star_in_platform_y_of_legs += rrr_h_star_t_2;
@@ -805,15 +815,15 @@ int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_m
         R(0.5)*b_c_rrr_in_platform_y;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = root(R(0.5)*legs_size_crank + R(0.5)*legs_size_rrr);
-    model->J_star_zz = J_star_zz;
-    model->Z_p_t = Z_p_t;
-    model->Z_p_t_2 = Z_p_t_2;
-    model->b_c_in_platform_x = b_c_in_platform_x;
-    model->b_c_in_platform_y = b_c_in_platform_y;
-    model->h_star_in_platform_x = h_star_in_platform_x;
-    model->h_star_in_platform_y = h_star_in_platform_y;
-    model->legs_size = legs_size;
-    model->m_star = m_star;
+    KEEP(J_star_zz);
+    KEEP(Z_p_t);
+    KEEP(Z_p_t_2);
+    KEEP(b_c_in_platform_x);
+    KEEP(b_c_in_platform_y);
+    KEEP(h_star_in_platform_x);
+    KEEP(h_star_in_platform_y);
+    KEEP(legs_size);
+    KEEP(m_star);
     return OK;
 }
 
@@ -1386,9 +1396,9 @@ INLINE void stage_crank_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real crank_q_y = R_xx*m->crank_platform_point_y[i] +
         R_yx*m->crank_platform_point_x[i];
     const real t_x = X[0*w + j];
-    const real crank_S_x = crank_q_x + t_x - m->crank_base_point_x[i];
+    const real crank_S_x = t_x - m->crank_base_point_x[i] + crank_q_x;
     const real t_y = X[1*w + j];
-    const real crank_S_y = crank_q_y + t_y - m->crank_base_point_y[i];
+    const real crank_S_y = t_y - m->crank_base_point_y[i] + crank_q_y;
     const real crank_S_in_turn1_x = crank_S_x*m->crank_base_frame_xx[i] +
         crank_S_y*m->crank_base_frame_yx[i];
     const real crank_S_in_turn1_y = crank_S_x*m->crank_base_frame_xy[i] +
@@ -1484,7 +1494,7 @@ INLINE void stage_crank_constraint_bias_dynamics(size_t w, size_t j, const real 
     const real t_dot_x = V[0*w + j];
     const real crank_S_dot_x = t_dot_x - crank_S_dot_t;
     const real t_dot_y = V[1*w + j];
-    const real crank_S_dot_y = crank_S_dot_t_2 + t_dot_y;
+    const real crank_S_dot_y = t_dot_y + crank_S_dot_t_2;
     const real crank_S_dot_in_axes1_y = v->axis_x_crank_axes1_x*crank_S_dot_y +
         v->axis_y_crank_axes1_x*crank_S_dot_x;
     v->crank_S_dot_t = crank_S_dot_t;
@@ -1497,11 +1507,11 @@ INLINE void stage_crank_legs_required(const prepared *m, size_t i, values_crank 
     /* (crank-mu_1) inertia moment of the links that turn with link 1, about their reference points */
     const real crank_mu_1_in_axes1_z =
         m->crank_h_1_in_spec1_y[i]*(v->crank_c_1*m->crank_mu_1_t[i] +
-        m->crank_mu_1_t_2[i]*v->crank_s_1) +
-        m->crank_J_1_in_spec1_zz[i]*m->crank_w_1_in_axes1_y[i]*(v->axis_x_crank_axes1_x*v->crank_S_ddot_y
-        + v->axis_y_crank_axes1_x*v->crank_S_ddot_x) -
+        m->crank_mu_1_t_2[i]*v->crank_s_1) -
         m->crank_h_1_in_spec1_x[i]*(v->crank_c_1*m->crank_mu_1_t_2[i] -
-        m->crank_mu_1_t[i]*v->crank_s_1);
+        m->crank_mu_1_t[i]*v->crank_s_1) +
+        m->crank_J_1_in_spec1_zz[i]*m->crank_w_1_in_axes1_y[i]*(v->axis_x_crank_axes1_x*v->crank_S_ddot_y
+        + v->axis_y_crank_axes1_x*v->crank_S_ddot_x);
     /* (crank-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
     const real crank_G_in_axes1_y = crank_mu_1_in_axes1_z*m->crank_w_1_in_axes1_y[i];
@@ -1534,13 +1544,13 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rrr_q_x = R_xx*m->rrr_platform_point_x[i] - R_yx*m->rrr_platform_point_y[i];
     const real rrr_q_y = R_xx*m->rrr_platform_point_y[i] + R_yx*m->rrr_platform_point_x[i];
     const real t_x = X[0*w + j];
-    const real rrr_S_x = rrr_q_x + t_x - m->rrr_base_point_x[i];
+    const real rrr_S_x = t_x - m->rrr_base_point_x[i] + rrr_q_x;
     const real t_y = X[1*w + j];
-    const real rrr_S_y = rrr_q_y + t_y - m->rrr_base_point_y[i];
+    const real rrr_S_y = t_y - m->rrr_base_point_y[i] + rrr_q_y;
     /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 1 */
     const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-    const real rrr_Kd_1 = m->rrr_Kd_1_t[i] + R(0.5)*rrr_Kd_1_t_3 - m->rrr_Kd_1_t_2[i];
+    const real rrr_Kd_1 = m->rrr_Kd_1_t[i] - m->rrr_Kd_1_t_2[i] + R(0.5)*rrr_Kd_1_t_3;
     /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
     const real rrr_Kc_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xx[i] +
         rrr_S_y*m->rrr_base_frame_yx[i]);
@@ -1557,7 +1567,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
     const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
     /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+    const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kd_1*rrr_Ks_1 + rrr_Kc_1*rrr_root_1);
     /* (rrr-x_2) from the origin of joint 2 to the connection point */
     const real rrr_x_2_in_axes1_x = m->inv_rrr_size_t[i]*rrr_Kd_1*m->rrr_joint2_offset_x[i] -
         m->rrr_joint2_offset_x[i];
@@ -1574,7 +1584,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
     const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
     /* (rrr-w_1) reciprocal vector 1 */
-    const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+    const real rrr_w_1_t = rrr_c_2*rrr_s_1 + rrr_c_1*rrr_s_2;
     const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
     const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*rrr_w_1_t_2 -
         m->rrr_base_frame_xx[i]*rrr_w_1_t;
@@ -1584,7 +1594,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x;
     const real rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x;
     /* (rrr-qd_1) rate of joint 1 */
-    const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+    const real rrr_qd_1_t = rrr_c_2*rrr_s_1 + rrr_c_1*rrr_s_2;
     const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
     v->rrr_q_x = rrr_q_x;
     v->rrr_q_y = rrr_q_y;
@@ -1631,7 +1641,7 @@ INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real t_dot_x = V[0*w + j];
     const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
     const real t_dot_y = V[1*w + j];
-    const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
+    const real rrr_S_dot_y = t_dot_y + rrr_S_dot_t_2;
     /* (rrr-qd_1) rate of joint 1 */
     const real rrr_qd_1 = v->rrr_w_1_in_axes2_x*(v->axis_x_rrr_axes2_x*rrr_S_dot_x -
         v->axis_y_rrr_axes2_x*rrr_S_dot_y);
@@ -1644,8 +1654,8 @@ INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     /* (rrr-W_2) centripetal tensor of link 2 */
     const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
     /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_bias_in_axes2_x = -rrr_W_2_t*m->rrr_platform_joint_offset_x[i] -
-        rrr_W_1_t*v->rrr_c_2*m->rrr_joint2_offset_x[i];
+    const real rrr_bias_in_axes2_x = -rrr_W_1_t*v->rrr_c_2*m->rrr_joint2_offset_x[i] -
+        rrr_W_2_t*m->rrr_platform_joint_offset_x[i];
     v->rrr_S_dot_t = rrr_S_dot_t;
     v->rrr_S_dot_t_2 = rrr_S_dot_t_2;
     v->rrr_S_dot_x = rrr_S_dot_x;
@@ -1716,15 +1726,15 @@ INLINE void stage_rrr_inverse_kinematics_potential(const prepared *m, size_t w, 
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
     const real t_x = X[0*w + j];
-    const real rrr_S_x = t_x + R_xx*m->rrr_platform_point_x[i] - m->rrr_base_point_x[i] -
+    const real rrr_S_x = t_x - m->rrr_base_point_x[i] + R_xx*m->rrr_platform_point_x[i] -
         R_yx*m->rrr_platform_point_y[i];
     const real t_y = X[1*w + j];
-    const real rrr_S_y = t_y + R_xx*m->rrr_platform_point_y[i] +
-        R_yx*m->rrr_platform_point_x[i] - m->rrr_base_point_y[i];
+    const real rrr_S_y = t_y - m->rrr_base_point_y[i] + R_xx*m->rrr_platform_point_y[i] +
+        R_yx*m->rrr_platform_point_x[i];
     /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 1 */
     const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-    const real rrr_Kd_1 = m->rrr_Kd_1_t[i] + R(0.5)*rrr_Kd_1_t_3 - m->rrr_Kd_1_t_2[i];
+    const real rrr_Kd_1 = m->rrr_Kd_1_t[i] - m->rrr_Kd_1_t_2[i] + R(0.5)*rrr_Kd_1_t_3;
     /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
     const real rrr_Kc_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xx[i] +
         rrr_S_y*m->rrr_base_frame_yx[i]);
@@ -1769,19 +1779,19 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
     const real rrr_alpha_2_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_in_axes2_y +
         rrr_B_1_in_axes1_xy*v->rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
     /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
-    const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x +
-        v->axis_y_rrr_axes2_x*m->gravity_y - v->axis_x_rrr_axes2_x*m->gravity_x;
+    const real rrr_acc_2_in_axes2_x = v->axis_y_rrr_axes2_x*m->gravity_y -
+        v->axis_x_rrr_axes2_x*m->gravity_x + rrr_S_ddot_in_axes2_x;
     const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y -
         v->axis_x_rrr_axes2_x*m->gravity_y - v->axis_y_rrr_axes2_x*m->gravity_x;
     /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real rrr_mu_2_in_axes2_z = m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_in_axes2_z +
-        rrr_acc_2_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
-        rrr_acc_2_in_axes2_x*m->rrr_h_2_in_spec2_y[i];
+    const real rrr_mu_2_in_axes2_z = rrr_acc_2_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
+        rrr_acc_2_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
+        m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_in_axes2_z;
     /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
     const real rrr_mu_1_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v->rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*v->rrr_s_1) - rrr_B_1_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i] -
-        m->rrr_h_1_in_spec1_x[i]*(v->rrr_c_1*m->rrr_mu_1_t_2[i] -
-        m->rrr_mu_1_t[i]*v->rrr_s_1);
+        m->rrr_mu_1_t_2[i]*v->rrr_s_1) -
+        m->rrr_h_1_in_spec1_x[i]*(v->rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v->rrr_s_1)
+        - rrr_B_1_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i];
     /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
@@ -1793,8 +1803,8 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
     const real rrr_c_in_axes2_x = v->rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
         rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
         v->rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*v->rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
-    const real rrr_c_in_axes2_y = v->rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] - rrr_G_in_axes2_y -
-        rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_x[i];
+    const real rrr_c_in_axes2_y = v->rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
+        rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_in_axes2_y;
     v->rrr_acc_2_in_axes2_x = rrr_acc_2_in_axes2_x;
     v->rrr_acc_2_in_axes2_y = rrr_acc_2_in_axes2_y;
     v->rrr_c_in_axes2_x = rrr_c_in_axes2_x;
@@ -1804,21 +1814,25 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    real *s)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s)
 {
-    values v;
-    stage_V(w, k, V, &v);
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+    s[2*w + k] = v->h_star_x;
+    s[3*w + k] = v->h_star_y;
+}
+
+INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
+    *s)
+{
+    stage_V(w, k, V, v);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_x = v.W_p_xx*v.h_star_x - m->Z_p_t;
-    const real Z_p_y = v.W_p_xx*v.h_star_y - m->Z_p_t_2;
+    const real Z_p_x = v->W_p_xx*v->h_star_x - m->Z_p_t;
+    const real Z_p_y = v->W_p_xx*v->h_star_y - m->Z_p_t_2;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real Z_q_z = m->gravity_x*v.h_star_y - m->gravity_y*v.h_star_x;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
-    s[2*w + k] = v.h_star_x;
-    s[3*w + k] = v.h_star_y;
+    const real Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x;
     s[4*w + k] = Z_p_x;
     s[5*w + k] = Z_p_y;
     s[6*w + k] = Z_q_z;
@@ -1844,11 +1858,11 @@ INLINE void dynamics_legs_crank(const prepared *m, size_t w, size_t i, size_t j,
        reference points */
     const real crank_mu_1_o_in_axes1_z =
         m->crank_h_1_in_spec1_y[i]*(v.crank_c_1*m->crank_mu_1_t[i] +
-        m->crank_mu_1_t_2[i]*v.crank_s_1) +
-        m->crank_J_1_in_spec1_zz[i]*m->crank_w_1_in_axes1_y[i]*(v.axis_y_crank_axes1_x*crank_u_1_x
-        - v.axis_x_crank_axes1_x*crank_u_1_t) -
+        m->crank_mu_1_t_2[i]*v.crank_s_1) -
         m->crank_h_1_in_spec1_x[i]*(v.crank_c_1*m->crank_mu_1_t_2[i] -
-        m->crank_mu_1_t[i]*v.crank_s_1);
+        m->crank_mu_1_t[i]*v.crank_s_1) +
+        m->crank_J_1_in_spec1_zz[i]*m->crank_w_1_in_axes1_y[i]*(v.axis_y_crank_axes1_x*crank_u_1_x
+        - v.axis_x_crank_axes1_x*crank_u_1_t);
     /* (crank-G_o) remainder of: force at the connection point that balances the leg's inertia and
        weight along all degrees of freedom */
     const real crank_G_o_in_axes1_y = crank_mu_1_o_in_axes1_z*m->crank_w_1_in_axes1_y[i];
@@ -1932,20 +1946,20 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     const real rrr_alpha_2_o_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_o_in_axes2_y +
         rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
     /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + v.axis_y_rrr_axes2_x*m->gravity_y
-        - v.axis_x_rrr_axes2_x*m->gravity_x;
+    const real rrr_acc_2_o_in_axes2_x = v.axis_y_rrr_axes2_x*m->gravity_y -
+        v.axis_x_rrr_axes2_x*m->gravity_x + rrr_u_1_in_axes2_x;
     const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - v.axis_x_rrr_axes2_x*m->gravity_y
         - v.axis_y_rrr_axes2_x*m->gravity_x;
     /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
-    const real rrr_mu_2_o_in_axes2_z = m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z +
-        rrr_acc_2_o_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
-        rrr_acc_2_o_in_axes2_x*m->rrr_h_2_in_spec2_y[i];
+    const real rrr_mu_2_o_in_axes2_z = rrr_acc_2_o_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
+        rrr_acc_2_o_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
+        m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z;
     /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
     const real rrr_mu_1_o_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i] -
-        m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v.rrr_s_1);
+        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i]
+        - m->rrr_mu_1_t[i]*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i];
     /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
        connection point left out */
     const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
@@ -1957,24 +1971,24 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     const real rrr_c_o_in_axes2_x = v.rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
         rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
         v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
-    const real rrr_c_o_in_axes2_y = v.rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] - rrr_G_o_in_axes2_y
-        - rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i];
+    const real rrr_c_o_in_axes2_y = v.rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_o_in_axes2_y;
     /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real rrr_Q_t = m->rrr_h_2_in_spec2_y[i]*(v.rrr_w_1_in_axes2_x +
         v.rrr_w_2_in_axes2_x) - m->rrr_d_c_in_axes2_yy[i] -
         v.rrr_d_Gamma_1_in_axes2_x*v.rrr_w_1_in_axes2_x -
         v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
     const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
-    const real rrr_Q_t_3 = v.axis_x_rrr_axes2_x*rrr_Q_t_2 +
-        v.axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+    const real rrr_Q_t_3 = v.axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy +
+        v.axis_x_rrr_axes2_x*rrr_Q_t_2;
     const real rrr_Q_t_4 = v.axis_y_rrr_axes2_x*rrr_Q_t_2 -
         v.axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
     const real rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v.axis_x_rrr_axes2_x*rrr_Q_t_3;
     const real rrr_Q_xy = v.axis_x_rrr_axes2_x*rrr_Q_t_4 + v.axis_y_rrr_axes2_x*rrr_Q_t_3;
     const real rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v.axis_y_rrr_axes2_x*rrr_Q_t_4;
     /* (rrr-U) velocity and gravity terms of the leg force */
-    const real rrr_U_x = -v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
-        v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
+    const real rrr_U_x = -v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y -
+        v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x;
     const real rrr_U_y = v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
         v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
     /* (M_ta) */
@@ -2027,16 +2041,16 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     /* (M_ta) */
     const real M_ta_xz_of_legs = sums[3*w + k];
     const real h_star_y = s[3*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yz_of_legs = sums[4*w + k];
     const real h_star_x = s[2*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     /* (M_aa) */
     const real M_aa_zz_of_legs = sums[5*w + k];
     const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
@@ -2050,7 +2064,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     /* (Z_a) */
     const real Z_a_z_of_legs = sums[8*w + k];
     const real Z_q_z = s[6*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
     const real M_tt_xy = sums[1*w + k];
@@ -2079,7 +2093,8 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     real s[7] = {0}, sums[9] = {0};
     real terms_crank[9*LEGS(LEGS_OF_crank)] = {0}, o_crank[9*LEGS(LEGS_OF_crank)] = {0};
     real terms_rrr[9*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
-    dynamics_before(m, 1, 0, X, V, s);
+    values v;
+    dynamics_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         dynamics_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), 0, s, X, V, terms_crank, o_crank);
     }
@@ -2100,6 +2115,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
+    dynamics_between(m, 1, 0, V, &v, s);
     dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
@@ -2111,7 +2127,9 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real o_crank[9*LANES];
     real o_rrr[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        dynamics_before(m, LANES, k, X, V, s);
+        values v;
+        dynamics_before(m, LANES, k, X, &v, s);
+        dynamics_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 9*LANES);
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
@@ -2136,14 +2154,13 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
-    s[2*w + k] = v.h_star_x;
-    s[3*w + k] = v.h_star_y;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+    s[2*w + k] = v->h_star_x;
+    s[3*w + k] = v->h_star_y;
 }
 
 INLINE void M_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2177,7 +2194,7 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_M_dynamics(m, i, &v);
     /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_Q_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
+    const real rrr_Q_t = v.rrr_c_2*v.rrr_s_1 + v.rrr_c_1*v.rrr_s_2;
     const real rrr_Q_t_2 = v.rrr_c_1*v.rrr_c_2 - v.rrr_s_1*v.rrr_s_2;
     const real axis_y_rrr_axes2_x = rrr_Q_t_2*m->rrr_base_frame_xy[i] -
         rrr_Q_t*m->rrr_base_frame_xx[i];
@@ -2188,8 +2205,8 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
         v.rrr_d_Gamma_1_in_axes2_x*v.rrr_w_1_in_axes2_x -
         v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
     const real rrr_Q_t_4 = R(0.5)*rrr_Q_t_3;
-    const real rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 +
-        axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+    const real rrr_Q_t_5 = axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy +
+        axis_x_rrr_axes2_x*rrr_Q_t_4;
     const real rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 -
         axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
     const real rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*axis_x_rrr_axes2_x*rrr_Q_t_5;
@@ -2225,16 +2242,16 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     /* (M_ta) */
     const real M_ta_xz_of_legs = sums[3*w + k];
     const real h_star_y = s[3*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yz_of_legs = sums[4*w + k];
     const real h_star_x = s[2*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     /* (M_aa) */
     const real M_aa_zz_of_legs = sums[5*w + k];
     const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
@@ -2259,7 +2276,8 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     real s[4] = {0}, sums[6] = {0};
     real terms_crank[6*LEGS(LEGS_OF_crank)] = {0}, o_crank[LEGS(LEGS_OF_crank)] = {0};
     real terms_rrr[6*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    M_before(m, 1, 0, X, s);
+    values v;
+    M_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         M_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), 0, s, X, terms_crank, o_crank);
     }
@@ -2289,7 +2307,8 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
     real o_crank[LANES];
     real o_rrr[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        M_before(m, LANES, k, X, s);
+        values v;
+        M_before(m, LANES, k, X, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
@@ -2314,18 +2333,21 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s)
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
-    values v;
-    stage_V(w, k, V, &v);
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+}
+
+INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
+{
+    stage_V(w, k, V, v);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_x = v.W_p_xx*v.h_star_x - m->Z_p_t;
-    const real Z_p_y = v.W_p_xx*v.h_star_y - m->Z_p_t_2;
+    const real Z_p_x = v->W_p_xx*v->h_star_x - m->Z_p_t;
+    const real Z_p_y = v->W_p_xx*v->h_star_y - m->Z_p_t_2;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real Z_q_z = m->gravity_x*v.h_star_y - m->gravity_y*v.h_star_x;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    const real Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x;
     s[2*w + k] = Z_p_x;
     s[3*w + k] = Z_p_y;
     s[4*w + k] = Z_q_z;
@@ -2341,11 +2363,11 @@ INLINE void Z_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t
     const real omega_z = V[2*w + j];
     const real crank_mu_1_o_in_axes1_z =
         m->crank_h_1_in_spec1_y[i]*(v.crank_c_1*m->crank_mu_1_t[i] +
-        m->crank_mu_1_t_2[i]*v.crank_s_1) +
-        m->crank_J_1_in_spec1_zz[i]*m->crank_w_1_in_axes1_y[i]*(-v.axis_x_crank_axes1_x*v.crank_q_y*omega_z*omega_z
-        - v.axis_y_crank_axes1_x*v.crank_q_x*omega_z*omega_z) -
+        m->crank_mu_1_t_2[i]*v.crank_s_1) -
         m->crank_h_1_in_spec1_x[i]*(v.crank_c_1*m->crank_mu_1_t_2[i] -
-        m->crank_mu_1_t[i]*v.crank_s_1);
+        m->crank_mu_1_t[i]*v.crank_s_1) +
+        m->crank_J_1_in_spec1_zz[i]*m->crank_w_1_in_axes1_y[i]*(-v.axis_x_crank_axes1_x*v.crank_q_y*omega_z*omega_z
+        - v.axis_y_crank_axes1_x*v.crank_q_x*omega_z*omega_z);
     /* (crank-G_o) remainder of: force at the connection point that balances the leg's inertia and
        weight along all degrees of freedom */
     const real crank_G_o_in_axes1_y = crank_mu_1_o_in_axes1_z*m->crank_w_1_in_axes1_y[i];
@@ -2398,8 +2420,8 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x -
         axis_x_rrr_axes2_x*rrr_u_1_t;
     /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_bias_in_axes2_x = -rrr_W_2_t*m->rrr_platform_joint_offset_x[i] -
-        rrr_W_1_t*v.rrr_c_2*m->rrr_joint2_offset_x[i];
+    const real rrr_bias_in_axes2_x = -rrr_W_1_t*v.rrr_c_2*m->rrr_joint2_offset_x[i] -
+        rrr_W_2_t*m->rrr_platform_joint_offset_x[i];
     /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
        */
     const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x;
@@ -2411,20 +2433,20 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real rrr_alpha_2_o_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_o_in_axes2_y +
         rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
     /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*m->gravity_y -
-        axis_x_rrr_axes2_x*m->gravity_x;
+    const real rrr_acc_2_o_in_axes2_x = axis_y_rrr_axes2_x*m->gravity_y -
+        axis_x_rrr_axes2_x*m->gravity_x + rrr_u_1_in_axes2_x;
     const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*m->gravity_y -
         axis_y_rrr_axes2_x*m->gravity_x;
     /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
-    const real rrr_mu_2_o_in_axes2_z = m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z +
-        rrr_acc_2_o_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
-        rrr_acc_2_o_in_axes2_x*m->rrr_h_2_in_spec2_y[i];
+    const real rrr_mu_2_o_in_axes2_z = rrr_acc_2_o_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
+        rrr_acc_2_o_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
+        m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z;
     /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
     const real rrr_mu_1_o_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i] -
-        m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v.rrr_s_1);
+        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i]
+        - m->rrr_mu_1_t[i]*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i];
     /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
        connection point left out */
     const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
@@ -2436,11 +2458,11 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real rrr_c_o_in_axes2_x = rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
         rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
         v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
-    const real rrr_c_o_in_axes2_y = rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] - rrr_G_o_in_axes2_y -
-        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i];
+    const real rrr_c_o_in_axes2_y = rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_o_in_axes2_y;
     /* (rrr-U) velocity and gravity terms of the leg force */
-    const real rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
-        axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
+    const real rrr_U_x = -axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y -
+        axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x;
     const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
         axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
     /* (Z_a) */
@@ -2473,7 +2495,7 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     /* (Z_a) */
     const real Z_a_z_of_legs = sums[2*w + k];
     const real Z_q_z = s[4*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
     Z[1*w + k] = Z_t_y;
@@ -2487,7 +2509,8 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     real s[5] = {0}, sums[3] = {0};
     real terms_crank[3*LEGS(LEGS_OF_crank)] = {0}, o_crank[LEGS(LEGS_OF_crank)] = {0};
     real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    Z_before(m, 1, 0, X, V, s);
+    values v;
+    Z_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         Z_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), 0, s, X, V, terms_crank, o_crank);
     }
@@ -2508,6 +2531,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
+    Z_between(m, 1, 0, V, &v, s);
     Z_after(1, 0, s, sums, Z, t);
 }
 
@@ -2518,7 +2542,9 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real o_crank[LANES];
     real o_rrr[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        Z_before(m, LANES, k, X, V, s);
+        values v;
+        Z_before(m, LANES, k, X, &v, s);
+        Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 3*LANES);
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
@@ -2543,12 +2569,11 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void H_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2616,7 +2641,8 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
     real s[2] = {0};
     real o_crank[5*LEGS(LEGS_OF_crank)] = {0};
     real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
-    H_before(m, 1, 0, X, s);
+    values v;
+    H_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         H_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, o_crank);
     }
@@ -2637,7 +2663,8 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
     real o_crank[5*LANES];
     real o_rrr[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        H_before(m, LANES, k, X, s);
+        values v;
+        H_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2658,12 +2685,11 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 }
 
 /* ---- Hk ---- */
-INLINE void Hk_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void Hk_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void Hk_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2703,7 +2729,8 @@ APART void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
 {
     real s[2] = {0};
     real o_crank[5*LEGS(LEGS_OF_crank)] = {0};
-    Hk_before(m, 1, 0, X, s);
+    values v;
+    Hk_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         Hk_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, o_crank);
     }
@@ -2717,7 +2744,8 @@ INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, ve
     real s[2*LANES];
     real o_crank[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        Hk_before(m, LANES, k, X, s);
+        values v;
+        Hk_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2730,12 +2758,12 @@ INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, ve
 }
 
 /* ---- constraint_bias ---- */
-INLINE void constraint_bias_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void constraint_bias_before(const prepared *m, size_t w, size_t k, const real *X, values
+    *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void constraint_bias_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k,
@@ -2747,10 +2775,9 @@ INLINE void constraint_bias_legs_crank(const prepared *m, size_t w, size_t i, si
     /* (crank-rel_o) remainder of: acceleration of the connection point left to the joint
        accelerations */
     const real omega_z = V[2*w + j];
-    const real crank_rel_o_in_axes1_x =
-        v.crank_S_dot_in_axes1_y*v.crank_S_dot_in_axes1_y*m->crank_w_1_in_axes1_y[i] +
-        v.axis_y_crank_axes1_x*v.crank_S_dot_t*omega_z -
-        v.axis_x_crank_axes1_x*v.crank_S_dot_t_2*omega_z;
+    const real crank_rel_o_in_axes1_x = v.axis_y_crank_axes1_x*v.crank_S_dot_t*omega_z -
+        v.axis_x_crank_axes1_x*v.crank_S_dot_t_2*omega_z +
+        v.crank_S_dot_in_axes1_y*v.crank_S_dot_in_axes1_y*m->crank_w_1_in_axes1_y[i];
     /* (crank-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
        */
     const real crank_gamma_c1 = m->crank_n_c_in_axes1_x[i]*crank_rel_o_in_axes1_x;
@@ -2774,7 +2801,8 @@ INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V,
 {
     real s[2] = {0};
     real o_crank[3*LEGS(LEGS_OF_crank)] = {0};
-    constraint_bias_before(m, 1, 0, X, s);
+    values v;
+    constraint_bias_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         constraint_bias_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, V, o_crank);
     }
@@ -2789,7 +2817,8 @@ INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const re
     real s[2*LANES];
     real o_crank[3*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        constraint_bias_before(m, LANES, k, X, s);
+        values v;
+        constraint_bias_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2802,12 +2831,18 @@ INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const re
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, real *s)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s)
 {
-    values v;
-    stage_V(w, k, V, &v);
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+}
+
+INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
+    values *v, real *s)
+{
+    stage_V(w, k, V, v);
     /* (a_t) acceleration of the platform origin, less gravity */
     const real t_ddot_x = A[0*w + k];
     const real a_t_x = t_ddot_x - m->gravity_x;
@@ -2815,12 +2850,10 @@ INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X
     const real a_t_y = t_ddot_y - m->gravity_y;
     /* (f_p) inertia force of the platform less its weight */
     const real alpha_z = A[2*w + k];
-    const real f_p_x = v.W_p_xx*v.h_star_x + a_t_x*m->m_star - alpha_z*v.h_star_y;
-    const real f_p_y = v.W_p_xx*v.h_star_y + a_t_y*m->m_star + alpha_z*v.h_star_x;
+    const real f_p_x = a_t_x*m->m_star + v->W_p_xx*v->h_star_x - alpha_z*v->h_star_y;
+    const real f_p_y = a_t_y*m->m_star + v->W_p_xx*v->h_star_y + alpha_z*v->h_star_x;
     /* (mu_p) inertia moment of the platform less that of its weight */
-    const real mu_p_z = m->J_star_zz*alpha_z + a_t_y*v.h_star_x - a_t_x*v.h_star_y;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    const real mu_p_z = m->J_star_zz*alpha_z + a_t_y*v->h_star_x - a_t_x*v->h_star_y;
     s[2*w + k] = f_p_x;
     s[3*w + k] = f_p_y;
     s[4*w + k] = mu_p_z;
@@ -2880,8 +2913,8 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     stage_rrr_legs_required(m, i, &v);
     /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rrr_c_x = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_x +
-        v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_y;
+    const real rrr_c_x = v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_y +
+        v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_x;
     const real rrr_c_y = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_y -
         v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_x;
     /* (R_a) */
@@ -2919,15 +2952,15 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     const real R_t_t = sums[3*w + k];
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[2*w + k];
-    const real R_t_x = R_t_x_of_legs + f_p_x - R_t_t;
+    const real R_t_x = f_p_x + R_t_x_of_legs - R_t_t;
     const real R_t_t_2 = sums[4*w + k];
     const real R_t_y_of_legs = sums[1*w + k];
     const real f_p_y = s[3*w + k];
-    const real R_t_y = R_t_y_of_legs + f_p_y - R_t_t_2;
+    const real R_t_y = f_p_y + R_t_y_of_legs - R_t_t_2;
     /* (R_a) */
     const real R_a_z_of_legs = sums[2*w + k];
     const real mu_p_z = s[4*w + k];
-    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
     required[1*w + k] = R_t_y;
@@ -2935,13 +2968,14 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[2*w + k] = R_a_z;
 }
 
-APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, real *Hk, verdict *t)
 {
     real s[5] = {0}, sums[5] = {0};
     real terms_crank[5*LEGS(LEGS_OF_crank)] = {0}, o_crank[7*LEGS(LEGS_OF_crank)] = {0};
     real terms_rrr[5*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    required_before(m, 1, 0, X, V, A, s);
+    values v;
+    required_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         required_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), 0, s, X, V, A, terms_crank, o_crank);
     }
@@ -2962,6 +2996,7 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
+    required_between(m, 1, 0, V, A, &v, s);
     required_after(1, 0, s, sums, required);
 }
 
@@ -2972,7 +3007,9 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real o_crank[7*LANES];
     real o_rrr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        required_before(m, LANES, k, X, V, A, s);
+        values v;
+        required_before(m, LANES, k, X, &v, s);
+        required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 5*LANES);
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
@@ -2997,13 +3034,12 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
+    *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void inverse_kinematics_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t
@@ -3013,11 +3049,11 @@ INLINE void inverse_kinematics_legs_crank(const prepared *m, size_t w, size_t i,
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
     const real t_x = X[0*w + j];
-    const real crank_S_x = t_x + R_xx*m->crank_platform_point_x[i] - m->crank_base_point_x[i]
+    const real crank_S_x = t_x - m->crank_base_point_x[i] + R_xx*m->crank_platform_point_x[i]
         - R_yx*m->crank_platform_point_y[i];
     const real t_y = X[1*w + j];
-    const real crank_S_y = t_y + R_xx*m->crank_platform_point_y[i] +
-        R_yx*m->crank_platform_point_x[i] - m->crank_base_point_y[i];
+    const real crank_S_y = t_y - m->crank_base_point_y[i] + R_xx*m->crank_platform_point_y[i]
+        + R_yx*m->crank_platform_point_x[i];
     const real crank_S_in_turn1_x = crank_S_x*m->crank_base_frame_xx[i] +
         crank_S_y*m->crank_base_frame_yx[i];
     const real crank_S_in_turn1_y = crank_S_x*m->crank_base_frame_xy[i] +
@@ -3051,8 +3087,8 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t i, s
     values_rrr v;
     stage_rrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
     /* (rrr-q_1) displacement of joint 1 */
-    const real rrr_q_1 = angle(v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_root_1 +
-        v.rrr_Kd_1*v.rrr_Ks_1), v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 -
+    const real rrr_q_1 = angle(v.inv_rrr_rho2_1*(v.rrr_Kd_1*v.rrr_Ks_1 +
+        v.rrr_Kc_1*v.rrr_root_1), v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 -
         v.rrr_Ks_1*v.rrr_root_1));
     /* (rrr-q_2) displacement of joint 2 */
     const real rrr_q_2 =
@@ -3082,7 +3118,8 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
     real s[2] = {0};
     real o_crank[3*LEGS(LEGS_OF_crank)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    inverse_kinematics_before(m, 1, 0, X, s);
+    values v;
+    inverse_kinematics_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         inverse_kinematics_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, o_crank);
     }
@@ -3104,7 +3141,8 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real o_crank[3*LANES];
     real o_rrr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        inverse_kinematics_before(m, LANES, k, X, s);
+        values v;
+        inverse_kinematics_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3125,12 +3163,12 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void joint_rates_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k,
@@ -3212,7 +3250,8 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
     real s[2] = {0};
     real o_crank[3*LEGS(LEGS_OF_crank)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    joint_rates_before(m, 1, 0, X, s);
+    values v;
+    joint_rates_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         joint_rates_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, V, o_crank);
     }
@@ -3234,7 +3273,8 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real o_crank[3*LANES];
     real o_rrr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_rates_before(m, LANES, k, X, s);
+        values v;
+        joint_rates_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3255,13 +3295,12 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
+    values *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void joint_accelerations_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t
@@ -3314,12 +3353,11 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t i, 
         m->rrr_w_2_in_axes2_y[i]*(axis_x_rrr_axes2_x*v.rrr_S_dot_y +
         axis_y_rrr_axes2_x*v.rrr_S_dot_x - rrr_qd_1*v.rrr_r_1_in_axes2_x);
     /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_bias_in_axes2_x =
-        -rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*m->rrr_platform_joint_offset_x[i] -
-        rrr_W_1_t*v.rrr_c_2*m->rrr_joint2_offset_x[i];
+    const real rrr_bias_in_axes2_x = -rrr_W_1_t*v.rrr_c_2*m->rrr_joint2_offset_x[i] -
+        rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*m->rrr_platform_joint_offset_x[i];
     /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-    const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*v.rrr_S_ddot_x - rrr_bias_in_axes2_x -
-        axis_y_rrr_axes2_x*v.rrr_S_ddot_y;
+    const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*v.rrr_S_ddot_x -
+        axis_y_rrr_axes2_x*v.rrr_S_ddot_y - rrr_bias_in_axes2_x;
     const real rrr_rel_in_axes2_y = axis_x_rrr_axes2_x*v.rrr_S_ddot_y +
         axis_y_rrr_axes2_x*v.rrr_S_ddot_x - rrr_W_1_t*m->rrr_joint2_offset_x[i]*v.rrr_s_2;
     /* (rrr-qdd_1) acceleration of joint 1 */
@@ -3353,7 +3391,8 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
     real s[2] = {0};
     real o_crank[3*LEGS(LEGS_OF_crank)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    joint_accelerations_before(m, 1, 0, X, s);
+    values v;
+    joint_accelerations_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         joint_accelerations_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, V, A, o_crank);
     }
@@ -3375,7 +3414,8 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real o_crank[3*LANES];
     real o_rrr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_accelerations_before(m, LANES, k, X, s);
+        values v;
+        joint_accelerations_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3396,12 +3436,12 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- constraints ---- */
-INLINE void constraints_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void constraints_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void constraints_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k,
@@ -3411,11 +3451,11 @@ INLINE void constraints_legs_crank(const prepared *m, size_t w, size_t i, size_t
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
     const real t_x = X[0*w + j];
-    const real crank_S_x = t_x + R_xx*m->crank_platform_point_x[i] - m->crank_base_point_x[i]
+    const real crank_S_x = t_x - m->crank_base_point_x[i] + R_xx*m->crank_platform_point_x[i]
         - R_yx*m->crank_platform_point_y[i];
     const real t_y = X[1*w + j];
-    const real crank_S_y = t_y + R_xx*m->crank_platform_point_y[i] +
-        R_yx*m->crank_platform_point_x[i] - m->crank_base_point_y[i];
+    const real crank_S_y = t_y - m->crank_base_point_y[i] + R_xx*m->crank_platform_point_y[i]
+        + R_yx*m->crank_platform_point_x[i];
     const real crank_S_in_turn1_x = crank_S_x*m->crank_base_frame_xx[i] +
         crank_S_y*m->crank_base_frame_yx[i];
     const real crank_S_in_turn1_y = crank_S_x*m->crank_base_frame_xy[i] +
@@ -3427,9 +3467,8 @@ INLINE void constraints_legs_crank(const prepared *m, size_t w, size_t i, size_t
     const real crank_phi_c1_t = 1/(root(crank_rho2_1));
     const real crank_phi_c1 =
         m->crank_n_c_in_axes1_x[i]*(crank_S_in_turn1_x*crank_S_in_turn1_x*crank_phi_c1_t*m->crank_platform_joint_offset_x[i]
-        +
-        crank_S_in_turn1_y*crank_S_in_turn1_y*crank_phi_c1_t*m->crank_platform_joint_offset_x[i]
-        - m->crank_platform_joint_offset_x[i]);
+        - m->crank_platform_joint_offset_x[i] +
+        crank_S_in_turn1_y*crank_S_in_turn1_y*crank_phi_c1_t*m->crank_platform_joint_offset_x[i]);
     /* (crank-phi_c1) */
     o[0*count + k] = crank_phi_c1;
     o[2*count + k] = crank_phi_c1;
@@ -3449,7 +3488,8 @@ APART void constraints_run(const prepared *m, const real *X, real *constraints, 
 {
     real s[2] = {0};
     real o_crank[3*LEGS(LEGS_OF_crank)] = {0};
-    constraints_before(m, 1, 0, X, s);
+    values v;
+    constraints_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         constraints_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, o_crank);
     }
@@ -3464,7 +3504,8 @@ INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restri
     real s[2*LANES];
     real o_crank[3*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        constraints_before(m, LANES, k, X, s);
+        values v;
+        constraints_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3477,12 +3518,11 @@ INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restri
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void legs_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3533,8 +3573,8 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_
         v.rrr_acc_2_in_axes2_x*m->rrr_link2_mass[i];
     const real rrr_c_true_in_axes2_y = v.rrr_c_in_axes2_y -
         v.rrr_acc_2_in_axes2_y*m->rrr_link2_mass[i];
-    const real rrr_c_true_x = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x +
-        v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y;
+    const real rrr_c_true_x = v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y +
+        v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x;
     const real rrr_c_true_y = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y -
         v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x;
     /* (rrr-c_true) */
@@ -3568,7 +3608,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     clear(leg_force, 3*NL);
     clear(actuator, 6);
     clear(constraint_direction, 3*NC);
-    legs_before(m, 1, 0, X, s);
+    values v;
+    legs_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         legs_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, V, A, o_crank);
     }
@@ -3584,18 +3625,23 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+}
+
+INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s)
+{
     /* (potential) potential energy */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
-    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x + m->m_star*t_x -
-        v.R_yx*m->h_star_in_platform_y) + m->gravity_y*(v.R_xx*m->h_star_in_platform_y +
-        v.R_yx*m->h_star_in_platform_x + m->m_star*t_y);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    const real potential_t = m->gravity_x*(m->m_star*t_x + v->R_xx*m->h_star_in_platform_x -
+        v->R_yx*m->h_star_in_platform_y) + m->gravity_y*(m->m_star*t_y +
+        v->R_xx*m->h_star_in_platform_y + v->R_yx*m->h_star_in_platform_x);
     s[2*w + k] = potential_t;
 }
 
@@ -3606,11 +3652,11 @@ INLINE void potential_legs_crank(const prepared *m, size_t w, size_t i, size_t j
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
     const real t_x = X[0*w + j];
-    const real crank_S_x = t_x + R_xx*m->crank_platform_point_x[i] - m->crank_base_point_x[i]
+    const real crank_S_x = t_x - m->crank_base_point_x[i] + R_xx*m->crank_platform_point_x[i]
         - R_yx*m->crank_platform_point_y[i];
     const real t_y = X[1*w + j];
-    const real crank_S_y = t_y + R_xx*m->crank_platform_point_y[i] +
-        R_yx*m->crank_platform_point_x[i] - m->crank_base_point_y[i];
+    const real crank_S_y = t_y - m->crank_base_point_y[i] + R_xx*m->crank_platform_point_y[i]
+        + R_yx*m->crank_platform_point_x[i];
     const real crank_S_in_turn1_x = crank_S_x*m->crank_base_frame_xx[i] +
         crank_S_y*m->crank_base_frame_yx[i];
     const real crank_S_in_turn1_y = crank_S_x*m->crank_base_frame_xy[i] +
@@ -3653,7 +3699,7 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
     /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
     const real rrr_c_1 = v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 - v.rrr_Ks_1*v.rrr_root_1);
     /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rrr_s_1 = v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_root_1 + v.rrr_Kd_1*v.rrr_Ks_1);
+    const real rrr_s_1 = v.inv_rrr_rho2_1*(v.rrr_Kd_1*v.rrr_Ks_1 + v.rrr_Kc_1*v.rrr_root_1);
     /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
     const real rrr_c_2 =
         m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_x_2_in_axes1_x;
@@ -3666,9 +3712,9 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
         rrr_c_2*m->rrr_h_2_in_spec2_x[i] + m->rrr_link1_mass[i]*(rrr_c_1*m->rrr_potential_t[i]
         + m->rrr_potential_t_2[i]*rrr_s_1) - m->rrr_h_2_in_spec2_y[i]*rrr_s_2) +
         (rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*rrr_s_1)*(m->rrr_h_1_in_spec1_y[i] +
-        rrr_c_2*m->rrr_h_2_in_spec2_y[i] + m->rrr_h_2_in_spec2_x[i]*rrr_s_2 +
-        m->rrr_link1_mass[i]*(rrr_c_1*m->rrr_potential_t_2[i] -
-        m->rrr_potential_t[i]*rrr_s_1));
+        rrr_c_2*m->rrr_h_2_in_spec2_y[i] +
+        m->rrr_link1_mass[i]*(rrr_c_1*m->rrr_potential_t_2[i] - m->rrr_potential_t[i]*rrr_s_1)
+        + m->rrr_h_2_in_spec2_x[i]*rrr_s_2);
     /* (potential) */
     gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_2 */
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
@@ -3697,7 +3743,8 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
     real s[3] = {0}, sums[2] = {0};
     real terms_crank[2*LEGS(LEGS_OF_crank)] = {0}, o_crank[LEGS(LEGS_OF_crank)] = {0};
     real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    potential_before(m, 1, 0, X, s);
+    values v;
+    potential_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         potential_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), 0, s, X, terms_crank, o_crank);
     }
@@ -3718,17 +3765,17 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
+    potential_between(m, 1, 0, X, &v, s);
     potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
-    *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, real *lengths, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
@@ -3845,7 +3892,8 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, re
     real terms_crank[2*LEGS(LEGS_OF_crank)] = {0}, o_crank[9*LEGS(LEGS_OF_crank)] = {0};
     real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[8*LEGS(LEGS_OF_rrr)] = {0};
     clear(reach, NL);
-    condition_before(m, 1, 0, X, s, lengths, t);
+    values v;
+    condition_before(m, 1, 0, X, &v, s, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         condition_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), 0, s, X, terms_crank, o_crank);
     }
@@ -3880,11 +3928,7 @@ int fivebar_offset_M(const prepared *m, const real *X, real *M_out)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-    }
-    return code;
+    return settled(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -3911,11 +3955,7 @@ int fivebar_offset_Z(const prepared *m, const real *X, const real *V, real *Z_ou
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, Z_out);
-    }
-    return code;
+    return settled(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -3939,11 +3979,7 @@ int fivebar_offset_H(const prepared *m, const real *X, real *H_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -3966,11 +4002,7 @@ int fivebar_offset_Hk(const prepared *m, const real *X, real *Hk_out)
     if (!is_finite(why.total[0])) {
         check(NV*NC, 1, Hk_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NC, Hk_out);
-    }
-    return code;
+    return settled(&why, NV*NC, Hk_out);
 }
 
 INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
@@ -3993,11 +4025,7 @@ int fivebar_offset_constraints(const prepared *m, const real *X, real *constrain
     if (!is_finite(why.total[0])) {
         check(1, 1, constraints_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, constraints_out);
-    }
-    return code;
+    return settled(&why, 1, constraints_out);
 }
 
 INLINE void constraints_lanes(const prepared *m, const real *X, real *constraints_out, int *code)
@@ -4025,11 +4053,7 @@ int fivebar_offset_constraint_bias(const prepared *m, const real *X, const real 
     if (!is_finite(why.total[0])) {
         check(1, 1, constraint_bias_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, constraint_bias_out);
-    }
-    return code;
+    return settled(&why, 1, constraint_bias_out);
 }
 
 INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *V, real
@@ -4054,11 +4078,7 @@ int fivebar_offset_inverse_kinematics(const prepared *m, const real *X, real *q_
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, q_out);
-    }
-    return code;
+    return settled(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -4085,11 +4105,7 @@ int fivebar_offset_joint_rates(const prepared *m, const real *X, const real *V, 
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qd_out);
-    }
-    return code;
+    return settled(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -4120,11 +4136,7 @@ int fivebar_offset_joint_accelerations(const prepared *m, const real *X, const r
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qdd_out);
-    }
-    return code;
+    return settled(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4160,13 +4172,9 @@ int fivebar_offset_dynamics(const prepared *m, const real *X, const real *V, rea
     }
     check(NV*NC, 1, Hk, why.overflow);
     check(1, 1, constraint_bias, why.overflow);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-        refuse(NV, Z_out);
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    settled(&why, NV*NV, M_out);
+    settled(&why, NV, Z_out);
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -4240,8 +4248,9 @@ static const real sizes_solve_1[] = {4.0, 4.0, 1.0};
 int fivebar_offset_inverse_dynamics(const prepared *m, const real *X, const real *V, const real
     *A, const real *wrench, real *tau_out, real *lambda_out)
 {
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0},
-        beside_1[NV*NV] = {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, work[NV*PADDED(NV)];
+    static const real no_wrench[NW] = {0};
+    real required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0}, beside_1[NV*NV] =
+        {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
@@ -4250,7 +4259,7 @@ int fivebar_offset_inverse_dynamics(const prepared *m, const real *X, const real
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, Hk, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -4268,12 +4277,8 @@ int fivebar_offset_inverse_dynamics(const prepared *m, const real *X, const real
     check(NC, 1, lambda_, why.overflow);
     copy(NU, tau, tau_out);
     copy(NC, lambda_, lambda_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, tau_out);
-        refuse(NC, lambda_out);
-    }
-    return code;
+    settled(&why, NU, tau_out);
+    return settled(&why, NC, lambda_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -4384,10 +4389,10 @@ static const real sizes_forward_dynamics_solve_1[] = {4.0, 4.0, 1.0, 0.25};
 int fivebar_offset_forward_dynamics(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, real *lambda_out)
 {
-    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0},
-        constraint_bias[1] = {0}, times_1[NV] = {0}, add_1[NV] = {0}, subtract_1[NV] = {0},
-        negative_1[1] = {0}, join_1[4] = {0}, solve_1[(NV + NC)] = {0}, unsure_solve_1[1] = {0},
-        work[(NV + NC)*(PADDED(NV + NC))];
+    static const real no_wrench[NW] = {0};
+    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, constraint_bias[1] = {0},
+        times_1[NV] = {0}, add_1[NV] = {0}, subtract_1[NV] = {0}, negative_1[1] = {0}, join_1[4] =
+        {0}, solve_1[(NV + NC)] = {0}, unsure_solve_1[1] = {0}, work[(NV + NC)*(PADDED(NV + NC))];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
@@ -4396,7 +4401,7 @@ int fivebar_offset_forward_dynamics(const prepared *m, const real *X, const real
         check(NV, 1, V, why.invalid);
         check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, Hk, constraint_bias, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     for (size_t i = 0; i < NV; ++i) {
@@ -4421,12 +4426,8 @@ int fivebar_offset_forward_dynamics(const prepared *m, const real *X, const real
     check(NC, 1, lambda_, why.overflow);
     copy(NV, A, A_out);
     copy(NC, lambda_, lambda_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, A_out);
-        refuse(NC, lambda_out);
-    }
-    return code;
+    settled(&why, NV, A_out);
+    return settled(&why, NC, lambda_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4478,21 +4479,18 @@ int fivebar_offset_complete_acceleration(const prepared *m, const real *X, const
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, completed_out);
-    }
-    return code;
+    return settled(&why, NV, completed_out);
 }
 
 int fivebar_offset_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out)
 {
+    static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0};
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0},
-        beside_1[NV*NV] = {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, leg_force[3*NL] = {0},
-        actuator[6] = {0}, constraint_direction[3*NC] = {0}, add_forces_1[3*NL] = {0}, forces[NL*(NL +
-        NC)] = {0}, work[NV*PADDED(NV)];
+    real required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0}, beside_1[NV*NV] =
+        {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[6] = {0},
+        constraint_direction[3*NC] = {0}, add_forces_1[3*NL] = {0}, forces[NL*(NL + NC)] = {0},
+        work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
@@ -4501,7 +4499,7 @@ int fivebar_offset_leg_reactions(const prepared *m, const real *X, const real *V
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, Hk, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -4526,11 +4524,7 @@ int fivebar_offset_leg_reactions(const prepared *m, const real *X, const real *V
     add_forces(NC, 3, 1, places_forces, split_2, constraint_direction, forces);
     check(NL*(NL + NC), 1, forces, why.overflow);
     copy(NL*(NL + NC), forces, forces_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NL*(NL + NC), forces_out);
-    }
-    return code;
+    return settled(&why, NL*(NL + NC), forces_out);
 }
 
 int fivebar_offset_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
@@ -4552,25 +4546,22 @@ int fivebar_offset_energy(const prepared *m, const real *X, const real *V, real 
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, kinetic_out);
-        refuse(1, potential_out);
-    }
-    return code;
+    settled(&why, 1, kinetic_out);
+    return settled(&why, 1, potential_out);
 }
 
 int fivebar_offset_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
     const real *length = NULL;
+    static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {2};
-    real length_in[1], H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] =
-        {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NU] = {0};
+    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
+        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NU] = {0};
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, length, 0, length_in, why.invalid);
+    length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, Hk, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
@@ -4589,27 +4580,23 @@ int fivebar_offset_condition(const prepared *m, const real *X, real *sigma_out, 
     check(NL, 1, reach, why.overflow);
     copy(NU, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, sigma_out);
-        refuse(NL, legs_out);
-    }
-    return code;
+    settled(&why, NU, sigma_out);
+    return settled(&why, NL, legs_out);
 }
 
 int fivebar_offset_condition_constrained(const prepared *m, const real *X, real *sigma_out, real
     *legs_out)
 {
     const real *length = NULL;
+    static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {2};
-    real length_in[1], H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] =
-        {0}, beside_1[NV*NV] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] = {0}, sigma[NV] =
-        {0};
+    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
+        beside_1[NV*NV] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] = {0}, sigma[NV] = {0};
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, length, 0, length_in, why.invalid);
+    length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, Hk, lengths, legs, reach, &why);
     beside(NV, NU, NC, H, Hk, beside_1);
     for (size_t i = 0; i < 1; ++i) {
@@ -4628,12 +4615,8 @@ int fivebar_offset_condition_constrained(const prepared *m, const real *X, real 
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, sigma_out);
-        refuse(NL, legs_out);
-    }
-    return code;
+    settled(&why, NV, sigma_out);
+    return settled(&why, NL, legs_out);
 }
 
 int fivebar_offset_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -4686,12 +4669,8 @@ int fivebar_offset_manipulability(const prepared *m, const real *X, real *measur
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, measure_out);
-        refuse(1, isotropy_out);
-    }
-    return code;
+    settled(&why, 1, measure_out);
+    return settled(&why, 1, isotropy_out);
 }
 
 int fivebar_offset_singularity_distance(const prepared *m, const real *X, real *actuators_out,
@@ -4726,12 +4705,8 @@ int fivebar_offset_singularity_distance(const prepared *m, const real *X, real *
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, actuators_out);
-        refuse(1, legs_out);
-    }
-    return code;
+    settled(&why, 1, actuators_out);
+    return settled(&why, 1, legs_out);
 }
 
 static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
@@ -4761,11 +4736,7 @@ static int mismatch_one(const prepared *m, const real *X, const real *q_actuated
     beside(1, NU, 1, wrap_turns_1, negative_1, gap);
     check(3, 1, gap, why.overflow);
     copy(3, gap, gap_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(3, gap_out);
-    }
-    return code;
+    return settled(&why, 3, gap_out);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
@@ -4779,11 +4750,7 @@ static int slope_one(const prepared *m, const real *X, real *slope_out)
     beside(NV, NU, NC, H, Hk, slope);
     check(NV*NV, 1, slope, why.overflow);
     copy(NV*NV, slope, slope_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, slope_out);
-    }
-    return code;
+    return settled(&why, NV*NV, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -4845,11 +4812,7 @@ int fivebar_offset_forward_kinematics(const prepared *m, const real *q_actuated,
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 static int constraint_gap_one(const prepared *m, const real *X, real *gap_out)
@@ -4864,11 +4827,7 @@ static int constraint_gap_one(const prepared *m, const real *X, real *gap_out)
     }
     check(NC, 1, gap, why.overflow);
     copy(NC, gap, gap_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NC, gap_out);
-    }
-    return code;
+    return settled(&why, NC, gap_out);
 }
 
 static int constraint_slope_one(const prepared *m, const real *X, real *slope_out)
@@ -4880,11 +4839,7 @@ static int constraint_slope_one(const prepared *m, const real *X, real *slope_ou
     if (!is_finite(why.total[0])) {
         check(NV*NC, 1, slope_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NC, slope_out);
-    }
-    return code;
+    return settled(&why, NV*NC, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -4941,11 +4896,7 @@ int fivebar_offset_project(const prepared *m, const real *X, real *projected_out
     blame(search_constraint_gap(m, X, projected), &why);
     check(NQ, 1, projected, why.overflow);
     copy(NQ, projected, projected_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, projected_out);
-    }
-    return code;
+    return settled(&why, NQ, projected_out);
 }
 
 int fivebar_offset_dissipation(const prepared *m, const real *X, const real *V, real
@@ -4963,11 +4914,7 @@ int fivebar_offset_dissipation(const prepared *m, const real *X, const real *V, 
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, dissipation_out);
-    }
-    return code;
+    return settled(&why, 1, dissipation_out);
 }
 
 int fivebar_offset_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
@@ -4984,11 +4931,7 @@ int fivebar_offset_momentum(const prepared *m, const real *X, const real *V, rea
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, momentum_out);
-    }
-    return code;
+    return settled(&why, NV, momentum_out);
 }
 
 int fivebar_offset_joint_margins(const prepared *m, const real *X, real *margins_out)
@@ -5004,11 +4947,7 @@ int fivebar_offset_joint_margins(const prepared *m, const real *X, real *margins
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, margins_out);
-    }
-    return code;
+    return settled(&why, NJ, margins_out);
 }
 
 int fivebar_offset_within_limits(const prepared *m, const real *X, real *within_out)
@@ -5024,11 +4963,7 @@ int fivebar_offset_within_limits(const prepared *m, const real *X, real *within_
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, within_out);
-    }
-    return code;
+    return settled(&why, 1, within_out);
 }
 
 int fivebar_offset_actuator_positions(const prepared *m, const real *X, real *q_out)
@@ -5041,11 +4976,7 @@ int fivebar_offset_actuator_positions(const prepared *m, const real *X, real *q_
     const real *const q = q_of_inverse_kinematics;
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, q_out);
-    }
-    return code;
+    return settled(&why, NU, q_out);
 }
 
 int fivebar_offset_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
@@ -5062,11 +4993,7 @@ int fivebar_offset_actuator_rates(const prepared *m, const real *X, const real *
     const real *const qd = qd_of_joint_rates;
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qd_out);
-    }
-    return code;
+    return settled(&why, NU, qd_out);
 }
 
 int fivebar_offset_actuator_accelerations(const prepared *m, const real *X, const real *V, const
@@ -5085,11 +5012,7 @@ int fivebar_offset_actuator_accelerations(const prepared *m, const real *X, cons
     const real *const qdd = qdd_of_joint_accelerations;
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qdd_out);
-    }
-    return code;
+    return settled(&why, NU, qdd_out);
 }
 
 int fivebar_offset_power(const prepared *m, const real *X, const real *V, const real *tau, real
@@ -5109,11 +5032,7 @@ int fivebar_offset_power(const prepared *m, const real *X, const real *V, const 
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, power_out);
-    }
-    return code;
+    return settled(&why, 1, power_out);
 }
 
 int fivebar_offset_rotation(const real *X, real *R_out)
@@ -5126,11 +5045,7 @@ int fivebar_offset_rotation(const real *X, real *R_out)
     rotation_of_angle(X_from_2, R);
     check(4, 1, R, why.overflow);
     copy(4, R, R_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(4, R_out);
-    }
-    return code;
+    return settled(&why, 4, R_out);
 }
 
 int fivebar_offset_pose(const real *t, const real *R, real *X_out)
@@ -5148,11 +5063,7 @@ int fivebar_offset_pose(const real *t, const real *R, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int fivebar_offset_X_dot(const real *X, const real *V, real *X_dot_out)
@@ -5167,11 +5078,7 @@ int fivebar_offset_X_dot(const real *X, const real *V, real *X_dot_out)
     const real *const X_dot = V;
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_dot_out);
-    }
-    return code;
+    return settled(&why, NQ, X_dot_out);
 }
 
 int fivebar_offset_retract(const real *X, const real *step, real *X_moved_out)
@@ -5189,11 +5096,7 @@ int fivebar_offset_retract(const real *X, const real *step, real *X_moved_out)
     }
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_moved_out);
-    }
-    return code;
+    return settled(&why, NQ, X_moved_out);
 }
 
 int fivebar_offset_difference(const real *X0, const real *X1, real *step_out)
@@ -5216,11 +5119,7 @@ int fivebar_offset_difference(const real *X0, const real *X1, real *step_out)
     wrap_turns(1, 1, places_step, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, step_out);
-    }
-    return code;
+    return settled(&why, NV, step_out);
 }
 
 int fivebar_offset_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
@@ -5250,11 +5149,7 @@ int fivebar_offset_interpolate(const real *X0, const real *X1, const real *s, re
     }
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 /* ---- one state, and batches ---- */

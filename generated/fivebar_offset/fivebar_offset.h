@@ -20,6 +20,10 @@
  * status unless it is NULL, and return how many states failed; a wrench of NULL is none.
  * Outputs of a batch must not overlap its inputs.
  *
+ * Compiled with -ffunction-sections -fdata-sections and linked with -Wl,--gc-sections, functions that are not called take
+ * no room.  FIVEBAR_OFFSET_LANES, where the source is compiled, is how many states a batch runs side by side: 8;
+ * 1 where there are no vectors.  The model is the same whatever it is.
+ *
  * OK is no promise of good conditioning: ask fivebar_offset_condition.  Single states and batches
  * agree to 1e-12 times the condition, and in their status unless an intermediate result overflows
  * or a tested value lies within 1e-6 of its threshold.

@@ -234,15 +234,12 @@ INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *t
 }
 
 /* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
-INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+INLINE const real *optional(size_t size, const real *x, const real *none, real *flags)
 {
-    for (size_t e = 0; e < size && !x; ++e) {
-        own[e] = none;
-    }
     if (x) {
         check(size, 1, x, flags);
     }
-    return x ? x : own;
+    return x ? x : none;
 }
 
 INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
@@ -299,6 +296,16 @@ APART void refuse(size_t size, real *out)
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
     }
+}
+
+/* The status of a state; an output is refused where it is impossible. */
+INLINE int settled(const verdict *t, size_t size, real *out)
+{
+    const int code = judge(t);
+    if (code != OK) {
+        refuse(size, out);
+    }
+    return code;
 }
 
 /* Outputs of a state where the user wants them, and of states side by side, state by state. */
@@ -426,45 +433,45 @@ INLINE int all_planar_inertias(const real *x, size_t n)
 /* ---- parameters ---- */
 
 const fivebar_prismatic_params fivebar_prismatic_default_params = {
-    {R(0.0), R(-9.81), R(0.0)},  /* gravity */
+    {0, R(-9.81), 0},  /* gravity */
     R(0.7),  /* platform_mass */
-    {R(0.0), R(0.0), R(0.0)},  /* platform_centre_of_mass */
-    {{R(0.0), R(0.0), R(0.0)}, {R(0.0), R(0.0), R(0.0)}, {R(0.0), R(0.0), R(0.0)}},  /* platform_inertia */
+    {0, 0, 0},  /* platform_centre_of_mass */
+    {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}},  /* platform_inertia */
     {  /* rpr_base_point */
-        {R(0.0), R(0.0), R(0.0)},
-        {R(0.8), R(0.0), R(0.0)},
+        {0, 0, 0},
+        {R(0.8), 0, 0},
     },
     {  /* rpr_base_frame */
-        {{R(1.0), R(0.0), R(0.0)}, {R(0.0), R(1.0), R(0.0)}, {R(0.0), R(0.0), R(1.0)}},
-        {{R(1.0), R(0.0), R(0.0)}, {R(0.0), R(1.0), R(0.0)}, {R(0.0), R(0.0), R(1.0)}},
+        {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+        {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
     },
     {  /* rpr_platform_point */
-        {R(0.0), R(0.0), R(0.0)},
-        {R(0.0), R(0.0), R(0.0)},
+        {0, 0, 0},
+        {0, 0, 0},
     },
     {  /* rpr_link1_mass */
         R(2.0),
         R(2.0),
     },
     {  /* rpr_link1_centre_of_mass */
-        {R(0.175), R(0.0), R(0.0)},
-        {R(0.175), R(0.0), R(0.0)},
+        {R(0.175), 0, 0},
+        {R(0.175), 0, 0},
     },
     {  /* rpr_link1_inertia */
-        {{R(0.0004), R(0.0), R(0.0)}, {R(0.0), R(0.020616666666666665), R(0.0)}, {R(0.0), R(0.0), R(0.020616666666666665)}},
-        {{R(0.0004), R(0.0), R(0.0)}, {R(0.0), R(0.020616666666666665), R(0.0)}, {R(0.0), R(0.0), R(0.020616666666666665)}},
+        {{R(0.0004), 0, 0}, {0, R(0.020616666666666665), 0}, {0, 0, R(0.020616666666666665)}},
+        {{R(0.0004), 0, 0}, {0, R(0.020616666666666665), 0}, {0, 0, R(0.020616666666666665)}},
     },
     {  /* rpr_link2_mass */
         R(1.2),
         R(1.2),
     },
     {  /* rpr_link2_centre_of_mass */
-        {R(-0.2), R(0.0), R(0.0)},
-        {R(-0.2), R(0.0), R(0.0)},
+        {R(-0.2), 0, 0},
+        {R(-0.2), 0, 0},
     },
     {  /* rpr_link2_inertia */
-        {{R(0.00024), R(0.0), R(0.0)}, {R(0.0), R(0.016120000000000002), R(0.0)}, {R(0.0), R(0.0), R(0.016120000000000002)}},
-        {{R(0.00024), R(0.0), R(0.0)}, {R(0.0), R(0.016120000000000002), R(0.0)}, {R(0.0), R(0.0), R(0.016120000000000002)}},
+        {{R(0.00024), 0, 0}, {0, R(0.016120000000000002), 0}, {0, 0, R(0.016120000000000002)}},
+        {{R(0.00024), 0, 0}, {0, R(0.016120000000000002), 0}, {0, 0, R(0.016120000000000002)}},
     },
 };
 
@@ -509,6 +516,9 @@ static int acceptable(const fivebar_prismatic_params *p)
     return ok;
 }
 
+#define KEEP(name) model->name = name
+#define KEEP_OF_LEG(name) model->name[leg] = name
+
 int fivebar_prismatic_prepare(const fivebar_prismatic_params *params, fivebar_prismatic_model *model)
 {
     if (!acceptable(params)) {
@@ -532,10 +542,10 @@ int fivebar_prismatic_prepare(const fivebar_prismatic_params *params, fivebar_pr
     const real spread_t = R(0.5)*root(2);
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = R(1.0606601717798212)*spread_t;
-    model->gravity_x = gravity_x;
-    model->gravity_y = gravity_y;
-    model->legs_size = legs_size;
-    model->spread_t = spread_t;
+    KEEP(gravity_x);
+    KEEP(gravity_y);
+    KEEP(legs_size);
+    KEEP(spread_t);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
         const size_t own = leg;
         const real rpr_base_point_x = params->rpr_base_point[own][0];
@@ -595,30 +605,30 @@ int fivebar_prismatic_prepare(const fivebar_prismatic_params *params, fivebar_pr
             rpr_base_frame_yx*rpr_base_point_y;
         const real rpr_potential_t_2 = rpr_base_frame_xy*rpr_base_point_x +
             rpr_base_frame_yy*rpr_base_point_y;
-        model->rpr_J_group_1_in_axes1_zz[leg] = rpr_J_group_1_in_axes1_zz;
-        model->rpr_Sigma_1_in_axes1_xx[leg] = rpr_Sigma_1_in_axes1_xx;
-        model->rpr_Sigma_1_in_axes1_yy[leg] = rpr_Sigma_1_in_axes1_yy;
-        model->rpr_acc_2_t[leg] = rpr_acc_2_t;
-        model->rpr_acc_2_t_2[leg] = rpr_acc_2_t_2;
-        model->rpr_base_frame_xx[leg] = rpr_base_frame_xx;
-        model->rpr_base_frame_xy[leg] = rpr_base_frame_xy;
-        model->rpr_base_frame_yx[leg] = rpr_base_frame_yx;
-        model->rpr_base_frame_yy[leg] = rpr_base_frame_yy;
-        model->rpr_base_point_x[leg] = rpr_base_point_x;
-        model->rpr_base_point_y[leg] = rpr_base_point_y;
-        model->rpr_branch_1[leg] = rpr_branch_1;
-        model->rpr_h_1_in_spec1_x[leg] = rpr_h_1_in_spec1_x;
-        model->rpr_h_1_in_spec1_y[leg] = rpr_h_1_in_spec1_y;
-        model->rpr_h_2_in_spec1_x[leg] = rpr_h_2_in_spec1_x;
-        model->rpr_h_2_in_spec1_y[leg] = rpr_h_2_in_spec1_y;
-        model->rpr_h_group_1_in_axes1_x[leg] = rpr_h_group_1_in_axes1_x;
-        model->rpr_h_group_1_in_axes1_y[leg] = rpr_h_group_1_in_axes1_y;
-        model->rpr_link1_mass[leg] = rpr_link1_mass;
-        model->rpr_link2_mass[leg] = rpr_link2_mass;
-        model->rpr_platform_point_x[leg] = rpr_platform_point_x;
-        model->rpr_platform_point_y[leg] = rpr_platform_point_y;
-        model->rpr_potential_t[leg] = rpr_potential_t;
-        model->rpr_potential_t_2[leg] = rpr_potential_t_2;
+        KEEP_OF_LEG(rpr_J_group_1_in_axes1_zz);
+        KEEP_OF_LEG(rpr_Sigma_1_in_axes1_xx);
+        KEEP_OF_LEG(rpr_Sigma_1_in_axes1_yy);
+        KEEP_OF_LEG(rpr_acc_2_t);
+        KEEP_OF_LEG(rpr_acc_2_t_2);
+        KEEP_OF_LEG(rpr_base_frame_xx);
+        KEEP_OF_LEG(rpr_base_frame_xy);
+        KEEP_OF_LEG(rpr_base_frame_yx);
+        KEEP_OF_LEG(rpr_base_frame_yy);
+        KEEP_OF_LEG(rpr_base_point_x);
+        KEEP_OF_LEG(rpr_base_point_y);
+        KEEP_OF_LEG(rpr_branch_1);
+        KEEP_OF_LEG(rpr_h_1_in_spec1_x);
+        KEEP_OF_LEG(rpr_h_1_in_spec1_y);
+        KEEP_OF_LEG(rpr_h_2_in_spec1_x);
+        KEEP_OF_LEG(rpr_h_2_in_spec1_y);
+        KEEP_OF_LEG(rpr_h_group_1_in_axes1_x);
+        KEEP_OF_LEG(rpr_h_group_1_in_axes1_y);
+        KEEP_OF_LEG(rpr_link1_mass);
+        KEEP_OF_LEG(rpr_link2_mass);
+        KEEP_OF_LEG(rpr_platform_point_x);
+        KEEP_OF_LEG(rpr_platform_point_y);
+        KEEP_OF_LEG(rpr_potential_t);
+        KEEP_OF_LEG(rpr_potential_t_2);
         m_star_of_legs += rpr_link2_mass;
         h_star_x_of_legs += rpr_h_star_t;
         h_star_y_of_legs += rpr_h_star_t_2;
@@ -636,13 +646,13 @@ int fivebar_prismatic_prepare(const fivebar_prismatic_params *params, fivebar_pr
     /* (b_c) centroid of the platform points */
     const real b_c_in_platform_x = R(0.5)*b_c_rpr_in_platform_x;
     const real b_c_in_platform_y = R(0.5)*b_c_rpr_in_platform_y;
-    model->Z_p_x = Z_p_x;
-    model->Z_p_y = Z_p_y;
-    model->b_c_in_platform_x = b_c_in_platform_x;
-    model->b_c_in_platform_y = b_c_in_platform_y;
-    model->h_star_x = h_star_x;
-    model->h_star_y = h_star_y;
-    model->m_star = m_star;
+    KEEP(Z_p_x);
+    KEEP(Z_p_y);
+    KEEP(b_c_in_platform_x);
+    KEEP(b_c_in_platform_y);
+    KEEP(h_star_x);
+    KEEP(h_star_y);
+    KEEP(m_star);
     return OK;
 }
 
@@ -1121,14 +1131,14 @@ INLINE void stage_rpr_Z_dynamics(const prepared *m, size_t i, values_rpr *v)
     const real rpr_mu_1_o_in_axes1_z =
         m->rpr_h_group_1_in_axes1_y[i]*(v->axis_x_rpr_axes1_x*m->gravity_x +
         v->axis_x_rpr_axes1_y*m->gravity_y) -
-        rpr_B_1_o_in_axes1_xy*m->rpr_Sigma_1_in_axes1_xx[i] -
-        rpr_B_1_o_in_axes1_xy*m->rpr_Sigma_1_in_axes1_yy[i] -
         m->rpr_h_group_1_in_axes1_x[i]*(v->axis_x_rpr_axes1_x*m->gravity_y -
-        v->axis_x_rpr_axes1_y*m->gravity_x);
+        v->axis_x_rpr_axes1_y*m->gravity_x) -
+        rpr_B_1_o_in_axes1_xy*m->rpr_Sigma_1_in_axes1_xx[i] -
+        rpr_B_1_o_in_axes1_xy*m->rpr_Sigma_1_in_axes1_yy[i];
     /* (rpr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
-    const real rpr_c_o_in_axes1_y = rpr_B_1_o_in_axes1_xy*m->rpr_h_2_in_spec1_x[i] +
-        v->rpr_W_1_t*m->rpr_h_2_in_spec1_y[i] - v->inv_rpr_q_2*rpr_mu_1_o_in_axes1_z;
+    const real rpr_c_o_in_axes1_y = v->rpr_W_1_t*m->rpr_h_2_in_spec1_y[i] +
+        rpr_B_1_o_in_axes1_xy*m->rpr_h_2_in_spec1_x[i] - v->inv_rpr_q_2*rpr_mu_1_o_in_axes1_z;
     /* (rpr-U) velocity and gravity terms of the leg force */
     const real rpr_U_x = v->axis_x_rpr_axes1_x*rpr_phi_2_o_in_axes1_x +
         v->axis_x_rpr_axes1_y*rpr_c_o_in_axes1_y;
@@ -1160,15 +1170,15 @@ INLINE void stage_rpr_legs_required(const prepared *m, size_t w, size_t i, size_
         v->axis_x_rpr_axes1_y*t_ddot_y - rpr_g_in_axes1_x;
     const real rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y;
     /* (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-    const real rpr_mu_1_in_axes1_z = m->rpr_J_group_1_in_axes1_zz[i]*rpr_qdd_1 +
-        rpr_acc_2_in_axes1_y*m->rpr_h_2_in_spec1_x[i] +
-        rpr_g_in_axes1_x*m->rpr_h_1_in_spec1_y[i] -
-        rpr_acc_2_in_axes1_x*m->rpr_h_2_in_spec1_y[i] -
-        rpr_g_in_axes1_y*m->rpr_h_1_in_spec1_x[i];
+    const real rpr_mu_1_in_axes1_z = rpr_g_in_axes1_x*m->rpr_h_1_in_spec1_y[i] -
+        rpr_g_in_axes1_y*m->rpr_h_1_in_spec1_x[i] +
+        rpr_acc_2_in_axes1_y*m->rpr_h_2_in_spec1_x[i] -
+        rpr_acc_2_in_axes1_x*m->rpr_h_2_in_spec1_y[i] +
+        m->rpr_J_group_1_in_axes1_zz[i]*rpr_qdd_1;
     /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real rpr_c_in_axes1_y = v->rpr_W_1_t*m->rpr_h_2_in_spec1_y[i] -
-        v->inv_rpr_q_2*rpr_mu_1_in_axes1_z - m->rpr_h_2_in_spec1_x[i]*rpr_qdd_1;
+        m->rpr_h_2_in_spec1_x[i]*rpr_qdd_1 - v->inv_rpr_q_2*rpr_mu_1_in_axes1_z;
     v->rpr_qdd_1 = rpr_qdd_1;
     v->rpr_acc_2_in_axes1_x = rpr_acc_2_in_axes1_x;
     v->rpr_acc_2_in_axes1_y = rpr_acc_2_in_axes1_y;
@@ -1178,10 +1188,6 @@ INLINE void stage_rpr_legs_required(const prepared *m, size_t w, size_t i, size_
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before()
-{
-}
-
 INLINE void dynamics_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, int add, const real *X, const real *V, real *terms, real *o)
 {
@@ -1199,8 +1205,8 @@ INLINE void dynamics_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, s
     const real rpr_Q_t = R(0.5)*rpr_d_c_in_axes1_yy;
     const real rpr_Q_t_2 = v.axis_x_rpr_axes1_y*rpr_Q_t -
         v.axis_x_rpr_axes1_x*rpr_d_c_in_axes1_xy;
-    const real rpr_Q_t_3 = v.axis_x_rpr_axes1_x*rpr_Q_t +
-        v.axis_x_rpr_axes1_y*rpr_d_c_in_axes1_xy;
+    const real rpr_Q_t_3 = v.axis_x_rpr_axes1_y*rpr_d_c_in_axes1_xy +
+        v.axis_x_rpr_axes1_x*rpr_Q_t;
     const real rpr_Q_xx = -2*v.axis_x_rpr_axes1_y*rpr_Q_t_2;
     const real rpr_Q_xy = v.axis_x_rpr_axes1_x*rpr_Q_t_2 + v.axis_x_rpr_axes1_y*rpr_Q_t_3;
     const real rpr_Q_yy = -2*v.axis_x_rpr_axes1_x*rpr_Q_t_3;
@@ -1233,9 +1239,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *su
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     /* (Z_t) */
     const real Z_t_x_of_legs = sums[3*w + k];
     const real Z_t_x = m->Z_p_x + Z_t_x_of_legs;
@@ -1290,10 +1296,6 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before()
-{
-}
-
 INLINE void M_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *X, real *terms, real *o)
 {
@@ -1308,7 +1310,7 @@ INLINE void M_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     /* (rpr-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real rpr_Q_t = R(0.5)*rpr_d_c_in_axes1_yy;
     const real rpr_Q_t_2 = rpr_Q_t*v.rpr_w_2_y - rpr_d_c_in_axes1_xy*v.rpr_w_2_x;
-    const real rpr_Q_t_3 = rpr_Q_t*v.rpr_w_2_x + rpr_d_c_in_axes1_xy*v.rpr_w_2_y;
+    const real rpr_Q_t_3 = rpr_d_c_in_axes1_xy*v.rpr_w_2_y + rpr_Q_t*v.rpr_w_2_x;
     const real rpr_Q_xx = -2*rpr_Q_t_2*v.rpr_w_2_y;
     const real rpr_Q_xy = rpr_Q_t_2*v.rpr_w_2_x + rpr_Q_t_3*v.rpr_w_2_y;
     const real rpr_Q_yy = -2*rpr_Q_t_3*v.rpr_w_2_x;
@@ -1329,9 +1331,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, rea
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
     const real M_tt_xy = sums[1*w + k];
@@ -1376,10 +1378,6 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 }
 
 /* ---- Z ---- */
-INLINE void Z_before()
-{
-}
-
 INLINE void Z_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *X, const real *V, real *terms, real *o)
 {
@@ -1448,10 +1446,6 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before()
-{
-}
-
 INLINE void H_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *X, real *o)
 {
@@ -1499,7 +1493,7 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *A, real *s)
+INLINE void required_between(const prepared *m, size_t w, size_t k, const real *A, real *s)
 {
     /* (a_t) acceleration of the platform origin, less gravity */
     const real t_ddot_x = A[0*w + k];
@@ -1561,12 +1555,11 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[1*w + k] = R_t_y;
 }
 
-APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
     real s[2] = {0}, sums[2] = {0};
     real terms_rpr[2*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[3*LEGS(LEGS_OF_rpr)] = {0};
-    required_before(m, 1, 0, A, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         required_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, X, V, A, terms_rpr, o_rpr);
     }
@@ -1576,6 +1569,7 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
     for (size_t n = 0; n < 2; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
+    required_between(m, 1, 0, A, s);
     required_after(1, 0, s, sums, required);
 }
 
@@ -1585,7 +1579,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real s[2*LANES], sums[2*LANES];
     real o_rpr[3*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        required_before(m, LANES, k, A, s);
+        required_between(m, LANES, k, A, s);
     }
     clear(sums, 2*LANES);
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
@@ -1602,10 +1596,6 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before()
-{
-}
-
 INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *X, real *o)
 {
@@ -1658,10 +1648,6 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before()
-{
-}
-
 INLINE void joint_rates_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *X, const real *V, real *o)
 {
@@ -1712,10 +1698,6 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before()
-{
-}
-
 INLINE void joint_accelerations_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *X, const real *V, const real *A, real *o)
 {
@@ -1776,10 +1758,6 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before()
-{
-}
-
 INLINE void legs_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *X, const real *V, const real *A, real *o)
 {
@@ -1788,14 +1766,14 @@ INLINE void legs_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_
     stage_rpr_V_X(w, j, V, &v);
     stage_rpr_legs_required(m, w, i, j, A, &v);
     /* (rpr-c_true) leg force on the platform without actuation, the last link's mass included */
-    const real rpr_c_true_in_axes1_x = v.rpr_W_1_t*m->rpr_h_2_in_spec1_x[i] +
-        m->rpr_h_2_in_spec1_y[i]*v.rpr_qdd_1 - v.rpr_acc_2_in_axes1_x*m->rpr_link2_mass[i];
+    const real rpr_c_true_in_axes1_x = v.rpr_W_1_t*m->rpr_h_2_in_spec1_x[i] -
+        v.rpr_acc_2_in_axes1_x*m->rpr_link2_mass[i] + m->rpr_h_2_in_spec1_y[i]*v.rpr_qdd_1;
     const real rpr_c_true_in_axes1_y = v.rpr_c_in_axes1_y -
         v.rpr_acc_2_in_axes1_y*m->rpr_link2_mass[i];
     const real rpr_c_true_x = v.axis_x_rpr_axes1_x*rpr_c_true_in_axes1_x -
         v.axis_x_rpr_axes1_y*rpr_c_true_in_axes1_y;
-    const real rpr_c_true_y = v.axis_x_rpr_axes1_x*rpr_c_true_in_axes1_y +
-        v.axis_x_rpr_axes1_y*rpr_c_true_in_axes1_x;
+    const real rpr_c_true_y = v.axis_x_rpr_axes1_y*rpr_c_true_in_axes1_x +
+        v.axis_x_rpr_axes1_x*rpr_c_true_in_axes1_y;
     /* (rpr-c_true) */
     o[0*count + k] = rpr_c_true_x;
     o[1*count + k] = rpr_c_true_y;
@@ -1831,7 +1809,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
     /* (potential) potential energy */
     const real t_x = X[0*w + k];
@@ -1870,7 +1848,7 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     /* (potential) */
     const real potential_of_legs = sums[0*w + k];
     const real potential_t = s[0*w + k];
-    const real potential_ = -potential_of_legs - potential_t;
+    const real potential_ = -potential_t - potential_of_legs;
     /* (potential) */
     potential[0*w + k] = potential_;
 }
@@ -1879,7 +1857,6 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 {
     real s[1] = {0}, sums[1] = {0};
     real terms_rpr[LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
-    potential_before(m, 1, 0, X, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         potential_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, X, terms_rpr, o_rpr);
     }
@@ -1889,6 +1866,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
+    potential_between(m, 1, 0, X, s);
     potential_after(1, 0, s, sums, potential);
 }
 
@@ -1978,11 +1956,7 @@ int fivebar_prismatic_M(const prepared *m, const real *X, real *M_out)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-    }
-    return code;
+    return settled(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -2009,11 +1983,7 @@ int fivebar_prismatic_Z(const prepared *m, const real *X, const real *V, real *Z
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, Z_out);
-    }
-    return code;
+    return settled(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -2037,11 +2007,7 @@ int fivebar_prismatic_H(const prepared *m, const real *X, real *H_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -2064,11 +2030,7 @@ int fivebar_prismatic_inverse_kinematics(const prepared *m, const real *X, real 
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, q_out);
-    }
-    return code;
+    return settled(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -2095,11 +2057,7 @@ int fivebar_prismatic_joint_rates(const prepared *m, const real *X, const real *
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qd_out);
-    }
-    return code;
+    return settled(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -2130,11 +2088,7 @@ int fivebar_prismatic_joint_accelerations(const prepared *m, const real *X, cons
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qdd_out);
-    }
-    return code;
+    return settled(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -2167,13 +2121,9 @@ int fivebar_prismatic_dynamics(const prepared *m, const real *X, const real *V, 
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-        refuse(NV, Z_out);
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    settled(&why, NV*NV, M_out);
+    settled(&why, NV, Z_out);
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -2224,7 +2174,8 @@ static const real sizes_tau[] = {1.0, 1.0};
 int fivebar_prismatic_inverse_dynamics(const prepared *m, const real *X, const real *V, const real
     *A, const real *wrench, real *tau_out)
 {
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    static const real no_wrench[NW] = {0};
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
@@ -2234,7 +2185,7 @@ int fivebar_prismatic_inverse_dynamics(const prepared *m, const real *X, const r
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -2248,11 +2199,7 @@ int fivebar_prismatic_inverse_dynamics(const prepared *m, const real *X, const r
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, tau_out);
-    }
-    return code;
+    return settled(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -2281,8 +2228,9 @@ static const real sizes_A[] = {4.0, 4.0};
 int fivebar_prismatic_forward_dynamics(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out)
 {
-    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] =
-        {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    static const real no_wrench[NW] = {0};
+    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
+        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
@@ -2291,7 +2239,7 @@ int fivebar_prismatic_forward_dynamics(const prepared *m, const real *X, const r
         check(NV, 1, V, why.invalid);
         check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     for (size_t i = 0; i < NV; ++i) {
@@ -2309,11 +2257,7 @@ int fivebar_prismatic_forward_dynamics(const prepared *m, const real *X, const r
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, A_out);
-    }
-    return code;
+    return settled(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -2354,18 +2298,15 @@ int fivebar_prismatic_complete_acceleration(const prepared *m, const real *X, co
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, completed_out);
-    }
-    return code;
+    return settled(&why, NV, completed_out);
 }
 
 int fivebar_prismatic_leg_reactions(const prepared *m, const real *X, const real *V, const real
     *A, const real *wrench, real *forces_out)
 {
+    static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1};
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
         unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[6] = {0}, forces[3*NL] = {0},
         work[NV*PADDED(NV)];
     verdict why;
@@ -2376,7 +2317,7 @@ int fivebar_prismatic_leg_reactions(const prepared *m, const real *X, const real
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -2394,11 +2335,7 @@ int fivebar_prismatic_leg_reactions(const prepared *m, const real *X, const real
     add_forces(NL, 3, 1, places_forces, solve_1, actuator, forces);
     check(3*NL, 1, forces, why.overflow);
     copy(3*NL, forces, forces_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(3*NL, forces_out);
-    }
-    return code;
+    return settled(&why, 3*NL, forces_out);
 }
 
 int fivebar_prismatic_energy(const prepared *m, const real *X, const real *V, real *kinetic_out,
@@ -2420,12 +2357,8 @@ int fivebar_prismatic_energy(const prepared *m, const real *X, const real *V, re
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, kinetic_out);
-        refuse(1, potential_out);
-    }
-    return code;
+    settled(&why, 1, kinetic_out);
+    return settled(&why, 1, potential_out);
 }
 
 int fivebar_prismatic_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
@@ -2443,12 +2376,8 @@ int fivebar_prismatic_condition(const prepared *m, const real *X, real *sigma_ou
     check(2, 1, lengths, why.overflow);
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, sigma_out);
-        refuse(NL, legs_out);
-    }
-    return code;
+    settled(&why, NV, sigma_out);
+    return settled(&why, NL, legs_out);
 }
 
 int fivebar_prismatic_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -2469,12 +2398,8 @@ int fivebar_prismatic_manipulability(const prepared *m, const real *X, real *mea
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, measure_out);
-        refuse(1, isotropy_out);
-    }
-    return code;
+    settled(&why, 1, measure_out);
+    return settled(&why, 1, isotropy_out);
 }
 
 int fivebar_prismatic_singularity_distance(const prepared *m, const real *X, real *actuators_out,
@@ -2495,12 +2420,8 @@ int fivebar_prismatic_singularity_distance(const prepared *m, const real *X, rea
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, actuators_out);
-        refuse(1, legs_out);
-    }
-    return code;
+    settled(&why, 1, actuators_out);
+    return settled(&why, 1, legs_out);
 }
 
 static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
@@ -2520,11 +2441,7 @@ static int mismatch_one(const prepared *m, const real *X, const real *q_actuated
     }
     check(NU, 1, gap, why.overflow);
     copy(NU, gap, gap_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, gap_out);
-    }
-    return code;
+    return settled(&why, NU, gap_out);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
@@ -2536,11 +2453,7 @@ static int slope_one(const prepared *m, const real *X, real *slope_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, slope_out);
-    }
-    return code;
+    return settled(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -2602,11 +2515,7 @@ int fivebar_prismatic_forward_kinematics(const prepared *m, const real *q_actuat
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int fivebar_prismatic_dissipation(const prepared *m, const real *X, const real *V, real
@@ -2624,11 +2533,7 @@ int fivebar_prismatic_dissipation(const prepared *m, const real *X, const real *
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, dissipation_out);
-    }
-    return code;
+    return settled(&why, 1, dissipation_out);
 }
 
 int fivebar_prismatic_momentum(const prepared *m, const real *X, const real *V, real
@@ -2646,11 +2551,7 @@ int fivebar_prismatic_momentum(const prepared *m, const real *X, const real *V, 
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, momentum_out);
-    }
-    return code;
+    return settled(&why, NV, momentum_out);
 }
 
 int fivebar_prismatic_joint_margins(const prepared *m, const real *X, real *margins_out)
@@ -2666,11 +2567,7 @@ int fivebar_prismatic_joint_margins(const prepared *m, const real *X, real *marg
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, margins_out);
-    }
-    return code;
+    return settled(&why, NJ, margins_out);
 }
 
 int fivebar_prismatic_within_limits(const prepared *m, const real *X, real *within_out)
@@ -2686,11 +2583,7 @@ int fivebar_prismatic_within_limits(const prepared *m, const real *X, real *with
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, within_out);
-    }
-    return code;
+    return settled(&why, 1, within_out);
 }
 
 int fivebar_prismatic_actuator_positions(const prepared *m, const real *X, real *q_out)
@@ -2703,11 +2596,7 @@ int fivebar_prismatic_actuator_positions(const prepared *m, const real *X, real 
     take(NU, 1, fivebar_prismatic_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, q_out);
-    }
-    return code;
+    return settled(&why, NU, q_out);
 }
 
 int fivebar_prismatic_actuator_rates(const prepared *m, const real *X, const real *V, real
@@ -2725,11 +2614,7 @@ int fivebar_prismatic_actuator_rates(const prepared *m, const real *X, const rea
     take(NU, 1, fivebar_prismatic_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qd_out);
-    }
-    return code;
+    return settled(&why, NU, qd_out);
 }
 
 int fivebar_prismatic_actuator_accelerations(const prepared *m, const real *X, const real *V,
@@ -2748,11 +2633,7 @@ int fivebar_prismatic_actuator_accelerations(const prepared *m, const real *X, c
     take(NU, 1, fivebar_prismatic_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qdd_out);
-    }
-    return code;
+    return settled(&why, NU, qdd_out);
 }
 
 int fivebar_prismatic_power(const prepared *m, const real *X, const real *V, const real *tau, real
@@ -2772,11 +2653,7 @@ int fivebar_prismatic_power(const prepared *m, const real *X, const real *V, con
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, power_out);
-    }
-    return code;
+    return settled(&why, 1, power_out);
 }
 
 int fivebar_prismatic_retract(const real *X, const real *step, real *X_moved_out)
@@ -2794,11 +2671,7 @@ int fivebar_prismatic_retract(const real *X, const real *step, real *X_moved_out
     }
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_moved_out);
-    }
-    return code;
+    return settled(&why, NQ, X_moved_out);
 }
 
 int fivebar_prismatic_difference(const real *X0, const real *X1, real *step_out)
@@ -2816,11 +2689,7 @@ int fivebar_prismatic_difference(const real *X0, const real *X1, real *step_out)
     }
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, step_out);
-    }
-    return code;
+    return settled(&why, NV, step_out);
 }
 
 int fivebar_prismatic_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
@@ -2845,11 +2714,7 @@ int fivebar_prismatic_interpolate(const real *X0, const real *X1, const real *s,
     }
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 /* ---- one state, and batches ---- */

@@ -232,15 +232,12 @@ INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *t
 }
 
 /* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
-INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+INLINE const real *optional(size_t size, const real *x, const real *none, real *flags)
 {
-    for (size_t e = 0; e < size && !x; ++e) {
-        own[e] = none;
-    }
     if (x) {
         check(size, 1, x, flags);
     }
-    return x ? x : own;
+    return x ? x : none;
 }
 
 INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
@@ -297,6 +294,16 @@ APART void refuse(size_t size, real *out)
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
     }
+}
+
+/* The status of a state; an output is refused where it is impossible. */
+INLINE int settled(const verdict *t, size_t size, real *out)
+{
+    const int code = judge(t);
+    if (code != OK) {
+        refuse(size, out);
+    }
+    return code;
 }
 
 /* Outputs of a state where the user wants them, and of states side by side, state by state. */
@@ -424,75 +431,75 @@ INLINE int all_planar_inertias(const real *x, size_t n)
 /* ---- parameters ---- */
 
 const fivebar_redundant_params fivebar_redundant_default_params = {
-    {R(0.0), R(-9.81), R(0.0)},  /* gravity */
+    {0, R(-9.81), 0},  /* gravity */
     R(0.5),  /* platform_mass */
-    {R(0.0), R(0.0), R(0.0)},  /* platform_centre_of_mass */
-    {{R(0.0), R(0.0), R(0.0)}, {R(0.0), R(0.0), R(0.0)}, {R(0.0), R(0.0), R(0.0)}},  /* platform_inertia */
+    {0, 0, 0},  /* platform_centre_of_mass */
+    {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}},  /* platform_inertia */
     {  /* rrr_leg1_base_point */
-        {R(0.030115496986122658), R(-0.17504639881453898), R(0.0)},
+        {R(0.030115496986122658), R(-0.17504639881453898), 0},
     },
     {  /* rrr_leg1_base_frame */
-        {{R(1.0), R(0.0), R(0.0)}, {R(0.0), R(1.0), R(0.0)}, {R(0.0), R(0.0), R(1.0)}},
+        {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
     },
     {  /* rrr_leg1_platform_point */
-        {R(0.0), R(0.0), R(0.0)},
+        {0, 0, 0},
     },
     {  /* rrr_leg1_joint2_offset */
-        {R(0.4), R(0.0), R(0.0)},
+        {R(0.4), 0, 0},
     },
     {  /* rrr_leg1_platform_joint_offset */
-        {R(0.45), R(0.0), R(0.0)},
+        {R(0.45), 0, 0},
     },
     {  /* rrr_leg1_link1_mass */
         R(1.5),
     },
     {  /* rrr_leg1_link1_centre_of_mass */
-        {R(0.2), R(0.0), R(0.0)},
+        {R(0.2), 0, 0},
     },
     {  /* rrr_leg1_link1_inertia */
-        {{R(0.0003), R(0.0), R(0.0)}, {R(0.0), R(0.020150000000000005), R(0.0)}, {R(0.0), R(0.0), R(0.020150000000000005)}},
+        {{R(0.0003), 0, 0}, {0, R(0.020150000000000005), 0}, {0, 0, R(0.020150000000000005)}},
     },
     {  /* rrr_leg1_link2_mass */
-        R(1.0),
+        1,
     },
     {  /* rrr_leg1_link2_centre_of_mass */
-        {R(0.225), R(0.0), R(0.0)},
+        {R(0.225), 0, 0},
     },
     {  /* rrr_leg1_link2_inertia */
-        {{R(0.0002), R(0.0), R(0.0)}, {R(0.0), R(0.016975), R(0.0)}, {R(0.0), R(0.0), R(0.016975)}},
+        {{R(0.0002), 0, 0}, {0, R(0.016975), 0}, {0, 0, R(0.016975)}},
     },
     {  /* rrr_base_point */
-        {R(0.009884503013877288), R(-0.17504639881453898), R(0.0)},
+        {R(0.009884503013877288), R(-0.17504639881453898), 0},
     },
     {  /* rrr_base_frame */
-        {{R(1.0), R(0.0), R(0.0)}, {R(0.0), R(1.0), R(0.0)}, {R(0.0), R(0.0), R(1.0)}},
+        {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
     },
     {  /* rrr_platform_point */
-        {R(0.0), R(0.0), R(0.0)},
+        {0, 0, 0},
     },
     {  /* rrr_joint2_offset */
-        {R(0.4), R(0.0), R(0.0)},
+        {R(0.4), 0, 0},
     },
     {  /* rrr_platform_joint_offset */
-        {R(0.45), R(0.0), R(0.0)},
+        {R(0.45), 0, 0},
     },
     {  /* rrr_link1_mass */
         R(1.5),
     },
     {  /* rrr_link1_centre_of_mass */
-        {R(0.2), R(0.0), R(0.0)},
+        {R(0.2), 0, 0},
     },
     {  /* rrr_link1_inertia */
-        {{R(0.0003), R(0.0), R(0.0)}, {R(0.0), R(0.020150000000000005), R(0.0)}, {R(0.0), R(0.0), R(0.020150000000000005)}},
+        {{R(0.0003), 0, 0}, {0, R(0.020150000000000005), 0}, {0, 0, R(0.020150000000000005)}},
     },
     {  /* rrr_link2_mass */
-        R(1.0),
+        1,
     },
     {  /* rrr_link2_centre_of_mass */
-        {R(0.225), R(0.0), R(0.0)},
+        {R(0.225), 0, 0},
     },
     {  /* rrr_link2_inertia */
-        {{R(0.0002), R(0.0), R(0.0)}, {R(0.0), R(0.016975), R(0.0)}, {R(0.0), R(0.0), R(0.016975)}},
+        {{R(0.0002), 0, 0}, {0, R(0.016975), 0}, {0, 0, R(0.016975)}},
     },
 };
 
@@ -569,6 +576,9 @@ static int acceptable(const fivebar_redundant_params *p)
     return ok;
 }
 
+#define KEEP(name) model->name = name
+#define KEEP_OF_LEG(name) model->name[leg] = name
+
 int fivebar_redundant_prepare(const fivebar_redundant_params *params, fivebar_redundant_model *model)
 {
     if (!acceptable(params)) {
@@ -592,8 +602,8 @@ int fivebar_redundant_prepare(const fivebar_redundant_params *params, fivebar_re
     /* (h_star) first moment about the platform origin */
     const real h_star_t = platform_centre_of_mass_x*platform_mass;
     const real h_star_t_2 = platform_centre_of_mass_y*platform_mass;
-    model->gravity_x = gravity_x;
-    model->gravity_y = gravity_y;
+    KEEP(gravity_x);
+    KEEP(gravity_y);
     for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
         const size_t own = leg;
         const real rrr_leg1_base_point_x = params->rrr_leg1_base_point[own][0];
@@ -690,43 +700,43 @@ int fivebar_redundant_prepare(const fivebar_redundant_params *params, fivebar_re
             rrr_leg1_base_frame_yx*rrr_leg1_base_point_y;
         const real rrr_leg1_potential_t_2 = rrr_leg1_base_frame_xy*rrr_leg1_base_point_x +
             rrr_leg1_base_frame_yy*rrr_leg1_base_point_y;
-        model->inv_rrr_leg1_rho2_1_t[leg] = inv_rrr_leg1_rho2_1_t;
-        model->inv_rrr_leg1_size[leg] = inv_rrr_leg1_size;
-        model->inv_rrr_leg1_size_t[leg] = inv_rrr_leg1_size_t;
-        model->inv_rrr_leg1_size_t_2[leg] = inv_rrr_leg1_size_t_2;
-        model->rrr_leg1_J_1_in_spec1_zz[leg] = rrr_leg1_J_1_in_spec1_zz;
-        model->rrr_leg1_J_2_in_spec2_zz[leg] = rrr_leg1_J_2_in_spec2_zz;
-        model->rrr_leg1_Jc_1_in_axes1_zz[leg] = rrr_leg1_Jc_1_in_axes1_zz;
-        model->rrr_leg1_Kd_1_t[leg] = rrr_leg1_Kd_1_t;
-        model->rrr_leg1_Kd_1_t_2[leg] = rrr_leg1_Kd_1_t_2;
-        model->rrr_leg1_base_frame_xx[leg] = rrr_leg1_base_frame_xx;
-        model->rrr_leg1_base_frame_xy[leg] = rrr_leg1_base_frame_xy;
-        model->rrr_leg1_base_frame_yx[leg] = rrr_leg1_base_frame_yx;
-        model->rrr_leg1_base_frame_yy[leg] = rrr_leg1_base_frame_yy;
-        model->rrr_leg1_base_point_x[leg] = rrr_leg1_base_point_x;
-        model->rrr_leg1_base_point_y[leg] = rrr_leg1_base_point_y;
-        model->rrr_leg1_branch_1[leg] = rrr_leg1_branch_1;
-        model->rrr_leg1_d_Gamma_2_in_axes2_y[leg] = rrr_leg1_d_Gamma_2_in_axes2_y;
-        model->rrr_leg1_d_Gamma_2_t[leg] = rrr_leg1_d_Gamma_2_t;
-        model->rrr_leg1_d_c_in_axes2_yy[leg] = rrr_leg1_d_c_in_axes2_yy;
-        model->rrr_leg1_d_phi_2_t[leg] = rrr_leg1_d_phi_2_t;
-        model->rrr_leg1_h_1_in_spec1_x[leg] = rrr_leg1_h_1_in_spec1_x;
-        model->rrr_leg1_h_1_in_spec1_y[leg] = rrr_leg1_h_1_in_spec1_y;
-        model->rrr_leg1_h_2_in_spec2_x[leg] = rrr_leg1_h_2_in_spec2_x;
-        model->rrr_leg1_h_2_in_spec2_y[leg] = rrr_leg1_h_2_in_spec2_y;
-        model->rrr_leg1_joint2_offset_x[leg] = rrr_leg1_joint2_offset_x;
-        model->rrr_leg1_link1_mass[leg] = rrr_leg1_link1_mass;
-        model->rrr_leg1_link2_mass[leg] = rrr_leg1_link2_mass;
-        model->rrr_leg1_mu_1_t[leg] = rrr_leg1_mu_1_t;
-        model->rrr_leg1_mu_1_t_2[leg] = rrr_leg1_mu_1_t_2;
-        model->rrr_leg1_platform_joint_offset_x[leg] = rrr_leg1_platform_joint_offset_x;
-        model->rrr_leg1_platform_point_x[leg] = rrr_leg1_platform_point_x;
-        model->rrr_leg1_platform_point_y[leg] = rrr_leg1_platform_point_y;
-        model->rrr_leg1_potential_t[leg] = rrr_leg1_potential_t;
-        model->rrr_leg1_potential_t_2[leg] = rrr_leg1_potential_t_2;
-        model->rrr_leg1_rho2_1_t[leg] = rrr_leg1_rho2_1_t;
-        model->rrr_leg1_size[leg] = rrr_leg1_size;
-        model->rrr_leg1_w_2_in_axes2_y[leg] = rrr_leg1_w_2_in_axes2_y;
+        KEEP_OF_LEG(inv_rrr_leg1_rho2_1_t);
+        KEEP_OF_LEG(inv_rrr_leg1_size);
+        KEEP_OF_LEG(inv_rrr_leg1_size_t);
+        KEEP_OF_LEG(inv_rrr_leg1_size_t_2);
+        KEEP_OF_LEG(rrr_leg1_J_1_in_spec1_zz);
+        KEEP_OF_LEG(rrr_leg1_J_2_in_spec2_zz);
+        KEEP_OF_LEG(rrr_leg1_Jc_1_in_axes1_zz);
+        KEEP_OF_LEG(rrr_leg1_Kd_1_t);
+        KEEP_OF_LEG(rrr_leg1_Kd_1_t_2);
+        KEEP_OF_LEG(rrr_leg1_base_frame_xx);
+        KEEP_OF_LEG(rrr_leg1_base_frame_xy);
+        KEEP_OF_LEG(rrr_leg1_base_frame_yx);
+        KEEP_OF_LEG(rrr_leg1_base_frame_yy);
+        KEEP_OF_LEG(rrr_leg1_base_point_x);
+        KEEP_OF_LEG(rrr_leg1_base_point_y);
+        KEEP_OF_LEG(rrr_leg1_branch_1);
+        KEEP_OF_LEG(rrr_leg1_d_Gamma_2_in_axes2_y);
+        KEEP_OF_LEG(rrr_leg1_d_Gamma_2_t);
+        KEEP_OF_LEG(rrr_leg1_d_c_in_axes2_yy);
+        KEEP_OF_LEG(rrr_leg1_d_phi_2_t);
+        KEEP_OF_LEG(rrr_leg1_h_1_in_spec1_x);
+        KEEP_OF_LEG(rrr_leg1_h_1_in_spec1_y);
+        KEEP_OF_LEG(rrr_leg1_h_2_in_spec2_x);
+        KEEP_OF_LEG(rrr_leg1_h_2_in_spec2_y);
+        KEEP_OF_LEG(rrr_leg1_joint2_offset_x);
+        KEEP_OF_LEG(rrr_leg1_link1_mass);
+        KEEP_OF_LEG(rrr_leg1_link2_mass);
+        KEEP_OF_LEG(rrr_leg1_mu_1_t);
+        KEEP_OF_LEG(rrr_leg1_mu_1_t_2);
+        KEEP_OF_LEG(rrr_leg1_platform_joint_offset_x);
+        KEEP_OF_LEG(rrr_leg1_platform_point_x);
+        KEEP_OF_LEG(rrr_leg1_platform_point_y);
+        KEEP_OF_LEG(rrr_leg1_potential_t);
+        KEEP_OF_LEG(rrr_leg1_potential_t_2);
+        KEEP_OF_LEG(rrr_leg1_rho2_1_t);
+        KEEP_OF_LEG(rrr_leg1_size);
+        KEEP_OF_LEG(rrr_leg1_w_2_in_axes2_y);
         m_star_of_legs += rrr_leg1_link2_mass;
         h_star_x_of_legs += rrr_leg1_h_star_t;
         h_star_y_of_legs += rrr_leg1_h_star_t_2;
@@ -819,43 +829,43 @@ int fivebar_redundant_prepare(const fivebar_redundant_params *params, fivebar_re
             rrr_base_frame_yx*rrr_base_point_y;
         const real rrr_potential_t_2 = rrr_base_frame_xy*rrr_base_point_x +
             rrr_base_frame_yy*rrr_base_point_y;
-        model->inv_rrr_rho2_1_t[leg] = inv_rrr_rho2_1_t;
-        model->inv_rrr_size[leg] = inv_rrr_size;
-        model->inv_rrr_size_t[leg] = inv_rrr_size_t;
-        model->inv_rrr_size_t_2[leg] = inv_rrr_size_t_2;
-        model->rrr_J_1_in_spec1_zz[leg] = rrr_J_1_in_spec1_zz;
-        model->rrr_J_2_in_spec2_zz[leg] = rrr_J_2_in_spec2_zz;
-        model->rrr_Jc_1_in_axes1_zz[leg] = rrr_Jc_1_in_axes1_zz;
-        model->rrr_Kd_1_t[leg] = rrr_Kd_1_t;
-        model->rrr_Kd_1_t_2[leg] = rrr_Kd_1_t_2;
-        model->rrr_base_frame_xx[leg] = rrr_base_frame_xx;
-        model->rrr_base_frame_xy[leg] = rrr_base_frame_xy;
-        model->rrr_base_frame_yx[leg] = rrr_base_frame_yx;
-        model->rrr_base_frame_yy[leg] = rrr_base_frame_yy;
-        model->rrr_base_point_x[leg] = rrr_base_point_x;
-        model->rrr_base_point_y[leg] = rrr_base_point_y;
-        model->rrr_branch_1[leg] = rrr_branch_1;
-        model->rrr_d_Gamma_2_in_axes2_y[leg] = rrr_d_Gamma_2_in_axes2_y;
-        model->rrr_d_Gamma_2_t[leg] = rrr_d_Gamma_2_t;
-        model->rrr_d_c_in_axes2_yy[leg] = rrr_d_c_in_axes2_yy;
-        model->rrr_d_phi_2_t[leg] = rrr_d_phi_2_t;
-        model->rrr_h_1_in_spec1_x[leg] = rrr_h_1_in_spec1_x;
-        model->rrr_h_1_in_spec1_y[leg] = rrr_h_1_in_spec1_y;
-        model->rrr_h_2_in_spec2_x[leg] = rrr_h_2_in_spec2_x;
-        model->rrr_h_2_in_spec2_y[leg] = rrr_h_2_in_spec2_y;
-        model->rrr_joint2_offset_x[leg] = rrr_joint2_offset_x;
-        model->rrr_link1_mass[leg] = rrr_link1_mass;
-        model->rrr_link2_mass[leg] = rrr_link2_mass;
-        model->rrr_mu_1_t[leg] = rrr_mu_1_t;
-        model->rrr_mu_1_t_2[leg] = rrr_mu_1_t_2;
-        model->rrr_platform_joint_offset_x[leg] = rrr_platform_joint_offset_x;
-        model->rrr_platform_point_x[leg] = rrr_platform_point_x;
-        model->rrr_platform_point_y[leg] = rrr_platform_point_y;
-        model->rrr_potential_t[leg] = rrr_potential_t;
-        model->rrr_potential_t_2[leg] = rrr_potential_t_2;
-        model->rrr_rho2_1_t[leg] = rrr_rho2_1_t;
-        model->rrr_size[leg] = rrr_size;
-        model->rrr_w_2_in_axes2_y[leg] = rrr_w_2_in_axes2_y;
+        KEEP_OF_LEG(inv_rrr_rho2_1_t);
+        KEEP_OF_LEG(inv_rrr_size);
+        KEEP_OF_LEG(inv_rrr_size_t);
+        KEEP_OF_LEG(inv_rrr_size_t_2);
+        KEEP_OF_LEG(rrr_J_1_in_spec1_zz);
+        KEEP_OF_LEG(rrr_J_2_in_spec2_zz);
+        KEEP_OF_LEG(rrr_Jc_1_in_axes1_zz);
+        KEEP_OF_LEG(rrr_Kd_1_t);
+        KEEP_OF_LEG(rrr_Kd_1_t_2);
+        KEEP_OF_LEG(rrr_base_frame_xx);
+        KEEP_OF_LEG(rrr_base_frame_xy);
+        KEEP_OF_LEG(rrr_base_frame_yx);
+        KEEP_OF_LEG(rrr_base_frame_yy);
+        KEEP_OF_LEG(rrr_base_point_x);
+        KEEP_OF_LEG(rrr_base_point_y);
+        KEEP_OF_LEG(rrr_branch_1);
+        KEEP_OF_LEG(rrr_d_Gamma_2_in_axes2_y);
+        KEEP_OF_LEG(rrr_d_Gamma_2_t);
+        KEEP_OF_LEG(rrr_d_c_in_axes2_yy);
+        KEEP_OF_LEG(rrr_d_phi_2_t);
+        KEEP_OF_LEG(rrr_h_1_in_spec1_x);
+        KEEP_OF_LEG(rrr_h_1_in_spec1_y);
+        KEEP_OF_LEG(rrr_h_2_in_spec2_x);
+        KEEP_OF_LEG(rrr_h_2_in_spec2_y);
+        KEEP_OF_LEG(rrr_joint2_offset_x);
+        KEEP_OF_LEG(rrr_link1_mass);
+        KEEP_OF_LEG(rrr_link2_mass);
+        KEEP_OF_LEG(rrr_mu_1_t);
+        KEEP_OF_LEG(rrr_mu_1_t_2);
+        KEEP_OF_LEG(rrr_platform_joint_offset_x);
+        KEEP_OF_LEG(rrr_platform_point_x);
+        KEEP_OF_LEG(rrr_platform_point_y);
+        KEEP_OF_LEG(rrr_potential_t);
+        KEEP_OF_LEG(rrr_potential_t_2);
+        KEEP_OF_LEG(rrr_rho2_1_t);
+        KEEP_OF_LEG(rrr_size);
+        KEEP_OF_LEG(rrr_w_2_in_axes2_y);
         m_star_of_legs += rrr_link2_mass;
         h_star_x_of_legs += rrr_h_star_t;
         h_star_y_of_legs += rrr_h_star_t_2;
@@ -878,14 +888,14 @@ int fivebar_redundant_prepare(const fivebar_redundant_params *params, fivebar_re
         R(0.5)*b_c_rrr_leg1_in_platform_y;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = root(R(0.5)*legs_size_rrr + R(0.5)*legs_size_rrr_leg1);
-    model->Z_p_x = Z_p_x;
-    model->Z_p_y = Z_p_y;
-    model->b_c_in_platform_x = b_c_in_platform_x;
-    model->b_c_in_platform_y = b_c_in_platform_y;
-    model->h_star_x = h_star_x;
-    model->h_star_y = h_star_y;
-    model->legs_size = legs_size;
-    model->m_star = m_star;
+    KEEP(Z_p_x);
+    KEEP(Z_p_y);
+    KEEP(b_c_in_platform_x);
+    KEEP(b_c_in_platform_y);
+    KEEP(h_star_x);
+    KEEP(h_star_y);
+    KEEP(legs_size);
+    KEEP(m_star);
     return OK;
 }
 
@@ -1532,7 +1542,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 1 */
     const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-    const real rrr_Kd_1 = m->rrr_Kd_1_t[i] + R(0.5)*rrr_Kd_1_t_3 - m->rrr_Kd_1_t_2[i];
+    const real rrr_Kd_1 = m->rrr_Kd_1_t[i] - m->rrr_Kd_1_t_2[i] + R(0.5)*rrr_Kd_1_t_3;
     /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
     const real rrr_Kc_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xx[i] +
         rrr_S_y*m->rrr_base_frame_yx[i]);
@@ -1549,7 +1559,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
     const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
     /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+    const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kd_1*rrr_Ks_1 + rrr_Kc_1*rrr_root_1);
     /* (rrr-x_2) from the origin of joint 2 to the connection point */
     const real rrr_x_2_in_axes1_x = m->inv_rrr_size_t[i]*rrr_Kd_1*m->rrr_joint2_offset_x[i] -
         m->rrr_joint2_offset_x[i];
@@ -1566,7 +1576,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
     const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
     /* (rrr-w_1) reciprocal vector 1 */
-    const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+    const real rrr_w_1_t = rrr_c_2*rrr_s_1 + rrr_c_1*rrr_s_2;
     const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
     const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*rrr_w_1_t_2 -
         m->rrr_base_frame_xx[i]*rrr_w_1_t;
@@ -1576,7 +1586,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x;
     const real rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x;
     /* (rrr-qd_1) rate of joint 1 */
-    const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+    const real rrr_qd_1_t = rrr_c_2*rrr_s_1 + rrr_c_1*rrr_s_2;
     const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
     v->rrr_Kd_1 = rrr_Kd_1;
     v->rrr_Kc_1 = rrr_Kc_1;
@@ -1690,19 +1700,19 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t w, size_t i, size_
     const real rrr_alpha_2_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_in_axes2_y +
         rrr_B_1_in_axes1_xy*v->rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
     /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
-    const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x +
-        v->axis_y_rrr_axes2_x*m->gravity_y - v->axis_x_rrr_axes2_x*m->gravity_x;
+    const real rrr_acc_2_in_axes2_x = v->axis_y_rrr_axes2_x*m->gravity_y -
+        v->axis_x_rrr_axes2_x*m->gravity_x + rrr_S_ddot_in_axes2_x;
     const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y -
         v->axis_x_rrr_axes2_x*m->gravity_y - v->axis_y_rrr_axes2_x*m->gravity_x;
     /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real rrr_mu_2_in_axes2_z = m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_in_axes2_z +
-        rrr_acc_2_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
-        rrr_acc_2_in_axes2_x*m->rrr_h_2_in_spec2_y[i];
+    const real rrr_mu_2_in_axes2_z = rrr_acc_2_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
+        rrr_acc_2_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
+        m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_in_axes2_z;
     /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
     const real rrr_mu_1_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v->rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*v->rrr_s_1) - rrr_B_1_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i] -
-        m->rrr_h_1_in_spec1_x[i]*(v->rrr_c_1*m->rrr_mu_1_t_2[i] -
-        m->rrr_mu_1_t[i]*v->rrr_s_1);
+        m->rrr_mu_1_t_2[i]*v->rrr_s_1) -
+        m->rrr_h_1_in_spec1_x[i]*(v->rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v->rrr_s_1)
+        - rrr_B_1_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i];
     /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
@@ -1714,8 +1724,8 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t w, size_t i, size_
     const real rrr_c_in_axes2_x = v->rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
         rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
         v->rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*v->rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
-    const real rrr_c_in_axes2_y = v->rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] - rrr_G_in_axes2_y -
-        rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_x[i];
+    const real rrr_c_in_axes2_y = v->rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
+        rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_in_axes2_y;
     v->rrr_acc_2_in_axes2_x = rrr_acc_2_in_axes2_x;
     v->rrr_acc_2_in_axes2_y = rrr_acc_2_in_axes2_y;
     v->rrr_c_in_axes2_x = rrr_c_in_axes2_x;
@@ -1748,8 +1758,8 @@ INLINE void stage_rrr_leg1_X(const prepared *m, size_t w, size_t i, size_t j, co
     /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
        beyond joint 1 */
     const real rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
-    const real rrr_leg1_Kd_1 = m->rrr_leg1_Kd_1_t[i] + R(0.5)*rrr_leg1_Kd_1_t_3 -
-        m->rrr_leg1_Kd_1_t_2[i];
+    const real rrr_leg1_Kd_1 = m->rrr_leg1_Kd_1_t[i] - m->rrr_leg1_Kd_1_t_2[i] +
+        R(0.5)*rrr_leg1_Kd_1_t_3;
     /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
     const real rrr_leg1_Kc_1 =
         m->rrr_leg1_joint2_offset_x[i]*(rrr_leg1_S_x*m->rrr_leg1_base_frame_xx[i] +
@@ -1769,8 +1779,8 @@ INLINE void stage_rrr_leg1_X(const prepared *m, size_t w, size_t i, size_t j, co
     const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
         rrr_leg1_Ks_1*rrr_leg1_root_1);
     /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
-        rrr_leg1_Kd_1*rrr_leg1_Ks_1);
+    const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kd_1*rrr_leg1_Ks_1 +
+        rrr_leg1_Kc_1*rrr_leg1_root_1);
     /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
     const real rrr_leg1_x_2_in_axes1_x =
         m->inv_rrr_leg1_size_t[i]*rrr_leg1_Kd_1*m->rrr_leg1_joint2_offset_x[i] -
@@ -1790,7 +1800,7 @@ INLINE void stage_rrr_leg1_X(const prepared *m, size_t w, size_t i, size_t j, co
     const real rrr_leg1_r_1_in_axes2_y = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y -
         rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2;
     /* (rrr_leg1-w_1) reciprocal vector 1 */
-    const real rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1;
+    const real rrr_leg1_w_1_t = rrr_leg1_c_2*rrr_leg1_s_1 + rrr_leg1_c_1*rrr_leg1_s_2;
     const real rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2;
     const real axis_y_rrr_leg1_axes2_x = m->rrr_leg1_base_frame_xy[i]*rrr_leg1_w_1_t_2 -
         m->rrr_leg1_base_frame_xx[i]*rrr_leg1_w_1_t;
@@ -1802,12 +1812,12 @@ INLINE void stage_rrr_leg1_X(const prepared *m, size_t w, size_t i, size_t j, co
     /* (rrr_leg1-w_2) reciprocal vector 2 */
     const real rrr_leg1_w_2_in_axes2_x =
         -rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i];
-    const real rrr_leg1_w_2_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
-        axis_y_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i];
+    const real rrr_leg1_w_2_x = axis_y_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i] +
+        axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x;
     const real rrr_leg1_w_2_y = axis_x_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i] -
         axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x;
     /* (rrr_leg1-qd_1) rate of joint 1 */
-    const real rrr_leg1_qd_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1;
+    const real rrr_leg1_qd_1_t = rrr_leg1_c_2*rrr_leg1_s_1 + rrr_leg1_c_1*rrr_leg1_s_2;
     const real rrr_leg1_qd_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2;
     v->rrr_leg1_Kd_1 = rrr_leg1_Kd_1;
     v->rrr_leg1_Kc_1 = rrr_leg1_Kc_1;
@@ -1907,24 +1917,24 @@ INLINE void stage_rrr_leg1_legs_required(const prepared *m, size_t w, size_t i, 
         m->rrr_leg1_w_2_in_axes2_y[i]*(rrr_leg1_rel_in_axes2_y +
         rrr_leg1_B_1_in_axes1_xy*v->rrr_leg1_r_1_in_axes2_x) - rrr_leg1_B_1_in_axes1_xy;
     /* (rrr_leg1-acc_2) acceleration of the reference point of link 2, less gravity */
-    const real rrr_leg1_acc_2_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x +
-        v->axis_y_rrr_leg1_axes2_x*m->gravity_y - v->axis_x_rrr_leg1_axes2_x*m->gravity_x;
+    const real rrr_leg1_acc_2_in_axes2_x = v->axis_y_rrr_leg1_axes2_x*m->gravity_y -
+        v->axis_x_rrr_leg1_axes2_x*m->gravity_x + rrr_leg1_S_ddot_in_axes2_x;
     const real rrr_leg1_acc_2_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y -
         v->axis_x_rrr_leg1_axes2_x*m->gravity_y - v->axis_y_rrr_leg1_axes2_x*m->gravity_x;
     /* (rrr_leg1-mu_2) inertia moment of the links that turn with link 2, about their reference points
        */
     const real rrr_leg1_mu_2_in_axes2_z =
-        m->rrr_leg1_J_2_in_spec2_zz[i]*rrr_leg1_alpha_2_in_axes2_z +
         rrr_leg1_acc_2_in_axes2_y*m->rrr_leg1_h_2_in_spec2_x[i] -
-        rrr_leg1_acc_2_in_axes2_x*m->rrr_leg1_h_2_in_spec2_y[i];
+        rrr_leg1_acc_2_in_axes2_x*m->rrr_leg1_h_2_in_spec2_y[i] +
+        m->rrr_leg1_J_2_in_spec2_zz[i]*rrr_leg1_alpha_2_in_axes2_z;
     /* (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
        */
     const real rrr_leg1_mu_1_in_axes1_z =
         m->rrr_leg1_h_1_in_spec1_y[i]*(v->rrr_leg1_c_1*m->rrr_leg1_mu_1_t[i] +
         m->rrr_leg1_mu_1_t_2[i]*v->rrr_leg1_s_1) -
-        rrr_leg1_B_1_in_axes1_xy*m->rrr_leg1_J_1_in_spec1_zz[i] -
         m->rrr_leg1_h_1_in_spec1_x[i]*(v->rrr_leg1_c_1*m->rrr_leg1_mu_1_t_2[i] -
-        m->rrr_leg1_mu_1_t[i]*v->rrr_leg1_s_1);
+        m->rrr_leg1_mu_1_t[i]*v->rrr_leg1_s_1) -
+        rrr_leg1_B_1_in_axes1_xy*m->rrr_leg1_J_1_in_spec1_zz[i];
     /* (rrr_leg1-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection
        point left out */
     const real rrr_leg1_N_1_in_axes1_z = rrr_leg1_mu_1_in_axes1_z + rrr_leg1_mu_2_in_axes2_z;
@@ -1938,7 +1948,7 @@ INLINE void stage_rrr_leg1_legs_required(const prepared *m, size_t w, size_t i, 
         v->rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_in_axes2_y*v->rrr_leg1_r_1_in_axes2_x -
         rrr_leg1_N_1_in_axes1_z);
     const real rrr_leg1_c_in_axes2_y = v->rrr_leg1_W_2_t*m->rrr_leg1_h_2_in_spec2_y[i] -
-        rrr_leg1_G_in_axes2_y - rrr_leg1_alpha_2_in_axes2_z*m->rrr_leg1_h_2_in_spec2_x[i];
+        rrr_leg1_alpha_2_in_axes2_z*m->rrr_leg1_h_2_in_spec2_x[i] - rrr_leg1_G_in_axes2_y;
     v->rrr_leg1_acc_2_in_axes2_x = rrr_leg1_acc_2_in_axes2_x;
     v->rrr_leg1_acc_2_in_axes2_y = rrr_leg1_acc_2_in_axes2_y;
     v->rrr_leg1_c_in_axes2_x = rrr_leg1_c_in_axes2_x;
@@ -1948,10 +1958,6 @@ INLINE void stage_rrr_leg1_legs_required(const prepared *m, size_t w, size_t i, 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before()
-{
-}
-
 INLINE void dynamics_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
@@ -1968,18 +1974,19 @@ INLINE void dynamics_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t
     /* (rrr_leg1-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real rrr_leg1_mu_2_o_in_axes2_z =
-        m->rrr_leg1_J_2_in_spec2_zz[i]*rrr_leg1_alpha_2_o_in_axes2_z +
         m->rrr_leg1_h_2_in_spec2_y[i]*(v.axis_x_rrr_leg1_axes2_x*m->gravity_x -
         v.axis_y_rrr_leg1_axes2_x*m->gravity_y) -
         m->rrr_leg1_h_2_in_spec2_x[i]*(v.axis_x_rrr_leg1_axes2_x*m->gravity_y +
-        v.axis_y_rrr_leg1_axes2_x*m->gravity_x);
+        v.axis_y_rrr_leg1_axes2_x*m->gravity_x) +
+        m->rrr_leg1_J_2_in_spec2_zz[i]*rrr_leg1_alpha_2_o_in_axes2_z;
     /* (rrr_leg1-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
-    const real rrr_leg1_mu_1_o_in_axes1_z = m->rrr_leg1_J_1_in_spec1_zz[i]*rrr_leg1_qdd_1_o +
+    const real rrr_leg1_mu_1_o_in_axes1_z =
         m->rrr_leg1_h_1_in_spec1_y[i]*(v.rrr_leg1_c_1*m->rrr_leg1_mu_1_t[i] +
         m->rrr_leg1_mu_1_t_2[i]*v.rrr_leg1_s_1) -
         m->rrr_leg1_h_1_in_spec1_x[i]*(v.rrr_leg1_c_1*m->rrr_leg1_mu_1_t_2[i] -
-        m->rrr_leg1_mu_1_t[i]*v.rrr_leg1_s_1);
+        m->rrr_leg1_mu_1_t[i]*v.rrr_leg1_s_1) +
+        m->rrr_leg1_J_1_in_spec1_zz[i]*rrr_leg1_qdd_1_o;
     /* (rrr_leg1-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at
        the connection point left out */
     const real rrr_leg1_N_1_o_in_axes1_z = rrr_leg1_mu_1_o_in_axes1_z +
@@ -1995,15 +2002,15 @@ INLINE void dynamics_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t
         v.rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_o_in_axes2_y*v.rrr_leg1_r_1_in_axes2_x -
         rrr_leg1_N_1_o_in_axes1_z);
     const real rrr_leg1_c_o_in_axes2_y = v.rrr_leg1_W_2_t*m->rrr_leg1_h_2_in_spec2_y[i] -
-        rrr_leg1_G_o_in_axes2_y - rrr_leg1_alpha_2_o_in_axes2_z*m->rrr_leg1_h_2_in_spec2_x[i];
+        rrr_leg1_alpha_2_o_in_axes2_z*m->rrr_leg1_h_2_in_spec2_x[i] - rrr_leg1_G_o_in_axes2_y;
     /* (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real rrr_leg1_Q_t = m->rrr_leg1_h_2_in_spec2_y[i]*(v.rrr_leg1_w_1_in_axes2_x +
         v.rrr_leg1_w_2_in_axes2_x) - m->rrr_leg1_d_c_in_axes2_yy[i] -
         v.rrr_leg1_d_Gamma_1_in_axes2_x*v.rrr_leg1_w_1_in_axes2_x -
         v.rrr_leg1_d_Gamma_2_in_axes2_x*v.rrr_leg1_w_2_in_axes2_x;
     const real rrr_leg1_Q_t_2 = R(0.5)*rrr_leg1_Q_t;
-    const real rrr_leg1_Q_t_3 = v.axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_2 +
-        v.axis_y_rrr_leg1_axes2_x*v.rrr_leg1_d_c_in_axes2_xy;
+    const real rrr_leg1_Q_t_3 = v.axis_y_rrr_leg1_axes2_x*v.rrr_leg1_d_c_in_axes2_xy +
+        v.axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_2;
     const real rrr_leg1_Q_t_4 = v.axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_2 -
         v.axis_x_rrr_leg1_axes2_x*v.rrr_leg1_d_c_in_axes2_xy;
     const real rrr_leg1_Q_xx = -m->rrr_leg1_d_c_in_axes2_yy[i] -
@@ -2013,8 +2020,8 @@ INLINE void dynamics_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t
     const real rrr_leg1_Q_yy = -m->rrr_leg1_d_c_in_axes2_yy[i] -
         2*v.axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4;
     /* (rrr_leg1-U) velocity and gravity terms of the leg force */
-    const real rrr_leg1_U_x = -v.axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x -
-        v.axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y;
+    const real rrr_leg1_U_x = -v.axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y -
+        v.axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x;
     const real rrr_leg1_U_y = v.axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x -
         v.axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y;
     /* (M_tt) translational block of M */
@@ -2065,16 +2072,17 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
         rrr_qdd_1_o*v.rrr_r_1_in_axes2_x);
     /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
-    const real rrr_mu_2_o_in_axes2_z = m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z +
+    const real rrr_mu_2_o_in_axes2_z =
         m->rrr_h_2_in_spec2_y[i]*(v.axis_x_rrr_axes2_x*m->gravity_x -
         v.axis_y_rrr_axes2_x*m->gravity_y) -
         m->rrr_h_2_in_spec2_x[i]*(v.axis_x_rrr_axes2_x*m->gravity_y +
-        v.axis_y_rrr_axes2_x*m->gravity_x);
+        v.axis_y_rrr_axes2_x*m->gravity_x) +
+        m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z;
     /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
-    const real rrr_mu_1_o_in_axes1_z = m->rrr_J_1_in_spec1_zz[i]*rrr_qdd_1_o +
-        m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] + m->rrr_mu_1_t_2[i]*v.rrr_s_1) -
-        m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v.rrr_s_1);
+    const real rrr_mu_1_o_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] +
+        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i]
+        - m->rrr_mu_1_t[i]*v.rrr_s_1) + m->rrr_J_1_in_spec1_zz[i]*rrr_qdd_1_o;
     /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
        connection point left out */
     const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
@@ -2086,24 +2094,24 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     const real rrr_c_o_in_axes2_x = v.rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
         rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
         v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
-    const real rrr_c_o_in_axes2_y = v.rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] - rrr_G_o_in_axes2_y
-        - rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i];
+    const real rrr_c_o_in_axes2_y = v.rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_o_in_axes2_y;
     /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real rrr_Q_t = m->rrr_h_2_in_spec2_y[i]*(v.rrr_w_1_in_axes2_x +
         v.rrr_w_2_in_axes2_x) - m->rrr_d_c_in_axes2_yy[i] -
         v.rrr_d_Gamma_1_in_axes2_x*v.rrr_w_1_in_axes2_x -
         v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
     const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
-    const real rrr_Q_t_3 = v.axis_x_rrr_axes2_x*rrr_Q_t_2 +
-        v.axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+    const real rrr_Q_t_3 = v.axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy +
+        v.axis_x_rrr_axes2_x*rrr_Q_t_2;
     const real rrr_Q_t_4 = v.axis_y_rrr_axes2_x*rrr_Q_t_2 -
         v.axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
     const real rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v.axis_x_rrr_axes2_x*rrr_Q_t_3;
     const real rrr_Q_xy = v.axis_x_rrr_axes2_x*rrr_Q_t_4 + v.axis_y_rrr_axes2_x*rrr_Q_t_3;
     const real rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v.axis_y_rrr_axes2_x*rrr_Q_t_4;
     /* (rrr-U) velocity and gravity terms of the leg force */
-    const real rrr_U_x = -v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
-        v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
+    const real rrr_U_x = -v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y -
+        v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x;
     const real rrr_U_y = v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
         v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
     /* (M_tt) */
@@ -2137,9 +2145,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *su
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     /* (Z_t) */
     const real Z_t_x_of_legs = sums[3*w + k];
     const real Z_t_x = m->Z_p_x + Z_t_x_of_legs;
@@ -2215,10 +2223,6 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before()
-{
-}
-
 INLINE void M_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, int add, const real *X, real *terms, real *o)
 {
@@ -2226,7 +2230,7 @@ INLINE void M_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, siz
     stage_rrr_leg1_X(m, w, i, j, X, &v);
     stage_rrr_leg1_M_dynamics(m, i, &v);
     /* (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_leg1_Q_t = v.rrr_leg1_c_1*v.rrr_leg1_s_2 + v.rrr_leg1_c_2*v.rrr_leg1_s_1;
+    const real rrr_leg1_Q_t = v.rrr_leg1_c_2*v.rrr_leg1_s_1 + v.rrr_leg1_c_1*v.rrr_leg1_s_2;
     const real rrr_leg1_Q_t_2 = v.rrr_leg1_c_1*v.rrr_leg1_c_2 - v.rrr_leg1_s_1*v.rrr_leg1_s_2;
     const real axis_y_rrr_leg1_axes2_x = rrr_leg1_Q_t_2*m->rrr_leg1_base_frame_xy[i] -
         rrr_leg1_Q_t*m->rrr_leg1_base_frame_xx[i];
@@ -2237,8 +2241,8 @@ INLINE void M_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, siz
         v.rrr_leg1_d_Gamma_1_in_axes2_x*v.rrr_leg1_w_1_in_axes2_x -
         v.rrr_leg1_d_Gamma_2_in_axes2_x*v.rrr_leg1_w_2_in_axes2_x;
     const real rrr_leg1_Q_t_4 = R(0.5)*rrr_leg1_Q_t_3;
-    const real rrr_leg1_Q_t_5 = axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 +
-        axis_y_rrr_leg1_axes2_x*v.rrr_leg1_d_c_in_axes2_xy;
+    const real rrr_leg1_Q_t_5 = axis_y_rrr_leg1_axes2_x*v.rrr_leg1_d_c_in_axes2_xy +
+        axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4;
     const real rrr_leg1_Q_t_6 = axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 -
         axis_x_rrr_leg1_axes2_x*v.rrr_leg1_d_c_in_axes2_xy;
     const real rrr_leg1_Q_xx = -m->rrr_leg1_d_c_in_axes2_yy[i] -
@@ -2270,7 +2274,7 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_rrr_X(m, w, i, j, X, &v);
     stage_rrr_M_dynamics(m, i, &v);
     /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_Q_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
+    const real rrr_Q_t = v.rrr_c_2*v.rrr_s_1 + v.rrr_c_1*v.rrr_s_2;
     const real rrr_Q_t_2 = v.rrr_c_1*v.rrr_c_2 - v.rrr_s_1*v.rrr_s_2;
     const real axis_y_rrr_axes2_x = rrr_Q_t_2*m->rrr_base_frame_xy[i] -
         rrr_Q_t*m->rrr_base_frame_xx[i];
@@ -2281,8 +2285,8 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
         v.rrr_d_Gamma_1_in_axes2_x*v.rrr_w_1_in_axes2_x -
         v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
     const real rrr_Q_t_4 = R(0.5)*rrr_Q_t_3;
-    const real rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 +
-        axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+    const real rrr_Q_t_5 = axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy +
+        axis_x_rrr_axes2_x*rrr_Q_t_4;
     const real rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 -
         axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
     const real rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*axis_x_rrr_axes2_x*rrr_Q_t_5;
@@ -2307,9 +2311,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, rea
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
     const real M_tt_xy = sums[1*w + k];
@@ -2375,10 +2379,6 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 }
 
 /* ---- Z ---- */
-INLINE void Z_before()
-{
-}
-
 INLINE void Z_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, int add, const real *X, const real *V, real *terms, real *o)
 {
@@ -2414,18 +2414,19 @@ INLINE void Z_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, siz
     /* (rrr_leg1-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real rrr_leg1_mu_2_o_in_axes2_z =
-        m->rrr_leg1_J_2_in_spec2_zz[i]*rrr_leg1_alpha_2_o_in_axes2_z +
         m->rrr_leg1_h_2_in_spec2_y[i]*(axis_x_rrr_leg1_axes2_x*m->gravity_x -
         axis_y_rrr_leg1_axes2_x*m->gravity_y) -
         m->rrr_leg1_h_2_in_spec2_x[i]*(axis_x_rrr_leg1_axes2_x*m->gravity_y +
-        axis_y_rrr_leg1_axes2_x*m->gravity_x);
+        axis_y_rrr_leg1_axes2_x*m->gravity_x) +
+        m->rrr_leg1_J_2_in_spec2_zz[i]*rrr_leg1_alpha_2_o_in_axes2_z;
     /* (rrr_leg1-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
-    const real rrr_leg1_mu_1_o_in_axes1_z = m->rrr_leg1_J_1_in_spec1_zz[i]*rrr_leg1_qdd_1_o +
+    const real rrr_leg1_mu_1_o_in_axes1_z =
         m->rrr_leg1_h_1_in_spec1_y[i]*(v.rrr_leg1_c_1*m->rrr_leg1_mu_1_t[i] +
         m->rrr_leg1_mu_1_t_2[i]*v.rrr_leg1_s_1) -
         m->rrr_leg1_h_1_in_spec1_x[i]*(v.rrr_leg1_c_1*m->rrr_leg1_mu_1_t_2[i] -
-        m->rrr_leg1_mu_1_t[i]*v.rrr_leg1_s_1);
+        m->rrr_leg1_mu_1_t[i]*v.rrr_leg1_s_1) +
+        m->rrr_leg1_J_1_in_spec1_zz[i]*rrr_leg1_qdd_1_o;
     /* (rrr_leg1-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at
        the connection point left out */
     const real rrr_leg1_N_1_o_in_axes1_z = rrr_leg1_mu_1_o_in_axes1_z +
@@ -2441,10 +2442,10 @@ INLINE void Z_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, siz
         v.rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_o_in_axes2_y*v.rrr_leg1_r_1_in_axes2_x -
         rrr_leg1_N_1_o_in_axes1_z);
     const real rrr_leg1_c_o_in_axes2_y = rrr_leg1_W_2_t*m->rrr_leg1_h_2_in_spec2_y[i] -
-        rrr_leg1_G_o_in_axes2_y - rrr_leg1_alpha_2_o_in_axes2_z*m->rrr_leg1_h_2_in_spec2_x[i];
+        rrr_leg1_alpha_2_o_in_axes2_z*m->rrr_leg1_h_2_in_spec2_x[i] - rrr_leg1_G_o_in_axes2_y;
     /* (rrr_leg1-U) velocity and gravity terms of the leg force */
-    const real rrr_leg1_U_x = -axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x -
-        axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y;
+    const real rrr_leg1_U_x = -axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y -
+        axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x;
     const real rrr_leg1_U_y = axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x -
         axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y;
     /* (Z_t) translational part of Z */
@@ -2495,16 +2496,16 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
         rrr_qdd_1_o*v.rrr_r_1_in_axes2_x);
     /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
-    const real rrr_mu_2_o_in_axes2_z = m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z +
+    const real rrr_mu_2_o_in_axes2_z =
         m->rrr_h_2_in_spec2_y[i]*(axis_x_rrr_axes2_x*m->gravity_x -
         axis_y_rrr_axes2_x*m->gravity_y) -
         m->rrr_h_2_in_spec2_x[i]*(axis_x_rrr_axes2_x*m->gravity_y +
-        axis_y_rrr_axes2_x*m->gravity_x);
+        axis_y_rrr_axes2_x*m->gravity_x) + m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z;
     /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
-    const real rrr_mu_1_o_in_axes1_z = m->rrr_J_1_in_spec1_zz[i]*rrr_qdd_1_o +
-        m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] + m->rrr_mu_1_t_2[i]*v.rrr_s_1) -
-        m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v.rrr_s_1);
+    const real rrr_mu_1_o_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] +
+        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i]
+        - m->rrr_mu_1_t[i]*v.rrr_s_1) + m->rrr_J_1_in_spec1_zz[i]*rrr_qdd_1_o;
     /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
        connection point left out */
     const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
@@ -2516,11 +2517,11 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real rrr_c_o_in_axes2_x = rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
         rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
         v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
-    const real rrr_c_o_in_axes2_y = rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] - rrr_G_o_in_axes2_y -
-        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i];
+    const real rrr_c_o_in_axes2_y = rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_o_in_axes2_y;
     /* (rrr-U) velocity and gravity terms of the leg force */
-    const real rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
-        axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
+    const real rrr_U_x = -axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y -
+        axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x;
     const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
         axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
     /* (Z_t) */
@@ -2607,10 +2608,6 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before()
-{
-}
-
 INLINE void H_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *X, real *o)
 {
@@ -2620,8 +2617,8 @@ INLINE void H_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, siz
     const real rrr_leg1_w_2_in_axes2_x =
         -v.rrr_leg1_w_1_in_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i]*(v.rrr_leg1_c_2*v.rrr_leg1_r_1_in_axes1_x
         + v.rrr_leg1_r_1_in_axes1_y*v.rrr_leg1_s_2);
-    const real rrr_leg1_w_2_x = v.axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
-        v.axis_y_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i];
+    const real rrr_leg1_w_2_x = v.axis_y_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i] +
+        v.axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x;
     const real rrr_leg1_w_2_y = v.axis_x_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i] -
         v.axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x;
     /* (rrr_leg1-w_1) reciprocal vector 1 */
@@ -2716,7 +2713,7 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *A, real *s)
+INLINE void required_between(const prepared *m, size_t w, size_t k, const real *A, real *s)
 {
     /* (a_t) acceleration of the platform origin, less gravity */
     const real t_ddot_x = A[0*w + k];
@@ -2739,8 +2736,8 @@ INLINE void required_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t
     stage_rrr_leg1_legs_required(m, w, i, j, A, &v);
     /* (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rrr_leg1_c_x = v.axis_x_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_x +
-        v.axis_y_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_y;
+    const real rrr_leg1_c_x = v.axis_y_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_y +
+        v.axis_x_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_x;
     const real rrr_leg1_c_y = v.axis_x_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_y -
         v.axis_y_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_x;
     /* (R_t) force that actuators and external wrench must give */
@@ -2778,8 +2775,8 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     stage_rrr_legs_required(m, w, i, j, A, &v);
     /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rrr_c_x = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_x +
-        v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_y;
+    const real rrr_c_x = v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_y +
+        v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_x;
     const real rrr_c_y = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_y -
         v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_x;
     /* (R_t) */
@@ -2822,7 +2819,6 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
     real s[2] = {0}, sums[2] = {0};
     real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[6*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[4*LEGS(LEGS_OF_rrr)] = {0};
-    required_before(m, 1, 0, A, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         required_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, X, V, A, terms_rrr_leg1, o_rrr_leg1);
     }
@@ -2843,22 +2839,19 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
+    required_between(m, 1, 0, A, s);
     required_after(1, 0, s, sums, required);
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before()
-{
-}
-
 INLINE void inverse_kinematics_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j,
     size_t k, size_t count, const real *X, real *o)
 {
     values_rrr_leg1 v;
     stage_rrr_leg1_X(m, w, i, j, X, &v);
     /* (rrr_leg1-q_1) displacement of joint 1 */
-    const real rrr_leg1_q_1 = angle(v.inv_rrr_leg1_rho2_1*(v.rrr_leg1_Kc_1*v.rrr_leg1_root_1 +
-        v.rrr_leg1_Kd_1*v.rrr_leg1_Ks_1),
+    const real rrr_leg1_q_1 = angle(v.inv_rrr_leg1_rho2_1*(v.rrr_leg1_Kd_1*v.rrr_leg1_Ks_1 +
+        v.rrr_leg1_Kc_1*v.rrr_leg1_root_1),
         v.inv_rrr_leg1_rho2_1*(v.rrr_leg1_Kc_1*v.rrr_leg1_Kd_1 -
         v.rrr_leg1_Ks_1*v.rrr_leg1_root_1));
     /* (rrr_leg1-q_2) displacement of joint 2 */
@@ -2891,8 +2884,8 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t i, s
     values_rrr v;
     stage_rrr_X(m, w, i, j, X, &v);
     /* (rrr-q_1) displacement of joint 1 */
-    const real rrr_q_1 = angle(v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_root_1 +
-        v.rrr_Kd_1*v.rrr_Ks_1), v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 -
+    const real rrr_q_1 = angle(v.inv_rrr_rho2_1*(v.rrr_Kd_1*v.rrr_Ks_1 +
+        v.rrr_Kc_1*v.rrr_root_1), v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 -
         v.rrr_Ks_1*v.rrr_root_1));
     /* (rrr-q_2) displacement of joint 2 */
     const real rrr_q_2 =
@@ -2959,10 +2952,6 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before()
-{
-}
-
 INLINE void joint_rates_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *X, const real *V, real *o)
 {
@@ -3083,10 +3072,6 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before()
-{
-}
-
 INLINE void joint_accelerations_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j,
     size_t k, size_t count, const real *X, const real *V, const real *A, real *o)
 {
@@ -3115,7 +3100,7 @@ INLINE void joint_accelerations_legs_rrr_leg1(const prepared *m, size_t w, size_
     const real t_ddot_x = A[0*w + j];
     const real t_ddot_y = A[1*w + j];
     const real rrr_leg1_rel_in_axes2_x = axis_x_rrr_leg1_axes2_x*t_ddot_x -
-        rrr_leg1_bias_in_axes2_x - axis_y_rrr_leg1_axes2_x*t_ddot_y;
+        axis_y_rrr_leg1_axes2_x*t_ddot_y - rrr_leg1_bias_in_axes2_x;
     const real rrr_leg1_rel_in_axes2_y = axis_x_rrr_leg1_axes2_x*t_ddot_y +
         axis_y_rrr_leg1_axes2_x*t_ddot_x +
         rrr_leg1_W_1_in_axes1_xx*m->rrr_leg1_joint2_offset_x[i]*v.rrr_leg1_s_2;
@@ -3171,8 +3156,8 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t i, 
     /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
     const real t_ddot_x = A[0*w + j];
     const real t_ddot_y = A[1*w + j];
-    const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*t_ddot_x - rrr_bias_in_axes2_x -
-        axis_y_rrr_axes2_x*t_ddot_y;
+    const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*t_ddot_x - axis_y_rrr_axes2_x*t_ddot_y
+        - rrr_bias_in_axes2_x;
     const real rrr_rel_in_axes2_y = axis_x_rrr_axes2_x*t_ddot_y + axis_y_rrr_axes2_x*t_ddot_x
         + rrr_W_1_in_axes1_xx*m->rrr_joint2_offset_x[i]*v.rrr_s_2;
     /* (rrr-qdd_1) acceleration of joint 1 */
@@ -3243,10 +3228,6 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before()
-{
-}
-
 INLINE void legs_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *X, const real *V, const real *A, real *o)
 {
@@ -3259,8 +3240,8 @@ INLINE void legs_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, 
         v.rrr_leg1_acc_2_in_axes2_x*m->rrr_leg1_link2_mass[i];
     const real rrr_leg1_c_true_in_axes2_y = v.rrr_leg1_c_in_axes2_y -
         v.rrr_leg1_acc_2_in_axes2_y*m->rrr_leg1_link2_mass[i];
-    const real rrr_leg1_c_true_x = v.axis_x_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_x +
-        v.axis_y_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_y;
+    const real rrr_leg1_c_true_x = v.axis_y_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_y +
+        v.axis_x_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_x;
     const real rrr_leg1_c_true_y = v.axis_x_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_y -
         v.axis_y_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_x;
     /* (rrr_leg1-c_true) */
@@ -3303,8 +3284,8 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_
         v.rrr_acc_2_in_axes2_x*m->rrr_link2_mass[i];
     const real rrr_c_true_in_axes2_y = v.rrr_c_in_axes2_y -
         v.rrr_acc_2_in_axes2_y*m->rrr_link2_mass[i];
-    const real rrr_c_true_x = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x +
-        v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y;
+    const real rrr_c_true_x = v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y +
+        v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x;
     const real rrr_c_true_y = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y -
         v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x;
     /* (rrr-c_true) */
@@ -3351,7 +3332,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
     /* (potential) potential energy */
     const real t_x = X[0*w + k];
@@ -3376,9 +3357,9 @@ INLINE void potential_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_
         (v.rrr_leg1_c_1*m->rrr_leg1_mu_1_t_2[i] -
         m->rrr_leg1_mu_1_t[i]*v.rrr_leg1_s_1)*(m->rrr_leg1_h_1_in_spec1_y[i] +
         v.rrr_leg1_c_2*m->rrr_leg1_h_2_in_spec2_y[i] +
-        m->rrr_leg1_h_2_in_spec2_x[i]*v.rrr_leg1_s_2 +
         m->rrr_leg1_link1_mass[i]*(v.rrr_leg1_c_1*m->rrr_leg1_potential_t_2[i] -
-        m->rrr_leg1_potential_t[i]*v.rrr_leg1_s_1));
+        m->rrr_leg1_potential_t[i]*v.rrr_leg1_s_1) +
+        m->rrr_leg1_h_2_in_spec2_x[i]*v.rrr_leg1_s_2);
     /* (potential) */
     gather(&terms[0*count + k], add, -rrr_leg1_potential_t_3);  /* potential_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
@@ -3404,9 +3385,9 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
         m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t[i] +
         m->rrr_potential_t_2[i]*v.rrr_s_1) - m->rrr_h_2_in_spec2_y[i]*v.rrr_s_2) +
         (v.rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v.rrr_s_1)*(m->rrr_h_1_in_spec1_y[i]
-        + v.rrr_c_2*m->rrr_h_2_in_spec2_y[i] + m->rrr_h_2_in_spec2_x[i]*v.rrr_s_2 +
+        + v.rrr_c_2*m->rrr_h_2_in_spec2_y[i] +
         m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t_2[i] -
-        m->rrr_potential_t[i]*v.rrr_s_1));
+        m->rrr_potential_t[i]*v.rrr_s_1) + m->rrr_h_2_in_spec2_x[i]*v.rrr_s_2);
     /* (potential) */
     gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_2 */
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
@@ -3435,7 +3416,6 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
     real s[1] = {0}, sums[2] = {0};
     real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    potential_before(m, 1, 0, X, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         potential_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, X, terms_rrr_leg1, o_rrr_leg1);
     }
@@ -3456,6 +3436,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
+    potential_between(m, 1, 0, X, s);
     potential_after(1, 0, s, sums, potential);
 }
 
@@ -3476,8 +3457,8 @@ INLINE void condition_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_
     const real rrr_leg1_w_2_in_axes2_x =
         -v.rrr_leg1_w_1_in_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i]*(v.rrr_leg1_c_2*v.rrr_leg1_r_1_in_axes1_x
         + v.rrr_leg1_r_1_in_axes1_y*v.rrr_leg1_s_2);
-    const real rrr_leg1_w_2_x = v.axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
-        v.axis_y_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i];
+    const real rrr_leg1_w_2_x = v.axis_y_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i] +
+        v.axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x;
     const real rrr_leg1_w_2_y = v.axis_x_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i] -
         v.axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x;
     /* (rrr_leg1-G) force at the connection point that balances the leg's inertia and weight along all
@@ -3619,11 +3600,7 @@ int fivebar_redundant_M(const prepared *m, const real *X, real *M_out)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-    }
-    return code;
+    return settled(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -3650,11 +3627,7 @@ int fivebar_redundant_Z(const prepared *m, const real *X, const real *V, real *Z
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, Z_out);
-    }
-    return code;
+    return settled(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -3678,11 +3651,7 @@ int fivebar_redundant_H(const prepared *m, const real *X, real *H_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -3705,11 +3674,7 @@ int fivebar_redundant_inverse_kinematics(const prepared *m, const real *X, real 
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, q_out);
-    }
-    return code;
+    return settled(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -3736,11 +3701,7 @@ int fivebar_redundant_joint_rates(const prepared *m, const real *X, const real *
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qd_out);
-    }
-    return code;
+    return settled(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -3771,11 +3732,7 @@ int fivebar_redundant_joint_accelerations(const prepared *m, const real *X, cons
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qdd_out);
-    }
-    return code;
+    return settled(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -3808,13 +3765,9 @@ int fivebar_redundant_dynamics(const prepared *m, const real *X, const real *V, 
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-        refuse(NV, Z_out);
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    settled(&why, NV*NV, M_out);
+    settled(&why, NV, Z_out);
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -3835,8 +3788,10 @@ INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real
 static int inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, const real *weights, real *tau_out)
 {
-    real wrench_in[NW], weights_in[NU], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0},
-        inverse_root_1[NU] = {0}, scale_columns_1[NV*NU] = {0}, least_norm_1[NU] = {0}, tau[NU] = {0};
+    static const real no_wrench[NW] = {0};
+    static const real no_weights[NU] = {1, 1, 1};
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, inverse_root_1[NU] = {0},
+        scale_columns_1[NV*NU] = {0}, least_norm_1[NU] = {0}, tau[NU] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
@@ -3845,9 +3800,9 @@ static int inverse_dynamics_one(const prepared *m, const real *X, const real *V,
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     require_positive(NU, 1, weights, why.invalid);
-    weights = optional(NU, weights, 1, weights_in, why.invalid);
+    weights = optional(NU, weights, no_weights, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -3864,11 +3819,7 @@ static int inverse_dynamics_one(const prepared *m, const real *X, const real *V,
     }
     check(NU, 1, tau, why.overflow);
     copy(NU, tau, tau_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, tau_out);
-    }
-    return code;
+    return settled(&why, NU, tau_out);
 }
 
 INLINE void eliminate_2(size_t w, size_t stride, const size_t *order, const real *sizes, const
@@ -3904,8 +3855,9 @@ static const real sizes_A[] = {1.0, 4.0};
 int fivebar_redundant_forward_dynamics(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out)
 {
-    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] =
-        {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    static const real no_wrench[NW] = {0};
+    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
+        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
@@ -3914,7 +3866,7 @@ int fivebar_redundant_forward_dynamics(const prepared *m, const real *X, const r
         check(NV, 1, V, why.invalid);
         check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     for (size_t i = 0; i < NV; ++i) {
@@ -3932,11 +3884,7 @@ int fivebar_redundant_forward_dynamics(const prepared *m, const real *X, const r
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, A_out);
-    }
-    return code;
+    return settled(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -3977,19 +3925,16 @@ int fivebar_redundant_complete_acceleration(const prepared *m, const real *X, co
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, completed_out);
-    }
-    return code;
+    return settled(&why, NV, completed_out);
 }
 
 int fivebar_redundant_leg_reactions(const prepared *m, const real *X, const real *V, const real
     *A, const real *wrench, real *forces_out)
 {
+    static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 0, 1};
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, least_norm_1[NU] =
-        {0}, leg_force[3*NL] = {0}, actuator[9] = {0}, forces[NL*NU] = {0};
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, least_norm_1[NU] = {0},
+        leg_force[3*NL] = {0}, actuator[9] = {0}, forces[NL*NU] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
@@ -3998,7 +3943,7 @@ int fivebar_redundant_leg_reactions(const prepared *m, const real *X, const real
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -4011,11 +3956,7 @@ int fivebar_redundant_leg_reactions(const prepared *m, const real *X, const real
     add_forces(NU, 3, 1, places_forces, least_norm_1, actuator, forces);
     check(NL*NU, 1, forces, why.overflow);
     copy(NL*NU, forces, forces_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NL*NU, forces_out);
-    }
-    return code;
+    return settled(&why, NL*NU, forces_out);
 }
 
 int fivebar_redundant_energy(const prepared *m, const real *X, const real *V, real *kinetic_out,
@@ -4037,12 +3978,8 @@ int fivebar_redundant_energy(const prepared *m, const real *X, const real *V, re
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, kinetic_out);
-        refuse(1, potential_out);
-    }
-    return code;
+    settled(&why, 1, kinetic_out);
+    return settled(&why, 1, potential_out);
 }
 
 int fivebar_redundant_null_space(const prepared *m, const real *X, real *basis_out)
@@ -4055,11 +3992,7 @@ int fivebar_redundant_null_space(const prepared *m, const real *X, real *basis_o
     null_basis(NV, NU, NV, H, basis);
     check(NU, 1, basis, why.overflow);
     copy(NU, basis, basis_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, basis_out);
-    }
-    return code;
+    return settled(&why, NU, basis_out);
 }
 
 int fivebar_redundant_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
@@ -4077,12 +4010,8 @@ int fivebar_redundant_condition(const prepared *m, const real *X, real *sigma_ou
     check(2, 1, lengths, why.overflow);
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, sigma_out);
-        refuse(NL, legs_out);
-    }
-    return code;
+    settled(&why, NV, sigma_out);
+    return settled(&why, NL, legs_out);
 }
 
 int fivebar_redundant_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -4103,12 +4032,8 @@ int fivebar_redundant_manipulability(const prepared *m, const real *X, real *mea
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, measure_out);
-        refuse(1, isotropy_out);
-    }
-    return code;
+    settled(&why, 1, measure_out);
+    return settled(&why, 1, isotropy_out);
 }
 
 int fivebar_redundant_singularity_distance(const prepared *m, const real *X, real *actuators_out,
@@ -4129,21 +4054,19 @@ int fivebar_redundant_singularity_distance(const prepared *m, const real *X, rea
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, actuators_out);
-        refuse(1, legs_out);
-    }
-    return code;
+    settled(&why, 1, actuators_out);
+    return settled(&why, 1, legs_out);
 }
 
 int fivebar_redundant_force_distribution(const prepared *m, const real *X, const real *V, const
     real *A, const real *tau_min, const real *tau_max, const real *wrench, const real *reference,
     real *tau_out)
 {
-    real wrench_in[NW], reference_in[NU], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0},
-        least_norm_1[NU] = {0}, null_basis_1[NU] = {0}, transposed_1[NU] = {0}, product_1[NU*NU] =
-        {0}, times_1[NU] = {0}, add_1[NU] = {0}, tau[NU] = {0};
+    static const real no_wrench[NW] = {0};
+    static const real no_reference[NU] = {0};
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, least_norm_1[NU] = {0},
+        null_basis_1[NU] = {0}, transposed_1[NU] = {0}, product_1[NU*NU] = {0}, times_1[NU] = {0},
+        add_1[NU] = {0}, tau[NU] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(A, NV) + total(tau_min, NU) +
@@ -4155,8 +4078,8 @@ int fivebar_redundant_force_distribution(const prepared *m, const real *X, const
         check(NU, 1, tau_min, why.invalid);
         check(NU, 1, tau_max, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
-    reference = optional(NU, reference, 0, reference_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
+    reference = optional(NU, reference, no_reference, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -4172,11 +4095,7 @@ int fivebar_redundant_force_distribution(const prepared *m, const real *X, const
     nearest_within(NU, add_1, product_1, tau_min, tau_max, tau, why.unreachable, why.overflow);
     check(NU, 1, tau, why.overflow);
     copy(NU, tau, tau_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, tau_out);
-    }
-    return code;
+    return settled(&why, NU, tau_out);
 }
 
 static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
@@ -4200,11 +4119,7 @@ static int mismatch_one(const prepared *m, const real *X, const real *q_actuated
     wrap_turns(NU, 1, fivebar_redundant_ACTUATED, gap);
     check(NU, 1, gap, why.overflow);
     copy(NU, gap, gap_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, gap_out);
-    }
-    return code;
+    return settled(&why, NU, gap_out);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
@@ -4216,11 +4131,7 @@ static int slope_one(const prepared *m, const real *X, real *slope_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, slope_out);
-    }
-    return code;
+    return settled(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -4282,11 +4193,7 @@ int fivebar_redundant_forward_kinematics(const prepared *m, const real *q_actuat
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int fivebar_redundant_dissipation(const prepared *m, const real *X, const real *V, real
@@ -4304,11 +4211,7 @@ int fivebar_redundant_dissipation(const prepared *m, const real *X, const real *
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, dissipation_out);
-    }
-    return code;
+    return settled(&why, 1, dissipation_out);
 }
 
 int fivebar_redundant_momentum(const prepared *m, const real *X, const real *V, real
@@ -4326,11 +4229,7 @@ int fivebar_redundant_momentum(const prepared *m, const real *X, const real *V, 
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, momentum_out);
-    }
-    return code;
+    return settled(&why, NV, momentum_out);
 }
 
 int fivebar_redundant_joint_margins(const prepared *m, const real *X, real *margins_out)
@@ -4346,11 +4245,7 @@ int fivebar_redundant_joint_margins(const prepared *m, const real *X, real *marg
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, margins_out);
-    }
-    return code;
+    return settled(&why, NJ, margins_out);
 }
 
 int fivebar_redundant_within_limits(const prepared *m, const real *X, real *within_out)
@@ -4366,11 +4261,7 @@ int fivebar_redundant_within_limits(const prepared *m, const real *X, real *with
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, within_out);
-    }
-    return code;
+    return settled(&why, 1, within_out);
 }
 
 int fivebar_redundant_actuator_positions(const prepared *m, const real *X, real *q_out)
@@ -4383,11 +4274,7 @@ int fivebar_redundant_actuator_positions(const prepared *m, const real *X, real 
     const real *const q = q_of_inverse_kinematics;
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, q_out);
-    }
-    return code;
+    return settled(&why, NU, q_out);
 }
 
 int fivebar_redundant_actuator_rates(const prepared *m, const real *X, const real *V, real
@@ -4405,11 +4292,7 @@ int fivebar_redundant_actuator_rates(const prepared *m, const real *X, const rea
     const real *const qd = qd_of_joint_rates;
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qd_out);
-    }
-    return code;
+    return settled(&why, NU, qd_out);
 }
 
 int fivebar_redundant_actuator_accelerations(const prepared *m, const real *X, const real *V,
@@ -4428,11 +4311,7 @@ int fivebar_redundant_actuator_accelerations(const prepared *m, const real *X, c
     const real *const qdd = qdd_of_joint_accelerations;
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qdd_out);
-    }
-    return code;
+    return settled(&why, NU, qdd_out);
 }
 
 int fivebar_redundant_power(const prepared *m, const real *X, const real *V, const real *tau, real
@@ -4452,11 +4331,7 @@ int fivebar_redundant_power(const prepared *m, const real *X, const real *V, con
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, power_out);
-    }
-    return code;
+    return settled(&why, 1, power_out);
 }
 
 int fivebar_redundant_retract(const real *X, const real *step, real *X_moved_out)
@@ -4474,11 +4349,7 @@ int fivebar_redundant_retract(const real *X, const real *step, real *X_moved_out
     }
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_moved_out);
-    }
-    return code;
+    return settled(&why, NQ, X_moved_out);
 }
 
 int fivebar_redundant_difference(const real *X0, const real *X1, real *step_out)
@@ -4496,11 +4367,7 @@ int fivebar_redundant_difference(const real *X0, const real *X1, real *step_out)
     }
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, step_out);
-    }
-    return code;
+    return settled(&why, NV, step_out);
 }
 
 int fivebar_redundant_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
@@ -4525,11 +4392,7 @@ int fivebar_redundant_interpolate(const real *X0, const real *X1, const real *s,
     }
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 /* ---- one state, and batches ---- */

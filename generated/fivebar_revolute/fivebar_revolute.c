@@ -231,15 +231,12 @@ INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *t
 }
 
 /* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
-INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+INLINE const real *optional(size_t size, const real *x, const real *none, real *flags)
 {
-    for (size_t e = 0; e < size && !x; ++e) {
-        own[e] = none;
-    }
     if (x) {
         check(size, 1, x, flags);
     }
-    return x ? x : own;
+    return x ? x : none;
 }
 
 INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
@@ -296,6 +293,16 @@ APART void refuse(size_t size, real *out)
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
     }
+}
+
+/* The status of a state; an output is refused where it is impossible. */
+INLINE int settled(const verdict *t, size_t size, real *out)
+{
+    const int code = judge(t);
+    if (code != OK) {
+        refuse(size, out);
+    }
+    return code;
 }
 
 /* Outputs of a state where the user wants them, and of states side by side, state by state. */
@@ -423,53 +430,53 @@ INLINE int all_planar_inertias(const real *x, size_t n)
 /* ---- parameters ---- */
 
 const fivebar_revolute_params fivebar_revolute_default_params = {
-    {R(0.0), R(-9.81), R(0.0)},  /* gravity */
+    {0, R(-9.81), 0},  /* gravity */
     R(0.5),  /* platform_mass */
-    {R(0.0), R(0.0), R(0.0)},  /* platform_centre_of_mass */
-    {{R(0.0), R(0.0), R(0.0)}, {R(0.0), R(0.0), R(0.0)}, {R(0.0), R(0.0), R(0.0)}},  /* platform_inertia */
+    {0, 0, 0},  /* platform_centre_of_mass */
+    {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}},  /* platform_inertia */
     {  /* rrr_base_point */
-        {R(0.030115496986122658), R(-0.17504639881453898), R(0.0)},
-        {R(0.009884503013877288), R(-0.17504639881453898), R(0.0)},
+        {R(0.030115496986122658), R(-0.17504639881453898), 0},
+        {R(0.009884503013877288), R(-0.17504639881453898), 0},
     },
     {  /* rrr_base_frame */
-        {{R(1.0), R(0.0), R(0.0)}, {R(0.0), R(1.0), R(0.0)}, {R(0.0), R(0.0), R(1.0)}},
-        {{R(1.0), R(0.0), R(0.0)}, {R(0.0), R(1.0), R(0.0)}, {R(0.0), R(0.0), R(1.0)}},
+        {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+        {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
     },
     {  /* rrr_platform_point */
-        {R(0.0), R(0.0), R(0.0)},
-        {R(0.0), R(0.0), R(0.0)},
+        {0, 0, 0},
+        {0, 0, 0},
     },
     {  /* rrr_joint2_offset */
-        {R(0.4), R(0.0), R(0.0)},
-        {R(0.4), R(0.0), R(0.0)},
+        {R(0.4), 0, 0},
+        {R(0.4), 0, 0},
     },
     {  /* rrr_platform_joint_offset */
-        {R(0.45), R(0.0), R(0.0)},
-        {R(0.45), R(0.0), R(0.0)},
+        {R(0.45), 0, 0},
+        {R(0.45), 0, 0},
     },
     {  /* rrr_link1_mass */
         R(1.5),
         R(1.5),
     },
     {  /* rrr_link1_centre_of_mass */
-        {R(0.2), R(0.0), R(0.0)},
-        {R(0.2), R(0.0), R(0.0)},
+        {R(0.2), 0, 0},
+        {R(0.2), 0, 0},
     },
     {  /* rrr_link1_inertia */
-        {{R(0.0003), R(0.0), R(0.0)}, {R(0.0), R(0.020150000000000005), R(0.0)}, {R(0.0), R(0.0), R(0.020150000000000005)}},
-        {{R(0.0003), R(0.0), R(0.0)}, {R(0.0), R(0.020150000000000005), R(0.0)}, {R(0.0), R(0.0), R(0.020150000000000005)}},
+        {{R(0.0003), 0, 0}, {0, R(0.020150000000000005), 0}, {0, 0, R(0.020150000000000005)}},
+        {{R(0.0003), 0, 0}, {0, R(0.020150000000000005), 0}, {0, 0, R(0.020150000000000005)}},
     },
     {  /* rrr_link2_mass */
-        R(1.0),
-        R(1.0),
+        1,
+        1,
     },
     {  /* rrr_link2_centre_of_mass */
-        {R(0.225), R(0.0), R(0.0)},
-        {R(0.225), R(0.0), R(0.0)},
+        {R(0.225), 0, 0},
+        {R(0.225), 0, 0},
     },
     {  /* rrr_link2_inertia */
-        {{R(0.0002), R(0.0), R(0.0)}, {R(0.0), R(0.016975), R(0.0)}, {R(0.0), R(0.0), R(0.016975)}},
-        {{R(0.0002), R(0.0), R(0.0)}, {R(0.0), R(0.016975), R(0.0)}, {R(0.0), R(0.0), R(0.016975)}},
+        {{R(0.0002), 0, 0}, {0, R(0.016975), 0}, {0, 0, R(0.016975)}},
+        {{R(0.0002), 0, 0}, {0, R(0.016975), 0}, {0, 0, R(0.016975)}},
     },
 };
 
@@ -520,6 +527,9 @@ static int acceptable(const fivebar_revolute_params *p)
     return ok;
 }
 
+#define KEEP(name) model->name = name
+#define KEEP_OF_LEG(name) model->name[leg] = name
+
 int fivebar_revolute_prepare(const fivebar_revolute_params *params, fivebar_revolute_model *model)
 {
     if (!acceptable(params)) {
@@ -542,9 +552,9 @@ int fivebar_revolute_prepare(const fivebar_revolute_params *params, fivebar_revo
     const real h_star_t_2 = platform_centre_of_mass_y*platform_mass;
     /* (spread) rms distance of the platform points from their centroid */
     const real spread_t = R(0.5)*root(2);
-    model->gravity_x = gravity_x;
-    model->gravity_y = gravity_y;
-    model->spread_t = spread_t;
+    KEEP(gravity_x);
+    KEEP(gravity_y);
+    KEEP(spread_t);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         const size_t own = leg;
         const real rrr_base_point_x = params->rrr_base_point[own][0];
@@ -630,43 +640,43 @@ int fivebar_revolute_prepare(const fivebar_revolute_params *params, fivebar_revo
             rrr_base_frame_yx*rrr_base_point_y;
         const real rrr_potential_t_2 = rrr_base_frame_xy*rrr_base_point_x +
             rrr_base_frame_yy*rrr_base_point_y;
-        model->inv_rrr_rho2_1_t[leg] = inv_rrr_rho2_1_t;
-        model->inv_rrr_size[leg] = inv_rrr_size;
-        model->inv_rrr_size_t[leg] = inv_rrr_size_t;
-        model->inv_rrr_size_t_2[leg] = inv_rrr_size_t_2;
-        model->rrr_J_1_in_spec1_zz[leg] = rrr_J_1_in_spec1_zz;
-        model->rrr_J_2_in_spec2_zz[leg] = rrr_J_2_in_spec2_zz;
-        model->rrr_Jc_1_in_axes1_zz[leg] = rrr_Jc_1_in_axes1_zz;
-        model->rrr_Kd_1_t[leg] = rrr_Kd_1_t;
-        model->rrr_Kd_1_t_2[leg] = rrr_Kd_1_t_2;
-        model->rrr_base_frame_xx[leg] = rrr_base_frame_xx;
-        model->rrr_base_frame_xy[leg] = rrr_base_frame_xy;
-        model->rrr_base_frame_yx[leg] = rrr_base_frame_yx;
-        model->rrr_base_frame_yy[leg] = rrr_base_frame_yy;
-        model->rrr_base_point_x[leg] = rrr_base_point_x;
-        model->rrr_base_point_y[leg] = rrr_base_point_y;
-        model->rrr_branch_1[leg] = rrr_branch_1;
-        model->rrr_d_Gamma_2_in_axes2_y[leg] = rrr_d_Gamma_2_in_axes2_y;
-        model->rrr_d_Gamma_2_t[leg] = rrr_d_Gamma_2_t;
-        model->rrr_d_c_in_axes2_yy[leg] = rrr_d_c_in_axes2_yy;
-        model->rrr_d_phi_2_in_axes2_xy[leg] = rrr_d_phi_2_in_axes2_xy;
-        model->rrr_h_1_in_spec1_x[leg] = rrr_h_1_in_spec1_x;
-        model->rrr_h_1_in_spec1_y[leg] = rrr_h_1_in_spec1_y;
-        model->rrr_h_2_in_spec2_x[leg] = rrr_h_2_in_spec2_x;
-        model->rrr_h_2_in_spec2_y[leg] = rrr_h_2_in_spec2_y;
-        model->rrr_joint2_offset_x[leg] = rrr_joint2_offset_x;
-        model->rrr_link1_mass[leg] = rrr_link1_mass;
-        model->rrr_link2_mass[leg] = rrr_link2_mass;
-        model->rrr_mu_1_t[leg] = rrr_mu_1_t;
-        model->rrr_mu_1_t_2[leg] = rrr_mu_1_t_2;
-        model->rrr_platform_joint_offset_x[leg] = rrr_platform_joint_offset_x;
-        model->rrr_platform_point_x[leg] = rrr_platform_point_x;
-        model->rrr_platform_point_y[leg] = rrr_platform_point_y;
-        model->rrr_potential_t[leg] = rrr_potential_t;
-        model->rrr_potential_t_2[leg] = rrr_potential_t_2;
-        model->rrr_rho2_1_t[leg] = rrr_rho2_1_t;
-        model->rrr_size[leg] = rrr_size;
-        model->rrr_w_2_in_axes2_y[leg] = rrr_w_2_in_axes2_y;
+        KEEP_OF_LEG(inv_rrr_rho2_1_t);
+        KEEP_OF_LEG(inv_rrr_size);
+        KEEP_OF_LEG(inv_rrr_size_t);
+        KEEP_OF_LEG(inv_rrr_size_t_2);
+        KEEP_OF_LEG(rrr_J_1_in_spec1_zz);
+        KEEP_OF_LEG(rrr_J_2_in_spec2_zz);
+        KEEP_OF_LEG(rrr_Jc_1_in_axes1_zz);
+        KEEP_OF_LEG(rrr_Kd_1_t);
+        KEEP_OF_LEG(rrr_Kd_1_t_2);
+        KEEP_OF_LEG(rrr_base_frame_xx);
+        KEEP_OF_LEG(rrr_base_frame_xy);
+        KEEP_OF_LEG(rrr_base_frame_yx);
+        KEEP_OF_LEG(rrr_base_frame_yy);
+        KEEP_OF_LEG(rrr_base_point_x);
+        KEEP_OF_LEG(rrr_base_point_y);
+        KEEP_OF_LEG(rrr_branch_1);
+        KEEP_OF_LEG(rrr_d_Gamma_2_in_axes2_y);
+        KEEP_OF_LEG(rrr_d_Gamma_2_t);
+        KEEP_OF_LEG(rrr_d_c_in_axes2_yy);
+        KEEP_OF_LEG(rrr_d_phi_2_in_axes2_xy);
+        KEEP_OF_LEG(rrr_h_1_in_spec1_x);
+        KEEP_OF_LEG(rrr_h_1_in_spec1_y);
+        KEEP_OF_LEG(rrr_h_2_in_spec2_x);
+        KEEP_OF_LEG(rrr_h_2_in_spec2_y);
+        KEEP_OF_LEG(rrr_joint2_offset_x);
+        KEEP_OF_LEG(rrr_link1_mass);
+        KEEP_OF_LEG(rrr_link2_mass);
+        KEEP_OF_LEG(rrr_mu_1_t);
+        KEEP_OF_LEG(rrr_mu_1_t_2);
+        KEEP_OF_LEG(rrr_platform_joint_offset_x);
+        KEEP_OF_LEG(rrr_platform_point_x);
+        KEEP_OF_LEG(rrr_platform_point_y);
+        KEEP_OF_LEG(rrr_potential_t);
+        KEEP_OF_LEG(rrr_potential_t_2);
+        KEEP_OF_LEG(rrr_rho2_1_t);
+        KEEP_OF_LEG(rrr_size);
+        KEEP_OF_LEG(rrr_w_2_in_axes2_y);
         m_star_of_legs += rrr_link2_mass;
         h_star_x_of_legs += rrr_h_star_t;
         h_star_y_of_legs += rrr_h_star_t_2;
@@ -687,14 +697,14 @@ int fivebar_revolute_prepare(const fivebar_revolute_params *params, fivebar_revo
     const real b_c_in_platform_y = R(0.5)*b_c_rrr_in_platform_y;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = root(legs_size_rrr)*spread_t;
-    model->Z_p_x = Z_p_x;
-    model->Z_p_y = Z_p_y;
-    model->b_c_in_platform_x = b_c_in_platform_x;
-    model->b_c_in_platform_y = b_c_in_platform_y;
-    model->h_star_x = h_star_x;
-    model->h_star_y = h_star_y;
-    model->legs_size = legs_size;
-    model->m_star = m_star;
+    KEEP(Z_p_x);
+    KEEP(Z_p_y);
+    KEEP(b_c_in_platform_x);
+    KEEP(b_c_in_platform_y);
+    KEEP(h_star_x);
+    KEEP(h_star_y);
+    KEEP(legs_size);
+    KEEP(m_star);
     return OK;
 }
 
@@ -1127,7 +1137,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 1 */
     const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-    const real rrr_Kd_1 = m->rrr_Kd_1_t[i] + R(0.5)*rrr_Kd_1_t_3 - m->rrr_Kd_1_t_2[i];
+    const real rrr_Kd_1 = m->rrr_Kd_1_t[i] - m->rrr_Kd_1_t_2[i] + R(0.5)*rrr_Kd_1_t_3;
     /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
     const real rrr_Kc_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xx[i] +
         rrr_S_y*m->rrr_base_frame_yx[i]);
@@ -1144,7 +1154,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
     const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
     /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+    const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kd_1*rrr_Ks_1 + rrr_Kc_1*rrr_root_1);
     /* (rrr-x_2) from the origin of joint 2 to the connection point */
     const real rrr_x_2_in_axes1_x = m->inv_rrr_size_t[i]*rrr_Kd_1*m->rrr_joint2_offset_x[i] -
         m->rrr_joint2_offset_x[i];
@@ -1161,7 +1171,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
     const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
     /* (rrr-w_1) reciprocal vector 1 */
-    const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+    const real rrr_w_1_t = rrr_c_2*rrr_s_1 + rrr_c_1*rrr_s_2;
     const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
     const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*rrr_w_1_t_2 -
         m->rrr_base_frame_xx[i]*rrr_w_1_t;
@@ -1282,19 +1292,19 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t w, size_t i, size_
     const real rrr_alpha_2_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_in_axes2_y +
         rrr_B_1_in_axes1_xy*v->rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
     /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
-    const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x +
-        v->axis_y_rrr_axes2_x*m->gravity_y - v->axis_x_rrr_axes2_x*m->gravity_x;
+    const real rrr_acc_2_in_axes2_x = v->axis_y_rrr_axes2_x*m->gravity_y -
+        v->axis_x_rrr_axes2_x*m->gravity_x + rrr_S_ddot_in_axes2_x;
     const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y -
         v->axis_x_rrr_axes2_x*m->gravity_y - v->axis_y_rrr_axes2_x*m->gravity_x;
     /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real rrr_mu_2_in_axes2_z = m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_in_axes2_z +
-        rrr_acc_2_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
-        rrr_acc_2_in_axes2_x*m->rrr_h_2_in_spec2_y[i];
+    const real rrr_mu_2_in_axes2_z = rrr_acc_2_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
+        rrr_acc_2_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
+        m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_in_axes2_z;
     /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
     const real rrr_mu_1_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v->rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*v->rrr_s_1) - rrr_B_1_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i] -
-        m->rrr_h_1_in_spec1_x[i]*(v->rrr_c_1*m->rrr_mu_1_t_2[i] -
-        m->rrr_mu_1_t[i]*v->rrr_s_1);
+        m->rrr_mu_1_t_2[i]*v->rrr_s_1) -
+        m->rrr_h_1_in_spec1_x[i]*(v->rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v->rrr_s_1)
+        - rrr_B_1_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i];
     /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
@@ -1307,8 +1317,8 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t w, size_t i, size_
         rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_y[i] -
         v->inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*v->rrr_r_1_in_axes2_x -
         rrr_N_1_in_axes1_z);
-    const real rrr_c_in_axes2_y = v->rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] - rrr_G_in_axes2_y -
-        rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_x[i];
+    const real rrr_c_in_axes2_y = v->rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
+        rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_in_axes2_y;
     v->rrr_acc_2_in_axes2_x = rrr_acc_2_in_axes2_x;
     v->rrr_acc_2_in_axes2_y = rrr_acc_2_in_axes2_y;
     v->rrr_c_in_axes2_x = rrr_c_in_axes2_x;
@@ -1318,10 +1328,6 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t w, size_t i, size_
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before()
-{
-}
-
 INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, int add, const real *X, const real *V, real *terms, real *o)
 {
@@ -1337,16 +1343,17 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
         rrr_qdd_1_o*v.rrr_r_1_in_axes2_x);
     /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
-    const real rrr_mu_2_o_in_axes2_z = m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z +
+    const real rrr_mu_2_o_in_axes2_z =
         m->rrr_h_2_in_spec2_y[i]*(v.axis_x_rrr_axes2_x*m->gravity_x -
         v.axis_y_rrr_axes2_x*m->gravity_y) -
         m->rrr_h_2_in_spec2_x[i]*(v.axis_x_rrr_axes2_x*m->gravity_y +
-        v.axis_y_rrr_axes2_x*m->gravity_x);
+        v.axis_y_rrr_axes2_x*m->gravity_x) +
+        m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z;
     /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
-    const real rrr_mu_1_o_in_axes1_z = m->rrr_J_1_in_spec1_zz[i]*rrr_qdd_1_o +
-        m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] + m->rrr_mu_1_t_2[i]*v.rrr_s_1) -
-        m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v.rrr_s_1);
+    const real rrr_mu_1_o_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] +
+        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i]
+        - m->rrr_mu_1_t[i]*v.rrr_s_1) + m->rrr_J_1_in_spec1_zz[i]*rrr_qdd_1_o;
     /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
        connection point left out */
     const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
@@ -1359,23 +1366,23 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
         rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] -
         v.inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x -
         rrr_N_1_o_in_axes1_z);
-    const real rrr_c_o_in_axes2_y = v.rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] - rrr_G_o_in_axes2_y
-        - rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i];
+    const real rrr_c_o_in_axes2_y = v.rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_o_in_axes2_y;
     /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_Q_t = v.inv_rrr_r_1_in_axes2_y*v.rrr_d_Gamma_1_in_axes2_x +
-        m->rrr_h_2_in_spec2_y[i]*(v.rrr_w_2_in_axes2_x - v.inv_rrr_r_1_in_axes2_y) -
-        m->rrr_d_c_in_axes2_yy[i] - v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
+    const real rrr_Q_t = v.inv_rrr_r_1_in_axes2_y*v.rrr_d_Gamma_1_in_axes2_x -
+        m->rrr_d_c_in_axes2_yy[i] - v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x +
+        m->rrr_h_2_in_spec2_y[i]*(v.rrr_w_2_in_axes2_x - v.inv_rrr_r_1_in_axes2_y);
     const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
-    const real rrr_Q_t_3 = v.axis_x_rrr_axes2_x*rrr_Q_t_2 +
-        v.axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+    const real rrr_Q_t_3 = v.axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy +
+        v.axis_x_rrr_axes2_x*rrr_Q_t_2;
     const real rrr_Q_t_4 = v.axis_y_rrr_axes2_x*rrr_Q_t_2 -
         v.axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
     const real rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v.axis_x_rrr_axes2_x*rrr_Q_t_3;
     const real rrr_Q_xy = v.axis_x_rrr_axes2_x*rrr_Q_t_4 + v.axis_y_rrr_axes2_x*rrr_Q_t_3;
     const real rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v.axis_y_rrr_axes2_x*rrr_Q_t_4;
     /* (rrr-U) velocity and gravity terms of the leg force */
-    const real rrr_U_x = -v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
-        v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
+    const real rrr_U_x = -v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y -
+        v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x;
     const real rrr_U_y = v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
         v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
     /* (M_tt) translational block of M */
@@ -1409,9 +1416,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *su
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     /* (Z_t) */
     const real Z_t_x_of_legs = sums[3*w + k];
     const real Z_t_x = m->Z_p_x + Z_t_x_of_legs;
@@ -1466,10 +1473,6 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before()
-{
-}
-
 INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *X, real *terms, real *o)
 {
@@ -1477,18 +1480,18 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_rrr_X(m, w, i, j, X, &v);
     stage_rrr_M_dynamics(m, i, &v);
     /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_Q_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
+    const real rrr_Q_t = v.rrr_c_2*v.rrr_s_1 + v.rrr_c_1*v.rrr_s_2;
     const real rrr_Q_t_2 = v.rrr_c_1*v.rrr_c_2 - v.rrr_s_1*v.rrr_s_2;
     const real axis_y_rrr_axes2_x = rrr_Q_t_2*m->rrr_base_frame_xy[i] -
         rrr_Q_t*m->rrr_base_frame_xx[i];
     const real axis_x_rrr_axes2_x = rrr_Q_t_2*m->rrr_base_frame_yy[i] -
         rrr_Q_t*m->rrr_base_frame_yx[i];
-    const real rrr_Q_t_3 = v.inv_rrr_r_1_in_axes2_y*v.rrr_d_Gamma_1_in_axes2_x +
-        m->rrr_h_2_in_spec2_y[i]*(v.rrr_w_2_in_axes2_x - v.inv_rrr_r_1_in_axes2_y) -
-        m->rrr_d_c_in_axes2_yy[i] - v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
+    const real rrr_Q_t_3 = v.inv_rrr_r_1_in_axes2_y*v.rrr_d_Gamma_1_in_axes2_x -
+        m->rrr_d_c_in_axes2_yy[i] - v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x +
+        m->rrr_h_2_in_spec2_y[i]*(v.rrr_w_2_in_axes2_x - v.inv_rrr_r_1_in_axes2_y);
     const real rrr_Q_t_4 = R(0.5)*rrr_Q_t_3;
-    const real rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 +
-        axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+    const real rrr_Q_t_5 = axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy +
+        axis_x_rrr_axes2_x*rrr_Q_t_4;
     const real rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 -
         axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
     const real rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*axis_x_rrr_axes2_x*rrr_Q_t_5;
@@ -1513,9 +1516,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, rea
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
     const real M_tt_xy = sums[1*w + k];
@@ -1560,17 +1563,13 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 }
 
 /* ---- Z ---- */
-INLINE void Z_before()
-{
-}
-
 INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *X, const real *V, real *terms, real *o)
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, X, &v);
     /* (rrr-qd_1) rate of joint 1 */
-    const real rrr_qd_1_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
+    const real rrr_qd_1_t = v.rrr_c_2*v.rrr_s_1 + v.rrr_c_1*v.rrr_s_2;
     const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*v.rrr_qd_1_t_2 -
         m->rrr_base_frame_xx[i]*rrr_qd_1_t;
     const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*v.rrr_qd_1_t_2 -
@@ -1597,16 +1596,16 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
         rrr_qdd_1_o*v.rrr_r_1_in_axes2_x);
     /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
-    const real rrr_mu_2_o_in_axes2_z = m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z +
+    const real rrr_mu_2_o_in_axes2_z =
         m->rrr_h_2_in_spec2_y[i]*(axis_x_rrr_axes2_x*m->gravity_x -
         axis_y_rrr_axes2_x*m->gravity_y) -
         m->rrr_h_2_in_spec2_x[i]*(axis_x_rrr_axes2_x*m->gravity_y +
-        axis_y_rrr_axes2_x*m->gravity_x);
+        axis_y_rrr_axes2_x*m->gravity_x) + m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z;
     /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
-    const real rrr_mu_1_o_in_axes1_z = m->rrr_J_1_in_spec1_zz[i]*rrr_qdd_1_o +
-        m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] + m->rrr_mu_1_t_2[i]*v.rrr_s_1) -
-        m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v.rrr_s_1);
+    const real rrr_mu_1_o_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] +
+        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i]
+        - m->rrr_mu_1_t[i]*v.rrr_s_1) + m->rrr_J_1_in_spec1_zz[i]*rrr_qdd_1_o;
     /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
        connection point left out */
     const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
@@ -1619,11 +1618,11 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
         rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] -
         v.inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x -
         rrr_N_1_o_in_axes1_z);
-    const real rrr_c_o_in_axes2_y = rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] - rrr_G_o_in_axes2_y -
-        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i];
+    const real rrr_c_o_in_axes2_y = rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_o_in_axes2_y;
     /* (rrr-U) velocity and gravity terms of the leg force */
-    const real rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
-        axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
+    const real rrr_U_x = -axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y -
+        axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x;
     const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
         axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
     /* (Z_t) translational part of Z */
@@ -1689,10 +1688,6 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before()
-{
-}
-
 INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *X, real *o)
 {
@@ -1743,7 +1738,7 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *A, real *s)
+INLINE void required_between(const prepared *m, size_t w, size_t k, const real *A, real *s)
 {
     /* (a_t) acceleration of the platform origin, less gravity */
     const real t_ddot_x = A[0*w + k];
@@ -1766,8 +1761,8 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     stage_rrr_legs_required(m, w, i, j, A, &v);
     /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rrr_c_x = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_x +
-        v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_y;
+    const real rrr_c_x = v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_y +
+        v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_x;
     const real rrr_c_y = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_y -
         v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_x;
     /* (R_t) force that actuators and external wrench must give */
@@ -1804,12 +1799,11 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[1*w + k] = R_t_y;
 }
 
-APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
     real s[2] = {0}, sums[2] = {0};
     real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[4*LEGS(LEGS_OF_rrr)] = {0};
-    required_before(m, 1, 0, A, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         required_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, X, V, A, terms_rrr, o_rrr);
     }
@@ -1819,6 +1813,7 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
     for (size_t n = 0; n < 2; ++n) {
         sums[n] = total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
+    required_between(m, 1, 0, A, s);
     required_after(1, 0, s, sums, required);
 }
 
@@ -1828,7 +1823,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real s[2*LANES], sums[2*LANES];
     real o_rrr[4*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        required_before(m, LANES, k, A, s);
+        required_between(m, LANES, k, A, s);
     }
     clear(sums, 2*LANES);
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
@@ -1845,18 +1840,14 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before()
-{
-}
-
 INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *X, real *o)
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, X, &v);
     /* (rrr-q_1) displacement of joint 1 */
-    const real rrr_q_1 = angle(v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_root_1 +
-        v.rrr_Kd_1*v.rrr_Ks_1), v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 -
+    const real rrr_q_1 = angle(v.inv_rrr_rho2_1*(v.rrr_Kd_1*v.rrr_Ks_1 +
+        v.rrr_Kc_1*v.rrr_root_1), v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 -
         v.rrr_Ks_1*v.rrr_root_1));
     /* (rrr-q_2) displacement of joint 2 */
     const real rrr_q_2 =
@@ -1907,17 +1898,13 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before()
-{
-}
-
 INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *X, const real *V, real *o)
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, X, &v);
     /* (rrr-qd_1) rate of joint 1 */
-    const real rrr_qd_1_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
+    const real rrr_qd_1_t = v.rrr_c_2*v.rrr_s_1 + v.rrr_c_1*v.rrr_s_2;
     const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*v.rrr_qd_1_t_2 -
         m->rrr_base_frame_xx[i]*rrr_qd_1_t;
     const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*v.rrr_qd_1_t_2 -
@@ -1976,17 +1963,13 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before()
-{
-}
-
 INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *X, const real *V, const real *A, real *o)
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, X, &v);
     /* (rrr-qd_1) rate of joint 1 */
-    const real rrr_qd_1_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
+    const real rrr_qd_1_t = v.rrr_c_2*v.rrr_s_1 + v.rrr_c_1*v.rrr_s_2;
     const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*v.rrr_qd_1_t_2 -
         m->rrr_base_frame_xx[i]*rrr_qd_1_t;
     const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*v.rrr_qd_1_t_2 -
@@ -2006,8 +1989,8 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t i, 
     /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
     const real t_ddot_x = A[0*w + j];
     const real t_ddot_y = A[1*w + j];
-    const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*t_ddot_x - rrr_bias_in_axes2_x -
-        axis_y_rrr_axes2_x*t_ddot_y;
+    const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*t_ddot_x - axis_y_rrr_axes2_x*t_ddot_y
+        - rrr_bias_in_axes2_x;
     const real rrr_rel_in_axes2_y = axis_x_rrr_axes2_x*t_ddot_y + axis_y_rrr_axes2_x*t_ddot_x
         + rrr_W_1_in_axes1_xx*m->rrr_joint2_offset_x[i]*v.rrr_s_2;
     /* (rrr-qdd_1) acceleration of joint 1 */
@@ -2062,10 +2045,6 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before()
-{
-}
-
 INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *X, const real *V, const real *A, real *o)
 {
@@ -2078,8 +2057,8 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_
         v.rrr_acc_2_in_axes2_x*m->rrr_link2_mass[i];
     const real rrr_c_true_in_axes2_y = v.rrr_c_in_axes2_y -
         v.rrr_acc_2_in_axes2_y*m->rrr_link2_mass[i];
-    const real rrr_c_true_x = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x +
-        v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y;
+    const real rrr_c_true_x = v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y +
+        v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x;
     const real rrr_c_true_y = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y -
         v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x;
     /* (rrr-c_true) */
@@ -2119,7 +2098,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
     /* (potential) potential energy */
     const real t_x = X[0*w + k];
@@ -2141,9 +2120,9 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
         m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t[i] +
         m->rrr_potential_t_2[i]*v.rrr_s_1) - m->rrr_h_2_in_spec2_y[i]*v.rrr_s_2) +
         (v.rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v.rrr_s_1)*(m->rrr_h_1_in_spec1_y[i]
-        + v.rrr_c_2*m->rrr_h_2_in_spec2_y[i] + m->rrr_h_2_in_spec2_x[i]*v.rrr_s_2 +
+        + v.rrr_c_2*m->rrr_h_2_in_spec2_y[i] +
         m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t_2[i] -
-        m->rrr_potential_t[i]*v.rrr_s_1));
+        m->rrr_potential_t[i]*v.rrr_s_1) + m->rrr_h_2_in_spec2_x[i]*v.rrr_s_2);
     /* (potential) */
     gather(&terms[0*count + k], add, rrr_potential_t_3);  /* potential_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
@@ -2161,7 +2140,7 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     /* (potential) */
     const real potential_of_legs = sums[0*w + k];
     const real potential_t = s[0*w + k];
-    const real potential_ = -potential_of_legs - potential_t;
+    const real potential_ = -potential_t - potential_of_legs;
     /* (potential) */
     potential[0*w + k] = potential_;
 }
@@ -2170,7 +2149,6 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 {
     real s[1] = {0}, sums[1] = {0};
     real terms_rrr[LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    potential_before(m, 1, 0, X, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         potential_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
     }
@@ -2180,6 +2158,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
+    potential_between(m, 1, 0, X, s);
     potential_after(1, 0, s, sums, potential);
 }
 
@@ -2273,11 +2252,7 @@ int fivebar_revolute_M(const prepared *m, const real *X, real *M_out)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-    }
-    return code;
+    return settled(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -2304,11 +2279,7 @@ int fivebar_revolute_Z(const prepared *m, const real *X, const real *V, real *Z_
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, Z_out);
-    }
-    return code;
+    return settled(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -2332,11 +2303,7 @@ int fivebar_revolute_H(const prepared *m, const real *X, real *H_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -2359,11 +2326,7 @@ int fivebar_revolute_inverse_kinematics(const prepared *m, const real *X, real *
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, q_out);
-    }
-    return code;
+    return settled(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -2390,11 +2353,7 @@ int fivebar_revolute_joint_rates(const prepared *m, const real *X, const real *V
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qd_out);
-    }
-    return code;
+    return settled(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -2425,11 +2384,7 @@ int fivebar_revolute_joint_accelerations(const prepared *m, const real *X, const
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qdd_out);
-    }
-    return code;
+    return settled(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -2462,13 +2417,9 @@ int fivebar_revolute_dynamics(const prepared *m, const real *X, const real *V, r
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-        refuse(NV, Z_out);
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    settled(&why, NV*NV, M_out);
+    settled(&why, NV, Z_out);
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -2519,7 +2470,8 @@ static const real sizes_tau[] = {1.0, 4.0};
 int fivebar_revolute_inverse_dynamics(const prepared *m, const real *X, const real *V, const real
     *A, const real *wrench, real *tau_out)
 {
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    static const real no_wrench[NW] = {0};
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
@@ -2529,7 +2481,7 @@ int fivebar_revolute_inverse_dynamics(const prepared *m, const real *X, const re
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -2543,11 +2495,7 @@ int fivebar_revolute_inverse_dynamics(const prepared *m, const real *X, const re
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, tau_out);
-    }
-    return code;
+    return settled(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -2573,8 +2521,9 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 int fivebar_revolute_forward_dynamics(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out)
 {
-    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] =
-        {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    static const real no_wrench[NW] = {0};
+    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
+        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
@@ -2583,7 +2532,7 @@ int fivebar_revolute_forward_dynamics(const prepared *m, const real *X, const re
         check(NV, 1, V, why.invalid);
         check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     for (size_t i = 0; i < NV; ++i) {
@@ -2601,11 +2550,7 @@ int fivebar_revolute_forward_dynamics(const prepared *m, const real *X, const re
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, A_out);
-    }
-    return code;
+    return settled(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -2646,18 +2591,15 @@ int fivebar_revolute_complete_acceleration(const prepared *m, const real *X, con
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, completed_out);
-    }
-    return code;
+    return settled(&why, NV, completed_out);
 }
 
 int fivebar_revolute_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out)
 {
+    static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1};
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
         unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[6] = {0}, forces[3*NL] = {0},
         work[NV*PADDED(NV)];
     verdict why;
@@ -2668,7 +2610,7 @@ int fivebar_revolute_leg_reactions(const prepared *m, const real *X, const real 
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -2686,11 +2628,7 @@ int fivebar_revolute_leg_reactions(const prepared *m, const real *X, const real 
     add_forces(NL, 3, 1, places_forces, solve_1, actuator, forces);
     check(3*NL, 1, forces, why.overflow);
     copy(3*NL, forces, forces_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(3*NL, forces_out);
-    }
-    return code;
+    return settled(&why, 3*NL, forces_out);
 }
 
 int fivebar_revolute_energy(const prepared *m, const real *X, const real *V, real *kinetic_out,
@@ -2712,12 +2650,8 @@ int fivebar_revolute_energy(const prepared *m, const real *X, const real *V, rea
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, kinetic_out);
-        refuse(1, potential_out);
-    }
-    return code;
+    settled(&why, 1, kinetic_out);
+    return settled(&why, 1, potential_out);
 }
 
 int fivebar_revolute_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
@@ -2735,12 +2669,8 @@ int fivebar_revolute_condition(const prepared *m, const real *X, real *sigma_out
     check(2, 1, lengths, why.overflow);
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, sigma_out);
-        refuse(NL, legs_out);
-    }
-    return code;
+    settled(&why, NV, sigma_out);
+    return settled(&why, NL, legs_out);
 }
 
 int fivebar_revolute_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -2761,12 +2691,8 @@ int fivebar_revolute_manipulability(const prepared *m, const real *X, real *meas
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, measure_out);
-        refuse(1, isotropy_out);
-    }
-    return code;
+    settled(&why, 1, measure_out);
+    return settled(&why, 1, isotropy_out);
 }
 
 int fivebar_revolute_singularity_distance(const prepared *m, const real *X, real *actuators_out,
@@ -2787,12 +2713,8 @@ int fivebar_revolute_singularity_distance(const prepared *m, const real *X, real
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, actuators_out);
-        refuse(1, legs_out);
-    }
-    return code;
+    settled(&why, 1, actuators_out);
+    return settled(&why, 1, legs_out);
 }
 
 static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
@@ -2817,11 +2739,7 @@ static int mismatch_one(const prepared *m, const real *X, const real *q_actuated
     wrap_turns(NU, 1, places_gap, gap);
     check(NU, 1, gap, why.overflow);
     copy(NU, gap, gap_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, gap_out);
-    }
-    return code;
+    return settled(&why, NU, gap_out);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
@@ -2833,11 +2751,7 @@ static int slope_one(const prepared *m, const real *X, real *slope_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, slope_out);
-    }
-    return code;
+    return settled(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -2899,11 +2813,7 @@ int fivebar_revolute_forward_kinematics(const prepared *m, const real *q_actuate
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int fivebar_revolute_dissipation(const prepared *m, const real *X, const real *V, real
@@ -2921,11 +2831,7 @@ int fivebar_revolute_dissipation(const prepared *m, const real *X, const real *V
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, dissipation_out);
-    }
-    return code;
+    return settled(&why, 1, dissipation_out);
 }
 
 int fivebar_revolute_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
@@ -2942,11 +2848,7 @@ int fivebar_revolute_momentum(const prepared *m, const real *X, const real *V, r
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, momentum_out);
-    }
-    return code;
+    return settled(&why, NV, momentum_out);
 }
 
 int fivebar_revolute_joint_margins(const prepared *m, const real *X, real *margins_out)
@@ -2962,11 +2864,7 @@ int fivebar_revolute_joint_margins(const prepared *m, const real *X, real *margi
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, margins_out);
-    }
-    return code;
+    return settled(&why, NJ, margins_out);
 }
 
 int fivebar_revolute_within_limits(const prepared *m, const real *X, real *within_out)
@@ -2982,11 +2880,7 @@ int fivebar_revolute_within_limits(const prepared *m, const real *X, real *withi
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, within_out);
-    }
-    return code;
+    return settled(&why, 1, within_out);
 }
 
 int fivebar_revolute_actuator_positions(const prepared *m, const real *X, real *q_out)
@@ -2999,11 +2893,7 @@ int fivebar_revolute_actuator_positions(const prepared *m, const real *X, real *
     take(NU, 1, fivebar_revolute_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, q_out);
-    }
-    return code;
+    return settled(&why, NU, q_out);
 }
 
 int fivebar_revolute_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
@@ -3020,11 +2910,7 @@ int fivebar_revolute_actuator_rates(const prepared *m, const real *X, const real
     take(NU, 1, fivebar_revolute_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qd_out);
-    }
-    return code;
+    return settled(&why, NU, qd_out);
 }
 
 int fivebar_revolute_actuator_accelerations(const prepared *m, const real *X, const real *V, const
@@ -3043,11 +2929,7 @@ int fivebar_revolute_actuator_accelerations(const prepared *m, const real *X, co
     take(NU, 1, fivebar_revolute_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qdd_out);
-    }
-    return code;
+    return settled(&why, NU, qdd_out);
 }
 
 int fivebar_revolute_power(const prepared *m, const real *X, const real *V, const real *tau, real
@@ -3067,11 +2949,7 @@ int fivebar_revolute_power(const prepared *m, const real *X, const real *V, cons
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, power_out);
-    }
-    return code;
+    return settled(&why, 1, power_out);
 }
 
 int fivebar_revolute_retract(const real *X, const real *step, real *X_moved_out)
@@ -3089,11 +2967,7 @@ int fivebar_revolute_retract(const real *X, const real *step, real *X_moved_out)
     }
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_moved_out);
-    }
-    return code;
+    return settled(&why, NQ, X_moved_out);
 }
 
 int fivebar_revolute_difference(const real *X0, const real *X1, real *step_out)
@@ -3111,11 +2985,7 @@ int fivebar_revolute_difference(const real *X0, const real *X1, real *step_out)
     }
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, step_out);
-    }
-    return code;
+    return settled(&why, NV, step_out);
 }
 
 int fivebar_revolute_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
@@ -3140,11 +3010,7 @@ int fivebar_revolute_interpolate(const real *X0, const real *X1, const real *s, 
     }
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 /* ---- one state, and batches ---- */

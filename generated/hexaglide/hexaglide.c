@@ -233,15 +233,12 @@ INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *t
 }
 
 /* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
-INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+INLINE const real *optional(size_t size, const real *x, const real *none, real *flags)
 {
-    for (size_t e = 0; e < size && !x; ++e) {
-        own[e] = none;
-    }
     if (x) {
         check(size, 1, x, flags);
     }
-    return x ? x : own;
+    return x ? x : none;
 }
 
 INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
@@ -298,6 +295,16 @@ APART void refuse(size_t size, real *out)
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
     }
+}
+
+/* The status of a state; an output is refused where it is impossible. */
+INLINE int settled(const verdict *t, size_t size, real *out)
+{
+    const int code = judge(t);
+    if (code != OK) {
+        refuse(size, out);
+    }
+    return code;
 }
 
 /* Outputs of a state where the user wants them, and of states side by side, state by state. */
@@ -427,10 +434,10 @@ INLINE int all_rotations(const real *x, size_t n)
 /* ---- parameters ---- */
 
 const hexaglide_params hexaglide_default_params = {
-    {R(0.0), R(0.0), R(-9.81)},  /* gravity */
+    {0, 0, R(-9.81)},  /* gravity */
     R(12.0),  /* platform_mass */
-    {R(0.0), R(0.0), R(0.04)},  /* platform_centre_of_mass */
-    {{R(0.35), R(0.0), R(0.0)}, {R(0.0), R(0.35), R(0.0)}, {R(0.0), R(0.0), R(0.6)}},  /* platform_inertia */
+    {0, 0, R(0.04)},  /* platform_centre_of_mass */
+    {{R(0.35), 0, 0}, {0, R(0.35), 0}, {0, 0, R(0.6)}},  /* platform_inertia */
     {  /* pus_base_point */
         {R(-0.18761685058123478), R(0.1559588294696265), R(0.06941320886083291)},
         {R(0.22887273355579907), R(-0.0845015440465654), R(0.06941320886083291)},
@@ -440,12 +447,12 @@ const hexaglide_params hexaglide_default_params = {
         {R(-0.187616850581235), R(-0.15595882946962628), R(0.06941320886083291)},
     },
     {  /* pus_base_frame */
-        {{R(0.0), R(0.7666445685820955), R(-0.6420717292200091)}, {R(0.0), R(0.6420717292200091), R(0.7666445685820955)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(0.17272814426528374), R(-0.9849695366754605)}, {R(0.0), R(0.9849695366754605), R(0.17272814426528374)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.9393727128473789), R(-0.34289780745545156)}, {R(0.0), R(0.34289780745545156), R(-0.9393727128473789)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.9393727128473789), R(0.34289780745545134)}, {R(0.0), R(-0.34289780745545134), R(-0.9393727128473789)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(0.17272814426528307), R(0.9849695366754606)}, {R(0.0), R(-0.9849695366754606), R(0.17272814426528307)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(0.7666445685820946), R(0.6420717292200101)}, {R(0.0), R(-0.6420717292200101), R(0.7666445685820946)}, {R(1.0), R(0.0), R(0.0)}},
+        {{0, R(0.7666445685820955), R(-0.6420717292200091)}, {0, R(0.6420717292200091), R(0.7666445685820955)}, {1, 0, 0}},
+        {{0, R(0.17272814426528374), R(-0.9849695366754605)}, {0, R(0.9849695366754605), R(0.17272814426528374)}, {1, 0, 0}},
+        {{0, R(-0.9393727128473789), R(-0.34289780745545156)}, {0, R(0.34289780745545156), R(-0.9393727128473789)}, {1, 0, 0}},
+        {{0, R(-0.9393727128473789), R(0.34289780745545134)}, {0, R(-0.34289780745545134), R(-0.9393727128473789)}, {1, 0, 0}},
+        {{0, R(0.17272814426528307), R(0.9849695366754606)}, {0, R(-0.9849695366754606), R(0.17272814426528307)}, {1, 0, 0}},
+        {{0, R(0.7666445685820946), R(0.6420717292200101)}, {0, R(-0.6420717292200101), R(0.7666445685820946)}, {1, 0, 0}},
     },
     {  /* pus_platform_point */
         {R(0.22999337057462865), R(0.19262151876600273), R(-0.02)},
@@ -456,12 +463,12 @@ const hexaglide_params hexaglide_default_params = {
         {R(0.22999337057462838), R(-0.19262151876600303), R(-0.02)},
     },
     {  /* pus_platform_joint_offset */
-        {R(0.7), R(0.0), R(0.0)},
-        {R(0.7), R(0.0), R(0.0)},
-        {R(0.7), R(0.0), R(0.0)},
-        {R(0.7), R(0.0), R(0.0)},
-        {R(0.7), R(0.0), R(0.0)},
-        {R(0.7), R(0.0), R(0.0)},
+        {R(0.7), 0, 0},
+        {R(0.7), 0, 0},
+        {R(0.7), 0, 0},
+        {R(0.7), 0, 0},
+        {R(0.7), 0, 0},
+        {R(0.7), 0, 0},
     },
     {  /* pus_link1_mass */
         R(2.0),
@@ -472,20 +479,20 @@ const hexaglide_params hexaglide_default_params = {
         R(2.0),
     },
     {  /* pus_link1_centre_of_mass */
-        {R(0.0), R(0.0), R(0.0)},
-        {R(0.0), R(0.0), R(0.0)},
-        {R(0.0), R(0.0), R(0.0)},
-        {R(0.0), R(0.0), R(0.0)},
-        {R(0.0), R(0.0), R(0.0)},
-        {R(0.0), R(0.0), R(0.0)},
+        {0, 0, 0},
+        {0, 0, 0},
+        {0, 0, 0},
+        {0, 0, 0},
+        {0, 0, 0},
+        {0, 0, 0},
     },
     {  /* pus_link1_inertia */
-        {{R(0.004), R(0.0), R(0.0)}, {R(0.0), R(0.004), R(0.0)}, {R(0.0), R(0.0), R(0.004)}},
-        {{R(0.004), R(0.0), R(0.0)}, {R(0.0), R(0.004), R(0.0)}, {R(0.0), R(0.0), R(0.004)}},
-        {{R(0.004), R(0.0), R(0.0)}, {R(0.0), R(0.004), R(0.0)}, {R(0.0), R(0.0), R(0.004)}},
-        {{R(0.004), R(0.0), R(0.0)}, {R(0.0), R(0.004), R(0.0)}, {R(0.0), R(0.0), R(0.004)}},
-        {{R(0.004), R(0.0), R(0.0)}, {R(0.0), R(0.004), R(0.0)}, {R(0.0), R(0.0), R(0.004)}},
-        {{R(0.004), R(0.0), R(0.0)}, {R(0.0), R(0.004), R(0.0)}, {R(0.0), R(0.0), R(0.004)}},
+        {{R(0.004), 0, 0}, {0, R(0.004), 0}, {0, 0, R(0.004)}},
+        {{R(0.004), 0, 0}, {0, R(0.004), 0}, {0, 0, R(0.004)}},
+        {{R(0.004), 0, 0}, {0, R(0.004), 0}, {0, 0, R(0.004)}},
+        {{R(0.004), 0, 0}, {0, R(0.004), 0}, {0, 0, R(0.004)}},
+        {{R(0.004), 0, 0}, {0, R(0.004), 0}, {0, 0, R(0.004)}},
+        {{R(0.004), 0, 0}, {0, R(0.004), 0}, {0, 0, R(0.004)}},
     },
     {  /* pus_link3_mass */
         R(1.1),
@@ -496,24 +503,24 @@ const hexaglide_params hexaglide_default_params = {
         R(1.1),
     },
     {  /* pus_link3_centre_of_mass */
-        {R(0.35), R(0.0), R(0.0)},
-        {R(0.35), R(0.0), R(0.0)},
-        {R(0.35), R(0.0), R(0.0)},
-        {R(0.35), R(0.0), R(0.0)},
-        {R(0.35), R(0.0), R(0.0)},
-        {R(0.35), R(0.0), R(0.0)},
+        {R(0.35), 0, 0},
+        {R(0.35), 0, 0},
+        {R(0.35), 0, 0},
+        {R(0.35), 0, 0},
+        {R(0.35), 0, 0},
+        {R(0.35), 0, 0},
     },
     {  /* pus_link3_inertia */
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.04502666666666666), R(0.0)}, {R(0.0), R(0.0), R(0.04502666666666666)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.04502666666666666), R(0.0)}, {R(0.0), R(0.0), R(0.04502666666666666)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.04502666666666666), R(0.0)}, {R(0.0), R(0.0), R(0.04502666666666666)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.04502666666666666), R(0.0)}, {R(0.0), R(0.0), R(0.04502666666666666)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.04502666666666666), R(0.0)}, {R(0.0), R(0.0), R(0.04502666666666666)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.04502666666666666), R(0.0)}, {R(0.0), R(0.0), R(0.04502666666666666)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.04502666666666666), 0}, {0, 0, R(0.04502666666666666)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.04502666666666666), 0}, {0, 0, R(0.04502666666666666)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.04502666666666666), 0}, {0, 0, R(0.04502666666666666)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.04502666666666666), 0}, {0, 0, R(0.04502666666666666)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.04502666666666666), 0}, {0, 0, R(0.04502666666666666)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.04502666666666666), 0}, {0, 0, R(0.04502666666666666)}},
     },
 };
 
-const hexaglide_real hexaglide_HOME_X[HEXAGLIDE_NQ] = {R(0.0), R(0.0), R(0.75), R(0.0), R(0.0), R(0.0), R(1.0)};
+const hexaglide_real hexaglide_HOME_X[HEXAGLIDE_NQ] = {0, 0, R(0.75), 0, 0, 0, 1};
 const hexaglide_real hexaglide_HOME_Q[HEXAGLIDE_NJ] = {R(0.1), R(0.55), R(0.35), R(0.1), R(0.55), R(-0.35), R(0.1), R(0.55), R(0.35), R(0.1), R(0.55), R(-0.35), R(0.1), R(0.55), R(0.35), R(0.1), R(0.55), R(-0.35)};
 const size_t hexaglide_ACTUATED[HEXAGLIDE_NU] = {0, 3, 6, 9, 12, 15};
 const char *const hexaglide_ACTUATOR_NAMES[HEXAGLIDE_NU] = {
@@ -553,6 +560,9 @@ static int acceptable(const hexaglide_params *p)
     ok &= all_inertias(&p->pus_link3_inertia[0][0][0], LEGS_OF_pus);
     return ok;
 }
+
+#define KEEP(name) model->name = name
+#define KEEP_OF_LEG(name) model->name[leg] = name
 
 int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
 {
@@ -604,10 +614,10 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
     const real J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4);
     /* (spread) rms distance of the platform points from their centroid */
     const real spread_t = R(0.16666666666666666)*root(6);
-    model->gravity_x = gravity_x;
-    model->gravity_y = gravity_y;
-    model->gravity_z = gravity_z;
-    model->spread_t = spread_t;
+    KEEP(gravity_x);
+    KEEP(gravity_y);
+    KEEP(gravity_z);
+    KEEP(spread_t);
     for (size_t leg = 0; leg < FILLED(LEGS_OF_pus); ++leg) {
         const size_t own = leg < LEGS_OF_pus ? leg : 0;
         const real pus_base_point_x = params->pus_base_point[own][0];
@@ -731,57 +741,57 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
             pus_base_frame_yy*pus_base_point_y + pus_base_frame_zy*pus_base_point_z);
         const real pus_potential_t_2 = pus_link1_mass*(pus_base_frame_xz*pus_base_point_x +
             pus_base_frame_yz*pus_base_point_y + pus_base_frame_zz*pus_base_point_z);
-        model->inv_pus_size[leg] = inv_pus_size;
-        model->inv_pus_size_t[leg] = inv_pus_size_t;
-        model->inv_pus_size_t_2[leg] = inv_pus_size_t_2;
-        model->pus_J_3_in_spec3_xx[leg] = pus_J_3_in_spec3_xx;
-        model->pus_J_3_in_spec3_xy[leg] = pus_J_3_in_spec3_xy;
-        model->pus_J_3_in_spec3_xz[leg] = pus_J_3_in_spec3_xz;
-        model->pus_J_3_in_spec3_yz[leg] = pus_J_3_in_spec3_yz;
-        model->pus_J_3_in_spec3_zz[leg] = pus_J_3_in_spec3_zz;
-        model->pus_Sigma_3_in_axes3_xx[leg] = pus_Sigma_3_in_axes3_xx;
-        model->pus_Sigma_3_in_axes3_yy[leg] = pus_Sigma_3_in_axes3_yy;
-        model->pus_Sigma_3_in_axes3_zz[leg] = pus_Sigma_3_in_axes3_zz;
-        model->pus_b_in_axes0_x[leg] = pus_b_in_axes0_x;
-        model->pus_base_frame_xx[leg] = pus_base_frame_xx;
-        model->pus_base_frame_xy[leg] = pus_base_frame_xy;
-        model->pus_base_frame_xz[leg] = pus_base_frame_xz;
-        model->pus_base_frame_yx[leg] = pus_base_frame_yx;
-        model->pus_base_frame_yy[leg] = pus_base_frame_yy;
-        model->pus_base_frame_yz[leg] = pus_base_frame_yz;
-        model->pus_base_frame_zx[leg] = pus_base_frame_zx;
-        model->pus_base_frame_zy[leg] = pus_base_frame_zy;
-        model->pus_base_frame_zz[leg] = pus_base_frame_zz;
-        model->pus_base_point_x[leg] = pus_base_point_x;
-        model->pus_base_point_y[leg] = pus_base_point_y;
-        model->pus_base_point_z[leg] = pus_base_point_z;
-        model->pus_branch_1[leg] = pus_branch_1;
-        model->pus_branch_2[leg] = pus_branch_2;
-        model->pus_d_Gamma_3_in_axes3_y[leg] = pus_d_Gamma_3_in_axes3_y;
-        model->pus_d_Gamma_3_t[leg] = pus_d_Gamma_3_t;
-        model->pus_d_c_in_axes3_yy[leg] = pus_d_c_in_axes3_yy;
-        model->pus_d_phi_3_in_axes3_xy[leg] = pus_d_phi_3_in_axes3_xy;
-        model->pus_g_in_axes0_x[leg] = pus_g_in_axes0_x;
-        model->pus_g_in_axes0_y[leg] = pus_g_in_axes0_y;
-        model->pus_g_in_axes0_z[leg] = pus_g_in_axes0_z;
-        model->pus_h_1_in_spec0_x[leg] = pus_h_1_in_spec0_x;
-        model->pus_h_1_in_spec0_y[leg] = pus_h_1_in_spec0_y;
-        model->pus_h_1_in_spec0_z[leg] = pus_h_1_in_spec0_z;
-        model->pus_h_3_in_spec3_x[leg] = pus_h_3_in_spec3_x;
-        model->pus_h_3_in_spec3_y[leg] = pus_h_3_in_spec3_y;
-        model->pus_h_3_in_spec3_z[leg] = pus_h_3_in_spec3_z;
-        model->pus_link1_mass[leg] = pus_link1_mass;
-        model->pus_link3_mass[leg] = pus_link3_mass;
-        model->pus_platform_joint_offset_x[leg] = pus_platform_joint_offset_x;
-        model->pus_platform_point_x[leg] = pus_platform_point_x;
-        model->pus_platform_point_y[leg] = pus_platform_point_y;
-        model->pus_platform_point_z[leg] = pus_platform_point_z;
-        model->pus_potential_t[leg] = pus_potential_t;
-        model->pus_potential_t_2[leg] = pus_potential_t_2;
-        model->pus_size[leg] = pus_size;
-        model->pus_size_t[leg] = pus_size_t;
-        model->pus_size_t_2[leg] = pus_size_t_2;
-        model->pus_w_3_in_axes3_y[leg] = pus_w_3_in_axes3_y;
+        KEEP_OF_LEG(inv_pus_size);
+        KEEP_OF_LEG(inv_pus_size_t);
+        KEEP_OF_LEG(inv_pus_size_t_2);
+        KEEP_OF_LEG(pus_J_3_in_spec3_xx);
+        KEEP_OF_LEG(pus_J_3_in_spec3_xy);
+        KEEP_OF_LEG(pus_J_3_in_spec3_xz);
+        KEEP_OF_LEG(pus_J_3_in_spec3_yz);
+        KEEP_OF_LEG(pus_J_3_in_spec3_zz);
+        KEEP_OF_LEG(pus_Sigma_3_in_axes3_xx);
+        KEEP_OF_LEG(pus_Sigma_3_in_axes3_yy);
+        KEEP_OF_LEG(pus_Sigma_3_in_axes3_zz);
+        KEEP_OF_LEG(pus_b_in_axes0_x);
+        KEEP_OF_LEG(pus_base_frame_xx);
+        KEEP_OF_LEG(pus_base_frame_xy);
+        KEEP_OF_LEG(pus_base_frame_xz);
+        KEEP_OF_LEG(pus_base_frame_yx);
+        KEEP_OF_LEG(pus_base_frame_yy);
+        KEEP_OF_LEG(pus_base_frame_yz);
+        KEEP_OF_LEG(pus_base_frame_zx);
+        KEEP_OF_LEG(pus_base_frame_zy);
+        KEEP_OF_LEG(pus_base_frame_zz);
+        KEEP_OF_LEG(pus_base_point_x);
+        KEEP_OF_LEG(pus_base_point_y);
+        KEEP_OF_LEG(pus_base_point_z);
+        KEEP_OF_LEG(pus_branch_1);
+        KEEP_OF_LEG(pus_branch_2);
+        KEEP_OF_LEG(pus_d_Gamma_3_in_axes3_y);
+        KEEP_OF_LEG(pus_d_Gamma_3_t);
+        KEEP_OF_LEG(pus_d_c_in_axes3_yy);
+        KEEP_OF_LEG(pus_d_phi_3_in_axes3_xy);
+        KEEP_OF_LEG(pus_g_in_axes0_x);
+        KEEP_OF_LEG(pus_g_in_axes0_y);
+        KEEP_OF_LEG(pus_g_in_axes0_z);
+        KEEP_OF_LEG(pus_h_1_in_spec0_x);
+        KEEP_OF_LEG(pus_h_1_in_spec0_y);
+        KEEP_OF_LEG(pus_h_1_in_spec0_z);
+        KEEP_OF_LEG(pus_h_3_in_spec3_x);
+        KEEP_OF_LEG(pus_h_3_in_spec3_y);
+        KEEP_OF_LEG(pus_h_3_in_spec3_z);
+        KEEP_OF_LEG(pus_link1_mass);
+        KEEP_OF_LEG(pus_link3_mass);
+        KEEP_OF_LEG(pus_platform_joint_offset_x);
+        KEEP_OF_LEG(pus_platform_point_x);
+        KEEP_OF_LEG(pus_platform_point_y);
+        KEEP_OF_LEG(pus_platform_point_z);
+        KEEP_OF_LEG(pus_potential_t);
+        KEEP_OF_LEG(pus_potential_t_2);
+        KEEP_OF_LEG(pus_size);
+        KEEP_OF_LEG(pus_size_t);
+        KEEP_OF_LEG(pus_size_t_2);
+        KEEP_OF_LEG(pus_w_3_in_axes3_y);
         m_star_of_legs += leg < LEGS_OF_pus ? pus_link3_mass : 0;
         h_star_in_platform_x_of_legs += leg < LEGS_OF_pus ? pus_h_star_t : 0;
         h_star_in_platform_y_of_legs += leg < LEGS_OF_pus ? pus_h_star_t_2 : 0;
@@ -830,25 +840,25 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
     const real b_c_in_platform_z = R(0.16666666666666666)*b_c_pus_in_platform_z;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = root(legs_size_pus)*spread_t;
-    model->J_star_in_platform_xx = J_star_in_platform_xx;
-    model->J_star_in_platform_xy = J_star_in_platform_xy;
-    model->J_star_in_platform_xz = J_star_in_platform_xz;
-    model->J_star_in_platform_yy = J_star_in_platform_yy;
-    model->J_star_in_platform_yz = J_star_in_platform_yz;
-    model->J_star_in_platform_zz = J_star_in_platform_zz;
-    model->J_star_t_12 = J_star_t_12;
-    model->J_star_t_14 = J_star_t_14;
-    model->Z_p_t = Z_p_t;
-    model->Z_p_t_2 = Z_p_t_2;
-    model->Z_p_t_3 = Z_p_t_3;
-    model->b_c_in_platform_x = b_c_in_platform_x;
-    model->b_c_in_platform_y = b_c_in_platform_y;
-    model->b_c_in_platform_z = b_c_in_platform_z;
-    model->h_star_in_platform_x = h_star_in_platform_x;
-    model->h_star_in_platform_y = h_star_in_platform_y;
-    model->h_star_in_platform_z = h_star_in_platform_z;
-    model->legs_size = legs_size;
-    model->m_star = m_star;
+    KEEP(J_star_in_platform_xx);
+    KEEP(J_star_in_platform_xy);
+    KEEP(J_star_in_platform_xz);
+    KEEP(J_star_in_platform_yy);
+    KEEP(J_star_in_platform_yz);
+    KEEP(J_star_in_platform_zz);
+    KEEP(J_star_t_12);
+    KEEP(J_star_t_14);
+    KEEP(Z_p_t);
+    KEEP(Z_p_t_2);
+    KEEP(Z_p_t_3);
+    KEEP(b_c_in_platform_x);
+    KEEP(b_c_in_platform_y);
+    KEEP(b_c_in_platform_z);
+    KEEP(h_star_in_platform_x);
+    KEEP(h_star_in_platform_y);
+    KEEP(h_star_in_platform_z);
+    KEEP(legs_size);
+    KEEP(m_star);
     return OK;
 }
 
@@ -1427,10 +1437,10 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real R_zy = quaternion_wx + quaternion_yz;
     const real R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = R_xx*m->h_star_in_platform_x + R_xy*m->h_star_in_platform_y +
-        R_xz*m->h_star_in_platform_z;
-    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yy*m->h_star_in_platform_y +
-        R_yz*m->h_star_in_platform_z;
+    const real h_star_x = R_xy*m->h_star_in_platform_y + R_xz*m->h_star_in_platform_z +
+        R_xx*m->h_star_in_platform_x;
+    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yz*m->h_star_in_platform_z +
+        R_yy*m->h_star_in_platform_y;
     const real h_star_z = R_zx*m->h_star_in_platform_x + R_zy*m->h_star_in_platform_y +
         R_zz*m->h_star_in_platform_z;
     v->quaternion_scale = quaternion_scale;
@@ -1454,8 +1464,8 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
     const real omega_x = V[3*w + k];
     const real omega_y = V[4*w + k];
     const real omega_z = V[5*w + k];
-    const real omega_in_platform_x = v->R_xx*omega_x + v->R_yx*omega_y + v->R_zx*omega_z;
-    const real omega_in_platform_y = v->R_xy*omega_x + v->R_yy*omega_y + v->R_zy*omega_z;
+    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
     const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
     v->omega_in_platform_x = omega_in_platform_x;
     v->omega_in_platform_y = omega_in_platform_y;
@@ -1465,24 +1475,24 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
 INLINE void stage_M_dynamics(const prepared *m, values *v)
 {
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_t = m->J_star_in_platform_xy*v->R_xx + m->J_star_in_platform_yz*v->R_xz
-        - m->J_star_t_12*v->R_xy;
+    const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
+        m->J_star_in_platform_xy*v->R_xx;
     const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
         m->J_star_in_platform_yz*v->R_yz - m->J_star_t_12*v->R_yy;
-    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx +
-        m->J_star_in_platform_yz*v->R_zz - m->J_star_t_12*v->R_zy;
+    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx - m->J_star_t_12*v->R_zy +
+        m->J_star_in_platform_yz*v->R_zz;
     const real J_star_t_4 = m->J_star_t_14*v->R_xz - m->J_star_in_platform_xz*v->R_xx;
     const real J_star_t_5 = m->J_star_t_14*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
     const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
-    const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
-        J_star_t_5*v->R_xz;
+    const real J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
+        J_star_t_4*v->R_yz;
     const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
     const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
     const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
-    const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
+    const real J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
     const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
     const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
@@ -1507,10 +1517,10 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
     const real Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real g_in_platform_x = v->R_xx*m->gravity_x + v->R_yx*m->gravity_y +
-        v->R_zx*m->gravity_z;
-    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_yy*m->gravity_y +
-        v->R_zy*m->gravity_z;
+    const real g_in_platform_x = v->R_yx*m->gravity_y + v->R_zx*m->gravity_z +
+        v->R_xx*m->gravity_x;
+    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_zy*m->gravity_z +
+        v->R_yy*m->gravity_y;
     const real g_in_platform_z = v->R_xz*m->gravity_x + v->R_yz*m->gravity_y +
         v->R_zz*m->gravity_z;
     const real Z_q_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
@@ -1522,15 +1532,15 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
         m->J_star_in_platform_yz*v->omega_in_platform_y +
         m->J_star_in_platform_zz*v->omega_in_platform_z;
-    const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
-        g_in_platform_y*m->h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
-        g_in_platform_z*m->h_star_in_platform_y;
-    const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
-        g_in_platform_z*m->h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
-        g_in_platform_x*m->h_star_in_platform_z;
-    const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
-        g_in_platform_x*m->h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
-        g_in_platform_y*m->h_star_in_platform_x;
+    const real Z_q_in_platform_x = g_in_platform_y*m->h_star_in_platform_z -
+        g_in_platform_z*m->h_star_in_platform_y + Z_q_t_3*v->omega_in_platform_y -
+        Z_q_t_2*v->omega_in_platform_z;
+    const real Z_q_in_platform_y = g_in_platform_z*m->h_star_in_platform_x -
+        g_in_platform_x*m->h_star_in_platform_z + Z_q_t*v->omega_in_platform_z -
+        Z_q_t_3*v->omega_in_platform_x;
+    const real Z_q_in_platform_z = g_in_platform_x*m->h_star_in_platform_y -
+        g_in_platform_y*m->h_star_in_platform_x + Z_q_t_2*v->omega_in_platform_x -
+        Z_q_t*v->omega_in_platform_y;
     const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
         v->R_xz*Z_q_in_platform_z;
     const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
@@ -1567,13 +1577,13 @@ INLINE void stage_pus_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real pus_q_x = R_xx*m->pus_platform_point_x[i] + R_xy*m->pus_platform_point_y[i] +
-        R_xz*m->pus_platform_point_z[i];
+    const real pus_q_x = R_xy*m->pus_platform_point_y[i] + R_xz*m->pus_platform_point_z[i] +
+        R_xx*m->pus_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real pus_q_y = R_yx*m->pus_platform_point_x[i] + R_yy*m->pus_platform_point_y[i] +
-        R_yz*m->pus_platform_point_z[i];
+    const real pus_q_y = R_yx*m->pus_platform_point_x[i] + R_yz*m->pus_platform_point_z[i] +
+        R_yy*m->pus_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
@@ -1581,18 +1591,18 @@ INLINE void stage_pus_X(const prepared *m, size_t w, size_t i, size_t j, const r
         R_zz*m->pus_platform_point_z[i];
     /* (pus-S) from the base point to the connection point */
     const real t_x = X[0*w + j];
-    const real pus_S_x = pus_q_x + t_x - m->pus_base_point_x[i];
+    const real pus_S_x = t_x - m->pus_base_point_x[i] + pus_q_x;
     const real t_y = X[1*w + j];
-    const real pus_S_y = pus_q_y + t_y - m->pus_base_point_y[i];
+    const real pus_S_y = t_y - m->pus_base_point_y[i] + pus_q_y;
     const real t_z = X[2*w + j];
-    const real pus_S_z = pus_q_z + t_z - m->pus_base_point_z[i];
+    const real pus_S_z = t_z - m->pus_base_point_z[i] + pus_q_z;
     const real pus_S_in_axes0_x = pus_S_x*m->pus_base_frame_xx[i] +
         pus_S_y*m->pus_base_frame_yx[i] + pus_S_z*m->pus_base_frame_zx[i];
     const real pus_S_in_axes0_y = pus_S_x*m->pus_base_frame_xy[i] +
         pus_S_y*m->pus_base_frame_yy[i] + pus_S_z*m->pus_base_frame_zy[i];
     /* (pus-disc_1) discriminant of the distance equation */
     const real pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
-    const real pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + m->pus_size_t[i] -
+    const real pus_disc_1 = m->pus_size_t[i] + pus_S_in_axes0_x*pus_S_in_axes0_x -
         pus_disc_1_t;
     /* (pus-rho2_2) squared amplitude */
     const real pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1;
@@ -1626,12 +1636,12 @@ INLINE void stage_pus_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real pus_qd_1_t = pus_e_2_in_axes3_x*pus_s_2;
     /* (pus-w_1) */
     const real pus_w_1_t = pus_e_2_in_axes3_x*pus_s_2;
-    const real axis_y_pus_axes3_x = m->pus_base_frame_xx[i]*pus_e_1_in_axes3_y +
-        m->pus_base_frame_xy[i]*pus_w_1_t - m->pus_base_frame_xz[i]*pus_c_3;
-    const real axis_y_pus_axes3_y = m->pus_base_frame_yx[i]*pus_e_1_in_axes3_y +
-        m->pus_base_frame_yy[i]*pus_w_1_t - m->pus_base_frame_yz[i]*pus_c_3;
-    const real axis_y_pus_axes3_z = m->pus_base_frame_zx[i]*pus_e_1_in_axes3_y +
-        m->pus_base_frame_zy[i]*pus_w_1_t - m->pus_base_frame_zz[i]*pus_c_3;
+    const real axis_y_pus_axes3_x = m->pus_base_frame_xy[i]*pus_w_1_t -
+        m->pus_base_frame_xz[i]*pus_c_3 + m->pus_base_frame_xx[i]*pus_e_1_in_axes3_y;
+    const real axis_y_pus_axes3_y = m->pus_base_frame_yy[i]*pus_w_1_t -
+        m->pus_base_frame_yz[i]*pus_c_3 + m->pus_base_frame_yx[i]*pus_e_1_in_axes3_y;
+    const real axis_y_pus_axes3_z = m->pus_base_frame_zy[i]*pus_w_1_t -
+        m->pus_base_frame_zz[i]*pus_c_3 + m->pus_base_frame_zx[i]*pus_e_1_in_axes3_y;
     v->pus_q_x = pus_q_x;
     v->pus_q_y = pus_q_y;
     v->pus_q_z = pus_q_z;
@@ -1682,11 +1692,11 @@ INLINE void stage_pus_V_X(size_t w, size_t j, const real *V, values_pus *v)
     const real pus_S_dot_t_2 = omega_z*v->pus_q_x - omega_x*v->pus_q_z;
     const real pus_S_dot_t_3 = omega_x*v->pus_q_y - omega_y*v->pus_q_x;
     const real t_dot_x = V[0*w + j];
-    const real pus_S_dot_x = pus_S_dot_t + t_dot_x;
+    const real pus_S_dot_x = t_dot_x + pus_S_dot_t;
     const real t_dot_y = V[1*w + j];
-    const real pus_S_dot_y = pus_S_dot_t_2 + t_dot_y;
+    const real pus_S_dot_y = t_dot_y + pus_S_dot_t_2;
     const real t_dot_z = V[2*w + j];
-    const real pus_S_dot_z = pus_S_dot_t_3 + t_dot_z;
+    const real pus_S_dot_z = t_dot_z + pus_S_dot_t_3;
     v->pus_S_dot_t = pus_S_dot_t;
     v->pus_S_dot_t_2 = pus_S_dot_t_2;
     v->pus_S_dot_t_3 = pus_S_dot_t_3;
@@ -1700,13 +1710,13 @@ INLINE void stage_pus_A_V_X(size_t w, size_t j, const real *V, values_pus *v)
     /* (pus-S_ddot) acceleration of the connection point */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
-    const real pus_S_ddot_x = v->pus_a_p_x + omega_y*v->pus_S_dot_t_3 -
-        omega_z*v->pus_S_dot_t_2;
+    const real pus_S_ddot_x = omega_y*v->pus_S_dot_t_3 - omega_z*v->pus_S_dot_t_2 +
+        v->pus_a_p_x;
     const real omega_x = V[3*w + j];
-    const real pus_S_ddot_y = v->pus_a_p_y + omega_z*v->pus_S_dot_t -
-        omega_x*v->pus_S_dot_t_3;
-    const real pus_S_ddot_z = v->pus_a_p_z + omega_x*v->pus_S_dot_t_2 -
-        omega_y*v->pus_S_dot_t;
+    const real pus_S_ddot_y = omega_z*v->pus_S_dot_t - omega_x*v->pus_S_dot_t_3 +
+        v->pus_a_p_y;
+    const real pus_S_ddot_z = omega_x*v->pus_S_dot_t_2 - omega_y*v->pus_S_dot_t +
+        v->pus_a_p_z;
     v->pus_S_ddot_x = pus_S_ddot_x;
     v->pus_S_ddot_y = pus_S_ddot_y;
     v->pus_S_ddot_z = pus_S_ddot_z;
@@ -1738,18 +1748,18 @@ INLINE void stage_pus_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
 {
     /* (pus-J_3) inertia tensor of link 3 about the connection point */
     const real t_x = X[0*w + j];
-    const real pus_J_3_t = v->pus_q_x + t_x - m->pus_base_point_x[i];
+    const real pus_J_3_t = t_x - m->pus_base_point_x[i] + v->pus_q_x;
     const real t_y = X[1*w + j];
-    const real pus_J_3_t_2 = v->pus_q_y + t_y - m->pus_base_point_y[i];
+    const real pus_J_3_t_2 = t_y - m->pus_base_point_y[i] + v->pus_q_y;
     const real t_z = X[2*w + j];
-    const real pus_J_3_t_3 = v->pus_q_z + t_z - m->pus_base_point_z[i];
+    const real pus_J_3_t_3 = t_z - m->pus_base_point_z[i] + v->pus_q_z;
     const real pus_J_3_t_4 = pus_J_3_t*m->pus_base_frame_xx[i] +
         pus_J_3_t_2*m->pus_base_frame_yx[i] + pus_J_3_t_3*m->pus_base_frame_zx[i];
     const real pus_J_3_t_5 = pus_J_3_t*m->pus_base_frame_xy[i] +
         pus_J_3_t_2*m->pus_base_frame_yy[i] + pus_J_3_t_3*m->pus_base_frame_zy[i];
     const real pus_J_3_t_6 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 +
         pus_J_3_t_3*pus_J_3_t_3;
-    const real pus_J_3_t_7 = pus_J_3_t_4*pus_J_3_t_4 + m->pus_size_t[i] - pus_J_3_t_6;
+    const real pus_J_3_t_7 = m->pus_size_t[i] + pus_J_3_t_4*pus_J_3_t_4 - pus_J_3_t_6;
     const real pus_J_3_t_8 = pus_J_3_t_5*pus_J_3_t_5 + pus_J_3_t_7;
     const real pus_J_3_t_9 = root(pus_J_3_t_8)*m->pus_branch_2[i];
     const real pus_J_3_t_10 =
@@ -1803,15 +1813,15 @@ INLINE void stage_pus_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
         pus_d_Gamma_2_t_2*pus_e_1_in_axes3_y) - pus_J_3_t_10*m->pus_h_3_in_spec3_y[i];
     const real pus_d_Gamma_2_in_axes3_y = pus_d_Gamma_2_t_2 -
         pus_e_2_in_axes3_x*m->pus_h_3_in_spec3_y[i];
-    const real pus_d_Gamma_2_in_axes3_z = pus_d_Gamma_2_t +
-        pus_J_3_t_10*m->pus_h_3_in_spec3_x[i] - pus_e_2_in_axes3_x*m->pus_h_3_in_spec3_z[i];
+    const real pus_d_Gamma_2_in_axes3_z = pus_J_3_t_10*m->pus_h_3_in_spec3_x[i] -
+        pus_e_2_in_axes3_x*m->pus_h_3_in_spec3_z[i] + pus_d_Gamma_2_t;
     /* (pus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
        without the mass at the connection point */
     const real pus_d_c_in_axes3_xx = pus_J_3_t_10*m->pus_h_3_in_spec3_y[i]*pus_w_2_in_axes3_x
-        - pus_d_Gamma_2_in_axes3_x*pus_w_2_in_axes3_x -
+        - m->pus_link1_mass[i]*pus_w_1_in_axes3_x*pus_w_1_in_axes3_x -
+        pus_d_Gamma_2_in_axes3_x*pus_w_2_in_axes3_x -
         pus_d_Gamma_3_in_axes3_x*pus_w_3_in_axes3_x -
-        m->pus_h_3_in_spec3_z[i]*pus_w_3_in_axes3_x -
-        m->pus_link1_mass[i]*pus_w_1_in_axes3_x*pus_w_1_in_axes3_x;
+        m->pus_h_3_in_spec3_z[i]*pus_w_3_in_axes3_x;
     const real pus_d_c_in_axes3_xy = -m->pus_d_phi_3_in_axes3_xy[i] -
         pus_d_Gamma_2_in_axes3_y*pus_w_2_in_axes3_x -
         m->pus_d_Gamma_3_in_axes3_y[i]*pus_w_3_in_axes3_x;
@@ -1851,30 +1861,27 @@ INLINE void stage_pus_inverse_kinematics_potential(const prepared *m, size_t w, 
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
     const real t_x = X[0*w + j];
-    const real pus_S_x = t_x + R_xx*m->pus_platform_point_x[i] +
-        R_xy*m->pus_platform_point_y[i] + R_xz*m->pus_platform_point_z[i] -
-        m->pus_base_point_x[i];
+    const real pus_S_x = t_x - m->pus_base_point_x[i] + R_xy*m->pus_platform_point_y[i] +
+        R_xz*m->pus_platform_point_z[i] + R_xx*m->pus_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real t_y = X[1*w + j];
-    const real pus_S_y = t_y + R_yx*m->pus_platform_point_x[i] +
-        R_yy*m->pus_platform_point_y[i] + R_yz*m->pus_platform_point_z[i] -
-        m->pus_base_point_y[i];
+    const real pus_S_y = t_y - m->pus_base_point_y[i] + R_yx*m->pus_platform_point_x[i] +
+        R_yz*m->pus_platform_point_z[i] + R_yy*m->pus_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real t_z = X[2*w + j];
-    const real pus_S_z = t_z + R_zx*m->pus_platform_point_x[i] +
-        R_zy*m->pus_platform_point_y[i] + R_zz*m->pus_platform_point_z[i] -
-        m->pus_base_point_z[i];
+    const real pus_S_z = t_z - m->pus_base_point_z[i] + R_zx*m->pus_platform_point_x[i] +
+        R_zy*m->pus_platform_point_y[i] + R_zz*m->pus_platform_point_z[i];
     const real pus_S_in_axes0_x = pus_S_x*m->pus_base_frame_xx[i] +
         pus_S_y*m->pus_base_frame_yx[i] + pus_S_z*m->pus_base_frame_zx[i];
     const real pus_S_in_axes0_y = pus_S_x*m->pus_base_frame_xy[i] +
         pus_S_y*m->pus_base_frame_yy[i] + pus_S_z*m->pus_base_frame_zy[i];
     /* (pus-disc_1) discriminant of the distance equation */
     const real pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
-    const real pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + m->pus_size_t[i] -
+    const real pus_disc_1 = m->pus_size_t[i] + pus_S_in_axes0_x*pus_S_in_axes0_x -
         pus_disc_1_t;
     /* (pus-q_1) displacement of joint 1 */
     const real pus_q_1_t = m->pus_branch_1[i]*root(pus_disc_1);
@@ -1936,12 +1943,12 @@ INLINE void stage_pus_legs_required(const prepared *m, size_t i, values_pus *v)
     const real pus_S_ddot_in_axes3_z = v->axis_z_pus_axes3_x*v->pus_S_ddot_x +
         v->axis_z_pus_axes3_y*v->pus_S_ddot_y + v->axis_z_pus_axes3_z*v->pus_S_ddot_z;
     /* (pus-bias) acceleration of the connection point at zero joint accelerations */
-    const real pus_bias_in_axes3_z = pus_W_3_in_axes3_xz*m->pus_platform_joint_offset_x[i] +
-        pus_omega_2_in_axes3_x*pus_qd_3_t;
+    const real pus_bias_in_axes3_z = pus_omega_2_in_axes3_x*pus_qd_3_t +
+        pus_W_3_in_axes3_xz*m->pus_platform_joint_offset_x[i];
     /* (pus-rel) acceleration of the connection point left to the joint accelerations */
     const real pus_rel_t = pus_omega_2_in_axes3_y*m->pus_platform_joint_offset_x[i];
-    const real pus_rel_in_axes3_x = pus_S_ddot_in_axes3_x + pus_omega_2_in_axes3_y*pus_rel_t +
-        pus_qd_3*pus_qd_3_t;
+    const real pus_rel_in_axes3_x = pus_S_ddot_in_axes3_x + pus_qd_3*pus_qd_3_t +
+        pus_omega_2_in_axes3_y*pus_rel_t;
     const real pus_rel_in_axes3_y = pus_S_ddot_in_axes3_y - pus_omega_2_in_axes3_x*pus_rel_t;
     const real pus_rel_in_axes3_z = pus_S_ddot_in_axes3_z - pus_bias_in_axes3_z;
     /* (pus-qdd_1) acceleration of joint 1 */
@@ -1966,37 +1973,37 @@ INLINE void stage_pus_legs_required(const prepared *m, size_t i, values_pus *v)
     /* (pus-acc_1) acceleration of the reference point of link 1, less gravity */
     const real pus_acc_1_in_axes0_x = pus_qdd_1 - m->pus_g_in_axes0_x[i];
     /* (pus-acc_3) acceleration of the reference point of link 3, less gravity */
-    const real pus_acc_3_t = v->pus_c_2*m->pus_g_in_axes0_x[i] +
-        m->pus_g_in_axes0_y[i]*v->pus_s_2;
-    const real pus_acc_3_in_axes3_x = pus_S_ddot_in_axes3_x - pus_acc_3_t*v->pus_c_3 -
-        v->pus_e_2_in_axes3_x*m->pus_g_in_axes0_z[i];
-    const real pus_acc_3_in_axes3_y = pus_S_ddot_in_axes3_y +
-        v->pus_c_3*m->pus_g_in_axes0_z[i] - pus_acc_3_t*v->pus_e_2_in_axes3_x;
-    const real pus_acc_3_in_axes3_z = pus_S_ddot_in_axes3_z +
-        m->pus_g_in_axes0_x[i]*v->pus_s_2 - v->pus_c_2*m->pus_g_in_axes0_y[i];
+    const real pus_acc_3_t = m->pus_g_in_axes0_y[i]*v->pus_s_2 +
+        v->pus_c_2*m->pus_g_in_axes0_x[i];
+    const real pus_acc_3_in_axes3_x = pus_S_ddot_in_axes3_x -
+        v->pus_e_2_in_axes3_x*m->pus_g_in_axes0_z[i] - pus_acc_3_t*v->pus_c_3;
+    const real pus_acc_3_in_axes3_y = v->pus_c_3*m->pus_g_in_axes0_z[i] -
+        pus_acc_3_t*v->pus_e_2_in_axes3_x + pus_S_ddot_in_axes3_y;
+    const real pus_acc_3_in_axes3_z = m->pus_g_in_axes0_x[i]*v->pus_s_2 -
+        v->pus_c_2*m->pus_g_in_axes0_y[i] + pus_S_ddot_in_axes3_z;
     /* (pus-mu_3) inertia moment of the links that turn with link 3, about their reference points */
     const real pus_mu_3_t = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_x;
     const real pus_mu_3_t_2 = pus_omega_2_in_axes3_y*pus_omega_2_in_axes3_y;
     const real pus_mu_3_t_3 = pus_qd_3*pus_qd_3;
-    const real pus_mu_3_in_axes3_x = pus_B_3_in_axes3_yx*m->pus_J_3_in_spec3_xy[i] +
-        pus_B_3_in_axes3_zx*m->pus_J_3_in_spec3_xz[i] +
-        pus_B_3_in_axes3_zy*m->pus_Sigma_3_in_axes3_yy[i] -
-        m->pus_J_3_in_spec3_yz[i]*(pus_mu_3_t_2 - pus_mu_3_t_3) -
-        m->pus_Sigma_3_in_axes3_zz[i]*pus_alpha_2_t -
+    const real pus_mu_3_in_axes3_x = pus_B_3_in_axes3_yx*m->pus_J_3_in_spec3_xy[i] -
+        pus_acc_3_in_axes3_z*m->pus_h_3_in_spec3_z[i] -
         pus_acc_3_in_axes3_y*m->pus_h_3_in_spec3_y[i] -
-        pus_acc_3_in_axes3_z*m->pus_h_3_in_spec3_z[i];
-    const real pus_mu_3_in_axes3_y = pus_B_3_in_axes3_xy*m->pus_J_3_in_spec3_yz[i] +
-        m->pus_Sigma_3_in_axes3_zz[i]*pus_alpha_2_in_axes3_y +
-        pus_acc_3_in_axes3_x*m->pus_h_3_in_spec3_y[i] -
+        m->pus_J_3_in_spec3_yz[i]*(pus_mu_3_t_2 - pus_mu_3_t_3) -
+        m->pus_Sigma_3_in_axes3_zz[i]*pus_alpha_2_t +
+        pus_B_3_in_axes3_zx*m->pus_J_3_in_spec3_xz[i] +
+        pus_B_3_in_axes3_zy*m->pus_Sigma_3_in_axes3_yy[i];
+    const real pus_mu_3_in_axes3_y = pus_acc_3_in_axes3_x*m->pus_h_3_in_spec3_y[i] -
+        pus_acc_3_in_axes3_z*m->pus_h_3_in_spec3_x[i] - m->pus_J_3_in_spec3_xy[i]*(pus_mu_3_t
+        - pus_mu_3_t_3) + pus_B_3_in_axes3_xy*m->pus_J_3_in_spec3_yz[i] +
+        m->pus_Sigma_3_in_axes3_zz[i]*pus_alpha_2_in_axes3_y -
         pus_B_3_in_axes3_zx*m->pus_Sigma_3_in_axes3_xx[i] -
-        pus_B_3_in_axes3_zy*m->pus_J_3_in_spec3_xz[i] - m->pus_J_3_in_spec3_xy[i]*(pus_mu_3_t
-        - pus_mu_3_t_3) - pus_acc_3_in_axes3_z*m->pus_h_3_in_spec3_x[i];
-    const real pus_mu_3_in_axes3_z = pus_B_3_in_axes3_yx*m->pus_Sigma_3_in_axes3_xx[i] +
-        pus_acc_3_in_axes3_x*m->pus_h_3_in_spec3_z[i] +
-        pus_acc_3_in_axes3_y*m->pus_h_3_in_spec3_x[i] -
+        pus_B_3_in_axes3_zy*m->pus_J_3_in_spec3_xz[i];
+    const real pus_mu_3_in_axes3_z = pus_acc_3_in_axes3_y*m->pus_h_3_in_spec3_x[i] +
+        pus_acc_3_in_axes3_x*m->pus_h_3_in_spec3_z[i] - m->pus_J_3_in_spec3_xz[i]*(pus_mu_3_t
+        - pus_mu_3_t_2) + pus_B_3_in_axes3_yx*m->pus_Sigma_3_in_axes3_xx[i] -
         pus_B_3_in_axes3_xy*m->pus_Sigma_3_in_axes3_yy[i] -
-        m->pus_J_3_in_spec3_xy[i]*pus_alpha_2_t - m->pus_J_3_in_spec3_xz[i]*(pus_mu_3_t -
-        pus_mu_3_t_2) - m->pus_J_3_in_spec3_yz[i]*pus_alpha_2_in_axes3_y;
+        m->pus_J_3_in_spec3_xy[i]*pus_alpha_2_t -
+        m->pus_J_3_in_spec3_yz[i]*pus_alpha_2_in_axes3_y;
     /* (pus-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
     const real pus_G_t = v->pus_w_2_in_axes3_z*(v->pus_c_3*pus_mu_3_in_axes3_y -
@@ -2004,17 +2011,17 @@ INLINE void stage_pus_legs_required(const prepared *m, size_t i, values_pus *v)
     const real pus_G_in_axes3_y = pus_mu_3_in_axes3_z*m->pus_w_3_in_axes3_y[i];
     /* (pus-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real pus_c_in_axes3_x = pus_B_3_in_axes3_xy*m->pus_h_3_in_spec3_z[i] +
-        m->pus_h_3_in_spec3_x[i]*(pus_mu_3_t_2 + pus_mu_3_t_3) -
+    const real pus_c_in_axes3_x = m->pus_h_3_in_spec3_x[i]*(pus_mu_3_t_3 + pus_mu_3_t_2) +
+        pus_B_3_in_axes3_xy*m->pus_h_3_in_spec3_z[i] -
         pus_alpha_2_in_axes3_y*m->pus_h_3_in_spec3_y[i] -
         v->pus_w_1_in_axes3_x*(pus_acc_1_in_axes0_x*m->pus_link1_mass[i] -
         pus_G_in_axes3_y*v->pus_e_1_in_axes3_y - pus_G_t*v->pus_s_2);
-    const real pus_c_in_axes3_y = -pus_G_in_axes3_y -
+    const real pus_c_in_axes3_y = -m->pus_h_3_in_spec3_z[i]*(pus_mu_3_t_3 + pus_mu_3_t) -
         pus_B_3_in_axes3_yx*m->pus_h_3_in_spec3_x[i] - pus_alpha_2_t*m->pus_h_3_in_spec3_y[i]
-        - m->pus_h_3_in_spec3_z[i]*(pus_mu_3_t + pus_mu_3_t_3);
-    const real pus_c_in_axes3_z = pus_G_t + pus_B_3_in_axes3_zy*m->pus_h_3_in_spec3_z[i] +
-        m->pus_h_3_in_spec3_y[i]*(pus_mu_3_t + pus_mu_3_t_2) -
-        pus_B_3_in_axes3_zx*m->pus_h_3_in_spec3_x[i];
+        - pus_G_in_axes3_y;
+    const real pus_c_in_axes3_z = m->pus_h_3_in_spec3_y[i]*(pus_mu_3_t + pus_mu_3_t_2) +
+        pus_B_3_in_axes3_zy*m->pus_h_3_in_spec3_z[i] -
+        pus_B_3_in_axes3_zx*m->pus_h_3_in_spec3_x[i] + pus_G_t;
     v->axis_x_pus_axes3_x = axis_x_pus_axes3_x;
     v->axis_x_pus_axes3_y = axis_x_pus_axes3_y;
     v->axis_x_pus_axes3_z = axis_x_pus_axes3_z;
@@ -2032,39 +2039,43 @@ INLINE void stage_pus_legs_required(const prepared *m, size_t i, values_pus *v)
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    real *s, verdict *t)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_M_dynamics(m, &v);
-    stage_Z_dynamics(m, w, k, V, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.h_star_x;
-    s[10*w + k] = v.h_star_y;
-    s[11*w + k] = v.h_star_z;
-    s[12*w + k] = v.J_star_xx;
-    s[13*w + k] = v.J_star_xy;
-    s[14*w + k] = v.J_star_xz;
-    s[15*w + k] = v.J_star_yy;
-    s[16*w + k] = v.J_star_yz;
-    s[17*w + k] = v.J_star_zz;
-    s[18*w + k] = v.Z_p_x;
-    s[19*w + k] = v.Z_p_y;
-    s[20*w + k] = v.Z_p_z;
-    s[21*w + k] = v.Z_q_x;
-    s[22*w + k] = v.Z_q_y;
-    s[23*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->h_star_x;
+    s[10*w + k] = v->h_star_y;
+    s[11*w + k] = v->h_star_z;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
+    *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_M_dynamics(m, v);
+    stage_Z_dynamics(m, w, k, V, v);
+    s[12*w + k] = v->J_star_xx;
+    s[13*w + k] = v->J_star_xy;
+    s[14*w + k] = v->J_star_xz;
+    s[15*w + k] = v->J_star_yy;
+    s[16*w + k] = v->J_star_yz;
+    s[17*w + k] = v->J_star_zz;
+    s[18*w + k] = v->Z_p_x;
+    s[19*w + k] = v->Z_p_y;
+    s[20*w + k] = v->Z_p_z;
+    s[21*w + k] = v->Z_q_x;
+    s[22*w + k] = v->Z_q_y;
+    s[23*w + k] = v->Z_q_z;
 }
 
 INLINE void dynamics_legs_pus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2076,12 +2087,12 @@ INLINE void dynamics_legs_pus(const prepared *m, size_t w, size_t i, size_t j, s
     stage_pus_M_dynamics(m, w, i, j, X, &v);
     /* (pus-w_1) reciprocal vector 1 */
     const real pus_w_1_t = v.pus_e_2_in_axes3_x*v.pus_s_2;
-    const real axis_y_pus_axes3_x = m->pus_base_frame_xx[i]*v.pus_e_1_in_axes3_y +
-        m->pus_base_frame_xy[i]*pus_w_1_t - v.pus_J_3_t_10*m->pus_base_frame_xz[i];
-    const real axis_y_pus_axes3_y = m->pus_base_frame_yx[i]*v.pus_e_1_in_axes3_y +
-        m->pus_base_frame_yy[i]*pus_w_1_t - v.pus_J_3_t_10*m->pus_base_frame_yz[i];
-    const real axis_y_pus_axes3_z = m->pus_base_frame_zx[i]*v.pus_e_1_in_axes3_y +
-        m->pus_base_frame_zy[i]*pus_w_1_t - v.pus_J_3_t_10*m->pus_base_frame_zz[i];
+    const real axis_y_pus_axes3_x = m->pus_base_frame_xy[i]*pus_w_1_t -
+        v.pus_J_3_t_10*m->pus_base_frame_xz[i] + m->pus_base_frame_xx[i]*v.pus_e_1_in_axes3_y;
+    const real axis_y_pus_axes3_y = m->pus_base_frame_yy[i]*pus_w_1_t -
+        v.pus_J_3_t_10*m->pus_base_frame_yz[i] + m->pus_base_frame_yx[i]*v.pus_e_1_in_axes3_y;
+    const real axis_y_pus_axes3_z = m->pus_base_frame_zy[i]*pus_w_1_t -
+        v.pus_J_3_t_10*m->pus_base_frame_zz[i] + m->pus_base_frame_zx[i]*v.pus_e_1_in_axes3_y;
     const real axis_x_pus_axes3_x = axis_y_pus_axes3_y*v.axis_z_pus_axes3_z -
         axis_y_pus_axes3_z*v.axis_z_pus_axes3_y;
     const real axis_x_pus_axes3_y = axis_y_pus_axes3_z*v.axis_z_pus_axes3_x -
@@ -2124,13 +2135,13 @@ INLINE void dynamics_legs_pus(const prepared *m, size_t w, size_t i, size_t j, s
     const real pus_u_1_in_axes3_z = v.axis_z_pus_axes3_x*pus_u_1_x +
         v.axis_z_pus_axes3_y*pus_u_1_y + v.axis_z_pus_axes3_z*pus_u_1_z;
     /* (pus-bias) acceleration of the connection point at zero joint accelerations */
-    const real pus_bias_in_axes3_z = pus_W_3_in_axes3_xz*m->pus_platform_joint_offset_x[i] +
-        pus_omega_2_in_axes3_x*pus_qd_3_t;
+    const real pus_bias_in_axes3_z = pus_omega_2_in_axes3_x*pus_qd_3_t +
+        pus_W_3_in_axes3_xz*m->pus_platform_joint_offset_x[i];
     /* (pus-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
        */
     const real pus_rel_o_t = pus_omega_2_in_axes3_y*m->pus_platform_joint_offset_x[i];
-    const real pus_rel_o_in_axes3_x = pus_u_1_in_axes3_x + pus_omega_2_in_axes3_y*pus_rel_o_t
-        + pus_qd_3*pus_qd_3_t;
+    const real pus_rel_o_in_axes3_x = pus_u_1_in_axes3_x + pus_qd_3*pus_qd_3_t +
+        pus_omega_2_in_axes3_y*pus_rel_o_t;
     const real pus_rel_o_in_axes3_y = pus_u_1_in_axes3_y - pus_omega_2_in_axes3_x*pus_rel_o_t;
     const real pus_rel_o_in_axes3_z = pus_u_1_in_axes3_z - pus_bias_in_axes3_z;
     /* (pus-qdd_1_o) remainder of: acceleration of joint 1 */
@@ -2155,39 +2166,40 @@ INLINE void dynamics_legs_pus(const prepared *m, size_t w, size_t i, size_t j, s
     /* (pus-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
     const real pus_acc_1_o_in_axes0_x = pus_qdd_1_o - m->pus_g_in_axes0_x[i];
     /* (pus-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real pus_acc_3_o_t = v.pus_c_2*m->pus_g_in_axes0_x[i] +
-        m->pus_g_in_axes0_y[i]*v.pus_s_2;
-    const real pus_acc_3_o_in_axes3_x = pus_u_1_in_axes3_x - v.pus_J_3_t_10*pus_acc_3_o_t -
-        v.pus_e_2_in_axes3_x*m->pus_g_in_axes0_z[i];
-    const real pus_acc_3_o_in_axes3_y = pus_u_1_in_axes3_y +
-        v.pus_J_3_t_10*m->pus_g_in_axes0_z[i] - pus_acc_3_o_t*v.pus_e_2_in_axes3_x;
-    const real pus_acc_3_o_in_axes3_z = pus_u_1_in_axes3_z + m->pus_g_in_axes0_x[i]*v.pus_s_2
-        - v.pus_c_2*m->pus_g_in_axes0_y[i];
+    const real pus_acc_3_o_t = m->pus_g_in_axes0_y[i]*v.pus_s_2 +
+        v.pus_c_2*m->pus_g_in_axes0_x[i];
+    const real pus_acc_3_o_in_axes3_x = pus_u_1_in_axes3_x -
+        v.pus_e_2_in_axes3_x*m->pus_g_in_axes0_z[i] - v.pus_J_3_t_10*pus_acc_3_o_t;
+    const real pus_acc_3_o_in_axes3_y = v.pus_J_3_t_10*m->pus_g_in_axes0_z[i] -
+        pus_acc_3_o_t*v.pus_e_2_in_axes3_x + pus_u_1_in_axes3_y;
+    const real pus_acc_3_o_in_axes3_z = m->pus_g_in_axes0_x[i]*v.pus_s_2 -
+        v.pus_c_2*m->pus_g_in_axes0_y[i] + pus_u_1_in_axes3_z;
     /* (pus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
        reference points */
     const real pus_mu_3_o_t = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_x;
     const real pus_mu_3_o_t_2 = pus_omega_2_in_axes3_y*pus_omega_2_in_axes3_y;
     const real pus_mu_3_o_t_3 = pus_qd_3*pus_qd_3;
-    const real pus_mu_3_o_in_axes3_x = pus_B_3_o_in_axes3_yx*m->pus_J_3_in_spec3_xy[i] +
-        pus_B_3_o_in_axes3_zx*m->pus_J_3_in_spec3_xz[i] +
-        pus_B_3_o_in_axes3_zy*m->pus_Sigma_3_in_axes3_yy[i] -
-        m->pus_J_3_in_spec3_yz[i]*(pus_mu_3_o_t_2 - pus_mu_3_o_t_3) -
-        m->pus_Sigma_3_in_axes3_zz[i]*pus_alpha_2_o_t -
+    const real pus_mu_3_o_in_axes3_x = pus_B_3_o_in_axes3_yx*m->pus_J_3_in_spec3_xy[i] -
+        pus_acc_3_o_in_axes3_z*m->pus_h_3_in_spec3_z[i] -
         pus_acc_3_o_in_axes3_y*m->pus_h_3_in_spec3_y[i] -
-        pus_acc_3_o_in_axes3_z*m->pus_h_3_in_spec3_z[i];
-    const real pus_mu_3_o_in_axes3_y = pus_B_3_o_in_axes3_xy*m->pus_J_3_in_spec3_yz[i] +
-        m->pus_Sigma_3_in_axes3_zz[i]*pus_alpha_2_o_in_axes3_y +
-        pus_acc_3_o_in_axes3_x*m->pus_h_3_in_spec3_y[i] -
+        m->pus_J_3_in_spec3_yz[i]*(pus_mu_3_o_t_2 - pus_mu_3_o_t_3) -
+        m->pus_Sigma_3_in_axes3_zz[i]*pus_alpha_2_o_t +
+        pus_B_3_o_in_axes3_zx*m->pus_J_3_in_spec3_xz[i] +
+        pus_B_3_o_in_axes3_zy*m->pus_Sigma_3_in_axes3_yy[i];
+    const real pus_mu_3_o_in_axes3_y = pus_acc_3_o_in_axes3_x*m->pus_h_3_in_spec3_y[i] -
+        pus_acc_3_o_in_axes3_z*m->pus_h_3_in_spec3_x[i] -
+        m->pus_J_3_in_spec3_xy[i]*(pus_mu_3_o_t - pus_mu_3_o_t_3) +
+        pus_B_3_o_in_axes3_xy*m->pus_J_3_in_spec3_yz[i] +
+        m->pus_Sigma_3_in_axes3_zz[i]*pus_alpha_2_o_in_axes3_y -
         pus_B_3_o_in_axes3_zx*m->pus_Sigma_3_in_axes3_xx[i] -
-        pus_B_3_o_in_axes3_zy*m->pus_J_3_in_spec3_xz[i] -
-        m->pus_J_3_in_spec3_xy[i]*(pus_mu_3_o_t - pus_mu_3_o_t_3) -
-        pus_acc_3_o_in_axes3_z*m->pus_h_3_in_spec3_x[i];
-    const real pus_mu_3_o_in_axes3_z = pus_B_3_o_in_axes3_yx*m->pus_Sigma_3_in_axes3_xx[i] +
-        pus_acc_3_o_in_axes3_x*m->pus_h_3_in_spec3_z[i] +
-        pus_acc_3_o_in_axes3_y*m->pus_h_3_in_spec3_x[i] -
+        pus_B_3_o_in_axes3_zy*m->pus_J_3_in_spec3_xz[i];
+    const real pus_mu_3_o_in_axes3_z = pus_acc_3_o_in_axes3_y*m->pus_h_3_in_spec3_x[i] +
+        pus_acc_3_o_in_axes3_x*m->pus_h_3_in_spec3_z[i] -
+        m->pus_J_3_in_spec3_xz[i]*(pus_mu_3_o_t - pus_mu_3_o_t_2) +
+        pus_B_3_o_in_axes3_yx*m->pus_Sigma_3_in_axes3_xx[i] -
         pus_B_3_o_in_axes3_xy*m->pus_Sigma_3_in_axes3_yy[i] -
-        m->pus_J_3_in_spec3_xy[i]*pus_alpha_2_o_t - m->pus_J_3_in_spec3_xz[i]*(pus_mu_3_o_t -
-        pus_mu_3_o_t_2) - m->pus_J_3_in_spec3_yz[i]*pus_alpha_2_o_in_axes3_y;
+        m->pus_J_3_in_spec3_xy[i]*pus_alpha_2_o_t -
+        m->pus_J_3_in_spec3_yz[i]*pus_alpha_2_o_in_axes3_y;
     /* (pus-G_o) remainder of: force at the connection point that balances the leg's inertia and
        weight along all degrees of freedom */
     const real pus_G_o_t = v.pus_w_2_in_axes3_z*(v.pus_J_3_t_10*pus_mu_3_o_in_axes3_y -
@@ -2195,32 +2207,30 @@ INLINE void dynamics_legs_pus(const prepared *m, size_t w, size_t i, size_t j, s
     const real pus_G_o_in_axes3_y = pus_mu_3_o_in_axes3_z*m->pus_w_3_in_axes3_y[i];
     /* (pus-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
-    const real pus_c_o_in_axes3_x = pus_B_3_o_in_axes3_xy*m->pus_h_3_in_spec3_z[i] +
-        m->pus_h_3_in_spec3_x[i]*(pus_mu_3_o_t_2 + pus_mu_3_o_t_3) -
+    const real pus_c_o_in_axes3_x = m->pus_h_3_in_spec3_x[i]*(pus_mu_3_o_t_3 + pus_mu_3_o_t_2)
+        + pus_B_3_o_in_axes3_xy*m->pus_h_3_in_spec3_z[i] -
         pus_alpha_2_o_in_axes3_y*m->pus_h_3_in_spec3_y[i] -
         v.pus_w_1_in_axes3_x*(pus_acc_1_o_in_axes0_x*m->pus_link1_mass[i] -
         pus_G_o_in_axes3_y*v.pus_e_1_in_axes3_y - pus_G_o_t*v.pus_s_2);
-    const real pus_c_o_in_axes3_y = -pus_G_o_in_axes3_y -
-        pus_B_3_o_in_axes3_yx*m->pus_h_3_in_spec3_x[i] -
-        pus_alpha_2_o_t*m->pus_h_3_in_spec3_y[i] - m->pus_h_3_in_spec3_z[i]*(pus_mu_3_o_t +
-        pus_mu_3_o_t_3);
-    const real pus_c_o_in_axes3_z = pus_G_o_t + pus_B_3_o_in_axes3_zy*m->pus_h_3_in_spec3_z[i]
-        + m->pus_h_3_in_spec3_y[i]*(pus_mu_3_o_t + pus_mu_3_o_t_2) -
-        pus_B_3_o_in_axes3_zx*m->pus_h_3_in_spec3_x[i];
+    const real pus_c_o_in_axes3_y = -m->pus_h_3_in_spec3_z[i]*(pus_mu_3_o_t_3 + pus_mu_3_o_t)
+        - pus_B_3_o_in_axes3_yx*m->pus_h_3_in_spec3_x[i] -
+        pus_alpha_2_o_t*m->pus_h_3_in_spec3_y[i] - pus_G_o_in_axes3_y;
+    const real pus_c_o_in_axes3_z = m->pus_h_3_in_spec3_y[i]*(pus_mu_3_o_t + pus_mu_3_o_t_2) +
+        pus_B_3_o_in_axes3_zy*m->pus_h_3_in_spec3_z[i] -
+        pus_B_3_o_in_axes3_zx*m->pus_h_3_in_spec3_x[i] + pus_G_o_t;
     /* (pus-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real pus_Q_t = v.pus_d_c_in_axes3_xx - m->pus_d_c_in_axes3_yy[i];
     const real pus_Q_t_2 = R(0.5)*pus_Q_t;
-    const real pus_Q_t_3 = v.pus_d_c_in_axes3_xx +
-        v.pus_d_Gamma_2_in_axes3_z*v.pus_w_2_in_axes3_z +
-        v.pus_d_alpha_3_t*m->pus_h_3_in_spec3_x[i] -
-        v.pus_d_alpha_3_in_axes3_xz*m->pus_h_3_in_spec3_z[i];
+    const real pus_Q_t_3 = v.pus_d_alpha_3_t*m->pus_h_3_in_spec3_x[i] -
+        v.pus_d_alpha_3_in_axes3_xz*m->pus_h_3_in_spec3_z[i] +
+        v.pus_d_Gamma_2_in_axes3_z*v.pus_w_2_in_axes3_z + v.pus_d_c_in_axes3_xx;
     const real pus_Q_t_4 = R(0.5)*pus_Q_t_3;
-    const real pus_Q_t_5 = axis_x_pus_axes3_x*v.pus_d_c_in_axes3_xy +
-        v.axis_z_pus_axes3_x*v.pus_d_c_in_axes3_yz - axis_y_pus_axes3_x*pus_Q_t_2;
-    const real pus_Q_t_6 = axis_x_pus_axes3_y*v.pus_d_c_in_axes3_xy +
-        v.axis_z_pus_axes3_y*v.pus_d_c_in_axes3_yz - axis_y_pus_axes3_y*pus_Q_t_2;
-    const real pus_Q_t_7 = axis_x_pus_axes3_z*v.pus_d_c_in_axes3_xy +
-        v.axis_z_pus_axes3_z*v.pus_d_c_in_axes3_yz - axis_y_pus_axes3_z*pus_Q_t_2;
+    const real pus_Q_t_5 = v.axis_z_pus_axes3_x*v.pus_d_c_in_axes3_yz +
+        axis_x_pus_axes3_x*v.pus_d_c_in_axes3_xy - axis_y_pus_axes3_x*pus_Q_t_2;
+    const real pus_Q_t_6 = v.axis_z_pus_axes3_y*v.pus_d_c_in_axes3_yz +
+        axis_x_pus_axes3_y*v.pus_d_c_in_axes3_xy - axis_y_pus_axes3_y*pus_Q_t_2;
+    const real pus_Q_t_7 = v.axis_z_pus_axes3_z*v.pus_d_c_in_axes3_yz +
+        axis_x_pus_axes3_z*v.pus_d_c_in_axes3_xy - axis_y_pus_axes3_z*pus_Q_t_2;
     const real pus_Q_t_8 = v.axis_z_pus_axes3_x*pus_Q_t_4 -
         axis_x_pus_axes3_x*v.pus_d_c_in_axes3_xz;
     const real pus_Q_t_9 = v.axis_z_pus_axes3_y*pus_Q_t_4 -
@@ -2228,24 +2238,24 @@ INLINE void dynamics_legs_pus(const prepared *m, size_t w, size_t i, size_t j, s
     const real pus_Q_t_10 = v.axis_z_pus_axes3_z*pus_Q_t_4 -
         axis_x_pus_axes3_z*v.pus_d_c_in_axes3_xz;
     const real pus_Q_t_11 = axis_y_pus_axes3_x*pus_Q_t_5 - v.axis_z_pus_axes3_x*pus_Q_t_8;
-    const real pus_Q_xx = -2*pus_Q_t_11 - v.pus_d_c_in_axes3_xx;
+    const real pus_Q_xx = -v.pus_d_c_in_axes3_xx - 2*pus_Q_t_11;
     const real pus_Q_xy = v.axis_z_pus_axes3_x*pus_Q_t_9 + v.axis_z_pus_axes3_y*pus_Q_t_8 -
         axis_y_pus_axes3_x*pus_Q_t_6 - axis_y_pus_axes3_y*pus_Q_t_5;
     const real pus_Q_xz = v.axis_z_pus_axes3_x*pus_Q_t_10 + v.axis_z_pus_axes3_z*pus_Q_t_8 -
         axis_y_pus_axes3_x*pus_Q_t_7 - axis_y_pus_axes3_z*pus_Q_t_5;
     const real pus_Q_t_12 = axis_y_pus_axes3_y*pus_Q_t_6 - v.axis_z_pus_axes3_y*pus_Q_t_9;
-    const real pus_Q_yy = -2*pus_Q_t_12 - v.pus_d_c_in_axes3_xx;
+    const real pus_Q_yy = -v.pus_d_c_in_axes3_xx - 2*pus_Q_t_12;
     const real pus_Q_yz = v.axis_z_pus_axes3_y*pus_Q_t_10 + v.axis_z_pus_axes3_z*pus_Q_t_9 -
         axis_y_pus_axes3_y*pus_Q_t_7 - axis_y_pus_axes3_z*pus_Q_t_6;
     const real pus_Q_t_13 = axis_y_pus_axes3_z*pus_Q_t_7 - v.axis_z_pus_axes3_z*pus_Q_t_10;
-    const real pus_Q_zz = -2*pus_Q_t_13 - v.pus_d_c_in_axes3_xx;
+    const real pus_Q_zz = -v.pus_d_c_in_axes3_xx - 2*pus_Q_t_13;
     /* (pus-U) velocity and gravity terms of the leg force */
-    const real pus_U_x = -axis_x_pus_axes3_x*pus_c_o_in_axes3_x -
-        axis_y_pus_axes3_x*pus_c_o_in_axes3_y - v.axis_z_pus_axes3_x*pus_c_o_in_axes3_z;
-    const real pus_U_y = -axis_x_pus_axes3_y*pus_c_o_in_axes3_x -
-        axis_y_pus_axes3_y*pus_c_o_in_axes3_y - v.axis_z_pus_axes3_y*pus_c_o_in_axes3_z;
-    const real pus_U_z = -axis_x_pus_axes3_z*pus_c_o_in_axes3_x -
-        axis_y_pus_axes3_z*pus_c_o_in_axes3_y - v.axis_z_pus_axes3_z*pus_c_o_in_axes3_z;
+    const real pus_U_x = -axis_y_pus_axes3_x*pus_c_o_in_axes3_y -
+        v.axis_z_pus_axes3_x*pus_c_o_in_axes3_z - axis_x_pus_axes3_x*pus_c_o_in_axes3_x;
+    const real pus_U_y = -axis_y_pus_axes3_y*pus_c_o_in_axes3_y -
+        v.axis_z_pus_axes3_y*pus_c_o_in_axes3_z - axis_x_pus_axes3_y*pus_c_o_in_axes3_x;
+    const real pus_U_z = -axis_y_pus_axes3_z*pus_c_o_in_axes3_y -
+        v.axis_z_pus_axes3_z*pus_c_o_in_axes3_z - axis_x_pus_axes3_z*pus_c_o_in_axes3_x;
     /* (M_ta) coupling block of M */
     const real pus_M_ta_t = -pus_Q_xy*v.pus_q_z;
     const real pus_M_ta_t_2 = pus_Q_xz*v.pus_q_y;
@@ -2341,15 +2351,15 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[11*w + k];
-    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
     const real h_star_y = s[10*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -2357,9 +2367,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[9*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
@@ -2394,13 +2404,13 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[24*w + k];
     const real Z_q_x = s[21*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[25*w + k];
     const real Z_q_y = s[22*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[26*w + k];
     const real Z_q_z = s[23*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
     const real M_tt_xy = sums[1*w + k];
@@ -2465,7 +2475,8 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 {
     real s[24] = {0}, sums[27] = {0};
     real terms_pus[27*LEGS(LEGS_OF_pus)] = {0}, o_pus[9*LEGS(LEGS_OF_pus)] = {0};
-    dynamics_before(m, 1, 0, X, V, s, t);
+    values v;
+    dynamics_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_pus); ++k) {
         dynamics_legs_pus(m, 1, k, 0, k, LEGS(LEGS_OF_pus), 0, s, X, V, terms_pus, o_pus);
     }
@@ -2475,6 +2486,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t n = 0; n < 27; ++n) {
         sums[n] = total(terms_pus + n*LEGS(LEGS_OF_pus), LEGS_OF_pus);
     }
+    dynamics_between(m, 1, 0, V, &v, s);
     dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
@@ -2484,7 +2496,9 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real s[24*LANES], sums[27*LANES];
     real o_pus[9*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        dynamics_before(m, LANES, k, X, V, s, t);
+        values v;
+        dynamics_before(m, LANES, k, X, &v, s, t);
+        dynamics_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 27*LANES);
     for (size_t i = 0; i < LEGS_OF_pus; ++i) {
@@ -2501,30 +2515,34 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_M_dynamics(m, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.h_star_x;
-    s[10*w + k] = v.h_star_y;
-    s[11*w + k] = v.h_star_z;
-    s[12*w + k] = v.J_star_xx;
-    s[13*w + k] = v.J_star_xy;
-    s[14*w + k] = v.J_star_xz;
-    s[15*w + k] = v.J_star_yy;
-    s[16*w + k] = v.J_star_yz;
-    s[17*w + k] = v.J_star_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->h_star_x;
+    s[10*w + k] = v->h_star_y;
+    s[11*w + k] = v->h_star_z;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void M_between(const prepared *m, size_t w, size_t k, values *v, real *s)
+{
+    stage_M_dynamics(m, v);
+    s[12*w + k] = v->J_star_xx;
+    s[13*w + k] = v->J_star_xy;
+    s[14*w + k] = v->J_star_xz;
+    s[15*w + k] = v->J_star_yy;
+    s[16*w + k] = v->J_star_yz;
+    s[17*w + k] = v->J_star_zz;
 }
 
 INLINE void M_legs_pus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2535,12 +2553,12 @@ INLINE void M_legs_pus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_pus_M_dynamics(m, w, i, j, X, &v);
     /* (pus-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real pus_Q_t = v.pus_e_2_in_axes3_x*v.pus_s_2;
-    const real axis_y_pus_axes3_x = pus_Q_t*m->pus_base_frame_xy[i] +
-        m->pus_base_frame_xx[i]*v.pus_e_1_in_axes3_y - v.pus_J_3_t_10*m->pus_base_frame_xz[i];
-    const real axis_y_pus_axes3_y = pus_Q_t*m->pus_base_frame_yy[i] +
-        m->pus_base_frame_yx[i]*v.pus_e_1_in_axes3_y - v.pus_J_3_t_10*m->pus_base_frame_yz[i];
-    const real axis_y_pus_axes3_z = pus_Q_t*m->pus_base_frame_zy[i] +
-        m->pus_base_frame_zx[i]*v.pus_e_1_in_axes3_y - v.pus_J_3_t_10*m->pus_base_frame_zz[i];
+    const real axis_y_pus_axes3_x = pus_Q_t*m->pus_base_frame_xy[i] -
+        v.pus_J_3_t_10*m->pus_base_frame_xz[i] + m->pus_base_frame_xx[i]*v.pus_e_1_in_axes3_y;
+    const real axis_y_pus_axes3_y = pus_Q_t*m->pus_base_frame_yy[i] -
+        v.pus_J_3_t_10*m->pus_base_frame_yz[i] + m->pus_base_frame_yx[i]*v.pus_e_1_in_axes3_y;
+    const real axis_y_pus_axes3_z = pus_Q_t*m->pus_base_frame_zy[i] -
+        v.pus_J_3_t_10*m->pus_base_frame_zz[i] + m->pus_base_frame_zx[i]*v.pus_e_1_in_axes3_y;
     const real axis_x_pus_axes3_x = axis_y_pus_axes3_y*v.axis_z_pus_axes3_z -
         axis_y_pus_axes3_z*v.axis_z_pus_axes3_y;
     const real axis_x_pus_axes3_y = axis_y_pus_axes3_z*v.axis_z_pus_axes3_x -
@@ -2549,17 +2567,16 @@ INLINE void M_legs_pus(const prepared *m, size_t w, size_t i, size_t j, size_t k
         axis_y_pus_axes3_y*v.axis_z_pus_axes3_x;
     const real pus_Q_t_2 = v.pus_d_c_in_axes3_xx - m->pus_d_c_in_axes3_yy[i];
     const real pus_Q_t_3 = R(0.5)*pus_Q_t_2;
-    const real pus_Q_t_4 = v.pus_d_c_in_axes3_xx +
-        v.pus_d_Gamma_2_in_axes3_z*v.pus_w_2_in_axes3_z +
-        v.pus_d_alpha_3_t*m->pus_h_3_in_spec3_x[i] -
-        v.pus_d_alpha_3_in_axes3_xz*m->pus_h_3_in_spec3_z[i];
+    const real pus_Q_t_4 = v.pus_d_alpha_3_t*m->pus_h_3_in_spec3_x[i] -
+        v.pus_d_alpha_3_in_axes3_xz*m->pus_h_3_in_spec3_z[i] +
+        v.pus_d_Gamma_2_in_axes3_z*v.pus_w_2_in_axes3_z + v.pus_d_c_in_axes3_xx;
     const real pus_Q_t_5 = R(0.5)*pus_Q_t_4;
-    const real pus_Q_t_6 = axis_x_pus_axes3_x*v.pus_d_c_in_axes3_xy +
-        v.axis_z_pus_axes3_x*v.pus_d_c_in_axes3_yz - axis_y_pus_axes3_x*pus_Q_t_3;
-    const real pus_Q_t_7 = axis_x_pus_axes3_y*v.pus_d_c_in_axes3_xy +
-        v.axis_z_pus_axes3_y*v.pus_d_c_in_axes3_yz - axis_y_pus_axes3_y*pus_Q_t_3;
-    const real pus_Q_t_8 = axis_x_pus_axes3_z*v.pus_d_c_in_axes3_xy +
-        v.axis_z_pus_axes3_z*v.pus_d_c_in_axes3_yz - axis_y_pus_axes3_z*pus_Q_t_3;
+    const real pus_Q_t_6 = v.axis_z_pus_axes3_x*v.pus_d_c_in_axes3_yz +
+        axis_x_pus_axes3_x*v.pus_d_c_in_axes3_xy - axis_y_pus_axes3_x*pus_Q_t_3;
+    const real pus_Q_t_7 = v.axis_z_pus_axes3_y*v.pus_d_c_in_axes3_yz +
+        axis_x_pus_axes3_y*v.pus_d_c_in_axes3_xy - axis_y_pus_axes3_y*pus_Q_t_3;
+    const real pus_Q_t_8 = v.axis_z_pus_axes3_z*v.pus_d_c_in_axes3_yz +
+        axis_x_pus_axes3_z*v.pus_d_c_in_axes3_xy - axis_y_pus_axes3_z*pus_Q_t_3;
     const real pus_Q_t_9 = v.axis_z_pus_axes3_x*pus_Q_t_5 -
         axis_x_pus_axes3_x*v.pus_d_c_in_axes3_xz;
     const real pus_Q_t_10 = v.axis_z_pus_axes3_y*pus_Q_t_5 -
@@ -2567,17 +2584,17 @@ INLINE void M_legs_pus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real pus_Q_t_11 = v.axis_z_pus_axes3_z*pus_Q_t_5 -
         axis_x_pus_axes3_z*v.pus_d_c_in_axes3_xz;
     const real pus_Q_t_12 = axis_y_pus_axes3_x*pus_Q_t_6 - v.axis_z_pus_axes3_x*pus_Q_t_9;
-    const real pus_Q_xx = -2*pus_Q_t_12 - v.pus_d_c_in_axes3_xx;
+    const real pus_Q_xx = -v.pus_d_c_in_axes3_xx - 2*pus_Q_t_12;
     const real pus_Q_xy = v.axis_z_pus_axes3_x*pus_Q_t_10 + v.axis_z_pus_axes3_y*pus_Q_t_9 -
         axis_y_pus_axes3_x*pus_Q_t_7 - axis_y_pus_axes3_y*pus_Q_t_6;
     const real pus_Q_xz = v.axis_z_pus_axes3_x*pus_Q_t_11 + v.axis_z_pus_axes3_z*pus_Q_t_9 -
         axis_y_pus_axes3_x*pus_Q_t_8 - axis_y_pus_axes3_z*pus_Q_t_6;
     const real pus_Q_t_13 = axis_y_pus_axes3_y*pus_Q_t_7 - v.axis_z_pus_axes3_y*pus_Q_t_10;
-    const real pus_Q_yy = -2*pus_Q_t_13 - v.pus_d_c_in_axes3_xx;
+    const real pus_Q_yy = -v.pus_d_c_in_axes3_xx - 2*pus_Q_t_13;
     const real pus_Q_yz = v.axis_z_pus_axes3_y*pus_Q_t_11 + v.axis_z_pus_axes3_z*pus_Q_t_10 -
         axis_y_pus_axes3_y*pus_Q_t_8 - axis_y_pus_axes3_z*pus_Q_t_7;
     const real pus_Q_t_14 = axis_y_pus_axes3_z*pus_Q_t_8 - v.axis_z_pus_axes3_z*pus_Q_t_11;
-    const real pus_Q_zz = -2*pus_Q_t_14 - v.pus_d_c_in_axes3_xx;
+    const real pus_Q_zz = -v.pus_d_c_in_axes3_xx - 2*pus_Q_t_14;
     /* (M_ta) coupling block of M */
     const real pus_M_ta_t = -pus_Q_xy*v.pus_q_z;
     const real pus_M_ta_t_2 = pus_Q_xz*v.pus_q_y;
@@ -2639,15 +2656,15 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[11*w + k];
-    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
     const real h_star_y = s[10*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -2655,9 +2672,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[9*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
@@ -2734,7 +2751,8 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
     real s[18] = {0}, sums[21] = {0};
     real terms_pus[21*LEGS(LEGS_OF_pus)] = {0}, o_pus[2*LEGS(LEGS_OF_pus)] = {0};
-    M_before(m, 1, 0, X, s, t);
+    values v;
+    M_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_pus); ++k) {
         M_legs_pus(m, 1, k, 0, k, LEGS(LEGS_OF_pus), 0, s, X, terms_pus, o_pus);
     }
@@ -2744,6 +2762,7 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     for (size_t n = 0; n < 21; ++n) {
         sums[n] = total(terms_pus + n*LEGS(LEGS_OF_pus), LEGS_OF_pus);
     }
+    M_between(m, 1, 0, &v, s);
     M_after(m, 1, 0, s, sums, M, t);
 }
 
@@ -2752,7 +2771,9 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
     real s[18*LANES], sums[21*LANES];
     real o_pus[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        M_before(m, LANES, k, X, s, t);
+        values v;
+        M_before(m, LANES, k, X, &v, s, t);
+        M_between(m, LANES, k, &v, s);
     }
     clear(sums, 21*LANES);
     for (size_t i = 0; i < LEGS_OF_pus; ++i) {
@@ -2769,29 +2790,32 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s,
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
     verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_Z_dynamics(m, w, k, V, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.Z_p_x;
-    s[10*w + k] = v.Z_p_y;
-    s[11*w + k] = v.Z_p_z;
-    s[12*w + k] = v.Z_q_x;
-    s[13*w + k] = v.Z_q_y;
-    s[14*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_Z_dynamics(m, w, k, V, v);
+    s[9*w + k] = v->Z_p_x;
+    s[10*w + k] = v->Z_p_y;
+    s[11*w + k] = v->Z_p_z;
+    s[12*w + k] = v->Z_q_x;
+    s[13*w + k] = v->Z_q_y;
+    s[14*w + k] = v->Z_q_z;
 }
 
 INLINE void Z_legs_pus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2801,12 +2825,12 @@ INLINE void Z_legs_pus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_pus_X(m, w, i, j, s, X, &v);
     stage_pus_V_X(w, j, V, &v);
     /* (pus-qd_1) rate of joint 1 */
-    const real axis_y_pus_axes3_x = m->pus_base_frame_xx[i]*v.pus_e_1_in_axes3_y +
-        m->pus_base_frame_xy[i]*v.pus_qd_1_t - m->pus_base_frame_xz[i]*v.pus_c_3;
-    const real axis_y_pus_axes3_y = m->pus_base_frame_yx[i]*v.pus_e_1_in_axes3_y +
-        m->pus_base_frame_yy[i]*v.pus_qd_1_t - m->pus_base_frame_yz[i]*v.pus_c_3;
-    const real axis_y_pus_axes3_z = m->pus_base_frame_zx[i]*v.pus_e_1_in_axes3_y +
-        m->pus_base_frame_zy[i]*v.pus_qd_1_t - m->pus_base_frame_zz[i]*v.pus_c_3;
+    const real axis_y_pus_axes3_x = m->pus_base_frame_xy[i]*v.pus_qd_1_t -
+        m->pus_base_frame_xz[i]*v.pus_c_3 + m->pus_base_frame_xx[i]*v.pus_e_1_in_axes3_y;
+    const real axis_y_pus_axes3_y = m->pus_base_frame_yy[i]*v.pus_qd_1_t -
+        m->pus_base_frame_yz[i]*v.pus_c_3 + m->pus_base_frame_yx[i]*v.pus_e_1_in_axes3_y;
+    const real axis_y_pus_axes3_z = m->pus_base_frame_zy[i]*v.pus_qd_1_t -
+        m->pus_base_frame_zz[i]*v.pus_c_3 + m->pus_base_frame_zx[i]*v.pus_e_1_in_axes3_y;
     const real axis_x_pus_axes3_x = axis_y_pus_axes3_y*v.axis_z_pus_axes3_z -
         axis_y_pus_axes3_z*v.axis_z_pus_axes3_y;
     const real axis_x_pus_axes3_y = axis_y_pus_axes3_z*v.axis_z_pus_axes3_x -
@@ -2845,13 +2869,13 @@ INLINE void Z_legs_pus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real pus_u_1_in_axes3_z = v.axis_z_pus_axes3_x*pus_u_1_x +
         v.axis_z_pus_axes3_y*pus_u_1_y + v.axis_z_pus_axes3_z*pus_u_1_z;
     /* (pus-bias) acceleration of the connection point at zero joint accelerations */
-    const real pus_bias_in_axes3_z = pus_W_3_in_axes3_xz*m->pus_platform_joint_offset_x[i] +
-        pus_omega_2_in_axes3_x*pus_qd_3_t;
+    const real pus_bias_in_axes3_z = pus_omega_2_in_axes3_x*pus_qd_3_t +
+        pus_W_3_in_axes3_xz*m->pus_platform_joint_offset_x[i];
     /* (pus-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
        */
     const real pus_rel_o_t = pus_omega_2_in_axes3_y*m->pus_platform_joint_offset_x[i];
-    const real pus_rel_o_in_axes3_x = pus_u_1_in_axes3_x + pus_omega_2_in_axes3_y*pus_rel_o_t
-        + pus_qd_3*pus_qd_3_t;
+    const real pus_rel_o_in_axes3_x = pus_u_1_in_axes3_x + pus_qd_3*pus_qd_3_t +
+        pus_omega_2_in_axes3_y*pus_rel_o_t;
     const real pus_rel_o_in_axes3_y = pus_u_1_in_axes3_y - pus_omega_2_in_axes3_x*pus_rel_o_t;
     const real pus_rel_o_in_axes3_z = pus_u_1_in_axes3_z - pus_bias_in_axes3_z;
     /* (pus-qdd_1_o) remainder of: acceleration of joint 1 */
@@ -2876,39 +2900,40 @@ INLINE void Z_legs_pus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     /* (pus-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
     const real pus_acc_1_o_in_axes0_x = pus_qdd_1_o - m->pus_g_in_axes0_x[i];
     /* (pus-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real pus_acc_3_o_t = v.pus_c_2*m->pus_g_in_axes0_x[i] +
-        m->pus_g_in_axes0_y[i]*v.pus_s_2;
-    const real pus_acc_3_o_in_axes3_x = pus_u_1_in_axes3_x - pus_acc_3_o_t*v.pus_c_3 -
-        v.pus_e_2_in_axes3_x*m->pus_g_in_axes0_z[i];
-    const real pus_acc_3_o_in_axes3_y = pus_u_1_in_axes3_y + v.pus_c_3*m->pus_g_in_axes0_z[i]
-        - pus_acc_3_o_t*v.pus_e_2_in_axes3_x;
-    const real pus_acc_3_o_in_axes3_z = pus_u_1_in_axes3_z + m->pus_g_in_axes0_x[i]*v.pus_s_2
-        - v.pus_c_2*m->pus_g_in_axes0_y[i];
+    const real pus_acc_3_o_t = m->pus_g_in_axes0_y[i]*v.pus_s_2 +
+        v.pus_c_2*m->pus_g_in_axes0_x[i];
+    const real pus_acc_3_o_in_axes3_x = pus_u_1_in_axes3_x -
+        v.pus_e_2_in_axes3_x*m->pus_g_in_axes0_z[i] - pus_acc_3_o_t*v.pus_c_3;
+    const real pus_acc_3_o_in_axes3_y = v.pus_c_3*m->pus_g_in_axes0_z[i] -
+        pus_acc_3_o_t*v.pus_e_2_in_axes3_x + pus_u_1_in_axes3_y;
+    const real pus_acc_3_o_in_axes3_z = m->pus_g_in_axes0_x[i]*v.pus_s_2 -
+        v.pus_c_2*m->pus_g_in_axes0_y[i] + pus_u_1_in_axes3_z;
     /* (pus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
        reference points */
     const real pus_mu_3_o_t = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_x;
     const real pus_mu_3_o_t_2 = pus_omega_2_in_axes3_y*pus_omega_2_in_axes3_y;
     const real pus_mu_3_o_t_3 = pus_qd_3*pus_qd_3;
-    const real pus_mu_3_o_in_axes3_x = pus_B_3_o_in_axes3_yx*m->pus_J_3_in_spec3_xy[i] +
-        pus_B_3_o_in_axes3_zx*m->pus_J_3_in_spec3_xz[i] +
-        pus_B_3_o_in_axes3_zy*m->pus_Sigma_3_in_axes3_yy[i] -
-        m->pus_J_3_in_spec3_yz[i]*(pus_mu_3_o_t_2 - pus_mu_3_o_t_3) -
-        m->pus_Sigma_3_in_axes3_zz[i]*pus_alpha_2_o_t -
+    const real pus_mu_3_o_in_axes3_x = pus_B_3_o_in_axes3_yx*m->pus_J_3_in_spec3_xy[i] -
+        pus_acc_3_o_in_axes3_z*m->pus_h_3_in_spec3_z[i] -
         pus_acc_3_o_in_axes3_y*m->pus_h_3_in_spec3_y[i] -
-        pus_acc_3_o_in_axes3_z*m->pus_h_3_in_spec3_z[i];
-    const real pus_mu_3_o_in_axes3_y = pus_B_3_o_in_axes3_xy*m->pus_J_3_in_spec3_yz[i] +
-        m->pus_Sigma_3_in_axes3_zz[i]*pus_alpha_2_o_in_axes3_y +
-        pus_acc_3_o_in_axes3_x*m->pus_h_3_in_spec3_y[i] -
+        m->pus_J_3_in_spec3_yz[i]*(pus_mu_3_o_t_2 - pus_mu_3_o_t_3) -
+        m->pus_Sigma_3_in_axes3_zz[i]*pus_alpha_2_o_t +
+        pus_B_3_o_in_axes3_zx*m->pus_J_3_in_spec3_xz[i] +
+        pus_B_3_o_in_axes3_zy*m->pus_Sigma_3_in_axes3_yy[i];
+    const real pus_mu_3_o_in_axes3_y = pus_acc_3_o_in_axes3_x*m->pus_h_3_in_spec3_y[i] -
+        pus_acc_3_o_in_axes3_z*m->pus_h_3_in_spec3_x[i] -
+        m->pus_J_3_in_spec3_xy[i]*(pus_mu_3_o_t - pus_mu_3_o_t_3) +
+        pus_B_3_o_in_axes3_xy*m->pus_J_3_in_spec3_yz[i] +
+        m->pus_Sigma_3_in_axes3_zz[i]*pus_alpha_2_o_in_axes3_y -
         pus_B_3_o_in_axes3_zx*m->pus_Sigma_3_in_axes3_xx[i] -
-        pus_B_3_o_in_axes3_zy*m->pus_J_3_in_spec3_xz[i] -
-        m->pus_J_3_in_spec3_xy[i]*(pus_mu_3_o_t - pus_mu_3_o_t_3) -
-        pus_acc_3_o_in_axes3_z*m->pus_h_3_in_spec3_x[i];
-    const real pus_mu_3_o_in_axes3_z = pus_B_3_o_in_axes3_yx*m->pus_Sigma_3_in_axes3_xx[i] +
-        pus_acc_3_o_in_axes3_x*m->pus_h_3_in_spec3_z[i] +
-        pus_acc_3_o_in_axes3_y*m->pus_h_3_in_spec3_x[i] -
+        pus_B_3_o_in_axes3_zy*m->pus_J_3_in_spec3_xz[i];
+    const real pus_mu_3_o_in_axes3_z = pus_acc_3_o_in_axes3_y*m->pus_h_3_in_spec3_x[i] +
+        pus_acc_3_o_in_axes3_x*m->pus_h_3_in_spec3_z[i] -
+        m->pus_J_3_in_spec3_xz[i]*(pus_mu_3_o_t - pus_mu_3_o_t_2) +
+        pus_B_3_o_in_axes3_yx*m->pus_Sigma_3_in_axes3_xx[i] -
         pus_B_3_o_in_axes3_xy*m->pus_Sigma_3_in_axes3_yy[i] -
-        m->pus_J_3_in_spec3_xy[i]*pus_alpha_2_o_t - m->pus_J_3_in_spec3_xz[i]*(pus_mu_3_o_t -
-        pus_mu_3_o_t_2) - m->pus_J_3_in_spec3_yz[i]*pus_alpha_2_o_in_axes3_y;
+        m->pus_J_3_in_spec3_xy[i]*pus_alpha_2_o_t -
+        m->pus_J_3_in_spec3_yz[i]*pus_alpha_2_o_in_axes3_y;
     /* (pus-G_o) remainder of: force at the connection point that balances the leg's inertia and
        weight along all degrees of freedom */
     const real pus_G_o_t = v.pus_w_2_in_axes3_z*(v.pus_c_3*pus_mu_3_o_in_axes3_y -
@@ -2916,25 +2941,24 @@ INLINE void Z_legs_pus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real pus_G_o_in_axes3_y = pus_mu_3_o_in_axes3_z*m->pus_w_3_in_axes3_y[i];
     /* (pus-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
-    const real pus_c_o_in_axes3_x = pus_B_3_o_in_axes3_xy*m->pus_h_3_in_spec3_z[i] +
-        m->pus_h_3_in_spec3_x[i]*(pus_mu_3_o_t_2 + pus_mu_3_o_t_3) -
+    const real pus_c_o_in_axes3_x = m->pus_h_3_in_spec3_x[i]*(pus_mu_3_o_t_3 + pus_mu_3_o_t_2)
+        + pus_B_3_o_in_axes3_xy*m->pus_h_3_in_spec3_z[i] -
         pus_alpha_2_o_in_axes3_y*m->pus_h_3_in_spec3_y[i] -
         v.pus_w_1_in_axes3_x*(pus_acc_1_o_in_axes0_x*m->pus_link1_mass[i] -
         pus_G_o_in_axes3_y*v.pus_e_1_in_axes3_y - pus_G_o_t*v.pus_s_2);
-    const real pus_c_o_in_axes3_y = -pus_G_o_in_axes3_y -
-        pus_B_3_o_in_axes3_yx*m->pus_h_3_in_spec3_x[i] -
-        pus_alpha_2_o_t*m->pus_h_3_in_spec3_y[i] - m->pus_h_3_in_spec3_z[i]*(pus_mu_3_o_t +
-        pus_mu_3_o_t_3);
-    const real pus_c_o_in_axes3_z = pus_G_o_t + pus_B_3_o_in_axes3_zy*m->pus_h_3_in_spec3_z[i]
-        + m->pus_h_3_in_spec3_y[i]*(pus_mu_3_o_t + pus_mu_3_o_t_2) -
-        pus_B_3_o_in_axes3_zx*m->pus_h_3_in_spec3_x[i];
+    const real pus_c_o_in_axes3_y = -m->pus_h_3_in_spec3_z[i]*(pus_mu_3_o_t_3 + pus_mu_3_o_t)
+        - pus_B_3_o_in_axes3_yx*m->pus_h_3_in_spec3_x[i] -
+        pus_alpha_2_o_t*m->pus_h_3_in_spec3_y[i] - pus_G_o_in_axes3_y;
+    const real pus_c_o_in_axes3_z = m->pus_h_3_in_spec3_y[i]*(pus_mu_3_o_t + pus_mu_3_o_t_2) +
+        pus_B_3_o_in_axes3_zy*m->pus_h_3_in_spec3_z[i] -
+        pus_B_3_o_in_axes3_zx*m->pus_h_3_in_spec3_x[i] + pus_G_o_t;
     /* (pus-U) velocity and gravity terms of the leg force */
-    const real pus_U_x = -axis_x_pus_axes3_x*pus_c_o_in_axes3_x -
-        axis_y_pus_axes3_x*pus_c_o_in_axes3_y - v.axis_z_pus_axes3_x*pus_c_o_in_axes3_z;
-    const real pus_U_y = -axis_x_pus_axes3_y*pus_c_o_in_axes3_x -
-        axis_y_pus_axes3_y*pus_c_o_in_axes3_y - v.axis_z_pus_axes3_y*pus_c_o_in_axes3_z;
-    const real pus_U_z = -axis_x_pus_axes3_z*pus_c_o_in_axes3_x -
-        axis_y_pus_axes3_z*pus_c_o_in_axes3_y - v.axis_z_pus_axes3_z*pus_c_o_in_axes3_z;
+    const real pus_U_x = -axis_y_pus_axes3_x*pus_c_o_in_axes3_y -
+        v.axis_z_pus_axes3_x*pus_c_o_in_axes3_z - axis_x_pus_axes3_x*pus_c_o_in_axes3_x;
+    const real pus_U_y = -axis_y_pus_axes3_y*pus_c_o_in_axes3_y -
+        v.axis_z_pus_axes3_y*pus_c_o_in_axes3_z - axis_x_pus_axes3_y*pus_c_o_in_axes3_x;
+    const real pus_U_z = -axis_y_pus_axes3_z*pus_c_o_in_axes3_y -
+        v.axis_z_pus_axes3_z*pus_c_o_in_axes3_z - axis_x_pus_axes3_z*pus_c_o_in_axes3_x;
     /* (Z_a) rotational part of Z */
     const real pus_Z_a_t = pus_U_z*v.pus_q_y - pus_U_y*v.pus_q_z;
     const real pus_Z_a_t_2 = pus_U_x*v.pus_q_z - pus_U_z*v.pus_q_x;
@@ -2974,13 +2998,13 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[3*w + k];
     const real Z_q_x = s[12*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[4*w + k];
     const real Z_q_y = s[13*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[5*w + k];
     const real Z_q_z = s[14*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
     Z[1*w + k] = Z_t_y;
@@ -2996,7 +3020,8 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_pus[6*LEGS(LEGS_OF_pus)] = {0}, o_pus[2*LEGS(LEGS_OF_pus)] = {0};
-    Z_before(m, 1, 0, X, V, s, t);
+    values v;
+    Z_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_pus); ++k) {
         Z_legs_pus(m, 1, k, 0, k, LEGS(LEGS_OF_pus), 0, s, X, V, terms_pus, o_pus);
     }
@@ -3006,6 +3031,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_pus + n*LEGS(LEGS_OF_pus), LEGS_OF_pus);
     }
+    Z_between(m, 1, 0, V, &v, s);
     Z_after(1, 0, s, sums, Z, t);
 }
 
@@ -3015,7 +3041,9 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real s[15*LANES], sums[6*LANES];
     real o_pus[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        Z_before(m, LANES, k, X, V, s, t);
+        values v;
+        Z_before(m, LANES, k, X, &v, s, t);
+        Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_pus; ++i) {
@@ -3032,20 +3060,20 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void H_legs_pus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3087,7 +3115,8 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
     real s[9] = {0};
     real o_pus[9*LEGS(LEGS_OF_pus)] = {0};
-    H_before(m, 1, 0, X, s, t);
+    values v;
+    H_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_pus); ++k) {
         H_legs_pus(m, 1, k, 0, k, LEGS(LEGS_OF_pus), s, X, o_pus);
     }
@@ -3101,7 +3130,8 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
     real s[9*LANES];
     real o_pus[9*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        H_before(m, LANES, k, X, s, t);
+        values v;
+        H_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_pus; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3114,12 +3144,26 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, real *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
+    values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
     /* (W_p) centripetal tensor of the platform */
     const real omega_x = V[3*w + k];
     const real omega_y = V[4*w + k];
@@ -3134,72 +3178,62 @@ INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X
     const real a_t_y = t_ddot_y - m->gravity_y;
     const real t_ddot_z = A[2*w + k];
     const real a_t_z = t_ddot_z - m->gravity_z;
-    const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
-    const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
-    const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
+    const real a_t_in_platform_x = v->R_yx*a_t_y + v->R_zx*a_t_z + v->R_xx*a_t_x;
+    const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
+    const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
     const real f_p_t = omega_x*omega_x;
     const real f_p_t_2 = omega_y*omega_y;
     const real f_p_t_3 = omega_z*omega_z;
     const real alpha_y = A[4*w + k];
     const real alpha_z = A[5*w + k];
-    const real f_p_x = a_t_x*m->m_star + v.h_star_y*(W_p_xy - alpha_z) + v.h_star_z*(W_p_xz +
-        alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+    const real f_p_x = a_t_x*m->m_star + v->h_star_y*(W_p_xy - alpha_z) + v->h_star_z*(alpha_y
+        + W_p_xz) - v->h_star_x*(f_p_t_2 + f_p_t_3);
     const real alpha_x = A[3*w + k];
-    const real f_p_y = a_t_y*m->m_star + v.h_star_x*(W_p_xy + alpha_z) + v.h_star_z*(W_p_yz -
-        alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
-    const real f_p_z = a_t_z*m->m_star + v.h_star_x*(W_p_xz - alpha_y) + v.h_star_y*(W_p_yz +
-        alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
+    const real f_p_y = a_t_y*m->m_star + v->h_star_x*(alpha_z + W_p_xy) + v->h_star_z*(W_p_yz
+        - alpha_x) - v->h_star_y*(f_p_t + f_p_t_3);
+    const real f_p_z = a_t_z*m->m_star + v->h_star_x*(W_p_xz - alpha_y) + v->h_star_y*(alpha_x
+        + W_p_yz) - v->h_star_z*(f_p_t + f_p_t_2);
     /* (mu_p) inertia moment of the platform less that of its weight */
-    const real mu_p_t = m->J_star_in_platform_xx*v.omega_in_platform_x +
-        m->J_star_in_platform_xy*v.omega_in_platform_y +
-        m->J_star_in_platform_xz*v.omega_in_platform_z;
-    const real mu_p_t_2 = m->J_star_in_platform_xy*v.omega_in_platform_x +
-        m->J_star_in_platform_yy*v.omega_in_platform_y +
-        m->J_star_in_platform_yz*v.omega_in_platform_z;
-    const real mu_p_t_3 = m->J_star_in_platform_xz*v.omega_in_platform_x +
-        m->J_star_in_platform_yz*v.omega_in_platform_y +
-        m->J_star_in_platform_zz*v.omega_in_platform_z;
-    const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
-    const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
-    const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+    const real mu_p_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
+        m->J_star_in_platform_xy*v->omega_in_platform_y +
+        m->J_star_in_platform_xz*v->omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
+        m->J_star_in_platform_yy*v->omega_in_platform_y +
+        m->J_star_in_platform_yz*v->omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
+        m->J_star_in_platform_yz*v->omega_in_platform_y +
+        m->J_star_in_platform_zz*v->omega_in_platform_z;
+    const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
+    const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
+    const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
     const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
         m->J_star_in_platform_xy*alpha_in_platform_y +
         m->J_star_in_platform_xz*alpha_in_platform_z +
-        a_t_in_platform_z*m->h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
-        a_t_in_platform_y*m->h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+        a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
+        + mu_p_t_3*v->omega_in_platform_y - mu_p_t_2*v->omega_in_platform_z;
     const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
         m->J_star_in_platform_yz*alpha_in_platform_z +
-        a_t_in_platform_x*m->h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
-        a_t_in_platform_z*m->h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
+        a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
+        + mu_p_t*v->omega_in_platform_z - mu_p_t_3*v->omega_in_platform_x;
     const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
         m->J_star_in_platform_zz*alpha_in_platform_z +
-        a_t_in_platform_y*m->h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
-        a_t_in_platform_x*m->h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
-    const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
-        v.R_xz*mu_p_in_platform_z;
-    const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
-        v.R_yz*mu_p_in_platform_z;
-    const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
-        v.R_zz*mu_p_in_platform_z;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+        a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
+        + mu_p_t_2*v->omega_in_platform_x - mu_p_t*v->omega_in_platform_y;
+    const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
+        v->R_xz*mu_p_in_platform_z;
+    const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
+        v->R_yz*mu_p_in_platform_z;
+    const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
+        v->R_zz*mu_p_in_platform_z;
     s[9*w + k] = f_p_x;
     s[10*w + k] = f_p_y;
     s[11*w + k] = f_p_z;
     s[12*w + k] = mu_p_x;
     s[13*w + k] = mu_p_y;
     s[14*w + k] = mu_p_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void required_legs_pus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3214,12 +3248,12 @@ INLINE void required_legs_pus(const prepared *m, size_t w, size_t i, size_t j, s
     stage_pus_legs_required(m, i, &v);
     /* (pus-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real pus_c_x = v.axis_x_pus_axes3_x*v.pus_c_in_axes3_x +
-        v.axis_y_pus_axes3_x*v.pus_c_in_axes3_y + v.axis_z_pus_axes3_x*v.pus_c_in_axes3_z;
-    const real pus_c_y = v.axis_x_pus_axes3_y*v.pus_c_in_axes3_x +
-        v.axis_y_pus_axes3_y*v.pus_c_in_axes3_y + v.axis_z_pus_axes3_y*v.pus_c_in_axes3_z;
-    const real pus_c_z = v.axis_x_pus_axes3_z*v.pus_c_in_axes3_x +
-        v.axis_y_pus_axes3_z*v.pus_c_in_axes3_y + v.axis_z_pus_axes3_z*v.pus_c_in_axes3_z;
+    const real pus_c_x = v.axis_y_pus_axes3_x*v.pus_c_in_axes3_y +
+        v.axis_z_pus_axes3_x*v.pus_c_in_axes3_z + v.axis_x_pus_axes3_x*v.pus_c_in_axes3_x;
+    const real pus_c_y = v.axis_y_pus_axes3_y*v.pus_c_in_axes3_y +
+        v.axis_z_pus_axes3_y*v.pus_c_in_axes3_z + v.axis_x_pus_axes3_y*v.pus_c_in_axes3_x;
+    const real pus_c_z = v.axis_y_pus_axes3_z*v.pus_c_in_axes3_y +
+        v.axis_z_pus_axes3_z*v.pus_c_in_axes3_z + v.axis_x_pus_axes3_z*v.pus_c_in_axes3_x;
     /* (R_a) moment that actuators and external wrench must give */
     const real pus_R_a_t = pus_c_y*v.pus_q_z - pus_c_z*v.pus_q_y;
     const real pus_R_a_t_2 = pus_c_z*v.pus_q_x - pus_c_x*v.pus_q_z;
@@ -3278,13 +3312,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[12*w + k];
-    const real R_a_x = R_a_x_of_legs + mu_p_x;
+    const real R_a_x = mu_p_x + R_a_x_of_legs;
     const real R_a_y_of_legs = sums[4*w + k];
     const real mu_p_y = s[13*w + k];
-    const real R_a_y = R_a_y_of_legs + mu_p_y;
+    const real R_a_y = mu_p_y + R_a_y_of_legs;
     const real R_a_z_of_legs = sums[5*w + k];
     const real mu_p_z = s[14*w + k];
-    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
     required[1*w + k] = R_t_y;
@@ -3295,12 +3329,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[5*w + k] = R_a_z;
 }
 
-APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_pus[6*LEGS(LEGS_OF_pus)] = {0}, o_pus[8*LEGS(LEGS_OF_pus)] = {0};
-    required_before(m, 1, 0, X, V, A, s, t);
+    values v;
+    required_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_pus); ++k) {
         required_legs_pus(m, 1, k, 0, k, LEGS(LEGS_OF_pus), 0, s, X, V, A, terms_pus, o_pus);
     }
@@ -3310,6 +3345,7 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_pus + n*LEGS(LEGS_OF_pus), LEGS_OF_pus);
     }
+    required_between(m, 1, 0, V, A, &v, s);
     required_after(1, 0, s, sums, required);
 }
 
@@ -3319,7 +3355,9 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real s[15*LANES], sums[6*LANES];
     real o_pus[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        required_before(m, LANES, k, X, V, A, s, t);
+        values v;
+        required_before(m, LANES, k, X, &v, s, t);
+        required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_pus; ++i) {
@@ -3336,21 +3374,20 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s, verdict *t)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
+    *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void inverse_kinematics_legs_pus(const prepared *m, size_t w, size_t i, size_t j, size_t k,
@@ -3392,7 +3429,8 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 {
     real s[9] = {0};
     real o_pus[6*LEGS(LEGS_OF_pus)] = {0};
-    inverse_kinematics_before(m, 1, 0, X, s, t);
+    values v;
+    inverse_kinematics_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_pus); ++k) {
         inverse_kinematics_legs_pus(m, 1, k, 0, k, LEGS(LEGS_OF_pus), s, X, o_pus);
     }
@@ -3407,7 +3445,8 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real s[9*LANES];
     real o_pus[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        inverse_kinematics_before(m, LANES, k, X, s, t);
+        values v;
+        inverse_kinematics_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_pus; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3420,21 +3459,20 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_rates_legs_pus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3453,12 +3491,12 @@ INLINE void joint_rates_legs_pus(const prepared *m, size_t w, size_t i, size_t j
     const real t_dot_z = V[2*w + j];
     const real pus_S_dot_z = t_dot_z + omega_x*v.pus_q_y - omega_y*v.pus_q_x;
     /* (pus-qd_1) rate of joint 1 */
-    const real axis_y_pus_axes3_x = m->pus_base_frame_xx[i]*v.pus_e_1_in_axes3_y +
-        m->pus_base_frame_xy[i]*v.pus_qd_1_t - m->pus_base_frame_xz[i]*v.pus_c_3;
-    const real axis_y_pus_axes3_y = m->pus_base_frame_yx[i]*v.pus_e_1_in_axes3_y +
-        m->pus_base_frame_yy[i]*v.pus_qd_1_t - m->pus_base_frame_yz[i]*v.pus_c_3;
-    const real axis_y_pus_axes3_z = m->pus_base_frame_zx[i]*v.pus_e_1_in_axes3_y +
-        m->pus_base_frame_zy[i]*v.pus_qd_1_t - m->pus_base_frame_zz[i]*v.pus_c_3;
+    const real axis_y_pus_axes3_x = m->pus_base_frame_xy[i]*v.pus_qd_1_t -
+        m->pus_base_frame_xz[i]*v.pus_c_3 + m->pus_base_frame_xx[i]*v.pus_e_1_in_axes3_y;
+    const real axis_y_pus_axes3_y = m->pus_base_frame_yy[i]*v.pus_qd_1_t -
+        m->pus_base_frame_yz[i]*v.pus_c_3 + m->pus_base_frame_yx[i]*v.pus_e_1_in_axes3_y;
+    const real axis_y_pus_axes3_z = m->pus_base_frame_zy[i]*v.pus_qd_1_t -
+        m->pus_base_frame_zz[i]*v.pus_c_3 + m->pus_base_frame_zx[i]*v.pus_e_1_in_axes3_y;
     const real pus_qd_1 = (pus_S_dot_x*(axis_y_pus_axes3_y*v.axis_z_pus_axes3_z -
         axis_y_pus_axes3_z*v.axis_z_pus_axes3_y) +
         pus_S_dot_y*(axis_y_pus_axes3_z*v.axis_z_pus_axes3_x -
@@ -3500,7 +3538,8 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 {
     real s[9] = {0};
     real o_pus[6*LEGS(LEGS_OF_pus)] = {0};
-    joint_rates_before(m, 1, 0, X, s, t);
+    values v;
+    joint_rates_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_pus); ++k) {
         joint_rates_legs_pus(m, 1, k, 0, k, LEGS(LEGS_OF_pus), s, X, V, o_pus);
     }
@@ -3515,7 +3554,8 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real s[9*LANES];
     real o_pus[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_rates_before(m, LANES, k, X, s, t);
+        values v;
+        joint_rates_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_pus; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3528,21 +3568,20 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
+    values *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_accelerations_legs_pus(const prepared *m, size_t w, size_t i, size_t j, size_t
@@ -3554,12 +3593,12 @@ INLINE void joint_accelerations_legs_pus(const prepared *m, size_t w, size_t i, 
     stage_pus_V_X(w, j, V, &v);
     stage_pus_A_V_X(w, j, V, &v);
     /* (pus-qd_1) rate of joint 1 */
-    const real axis_y_pus_axes3_x = m->pus_base_frame_xx[i]*v.pus_e_1_in_axes3_y +
-        m->pus_base_frame_xy[i]*v.pus_qd_1_t - m->pus_base_frame_xz[i]*v.pus_c_3;
-    const real axis_y_pus_axes3_y = m->pus_base_frame_yx[i]*v.pus_e_1_in_axes3_y +
-        m->pus_base_frame_yy[i]*v.pus_qd_1_t - m->pus_base_frame_yz[i]*v.pus_c_3;
-    const real axis_y_pus_axes3_z = m->pus_base_frame_zx[i]*v.pus_e_1_in_axes3_y +
-        m->pus_base_frame_zy[i]*v.pus_qd_1_t - m->pus_base_frame_zz[i]*v.pus_c_3;
+    const real axis_y_pus_axes3_x = m->pus_base_frame_xy[i]*v.pus_qd_1_t -
+        m->pus_base_frame_xz[i]*v.pus_c_3 + m->pus_base_frame_xx[i]*v.pus_e_1_in_axes3_y;
+    const real axis_y_pus_axes3_y = m->pus_base_frame_yy[i]*v.pus_qd_1_t -
+        m->pus_base_frame_yz[i]*v.pus_c_3 + m->pus_base_frame_yx[i]*v.pus_e_1_in_axes3_y;
+    const real axis_y_pus_axes3_z = m->pus_base_frame_zy[i]*v.pus_qd_1_t -
+        m->pus_base_frame_zz[i]*v.pus_c_3 + m->pus_base_frame_zx[i]*v.pus_e_1_in_axes3_y;
     const real axis_x_pus_axes3_x = axis_y_pus_axes3_y*v.axis_z_pus_axes3_z -
         axis_y_pus_axes3_z*v.axis_z_pus_axes3_y;
     const real axis_x_pus_axes3_y = axis_y_pus_axes3_z*v.axis_z_pus_axes3_x -
@@ -3587,7 +3626,7 @@ INLINE void joint_accelerations_legs_pus(const prepared *m, size_t w, size_t i, 
     const real pus_rel_t = pus_omega_2_in_axes3_y*m->pus_platform_joint_offset_x[i];
     const real pus_rel_in_axes3_x = axis_x_pus_axes3_x*v.pus_S_ddot_x +
         axis_x_pus_axes3_y*v.pus_S_ddot_y + axis_x_pus_axes3_z*v.pus_S_ddot_z +
-        pus_omega_2_in_axes3_y*pus_rel_t + pus_qd_3*pus_qd_3_t;
+        pus_qd_3*pus_qd_3_t + pus_omega_2_in_axes3_y*pus_rel_t;
     const real pus_rel_in_axes3_y = axis_y_pus_axes3_x*v.pus_S_ddot_x +
         axis_y_pus_axes3_y*v.pus_S_ddot_y + axis_y_pus_axes3_z*v.pus_S_ddot_z -
         pus_omega_2_in_axes3_x*pus_rel_t;
@@ -3630,7 +3669,8 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 {
     real s[9] = {0};
     real o_pus[6*LEGS(LEGS_OF_pus)] = {0};
-    joint_accelerations_before(m, 1, 0, X, s, t);
+    values v;
+    joint_accelerations_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_pus); ++k) {
         joint_accelerations_legs_pus(m, 1, k, 0, k, LEGS(LEGS_OF_pus), s, X, V, A, o_pus);
     }
@@ -3645,7 +3685,8 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real s[9*LANES];
     real o_pus[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_accelerations_before(m, LANES, k, X, s, t);
+        values v;
+        joint_accelerations_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_pus; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3658,20 +3699,20 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void legs_legs_pus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3690,15 +3731,15 @@ INLINE void legs_legs_pus(const prepared *m, size_t w, size_t i, size_t j, size_
         v.pus_acc_3_in_axes3_y*m->pus_link3_mass[i];
     const real pus_c_true_in_axes3_z = v.pus_c_in_axes3_z -
         v.pus_acc_3_in_axes3_z*m->pus_link3_mass[i];
-    const real pus_c_true_x = v.axis_x_pus_axes3_x*pus_c_true_in_axes3_x +
-        v.axis_y_pus_axes3_x*pus_c_true_in_axes3_y +
-        v.axis_z_pus_axes3_x*pus_c_true_in_axes3_z;
-    const real pus_c_true_y = v.axis_x_pus_axes3_y*pus_c_true_in_axes3_x +
-        v.axis_y_pus_axes3_y*pus_c_true_in_axes3_y +
-        v.axis_z_pus_axes3_y*pus_c_true_in_axes3_z;
-    const real pus_c_true_z = v.axis_x_pus_axes3_z*pus_c_true_in_axes3_x +
-        v.axis_y_pus_axes3_z*pus_c_true_in_axes3_y +
-        v.axis_z_pus_axes3_z*pus_c_true_in_axes3_z;
+    const real pus_c_true_x = v.axis_y_pus_axes3_x*pus_c_true_in_axes3_y +
+        v.axis_z_pus_axes3_x*pus_c_true_in_axes3_z +
+        v.axis_x_pus_axes3_x*pus_c_true_in_axes3_x;
+    const real pus_c_true_y = v.axis_y_pus_axes3_y*pus_c_true_in_axes3_y +
+        v.axis_z_pus_axes3_y*pus_c_true_in_axes3_z +
+        v.axis_x_pus_axes3_y*pus_c_true_in_axes3_x;
+    const real pus_c_true_z = v.axis_y_pus_axes3_z*pus_c_true_in_axes3_y +
+        v.axis_z_pus_axes3_z*pus_c_true_in_axes3_z +
+        v.axis_x_pus_axes3_z*pus_c_true_in_axes3_x;
     /* (pus-c_true) */
     o[0*count + k] = pus_c_true_x;
     o[1*count + k] = pus_c_true_y;
@@ -3731,7 +3772,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 {
     real s[9] = {0};
     real o_pus[8*LEGS(LEGS_OF_pus)] = {0};
-    legs_before(m, 1, 0, X, s, t);
+    values v;
+    legs_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_pus); ++k) {
         legs_legs_pus(m, 1, k, 0, k, LEGS(LEGS_OF_pus), s, X, V, A, o_pus);
     }
@@ -3741,32 +3783,36 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s)
+{
     /* (potential) potential energy */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
-    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x +
-        v.R_xy*m->h_star_in_platform_y + v.R_xz*m->h_star_in_platform_z + m->m_star*t_x) +
-        m->gravity_y*(v.R_yx*m->h_star_in_platform_x + v.R_yy*m->h_star_in_platform_y +
-        v.R_yz*m->h_star_in_platform_z + m->m_star*t_y) +
-        m->gravity_z*(v.R_zx*m->h_star_in_platform_x + v.R_zy*m->h_star_in_platform_y +
-        v.R_zz*m->h_star_in_platform_z + m->m_star*t_z);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+    const real potential_t = m->gravity_x*(m->m_star*t_x + v->R_xy*m->h_star_in_platform_y +
+        v->R_xz*m->h_star_in_platform_z + v->R_xx*m->h_star_in_platform_x) +
+        m->gravity_y*(m->m_star*t_y + v->R_yx*m->h_star_in_platform_x +
+        v->R_yz*m->h_star_in_platform_z + v->R_yy*m->h_star_in_platform_y) +
+        m->gravity_z*(m->m_star*t_z + v->R_zx*m->h_star_in_platform_x +
+        v->R_zy*m->h_star_in_platform_y + v->R_zz*m->h_star_in_platform_z);
     s[9*w + k] = potential_t;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void potential_legs_pus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3786,13 +3832,13 @@ INLINE void potential_legs_pus(const prepared *m, size_t w, size_t i, size_t j, 
         + v.pus_S_y*m->pus_base_frame_yz[i] + v.pus_S_z*m->pus_base_frame_zz[i]);
     const real pus_potential_t_3 = pus_e_2_in_axes3_x*m->pus_h_3_in_spec3_z[i] -
         pus_c_3*m->pus_h_3_in_spec3_x[i];
-    const real pus_potential_t_4 = m->pus_g_in_axes0_x[i]*(m->pus_h_1_in_spec0_x[i] +
-        m->pus_link1_mass[i]*(m->pus_b_in_axes0_x[i] + v.pus_q_1) - pus_c_2*pus_potential_t_3
-        - m->pus_h_3_in_spec3_y[i]*pus_s_2) + m->pus_g_in_axes0_y[i]*(m->pus_h_1_in_spec0_y[i]
-        + m->pus_potential_t[i] + pus_c_2*m->pus_h_3_in_spec3_y[i] -
-        pus_potential_t_3*pus_s_2) + m->pus_g_in_axes0_z[i]*(m->pus_h_1_in_spec0_z[i] +
-        m->pus_potential_t_2[i] + pus_c_3*m->pus_h_3_in_spec3_z[i] +
-        pus_e_2_in_axes3_x*m->pus_h_3_in_spec3_x[i]);
+    const real pus_potential_t_4 = m->pus_g_in_axes0_z[i]*(m->pus_h_1_in_spec0_z[i] +
+        m->pus_potential_t_2[i] + pus_e_2_in_axes3_x*m->pus_h_3_in_spec3_x[i] +
+        pus_c_3*m->pus_h_3_in_spec3_z[i]) + m->pus_g_in_axes0_x[i]*(m->pus_h_1_in_spec0_x[i] +
+        m->pus_link1_mass[i]*(m->pus_b_in_axes0_x[i] + v.pus_q_1) -
+        m->pus_h_3_in_spec3_y[i]*pus_s_2 - pus_c_2*pus_potential_t_3) +
+        m->pus_g_in_axes0_y[i]*(m->pus_h_1_in_spec0_y[i] + m->pus_potential_t[i] +
+        pus_c_2*m->pus_h_3_in_spec3_y[i] - pus_potential_t_3*pus_s_2);
     /* (potential) */
     gather(&terms[0*count + k], add, pus_potential_t_4);  /* potential_of_legs */
     o[0*count + k] = UNLESS(v.pus_disc_1 >= 0);
@@ -3810,7 +3856,7 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     /* (potential) */
     const real potential_of_legs = sums[0*w + k];
     const real potential_t = s[9*w + k];
-    const real potential_ = -potential_of_legs - potential_t;
+    const real potential_ = -potential_t - potential_of_legs;
     /* (potential) */
     potential[0*w + k] = potential_;
 }
@@ -3819,7 +3865,8 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 {
     real s[10] = {0}, sums[1] = {0};
     real terms_pus[LEGS(LEGS_OF_pus)] = {0}, o_pus[2*LEGS(LEGS_OF_pus)] = {0};
-    potential_before(m, 1, 0, X, s, t);
+    values v;
+    potential_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_pus); ++k) {
         potential_legs_pus(m, 1, k, 0, k, LEGS(LEGS_OF_pus), 0, s, X, terms_pus, o_pus);
     }
@@ -3829,28 +3876,28 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_pus + n*LEGS(LEGS_OF_pus), LEGS_OF_pus);
     }
+    potential_between(m, 1, 0, X, &v, s);
     potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
-    *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, real *lengths, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void condition_legs_pus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3925,7 +3972,8 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 {
     real s[9] = {0}, sums[1] = {0};
     real terms_pus[LEGS(LEGS_OF_pus)] = {0}, o_pus[11*LEGS(LEGS_OF_pus)] = {0};
-    condition_before(m, 1, 0, X, s, lengths, t);
+    values v;
+    condition_before(m, 1, 0, X, &v, s, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_pus); ++k) {
         condition_legs_pus(m, 1, k, 0, k, LEGS(LEGS_OF_pus), 0, s, X, terms_pus, o_pus);
     }
@@ -3949,11 +3997,7 @@ int hexaglide_M(const prepared *m, const real *X, real *M_out)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-    }
-    return code;
+    return settled(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -3980,11 +4024,7 @@ int hexaglide_Z(const prepared *m, const real *X, const real *V, real *Z_out)
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, Z_out);
-    }
-    return code;
+    return settled(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -4008,11 +4048,7 @@ int hexaglide_H(const prepared *m, const real *X, real *H_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -4035,11 +4071,7 @@ int hexaglide_inverse_kinematics(const prepared *m, const real *X, real *q_out)
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, q_out);
-    }
-    return code;
+    return settled(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -4066,11 +4098,7 @@ int hexaglide_joint_rates(const prepared *m, const real *X, const real *V, real 
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qd_out);
-    }
-    return code;
+    return settled(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -4101,11 +4129,7 @@ int hexaglide_joint_accelerations(const prepared *m, const real *X, const real *
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qdd_out);
-    }
-    return code;
+    return settled(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4138,13 +4162,9 @@ int hexaglide_dynamics(const prepared *m, const real *X, const real *V, real *M_
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-        refuse(NV, Z_out);
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    settled(&why, NV*NV, M_out);
+    settled(&why, NV, Z_out);
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -4338,7 +4358,8 @@ static const real sizes_tau[] = {1.0, 1.0, 0.25, 1.0, 0.25, 0.25};
 int hexaglide_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out)
 {
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    static const real no_wrench[NW] = {0};
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
@@ -4348,7 +4369,7 @@ int hexaglide_inverse_dynamics(const prepared *m, const real *X, const real *V, 
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -4362,11 +4383,7 @@ int hexaglide_inverse_dynamics(const prepared *m, const real *X, const real *V, 
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, tau_out);
-    }
-    return code;
+    return settled(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -4395,8 +4412,9 @@ static const real sizes_A[] = {16.0, 16.0, 16.0, 1.0, 1.0, 1.0};
 int hexaglide_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau,
     const real *wrench, real *A_out)
 {
-    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] =
-        {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    static const real no_wrench[NW] = {0};
+    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
+        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
@@ -4405,7 +4423,7 @@ int hexaglide_forward_dynamics(const prepared *m, const real *X, const real *V, 
         check(NV, 1, V, why.invalid);
         check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     for (size_t i = 0; i < NV; ++i) {
@@ -4423,11 +4441,7 @@ int hexaglide_forward_dynamics(const prepared *m, const real *X, const real *V, 
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, A_out);
-    }
-    return code;
+    return settled(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4468,18 +4482,15 @@ int hexaglide_complete_acceleration(const prepared *m, const real *X, const real
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, completed_out);
-    }
-    return code;
+    return settled(&why, NV, completed_out);
 }
 
 int hexaglide_leg_reactions(const prepared *m, const real *X, const real *V, const real *A, const
     real *wrench, real *forces_out)
 {
+    static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2, 3, 4, 5};
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
         unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[18] = {0}, forces[3*NL] = {0},
         work[NV*PADDED(NV)];
     verdict why;
@@ -4490,7 +4501,7 @@ int hexaglide_leg_reactions(const prepared *m, const real *X, const real *V, con
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -4508,11 +4519,7 @@ int hexaglide_leg_reactions(const prepared *m, const real *X, const real *V, con
     add_forces(NL, 3, 1, places_forces, solve_1, actuator, forces);
     check(3*NL, 1, forces, why.overflow);
     copy(3*NL, forces, forces_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(3*NL, forces_out);
-    }
-    return code;
+    return settled(&why, 3*NL, forces_out);
 }
 
 int hexaglide_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
@@ -4534,25 +4541,22 @@ int hexaglide_energy(const prepared *m, const real *X, const real *V, real *kine
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, kinetic_out);
-        refuse(1, potential_out);
-    }
-    return code;
+    settled(&why, 1, kinetic_out);
+    return settled(&why, 1, potential_out);
 }
 
 int hexaglide_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
     const real *length = NULL;
+    static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real length_in[1], H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
+        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, length, 0, length_in, why.invalid);
+    length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
@@ -4570,12 +4574,8 @@ int hexaglide_condition(const prepared *m, const real *X, real *sigma_out, real 
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, sigma_out);
-        refuse(NL, legs_out);
-    }
-    return code;
+    settled(&why, NV, sigma_out);
+    return settled(&why, NL, legs_out);
 }
 
 int hexaglide_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -4609,12 +4609,8 @@ int hexaglide_manipulability(const prepared *m, const real *X, real *measure_out
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, measure_out);
-        refuse(1, isotropy_out);
-    }
-    return code;
+    settled(&why, 1, measure_out);
+    return settled(&why, 1, isotropy_out);
 }
 
 int hexaglide_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
@@ -4648,12 +4644,8 @@ int hexaglide_singularity_distance(const prepared *m, const real *X, real *actua
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, actuators_out);
-        refuse(1, legs_out);
-    }
-    return code;
+    settled(&why, 1, actuators_out);
+    return settled(&why, 1, legs_out);
 }
 
 static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
@@ -4673,11 +4665,7 @@ static int mismatch_one(const prepared *m, const real *X, const real *q_actuated
     }
     check(NU, 1, gap, why.overflow);
     copy(NU, gap, gap_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, gap_out);
-    }
-    return code;
+    return settled(&why, NU, gap_out);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
@@ -4689,11 +4677,7 @@ static int slope_one(const prepared *m, const real *X, real *slope_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, slope_out);
-    }
-    return code;
+    return settled(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -4755,11 +4739,7 @@ int hexaglide_forward_kinematics(const prepared *m, const real *q_actuated, cons
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int hexaglide_dissipation(const prepared *m, const real *X, const real *V, real *dissipation_out)
@@ -4776,11 +4756,7 @@ int hexaglide_dissipation(const prepared *m, const real *X, const real *V, real 
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, dissipation_out);
-    }
-    return code;
+    return settled(&why, 1, dissipation_out);
 }
 
 int hexaglide_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
@@ -4797,11 +4773,7 @@ int hexaglide_momentum(const prepared *m, const real *X, const real *V, real *mo
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, momentum_out);
-    }
-    return code;
+    return settled(&why, NV, momentum_out);
 }
 
 int hexaglide_joint_margins(const prepared *m, const real *X, real *margins_out)
@@ -4818,11 +4790,7 @@ int hexaglide_joint_margins(const prepared *m, const real *X, real *margins_out)
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, margins_out);
-    }
-    return code;
+    return settled(&why, NJ, margins_out);
 }
 
 int hexaglide_within_limits(const prepared *m, const real *X, real *within_out)
@@ -4838,11 +4806,7 @@ int hexaglide_within_limits(const prepared *m, const real *X, real *within_out)
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, within_out);
-    }
-    return code;
+    return settled(&why, 1, within_out);
 }
 
 int hexaglide_actuator_positions(const prepared *m, const real *X, real *q_out)
@@ -4855,11 +4819,7 @@ int hexaglide_actuator_positions(const prepared *m, const real *X, real *q_out)
     take(NU, 1, hexaglide_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, q_out);
-    }
-    return code;
+    return settled(&why, NU, q_out);
 }
 
 int hexaglide_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
@@ -4876,11 +4836,7 @@ int hexaglide_actuator_rates(const prepared *m, const real *X, const real *V, re
     take(NU, 1, hexaglide_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qd_out);
-    }
-    return code;
+    return settled(&why, NU, qd_out);
 }
 
 int hexaglide_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
@@ -4899,11 +4855,7 @@ int hexaglide_actuator_accelerations(const prepared *m, const real *X, const rea
     take(NU, 1, hexaglide_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qdd_out);
-    }
-    return code;
+    return settled(&why, NU, qdd_out);
 }
 
 int hexaglide_power(const prepared *m, const real *X, const real *V, const real *tau, real
@@ -4923,11 +4875,7 @@ int hexaglide_power(const prepared *m, const real *X, const real *V, const real 
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, power_out);
-    }
-    return code;
+    return settled(&why, 1, power_out);
 }
 
 int hexaglide_rotation(const real *X, real *R_out)
@@ -4940,11 +4888,7 @@ int hexaglide_rotation(const real *X, real *R_out)
     rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     copy(9, R, R_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(9, R_out);
-    }
-    return code;
+    return settled(&why, 9, R_out);
 }
 
 int hexaglide_pose(const real *t, const real *R, real *X_out)
@@ -4962,11 +4906,7 @@ int hexaglide_pose(const real *t, const real *R, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int hexaglide_X_dot(const real *X, const real *V, real *X_dot_out)
@@ -4986,11 +4926,7 @@ int hexaglide_X_dot(const real *X, const real *V, real *X_dot_out)
     beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_dot_out);
-    }
-    return code;
+    return settled(&why, NQ, X_dot_out);
 }
 
 int hexaglide_pose_from_rpy(const real *t, const real *rpy, real *X_out)
@@ -5008,11 +4944,7 @@ int hexaglide_pose_from_rpy(const real *t, const real *rpy, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int hexaglide_retract(const real *X, const real *step, real *X_moved_out)
@@ -5036,11 +4968,7 @@ int hexaglide_retract(const real *X, const real *step, real *X_moved_out)
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_moved_out);
-    }
-    return code;
+    return settled(&why, NQ, X_moved_out);
 }
 
 int hexaglide_difference(const real *X0, const real *X1, real *step_out)
@@ -5064,11 +4992,7 @@ int hexaglide_difference(const real *X0, const real *X1, real *step_out)
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, step_out);
-    }
-    return code;
+    return settled(&why, NV, step_out);
 }
 
 int hexaglide_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
@@ -5106,11 +5030,7 @@ int hexaglide_interpolate(const real *X0, const real *X1, const real *s, real *X
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 /* ---- one state, and batches ---- */

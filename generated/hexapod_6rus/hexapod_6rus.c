@@ -231,15 +231,12 @@ INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *t
 }
 
 /* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
-INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+INLINE const real *optional(size_t size, const real *x, const real *none, real *flags)
 {
-    for (size_t e = 0; e < size && !x; ++e) {
-        own[e] = none;
-    }
     if (x) {
         check(size, 1, x, flags);
     }
-    return x ? x : own;
+    return x ? x : none;
 }
 
 INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
@@ -296,6 +293,16 @@ APART void refuse(size_t size, real *out)
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
     }
+}
+
+/* The status of a state; an output is refused where it is impossible. */
+INLINE int settled(const verdict *t, size_t size, real *out)
+{
+    const int code = judge(t);
+    if (code != OK) {
+        refuse(size, out);
+    }
+    return code;
 }
 
 /* Outputs of a state where the user wants them, and of states side by side, state by state. */
@@ -425,10 +432,10 @@ INLINE int all_rotations(const real *x, size_t n)
 /* ---- parameters ---- */
 
 const hexapod_6rus_params hexapod_6rus_default_params = {
-    {R(0.0), R(0.0), R(-9.81)},  /* gravity */
+    {0, 0, R(-9.81)},  /* gravity */
     R(12.0),  /* platform_mass */
-    {R(0.0), R(0.0), R(0.04)},  /* platform_centre_of_mass */
-    {{R(0.35), R(0.0), R(0.0)}, {R(0.0), R(0.35), R(0.0)}, {R(0.0), R(0.0), R(0.6)}},  /* platform_inertia */
+    {0, 0, R(0.04)},  /* platform_centre_of_mass */
+    {{R(0.35), 0, 0}, {0, R(0.35), 0}, {0, 0, R(0.6)}},  /* platform_inertia */
     {  /* rus_base_point */
         {R(0.11863413205771481), R(0.4124467849794305), R(0.013074989106223511)},
         {R(0.29787232747254755), R(0.3089635646076141), R(0.013074989106223511)},
@@ -438,12 +445,12 @@ const hexapod_6rus_params hexapod_6rus_default_params = {
         {R(0.11863413205771431), R(-0.41244678497943066), R(0.013074989106223511)},
     },
     {  /* rus_base_frame */
-        {{R(0.0), R(0.7666445685820955), R(-0.6420717292200091)}, {R(0.0), R(0.6420717292200091), R(0.7666445685820955)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(0.17272814426528374), R(-0.9849695366754605)}, {R(0.0), R(0.9849695366754605), R(0.17272814426528374)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.9393727128473789), R(-0.34289780745545156)}, {R(0.0), R(0.34289780745545156), R(-0.9393727128473789)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.9393727128473789), R(0.34289780745545134)}, {R(0.0), R(-0.34289780745545134), R(-0.9393727128473789)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(0.17272814426528307), R(0.9849695366754606)}, {R(0.0), R(-0.9849695366754606), R(0.17272814426528307)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(0.7666445685820946), R(0.6420717292200101)}, {R(0.0), R(-0.6420717292200101), R(0.7666445685820946)}, {R(1.0), R(0.0), R(0.0)}},
+        {{0, R(0.7666445685820955), R(-0.6420717292200091)}, {0, R(0.6420717292200091), R(0.7666445685820955)}, {1, 0, 0}},
+        {{0, R(0.17272814426528374), R(-0.9849695366754605)}, {0, R(0.9849695366754605), R(0.17272814426528374)}, {1, 0, 0}},
+        {{0, R(-0.9393727128473789), R(-0.34289780745545156)}, {0, R(0.34289780745545156), R(-0.9393727128473789)}, {1, 0, 0}},
+        {{0, R(-0.9393727128473789), R(0.34289780745545134)}, {0, R(-0.34289780745545134), R(-0.9393727128473789)}, {1, 0, 0}},
+        {{0, R(0.17272814426528307), R(0.9849695366754606)}, {0, R(-0.9849695366754606), R(0.17272814426528307)}, {1, 0, 0}},
+        {{0, R(0.7666445685820946), R(0.6420717292200101)}, {0, R(-0.6420717292200101), R(0.7666445685820946)}, {1, 0, 0}},
     },
     {  /* rus_platform_point */
         {R(0.22999337057462865), R(0.19262151876600273), R(-0.02)},
@@ -454,20 +461,20 @@ const hexapod_6rus_params hexapod_6rus_default_params = {
         {R(0.22999337057462838), R(-0.19262151876600303), R(-0.02)},
     },
     {  /* rus_joint2_offset */
-        {R(0.2), R(0.0), R(0.0)},
-        {R(0.2), R(0.0), R(0.0)},
-        {R(0.2), R(0.0), R(0.0)},
-        {R(0.2), R(0.0), R(0.0)},
-        {R(0.2), R(0.0), R(0.0)},
-        {R(0.2), R(0.0), R(0.0)},
+        {R(0.2), 0, 0},
+        {R(0.2), 0, 0},
+        {R(0.2), 0, 0},
+        {R(0.2), 0, 0},
+        {R(0.2), 0, 0},
+        {R(0.2), 0, 0},
     },
     {  /* rus_platform_joint_offset */
-        {R(0.7), R(0.0), R(0.0)},
-        {R(0.7), R(0.0), R(0.0)},
-        {R(0.7), R(0.0), R(0.0)},
-        {R(0.7), R(0.0), R(0.0)},
-        {R(0.7), R(0.0), R(0.0)},
-        {R(0.7), R(0.0), R(0.0)},
+        {R(0.7), 0, 0},
+        {R(0.7), 0, 0},
+        {R(0.7), 0, 0},
+        {R(0.7), 0, 0},
+        {R(0.7), 0, 0},
+        {R(0.7), 0, 0},
     },
     {  /* rus_link1_mass */
         R(1.2),
@@ -478,20 +485,20 @@ const hexapod_6rus_params hexapod_6rus_default_params = {
         R(1.2),
     },
     {  /* rus_link1_centre_of_mass */
-        {R(0.1), R(0.0), R(0.0)},
-        {R(0.1), R(0.0), R(0.0)},
-        {R(0.1), R(0.0), R(0.0)},
-        {R(0.1), R(0.0), R(0.0)},
-        {R(0.1), R(0.0), R(0.0)},
-        {R(0.1), R(0.0), R(0.0)},
+        {R(0.1), 0, 0},
+        {R(0.1), 0, 0},
+        {R(0.1), 0, 0},
+        {R(0.1), 0, 0},
+        {R(0.1), 0, 0},
+        {R(0.1), 0, 0},
     },
     {  /* rus_link1_inertia */
-        {{R(0.00024), R(0.0), R(0.0)}, {R(0.0), R(0.00412), R(0.0)}, {R(0.0), R(0.0), R(0.00412)}},
-        {{R(0.00024), R(0.0), R(0.0)}, {R(0.0), R(0.00412), R(0.0)}, {R(0.0), R(0.0), R(0.00412)}},
-        {{R(0.00024), R(0.0), R(0.0)}, {R(0.0), R(0.00412), R(0.0)}, {R(0.0), R(0.0), R(0.00412)}},
-        {{R(0.00024), R(0.0), R(0.0)}, {R(0.0), R(0.00412), R(0.0)}, {R(0.0), R(0.0), R(0.00412)}},
-        {{R(0.00024), R(0.0), R(0.0)}, {R(0.0), R(0.00412), R(0.0)}, {R(0.0), R(0.0), R(0.00412)}},
-        {{R(0.00024), R(0.0), R(0.0)}, {R(0.0), R(0.00412), R(0.0)}, {R(0.0), R(0.0), R(0.00412)}},
+        {{R(0.00024), 0, 0}, {0, R(0.00412), 0}, {0, 0, R(0.00412)}},
+        {{R(0.00024), 0, 0}, {0, R(0.00412), 0}, {0, 0, R(0.00412)}},
+        {{R(0.00024), 0, 0}, {0, R(0.00412), 0}, {0, 0, R(0.00412)}},
+        {{R(0.00024), 0, 0}, {0, R(0.00412), 0}, {0, 0, R(0.00412)}},
+        {{R(0.00024), 0, 0}, {0, R(0.00412), 0}, {0, 0, R(0.00412)}},
+        {{R(0.00024), 0, 0}, {0, R(0.00412), 0}, {0, 0, R(0.00412)}},
     },
     {  /* rus_link3_mass */
         R(1.1),
@@ -502,24 +509,24 @@ const hexapod_6rus_params hexapod_6rus_default_params = {
         R(1.1),
     },
     {  /* rus_link3_centre_of_mass */
-        {R(0.35), R(0.0), R(0.0)},
-        {R(0.35), R(0.0), R(0.0)},
-        {R(0.35), R(0.0), R(0.0)},
-        {R(0.35), R(0.0), R(0.0)},
-        {R(0.35), R(0.0), R(0.0)},
-        {R(0.35), R(0.0), R(0.0)},
+        {R(0.35), 0, 0},
+        {R(0.35), 0, 0},
+        {R(0.35), 0, 0},
+        {R(0.35), 0, 0},
+        {R(0.35), 0, 0},
+        {R(0.35), 0, 0},
     },
     {  /* rus_link3_inertia */
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.04502666666666666), R(0.0)}, {R(0.0), R(0.0), R(0.04502666666666666)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.04502666666666666), R(0.0)}, {R(0.0), R(0.0), R(0.04502666666666666)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.04502666666666666), R(0.0)}, {R(0.0), R(0.0), R(0.04502666666666666)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.04502666666666666), R(0.0)}, {R(0.0), R(0.0), R(0.04502666666666666)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.04502666666666666), R(0.0)}, {R(0.0), R(0.0), R(0.04502666666666666)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.04502666666666666), R(0.0)}, {R(0.0), R(0.0), R(0.04502666666666666)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.04502666666666666), 0}, {0, 0, R(0.04502666666666666)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.04502666666666666), 0}, {0, 0, R(0.04502666666666666)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.04502666666666666), 0}, {0, 0, R(0.04502666666666666)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.04502666666666666), 0}, {0, 0, R(0.04502666666666666)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.04502666666666666), 0}, {0, 0, R(0.04502666666666666)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.04502666666666666), 0}, {0, 0, R(0.04502666666666666)}},
     },
 };
 
-const hexapod_6rus_real hexapod_6rus_HOME_X[HEXAPOD_6RUS_NQ] = {R(0.0), R(0.0), R(0.75), R(0.0), R(0.0), R(0.0), R(1.0)};
+const hexapod_6rus_real hexapod_6rus_HOME_X[HEXAPOD_6RUS_NQ] = {0, 0, R(0.75), 0, 0, 0, 1};
 const hexapod_6rus_real hexapod_6rus_HOME_Q[HEXAPOD_6RUS_NJ] = {R(-1.2), R(1.4), R(0.35), R(-1.2), R(1.4), R(-0.35), R(-1.2), R(1.4), R(0.35), R(-1.2), R(1.4), R(-0.35), R(-1.2), R(1.4), R(0.35), R(-1.2), R(1.4), R(-0.35)};
 const size_t hexapod_6rus_ACTUATED[HEXAPOD_6RUS_NU] = {0, 3, 6, 9, 12, 15};
 const char *const hexapod_6rus_ACTUATOR_NAMES[HEXAPOD_6RUS_NU] = {
@@ -562,6 +569,9 @@ static int acceptable(const hexapod_6rus_params *p)
     ok &= all_inertias(&p->rus_link3_inertia[0][0][0], LEGS_OF_rus);
     return ok;
 }
+
+#define KEEP(name) model->name = name
+#define KEEP_OF_LEG(name) model->name[leg] = name
 
 int hexapod_6rus_prepare(const hexapod_6rus_params *params, hexapod_6rus_model *model)
 {
@@ -613,10 +623,10 @@ int hexapod_6rus_prepare(const hexapod_6rus_params *params, hexapod_6rus_model *
     const real J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4);
     /* (spread) rms distance of the platform points from their centroid */
     const real spread_t = R(0.16666666666666666)*root(6);
-    model->gravity_x = gravity_x;
-    model->gravity_y = gravity_y;
-    model->gravity_z = gravity_z;
-    model->spread_t = spread_t;
+    KEEP(gravity_x);
+    KEEP(gravity_y);
+    KEEP(gravity_z);
+    KEEP(spread_t);
     for (size_t leg = 0; leg < FILLED(LEGS_OF_rus); ++leg) {
         const size_t own = leg < LEGS_OF_rus ? leg : 0;
         const real rus_base_point_x = params->rus_base_point[own][0];
@@ -754,63 +764,63 @@ int hexapod_6rus_prepare(const hexapod_6rus_params *params, hexapod_6rus_model *
             rus_base_frame_yy*rus_base_point_y + rus_base_frame_zy*rus_base_point_z;
         const real rus_potential_t_3 = rus_link1_mass*(rus_base_frame_xz*rus_base_point_x +
             rus_base_frame_yz*rus_base_point_y + rus_base_frame_zz*rus_base_point_z);
-        model->inv_rus_rho2_1_t[leg] = inv_rus_rho2_1_t;
-        model->inv_rus_size[leg] = inv_rus_size;
-        model->inv_rus_size_t[leg] = inv_rus_size_t;
-        model->inv_rus_size_t_2[leg] = inv_rus_size_t_2;
-        model->inv_rus_size_t_3[leg] = inv_rus_size_t_3;
-        model->rus_J_1_in_spec1_zz[leg] = rus_J_1_in_spec1_zz;
-        model->rus_J_3_in_spec3_xx[leg] = rus_J_3_in_spec3_xx;
-        model->rus_J_3_in_spec3_xy[leg] = rus_J_3_in_spec3_xy;
-        model->rus_J_3_in_spec3_xz[leg] = rus_J_3_in_spec3_xz;
-        model->rus_J_3_in_spec3_yz[leg] = rus_J_3_in_spec3_yz;
-        model->rus_J_3_in_spec3_zz[leg] = rus_J_3_in_spec3_zz;
-        model->rus_J_3_t[leg] = rus_J_3_t;
-        model->rus_J_3_t_2[leg] = rus_J_3_t_2;
-        model->rus_Sigma_3_in_axes3_xx[leg] = rus_Sigma_3_in_axes3_xx;
-        model->rus_Sigma_3_in_axes3_yy[leg] = rus_Sigma_3_in_axes3_yy;
-        model->rus_Sigma_3_in_axes3_zz[leg] = rus_Sigma_3_in_axes3_zz;
-        model->rus_base_frame_xx[leg] = rus_base_frame_xx;
-        model->rus_base_frame_xy[leg] = rus_base_frame_xy;
-        model->rus_base_frame_xz[leg] = rus_base_frame_xz;
-        model->rus_base_frame_yx[leg] = rus_base_frame_yx;
-        model->rus_base_frame_yy[leg] = rus_base_frame_yy;
-        model->rus_base_frame_yz[leg] = rus_base_frame_yz;
-        model->rus_base_frame_zx[leg] = rus_base_frame_zx;
-        model->rus_base_frame_zy[leg] = rus_base_frame_zy;
-        model->rus_base_frame_zz[leg] = rus_base_frame_zz;
-        model->rus_base_point_x[leg] = rus_base_point_x;
-        model->rus_base_point_y[leg] = rus_base_point_y;
-        model->rus_base_point_z[leg] = rus_base_point_z;
-        model->rus_branch_1[leg] = rus_branch_1;
-        model->rus_branch_2[leg] = rus_branch_2;
-        model->rus_d_Gamma_3_in_axes3_y[leg] = rus_d_Gamma_3_in_axes3_y;
-        model->rus_d_Gamma_3_t[leg] = rus_d_Gamma_3_t;
-        model->rus_d_c_in_axes3_yy[leg] = rus_d_c_in_axes3_yy;
-        model->rus_d_phi_3_in_axes3_xy[leg] = rus_d_phi_3_in_axes3_xy;
-        model->rus_g_in_axes1_z[leg] = rus_g_in_axes1_z;
-        model->rus_h_1_in_spec1_x[leg] = rus_h_1_in_spec1_x;
-        model->rus_h_1_in_spec1_y[leg] = rus_h_1_in_spec1_y;
-        model->rus_h_1_in_spec1_z[leg] = rus_h_1_in_spec1_z;
-        model->rus_h_3_in_spec3_x[leg] = rus_h_3_in_spec3_x;
-        model->rus_h_3_in_spec3_y[leg] = rus_h_3_in_spec3_y;
-        model->rus_h_3_in_spec3_z[leg] = rus_h_3_in_spec3_z;
-        model->rus_joint2_offset_x[leg] = rus_joint2_offset_x;
-        model->rus_link1_mass[leg] = rus_link1_mass;
-        model->rus_link3_mass[leg] = rus_link3_mass;
-        model->rus_mu_1_t[leg] = rus_mu_1_t;
-        model->rus_mu_1_t_2[leg] = rus_mu_1_t_2;
-        model->rus_platform_joint_offset_x[leg] = rus_platform_joint_offset_x;
-        model->rus_platform_point_x[leg] = rus_platform_point_x;
-        model->rus_platform_point_y[leg] = rus_platform_point_y;
-        model->rus_platform_point_z[leg] = rus_platform_point_z;
-        model->rus_potential_t[leg] = rus_potential_t;
-        model->rus_potential_t_2[leg] = rus_potential_t_2;
-        model->rus_potential_t_3[leg] = rus_potential_t_3;
-        model->rus_rho2_1_t[leg] = rus_rho2_1_t;
-        model->rus_size[leg] = rus_size;
-        model->rus_size_t_3[leg] = rus_size_t_3;
-        model->rus_w_3_in_axes3_y[leg] = rus_w_3_in_axes3_y;
+        KEEP_OF_LEG(inv_rus_rho2_1_t);
+        KEEP_OF_LEG(inv_rus_size);
+        KEEP_OF_LEG(inv_rus_size_t);
+        KEEP_OF_LEG(inv_rus_size_t_2);
+        KEEP_OF_LEG(inv_rus_size_t_3);
+        KEEP_OF_LEG(rus_J_1_in_spec1_zz);
+        KEEP_OF_LEG(rus_J_3_in_spec3_xx);
+        KEEP_OF_LEG(rus_J_3_in_spec3_xy);
+        KEEP_OF_LEG(rus_J_3_in_spec3_xz);
+        KEEP_OF_LEG(rus_J_3_in_spec3_yz);
+        KEEP_OF_LEG(rus_J_3_in_spec3_zz);
+        KEEP_OF_LEG(rus_J_3_t);
+        KEEP_OF_LEG(rus_J_3_t_2);
+        KEEP_OF_LEG(rus_Sigma_3_in_axes3_xx);
+        KEEP_OF_LEG(rus_Sigma_3_in_axes3_yy);
+        KEEP_OF_LEG(rus_Sigma_3_in_axes3_zz);
+        KEEP_OF_LEG(rus_base_frame_xx);
+        KEEP_OF_LEG(rus_base_frame_xy);
+        KEEP_OF_LEG(rus_base_frame_xz);
+        KEEP_OF_LEG(rus_base_frame_yx);
+        KEEP_OF_LEG(rus_base_frame_yy);
+        KEEP_OF_LEG(rus_base_frame_yz);
+        KEEP_OF_LEG(rus_base_frame_zx);
+        KEEP_OF_LEG(rus_base_frame_zy);
+        KEEP_OF_LEG(rus_base_frame_zz);
+        KEEP_OF_LEG(rus_base_point_x);
+        KEEP_OF_LEG(rus_base_point_y);
+        KEEP_OF_LEG(rus_base_point_z);
+        KEEP_OF_LEG(rus_branch_1);
+        KEEP_OF_LEG(rus_branch_2);
+        KEEP_OF_LEG(rus_d_Gamma_3_in_axes3_y);
+        KEEP_OF_LEG(rus_d_Gamma_3_t);
+        KEEP_OF_LEG(rus_d_c_in_axes3_yy);
+        KEEP_OF_LEG(rus_d_phi_3_in_axes3_xy);
+        KEEP_OF_LEG(rus_g_in_axes1_z);
+        KEEP_OF_LEG(rus_h_1_in_spec1_x);
+        KEEP_OF_LEG(rus_h_1_in_spec1_y);
+        KEEP_OF_LEG(rus_h_1_in_spec1_z);
+        KEEP_OF_LEG(rus_h_3_in_spec3_x);
+        KEEP_OF_LEG(rus_h_3_in_spec3_y);
+        KEEP_OF_LEG(rus_h_3_in_spec3_z);
+        KEEP_OF_LEG(rus_joint2_offset_x);
+        KEEP_OF_LEG(rus_link1_mass);
+        KEEP_OF_LEG(rus_link3_mass);
+        KEEP_OF_LEG(rus_mu_1_t);
+        KEEP_OF_LEG(rus_mu_1_t_2);
+        KEEP_OF_LEG(rus_platform_joint_offset_x);
+        KEEP_OF_LEG(rus_platform_point_x);
+        KEEP_OF_LEG(rus_platform_point_y);
+        KEEP_OF_LEG(rus_platform_point_z);
+        KEEP_OF_LEG(rus_potential_t);
+        KEEP_OF_LEG(rus_potential_t_2);
+        KEEP_OF_LEG(rus_potential_t_3);
+        KEEP_OF_LEG(rus_rho2_1_t);
+        KEEP_OF_LEG(rus_size);
+        KEEP_OF_LEG(rus_size_t_3);
+        KEEP_OF_LEG(rus_w_3_in_axes3_y);
         m_star_of_legs += leg < LEGS_OF_rus ? rus_link3_mass : 0;
         h_star_in_platform_x_of_legs += leg < LEGS_OF_rus ? rus_h_star_t : 0;
         h_star_in_platform_y_of_legs += leg < LEGS_OF_rus ? rus_h_star_t_2 : 0;
@@ -859,25 +869,25 @@ int hexapod_6rus_prepare(const hexapod_6rus_params *params, hexapod_6rus_model *
     const real b_c_in_platform_z = R(0.16666666666666666)*b_c_rus_in_platform_z;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = root(legs_size_rus)*spread_t;
-    model->J_star_in_platform_xx = J_star_in_platform_xx;
-    model->J_star_in_platform_xy = J_star_in_platform_xy;
-    model->J_star_in_platform_xz = J_star_in_platform_xz;
-    model->J_star_in_platform_yy = J_star_in_platform_yy;
-    model->J_star_in_platform_yz = J_star_in_platform_yz;
-    model->J_star_in_platform_zz = J_star_in_platform_zz;
-    model->J_star_t_12 = J_star_t_12;
-    model->J_star_t_14 = J_star_t_14;
-    model->Z_p_t = Z_p_t;
-    model->Z_p_t_2 = Z_p_t_2;
-    model->Z_p_t_3 = Z_p_t_3;
-    model->b_c_in_platform_x = b_c_in_platform_x;
-    model->b_c_in_platform_y = b_c_in_platform_y;
-    model->b_c_in_platform_z = b_c_in_platform_z;
-    model->h_star_in_platform_x = h_star_in_platform_x;
-    model->h_star_in_platform_y = h_star_in_platform_y;
-    model->h_star_in_platform_z = h_star_in_platform_z;
-    model->legs_size = legs_size;
-    model->m_star = m_star;
+    KEEP(J_star_in_platform_xx);
+    KEEP(J_star_in_platform_xy);
+    KEEP(J_star_in_platform_xz);
+    KEEP(J_star_in_platform_yy);
+    KEEP(J_star_in_platform_yz);
+    KEEP(J_star_in_platform_zz);
+    KEEP(J_star_t_12);
+    KEEP(J_star_t_14);
+    KEEP(Z_p_t);
+    KEEP(Z_p_t_2);
+    KEEP(Z_p_t_3);
+    KEEP(b_c_in_platform_x);
+    KEEP(b_c_in_platform_y);
+    KEEP(b_c_in_platform_z);
+    KEEP(h_star_in_platform_x);
+    KEEP(h_star_in_platform_y);
+    KEEP(h_star_in_platform_z);
+    KEEP(legs_size);
+    KEEP(m_star);
     return OK;
 }
 
@@ -1469,10 +1479,10 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real R_zy = quaternion_wx + quaternion_yz;
     const real R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = R_xx*m->h_star_in_platform_x + R_xy*m->h_star_in_platform_y +
-        R_xz*m->h_star_in_platform_z;
-    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yy*m->h_star_in_platform_y +
-        R_yz*m->h_star_in_platform_z;
+    const real h_star_x = R_xy*m->h_star_in_platform_y + R_xz*m->h_star_in_platform_z +
+        R_xx*m->h_star_in_platform_x;
+    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yz*m->h_star_in_platform_z +
+        R_yy*m->h_star_in_platform_y;
     const real h_star_z = R_zx*m->h_star_in_platform_x + R_zy*m->h_star_in_platform_y +
         R_zz*m->h_star_in_platform_z;
     v->quaternion_scale = quaternion_scale;
@@ -1496,8 +1506,8 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
     const real omega_x = V[3*w + k];
     const real omega_y = V[4*w + k];
     const real omega_z = V[5*w + k];
-    const real omega_in_platform_x = v->R_xx*omega_x + v->R_yx*omega_y + v->R_zx*omega_z;
-    const real omega_in_platform_y = v->R_xy*omega_x + v->R_yy*omega_y + v->R_zy*omega_z;
+    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
     const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
     v->omega_in_platform_x = omega_in_platform_x;
     v->omega_in_platform_y = omega_in_platform_y;
@@ -1507,24 +1517,24 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
 INLINE void stage_M_dynamics(const prepared *m, values *v)
 {
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_t = m->J_star_in_platform_xy*v->R_xx + m->J_star_in_platform_yz*v->R_xz
-        - m->J_star_t_12*v->R_xy;
+    const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
+        m->J_star_in_platform_xy*v->R_xx;
     const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
         m->J_star_in_platform_yz*v->R_yz - m->J_star_t_12*v->R_yy;
-    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx +
-        m->J_star_in_platform_yz*v->R_zz - m->J_star_t_12*v->R_zy;
+    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx - m->J_star_t_12*v->R_zy +
+        m->J_star_in_platform_yz*v->R_zz;
     const real J_star_t_4 = m->J_star_t_14*v->R_xz - m->J_star_in_platform_xz*v->R_xx;
     const real J_star_t_5 = m->J_star_t_14*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
     const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
-    const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
-        J_star_t_5*v->R_xz;
+    const real J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
+        J_star_t_4*v->R_yz;
     const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
     const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
     const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
-    const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
+    const real J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
     const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
     const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
@@ -1549,10 +1559,10 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
     const real Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real g_in_platform_x = v->R_xx*m->gravity_x + v->R_yx*m->gravity_y +
-        v->R_zx*m->gravity_z;
-    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_yy*m->gravity_y +
-        v->R_zy*m->gravity_z;
+    const real g_in_platform_x = v->R_yx*m->gravity_y + v->R_zx*m->gravity_z +
+        v->R_xx*m->gravity_x;
+    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_zy*m->gravity_z +
+        v->R_yy*m->gravity_y;
     const real g_in_platform_z = v->R_xz*m->gravity_x + v->R_yz*m->gravity_y +
         v->R_zz*m->gravity_z;
     const real Z_q_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
@@ -1564,15 +1574,15 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
         m->J_star_in_platform_yz*v->omega_in_platform_y +
         m->J_star_in_platform_zz*v->omega_in_platform_z;
-    const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
-        g_in_platform_y*m->h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
-        g_in_platform_z*m->h_star_in_platform_y;
-    const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
-        g_in_platform_z*m->h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
-        g_in_platform_x*m->h_star_in_platform_z;
-    const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
-        g_in_platform_x*m->h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
-        g_in_platform_y*m->h_star_in_platform_x;
+    const real Z_q_in_platform_x = g_in_platform_y*m->h_star_in_platform_z -
+        g_in_platform_z*m->h_star_in_platform_y + Z_q_t_3*v->omega_in_platform_y -
+        Z_q_t_2*v->omega_in_platform_z;
+    const real Z_q_in_platform_y = g_in_platform_z*m->h_star_in_platform_x -
+        g_in_platform_x*m->h_star_in_platform_z + Z_q_t*v->omega_in_platform_z -
+        Z_q_t_3*v->omega_in_platform_x;
+    const real Z_q_in_platform_z = g_in_platform_x*m->h_star_in_platform_y -
+        g_in_platform_y*m->h_star_in_platform_x + Z_q_t_2*v->omega_in_platform_x -
+        Z_q_t*v->omega_in_platform_y;
     const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
         v->R_xz*Z_q_in_platform_z;
     const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
@@ -1612,13 +1622,13 @@ INLINE void stage_rus_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real rus_q_x = R_xx*m->rus_platform_point_x[i] + R_xy*m->rus_platform_point_y[i] +
-        R_xz*m->rus_platform_point_z[i];
+    const real rus_q_x = R_xy*m->rus_platform_point_y[i] + R_xz*m->rus_platform_point_z[i] +
+        R_xx*m->rus_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real rus_q_y = R_yx*m->rus_platform_point_x[i] + R_yy*m->rus_platform_point_y[i] +
-        R_yz*m->rus_platform_point_z[i];
+    const real rus_q_y = R_yx*m->rus_platform_point_x[i] + R_yz*m->rus_platform_point_z[i] +
+        R_yy*m->rus_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
@@ -1626,15 +1636,15 @@ INLINE void stage_rus_X(const prepared *m, size_t w, size_t i, size_t j, const r
         R_zz*m->rus_platform_point_z[i];
     /* (rus-S) from the base point to the connection point */
     const real t_x = X[0*w + j];
-    const real rus_S_x = rus_q_x + t_x - m->rus_base_point_x[i];
+    const real rus_S_x = t_x - m->rus_base_point_x[i] + rus_q_x;
     const real t_y = X[1*w + j];
-    const real rus_S_y = rus_q_y + t_y - m->rus_base_point_y[i];
+    const real rus_S_y = t_y - m->rus_base_point_y[i] + rus_q_y;
     const real t_z = X[2*w + j];
-    const real rus_S_z = rus_q_z + t_z - m->rus_base_point_z[i];
+    const real rus_S_z = t_z - m->rus_base_point_z[i] + rus_q_z;
     /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 1 */
     const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-    const real rus_Kd_1 = m->rus_J_3_t[i] + R(0.5)*rus_Kd_1_t - m->rus_J_3_t_2[i];
+    const real rus_Kd_1 = m->rus_J_3_t[i] - m->rus_J_3_t_2[i] + R(0.5)*rus_Kd_1_t;
     /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
     const real rus_Kc_1 = m->rus_joint2_offset_x[i]*(rus_S_x*m->rus_base_frame_xx[i] +
         rus_S_y*m->rus_base_frame_yx[i] + rus_S_z*m->rus_base_frame_zx[i]);
@@ -1651,7 +1661,7 @@ INLINE void stage_rus_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real inv_rus_rho2_1 = 1/rus_rho2_1;
     const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
     /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
+    const real rus_s_1 = inv_rus_rho2_1*(rus_Kd_1*rus_Ks_1 + rus_Kc_1*rus_root_1);
     /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
     const real rus_xi_1_t = m->inv_rus_size_t[i]*m->rus_joint2_offset_x[i]*rus_root_1;
     /* (rus-x_2) from the origin of joint 2 to the connection point */
@@ -1681,9 +1691,9 @@ INLINE void stage_rus_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t;
     const real rus_v_1_t_2 = rus_c_3*rus_r_1_in_axes3_z;
     const real rus_v_1_t_3 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z;
-    const real rus_v_1_in_axes3_z = rus_c_3*(rus_c_3*rus_v_1_t +
-        rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
-        rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_c_3*rus_r_1_in_axes1_z);
+    const real rus_v_1_in_axes3_z = rus_c_3*(rus_e_1_in_axes3_x*rus_r_1_in_axes1_z +
+        rus_c_3*rus_v_1_t) + rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t -
+        rus_c_3*rus_r_1_in_axes1_z);
     /* (rus-w_1) reciprocal vector 1 */
     const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
     /* (rus-w_2) reciprocal vector 2 */
@@ -1711,12 +1721,12 @@ INLINE void stage_rus_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rus_w_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t;
     const real rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4;
     const real rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4;
-    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*rus_w_1_t_5 +
-        m->rus_base_frame_xy[i]*rus_w_1_t_6 - m->rus_base_frame_xz[i]*rus_c_3;
-    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*rus_w_1_t_5 +
-        m->rus_base_frame_yy[i]*rus_w_1_t_6 - m->rus_base_frame_yz[i]*rus_c_3;
-    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*rus_w_1_t_5 +
-        m->rus_base_frame_zy[i]*rus_w_1_t_6 - m->rus_base_frame_zz[i]*rus_c_3;
+    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*rus_w_1_t_5 -
+        m->rus_base_frame_xz[i]*rus_c_3 + m->rus_base_frame_xy[i]*rus_w_1_t_6;
+    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*rus_w_1_t_5 -
+        m->rus_base_frame_yz[i]*rus_c_3 + m->rus_base_frame_yy[i]*rus_w_1_t_6;
+    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*rus_w_1_t_5 -
+        m->rus_base_frame_zz[i]*rus_c_3 + m->rus_base_frame_zy[i]*rus_w_1_t_6;
     v->rus_q_x = rus_q_x;
     v->rus_q_y = rus_q_y;
     v->rus_q_z = rus_q_z;
@@ -1780,11 +1790,11 @@ INLINE void stage_rus_V_X(size_t w, size_t j, const real *V, values_rus *v)
     const real rus_S_dot_t_2 = omega_z*v->rus_q_x - omega_x*v->rus_q_z;
     const real rus_S_dot_t_3 = omega_x*v->rus_q_y - omega_y*v->rus_q_x;
     const real t_dot_x = V[0*w + j];
-    const real rus_S_dot_x = rus_S_dot_t + t_dot_x;
+    const real rus_S_dot_x = t_dot_x + rus_S_dot_t;
     const real t_dot_y = V[1*w + j];
-    const real rus_S_dot_y = rus_S_dot_t_2 + t_dot_y;
+    const real rus_S_dot_y = t_dot_y + rus_S_dot_t_2;
     const real t_dot_z = V[2*w + j];
-    const real rus_S_dot_z = rus_S_dot_t_3 + t_dot_z;
+    const real rus_S_dot_z = t_dot_z + rus_S_dot_t_3;
     v->rus_S_dot_t = rus_S_dot_t;
     v->rus_S_dot_t_2 = rus_S_dot_t_2;
     v->rus_S_dot_t_3 = rus_S_dot_t_3;
@@ -1798,13 +1808,13 @@ INLINE void stage_rus_A_V_X(size_t w, size_t j, const real *V, values_rus *v)
     /* (rus-S_ddot) acceleration of the connection point */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
-    const real rus_S_ddot_x = v->rus_a_p_x + omega_y*v->rus_S_dot_t_3 -
-        omega_z*v->rus_S_dot_t_2;
+    const real rus_S_ddot_x = omega_y*v->rus_S_dot_t_3 - omega_z*v->rus_S_dot_t_2 +
+        v->rus_a_p_x;
     const real omega_x = V[3*w + j];
-    const real rus_S_ddot_y = v->rus_a_p_y + omega_z*v->rus_S_dot_t -
-        omega_x*v->rus_S_dot_t_3;
-    const real rus_S_ddot_z = v->rus_a_p_z + omega_x*v->rus_S_dot_t_2 -
-        omega_y*v->rus_S_dot_t;
+    const real rus_S_ddot_y = omega_z*v->rus_S_dot_t - omega_x*v->rus_S_dot_t_3 +
+        v->rus_a_p_y;
+    const real rus_S_ddot_z = omega_x*v->rus_S_dot_t_2 - omega_y*v->rus_S_dot_t +
+        v->rus_a_p_z;
     v->rus_S_ddot_x = rus_S_ddot_x;
     v->rus_S_ddot_y = rus_S_ddot_y;
     v->rus_S_ddot_z = rus_S_ddot_z;
@@ -1841,14 +1851,14 @@ INLINE void stage_rus_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
 {
     /* (rus-J_3) inertia tensor of link 3 about the connection point */
     const real t_x = X[0*w + j];
-    const real rus_J_3_t_3 = v->rus_q_x + t_x - m->rus_base_point_x[i];
+    const real rus_J_3_t_3 = t_x - m->rus_base_point_x[i] + v->rus_q_x;
     const real t_y = X[1*w + j];
-    const real rus_J_3_t_4 = v->rus_q_y + t_y - m->rus_base_point_y[i];
+    const real rus_J_3_t_4 = t_y - m->rus_base_point_y[i] + v->rus_q_y;
     const real t_z = X[2*w + j];
-    const real rus_J_3_t_5 = v->rus_q_z + t_z - m->rus_base_point_z[i];
+    const real rus_J_3_t_5 = t_z - m->rus_base_point_z[i] + v->rus_q_z;
     const real rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 +
         rus_J_3_t_5*rus_J_3_t_5;
-    const real rus_J_3_t_7 = m->rus_J_3_t[i] + R(0.5)*rus_J_3_t_6 - m->rus_J_3_t_2[i];
+    const real rus_J_3_t_7 = m->rus_J_3_t[i] - m->rus_J_3_t_2[i] + R(0.5)*rus_J_3_t_6;
     const real rus_J_3_t_8 = m->rus_joint2_offset_x[i]*(rus_J_3_t_3*m->rus_base_frame_xx[i] +
         rus_J_3_t_4*m->rus_base_frame_yx[i] + rus_J_3_t_5*m->rus_base_frame_zx[i]);
     const real rus_J_3_t_9 = m->rus_joint2_offset_x[i]*(rus_J_3_t_3*m->rus_base_frame_xy[i] +
@@ -1859,7 +1869,7 @@ INLINE void stage_rus_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real rus_J_3_t_13 = m->inv_rus_size_t[i]*rus_J_3_t_12*m->rus_joint2_offset_x[i];
     const real rus_J_3_t_14 = m->inv_rus_size_t[i]*rus_J_3_t_7*m->rus_joint2_offset_x[i] -
         m->rus_joint2_offset_x[i];
-    const real rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14;
+    const real rus_J_3_t_15 = rus_J_3_t_14*rus_J_3_t_14 + rus_J_3_t_13*rus_J_3_t_13;
     const real rus_J_3_t_16 = root(rus_J_3_t_15)*m->rus_branch_2[i];
     const real rus_J_3_t_17 =
         m->inv_rus_size_t_2[i]*rus_J_3_t_16*m->rus_platform_joint_offset_x[i];
@@ -1878,8 +1888,8 @@ INLINE void stage_rus_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 -
         rus_J_3_t_12*rus_J_3_t_9);
     /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 +
-        rus_J_3_t_7*rus_J_3_t_9);
+    const real rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_9 +
+        rus_J_3_t_12*rus_J_3_t_8);
     /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
     const real inv_rus_J_3_t_15 = 1/rus_J_3_t_15;
     const real rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16;
@@ -1895,9 +1905,9 @@ INLINE void stage_rus_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t;
     const real rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z;
     const real rus_v_1_t_3 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z;
-    const real rus_v_1_in_axes3_z = rus_J_3_t_17*(rus_J_3_t_17*rus_v_1_t +
-        rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
-        rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z);
+    const real rus_v_1_in_axes3_z = rus_J_3_t_17*(rus_e_1_in_axes3_x*rus_r_1_in_axes1_z +
+        rus_J_3_t_17*rus_v_1_t) + rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t -
+        rus_J_3_t_17*rus_r_1_in_axes1_z);
     /* (rus-w_1) reciprocal vector 1 */
     const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
     /* (rus-w_2) reciprocal vector 2 */
@@ -1921,16 +1931,16 @@ INLINE void stage_rus_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real rus_d_Gamma_2_t_3 = -rus_J_3_in_axes2_yz*m->rus_w_3_in_axes3_y[i];
     const real rus_d_Gamma_2_t_4 = rus_d_Gamma_2_t_2*rus_v_1_in_axes3_z;
     const real rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_t_3;
-    const real rus_d_Gamma_2_in_axes3_x = inv_rus_v_1_t_2*(rus_d_Gamma_2_t_4 +
-        rus_d_Gamma_2_t_5 - rus_J_3_in_axes1_zz) - rus_d_Gamma_2_t;
-    const real rus_d_Gamma_2_in_axes3_y = -rus_d_Gamma_2_t_3 -
-        rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_y[i];
-    const real rus_d_Gamma_2_in_axes3_z = rus_d_Gamma_2_t_2 +
-        rus_J_3_t_17*m->rus_h_3_in_spec3_x[i] - rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_z[i];
+    const real rus_d_Gamma_2_in_axes3_x = inv_rus_v_1_t_2*(rus_d_Gamma_2_t_5 -
+        rus_J_3_in_axes1_zz + rus_d_Gamma_2_t_4) - rus_d_Gamma_2_t;
+    const real rus_d_Gamma_2_in_axes3_y = -rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
+        rus_d_Gamma_2_t_3;
+    const real rus_d_Gamma_2_in_axes3_z = rus_J_3_t_17*m->rus_h_3_in_spec3_x[i] -
+        rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_z[i] + rus_d_Gamma_2_t_2;
     /* (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
-    const real rus_d_Gamma_1_in_axes3_x = inv_rus_v_1_t_2*(rus_d_Gamma_2_t_4 +
-        rus_d_Gamma_2_t_5 - m->rus_J_1_in_spec1_zz[i] - rus_J_3_in_axes1_zz) -
+    const real rus_d_Gamma_1_in_axes3_x = inv_rus_v_1_t_2*(rus_d_Gamma_2_t_5 -
+        m->rus_J_1_in_spec1_zz[i] - rus_J_3_in_axes1_zz + rus_d_Gamma_2_t_4) -
         rus_d_Gamma_2_t;
     /* (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
        without the mass at the connection point */
@@ -1939,11 +1949,11 @@ INLINE void stage_rus_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
         rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
         m->rus_h_3_in_spec3_y[i]*(inv_rus_v_1_t_2*rus_J_3_t_17 -
         rus_J_3_t_17*rus_w_2_in_axes3_x);
-    const real rus_d_c_in_axes3_xy = inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_y +
-        m->rus_d_Gamma_3_in_axes3_y[i]*rus_w_3_t - m->rus_d_phi_3_in_axes3_xy[i] -
+    const real rus_d_c_in_axes3_xy = inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_y -
+        m->rus_d_phi_3_in_axes3_xy[i] + m->rus_d_Gamma_3_in_axes3_y[i]*rus_w_3_t -
         rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_x;
-    const real rus_d_c_in_axes3_xz = inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z +
-        rus_d_Gamma_3_in_axes3_z*rus_w_3_t + rus_d_alpha_3_t*m->rus_h_3_in_spec3_y[i] -
+    const real rus_d_c_in_axes3_xz = rus_d_alpha_3_t*m->rus_h_3_in_spec3_y[i] +
+        inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z + rus_d_Gamma_3_in_axes3_z*rus_w_3_t -
         rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x;
     const real rus_d_c_in_axes3_yz = rus_d_alpha_3_in_axes3_xz*m->rus_h_3_in_spec3_y[i] -
         rus_d_Gamma_3_in_axes3_z*m->rus_w_3_in_axes3_y[i];
@@ -1979,27 +1989,24 @@ INLINE void stage_rus_inverse_kinematics_potential(const prepared *m, size_t w, 
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
     const real t_x = X[0*w + j];
-    const real rus_S_x = t_x + R_xx*m->rus_platform_point_x[i] +
-        R_xy*m->rus_platform_point_y[i] + R_xz*m->rus_platform_point_z[i] -
-        m->rus_base_point_x[i];
+    const real rus_S_x = t_x - m->rus_base_point_x[i] + R_xy*m->rus_platform_point_y[i] +
+        R_xz*m->rus_platform_point_z[i] + R_xx*m->rus_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real t_y = X[1*w + j];
-    const real rus_S_y = t_y + R_yx*m->rus_platform_point_x[i] +
-        R_yy*m->rus_platform_point_y[i] + R_yz*m->rus_platform_point_z[i] -
-        m->rus_base_point_y[i];
+    const real rus_S_y = t_y - m->rus_base_point_y[i] + R_yx*m->rus_platform_point_x[i] +
+        R_yz*m->rus_platform_point_z[i] + R_yy*m->rus_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real t_z = X[2*w + j];
-    const real rus_S_z = t_z + R_zx*m->rus_platform_point_x[i] +
-        R_zy*m->rus_platform_point_y[i] + R_zz*m->rus_platform_point_z[i] -
-        m->rus_base_point_z[i];
+    const real rus_S_z = t_z - m->rus_base_point_z[i] + R_zx*m->rus_platform_point_x[i] +
+        R_zy*m->rus_platform_point_y[i] + R_zz*m->rus_platform_point_z[i];
     /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 1 */
     const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-    const real rus_Kd_1 = m->rus_J_3_t[i] + R(0.5)*rus_Kd_1_t - m->rus_J_3_t_2[i];
+    const real rus_Kd_1 = m->rus_J_3_t[i] - m->rus_J_3_t_2[i] + R(0.5)*rus_Kd_1_t;
     /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
     const real rus_Kc_1 = m->rus_joint2_offset_x[i]*(rus_S_x*m->rus_base_frame_xx[i] +
         rus_S_y*m->rus_base_frame_yx[i] + rus_S_z*m->rus_base_frame_zx[i]);
@@ -2087,14 +2094,14 @@ INLINE void stage_rus_legs_required(const prepared *m, size_t i, values_rus *v)
     const real rus_bias_t_2 = v->rus_bias_t*v->rus_c_3*rus_omega_1_in_axes3_y -
         v->rus_bias_t*v->rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
     const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*m->rus_platform_joint_offset_x[i];
-    const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y -
-        rus_bias_t_2*rus_omega_1_in_axes3_y - rus_qd_3*rus_qd_3_t;
+    const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t
+        - rus_bias_t_2*rus_omega_1_in_axes3_y;
     const real rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
         rus_bias_t_3*rus_omega_2_in_axes3_x;
-    const real rus_bias_in_axes3_z = rus_W_3_in_axes3_xz*m->rus_platform_joint_offset_x[i] +
-        rus_omega_2_in_axes3_x*rus_qd_3_t -
+    const real rus_bias_in_axes3_z = rus_omega_2_in_axes3_x*rus_qd_3_t -
         v->rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-        v->rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
+        v->rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y +
+        rus_W_3_in_axes3_xz*m->rus_platform_joint_offset_x[i];
     /* (rus-rel) acceleration of the connection point left to the joint accelerations */
     const real rus_rel_in_axes3_x = rus_S_ddot_in_axes3_x - rus_bias_in_axes3_x;
     const real rus_rel_in_axes3_y = rus_S_ddot_in_axes3_y - rus_bias_in_axes3_y;
@@ -2130,33 +2137,32 @@ INLINE void stage_rus_legs_required(const prepared *m, size_t i, values_rus *v)
     const real rus_mu_3_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
     const real rus_mu_3_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
     const real rus_mu_3_t_3 = rus_qd_3*rus_qd_3;
-    const real rus_mu_3_in_axes3_x = rus_B_3_in_axes3_yx*m->rus_J_3_in_spec3_xy[i] +
-        rus_B_3_in_axes3_zx*m->rus_J_3_in_spec3_xz[i] +
-        rus_B_3_in_axes3_zy*m->rus_Sigma_3_in_axes3_yy[i] +
-        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_in_axes3_x -
-        m->rus_J_3_in_spec3_yz[i]*(rus_mu_3_t_2 - rus_mu_3_t_3) -
+    const real rus_mu_3_in_axes3_x = rus_B_3_in_axes3_yx*m->rus_J_3_in_spec3_xy[i] -
+        rus_acc_3_in_axes3_z*m->rus_h_3_in_spec3_z[i] -
         rus_acc_3_in_axes3_y*m->rus_h_3_in_spec3_y[i] -
-        rus_acc_3_in_axes3_z*m->rus_h_3_in_spec3_z[i];
-    const real rus_mu_3_in_axes3_y = rus_B_3_in_axes3_xy*m->rus_J_3_in_spec3_yz[i] +
-        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_in_axes3_y +
-        rus_acc_3_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
+        m->rus_J_3_in_spec3_yz[i]*(rus_mu_3_t_2 - rus_mu_3_t_3) +
+        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_in_axes3_x +
+        rus_B_3_in_axes3_zx*m->rus_J_3_in_spec3_xz[i] +
+        rus_B_3_in_axes3_zy*m->rus_Sigma_3_in_axes3_yy[i];
+    const real rus_mu_3_in_axes3_y = rus_acc_3_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
+        rus_acc_3_in_axes3_z*m->rus_h_3_in_spec3_x[i] - m->rus_J_3_in_spec3_xy[i]*(rus_mu_3_t
+        - rus_mu_3_t_3) + rus_B_3_in_axes3_xy*m->rus_J_3_in_spec3_yz[i] +
+        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_in_axes3_y -
         rus_B_3_in_axes3_zx*m->rus_Sigma_3_in_axes3_xx[i] -
-        rus_B_3_in_axes3_zy*m->rus_J_3_in_spec3_xz[i] - m->rus_J_3_in_spec3_xy[i]*(rus_mu_3_t
-        - rus_mu_3_t_3) - rus_acc_3_in_axes3_z*m->rus_h_3_in_spec3_x[i];
-    const real rus_mu_3_in_axes3_z = rus_B_3_in_axes3_yx*m->rus_Sigma_3_in_axes3_xx[i] +
-        m->rus_J_3_in_spec3_xy[i]*rus_alpha_2_in_axes3_x +
-        rus_acc_3_in_axes3_x*m->rus_h_3_in_spec3_z[i] +
-        rus_acc_3_in_axes3_y*m->rus_h_3_in_spec3_x[i] -
+        rus_B_3_in_axes3_zy*m->rus_J_3_in_spec3_xz[i];
+    const real rus_mu_3_in_axes3_z = rus_acc_3_in_axes3_y*m->rus_h_3_in_spec3_x[i] +
+        rus_acc_3_in_axes3_x*m->rus_h_3_in_spec3_z[i] - m->rus_J_3_in_spec3_xz[i]*(rus_mu_3_t
+        - rus_mu_3_t_2) + rus_B_3_in_axes3_yx*m->rus_Sigma_3_in_axes3_xx[i] +
+        m->rus_J_3_in_spec3_xy[i]*rus_alpha_2_in_axes3_x -
         rus_B_3_in_axes3_xy*m->rus_Sigma_3_in_axes3_yy[i] -
-        m->rus_J_3_in_spec3_xz[i]*(rus_mu_3_t - rus_mu_3_t_2) -
         m->rus_J_3_in_spec3_yz[i]*rus_alpha_2_in_axes3_y;
     const real rus_mu_3_in_axes1_z = v->rus_e_1_in_axes3_x*rus_mu_3_in_axes3_x -
         v->rus_c_3*rus_mu_3_in_axes3_y;
     /* (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points */
     const real rus_mu_1_in_axes1_z = m->rus_h_1_in_spec1_y[i]*(v->rus_c_1*m->rus_mu_1_t[i] +
-        m->rus_mu_1_t_2[i]*v->rus_s_1) - m->rus_J_1_in_spec1_zz[i]*rus_qdd_1_t -
-        m->rus_h_1_in_spec1_x[i]*(v->rus_c_1*m->rus_mu_1_t_2[i] -
-        m->rus_mu_1_t[i]*v->rus_s_1);
+        m->rus_mu_1_t_2[i]*v->rus_s_1) -
+        m->rus_h_1_in_spec1_x[i]*(v->rus_c_1*m->rus_mu_1_t_2[i] - m->rus_mu_1_t[i]*v->rus_s_1)
+        - m->rus_J_1_in_spec1_zz[i]*rus_qdd_1_t;
     /* (rus-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real rus_N_1_in_axes1_z = rus_mu_1_in_axes1_z + rus_mu_3_in_axes1_z;
@@ -2166,16 +2172,17 @@ INLINE void stage_rus_legs_required(const prepared *m, size_t i, values_rus *v)
     const real rus_G_in_axes3_y = rus_mu_3_in_axes3_z*m->rus_w_3_in_axes3_y[i];
     /* (rus-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rus_c_in_axes3_x = v->inv_rus_v_1_t_2*(rus_N_1_in_axes1_z +
-        rus_G_in_axes3_y*v->rus_v_1_t_3 - rus_G_in_axes3_z*v->rus_v_1_in_axes3_z) +
-        rus_B_3_in_axes3_xy*m->rus_h_3_in_spec3_z[i] + m->rus_h_3_in_spec3_x[i]*(rus_mu_3_t_2
-        + rus_mu_3_t_3) - rus_alpha_2_in_axes3_y*m->rus_h_3_in_spec3_y[i];
+    const real rus_c_in_axes3_x = m->rus_h_3_in_spec3_x[i]*(rus_mu_3_t_3 + rus_mu_3_t_2) +
+        rus_B_3_in_axes3_xy*m->rus_h_3_in_spec3_z[i] -
+        rus_alpha_2_in_axes3_y*m->rus_h_3_in_spec3_y[i] +
+        v->inv_rus_v_1_t_2*(rus_G_in_axes3_y*v->rus_v_1_t_3 + rus_N_1_in_axes1_z -
+        rus_G_in_axes3_z*v->rus_v_1_in_axes3_z);
     const real rus_c_in_axes3_y = rus_alpha_2_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
-        rus_G_in_axes3_y - rus_B_3_in_axes3_yx*m->rus_h_3_in_spec3_x[i] -
-        m->rus_h_3_in_spec3_z[i]*(rus_mu_3_t + rus_mu_3_t_3);
-    const real rus_c_in_axes3_z = rus_B_3_in_axes3_zy*m->rus_h_3_in_spec3_z[i] +
-        m->rus_h_3_in_spec3_y[i]*(rus_mu_3_t + rus_mu_3_t_2) - rus_G_in_axes3_z -
-        rus_B_3_in_axes3_zx*m->rus_h_3_in_spec3_x[i];
+        m->rus_h_3_in_spec3_z[i]*(rus_mu_3_t_3 + rus_mu_3_t) -
+        rus_B_3_in_axes3_yx*m->rus_h_3_in_spec3_x[i] - rus_G_in_axes3_y;
+    const real rus_c_in_axes3_z = m->rus_h_3_in_spec3_y[i]*(rus_mu_3_t + rus_mu_3_t_2) +
+        rus_B_3_in_axes3_zy*m->rus_h_3_in_spec3_z[i] -
+        rus_B_3_in_axes3_zx*m->rus_h_3_in_spec3_x[i] - rus_G_in_axes3_z;
     v->axis_x_rus_axes3_x = axis_x_rus_axes3_x;
     v->axis_x_rus_axes3_y = axis_x_rus_axes3_y;
     v->axis_x_rus_axes3_z = axis_x_rus_axes3_z;
@@ -2193,39 +2200,43 @@ INLINE void stage_rus_legs_required(const prepared *m, size_t i, values_rus *v)
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    real *s, verdict *t)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_M_dynamics(m, &v);
-    stage_Z_dynamics(m, w, k, V, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.h_star_x;
-    s[10*w + k] = v.h_star_y;
-    s[11*w + k] = v.h_star_z;
-    s[12*w + k] = v.J_star_xx;
-    s[13*w + k] = v.J_star_xy;
-    s[14*w + k] = v.J_star_xz;
-    s[15*w + k] = v.J_star_yy;
-    s[16*w + k] = v.J_star_yz;
-    s[17*w + k] = v.J_star_zz;
-    s[18*w + k] = v.Z_p_x;
-    s[19*w + k] = v.Z_p_y;
-    s[20*w + k] = v.Z_p_z;
-    s[21*w + k] = v.Z_q_x;
-    s[22*w + k] = v.Z_q_y;
-    s[23*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->h_star_x;
+    s[10*w + k] = v->h_star_y;
+    s[11*w + k] = v->h_star_z;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
+    *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_M_dynamics(m, v);
+    stage_Z_dynamics(m, w, k, V, v);
+    s[12*w + k] = v->J_star_xx;
+    s[13*w + k] = v->J_star_xy;
+    s[14*w + k] = v->J_star_xz;
+    s[15*w + k] = v->J_star_yy;
+    s[16*w + k] = v->J_star_yz;
+    s[17*w + k] = v->J_star_zz;
+    s[18*w + k] = v->Z_p_x;
+    s[19*w + k] = v->Z_p_y;
+    s[20*w + k] = v->Z_p_z;
+    s[21*w + k] = v->Z_q_x;
+    s[22*w + k] = v->Z_q_y;
+    s[23*w + k] = v->Z_q_z;
 }
 
 INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2248,12 +2259,12 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
     const real rus_w_1_t_4 = v.rus_e_1_in_axes3_x*v.rus_s_2_t;
     const real rus_w_1_t_5 = v.rus_c_1*rus_w_1_t_3 + v.rus_s_1*rus_w_1_t_4;
     const real rus_w_1_t_6 = v.rus_s_1*rus_w_1_t_3 - v.rus_c_1*rus_w_1_t_4;
-    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*rus_w_1_t_5 +
-        m->rus_base_frame_xy[i]*rus_w_1_t_6 - v.rus_J_3_t_17*m->rus_base_frame_xz[i];
-    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*rus_w_1_t_5 +
-        m->rus_base_frame_yy[i]*rus_w_1_t_6 - v.rus_J_3_t_17*m->rus_base_frame_yz[i];
-    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*rus_w_1_t_5 +
-        m->rus_base_frame_zy[i]*rus_w_1_t_6 - v.rus_J_3_t_17*m->rus_base_frame_zz[i];
+    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*rus_w_1_t_5 -
+        v.rus_J_3_t_17*m->rus_base_frame_xz[i] + m->rus_base_frame_xy[i]*rus_w_1_t_6;
+    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*rus_w_1_t_5 -
+        v.rus_J_3_t_17*m->rus_base_frame_yz[i] + m->rus_base_frame_yy[i]*rus_w_1_t_6;
+    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*rus_w_1_t_5 -
+        v.rus_J_3_t_17*m->rus_base_frame_zz[i] + m->rus_base_frame_zy[i]*rus_w_1_t_6;
     const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
         axis_y_rus_axes3_z*axis_z_rus_axes3_y;
     const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
@@ -2303,14 +2314,14 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
     const real rus_bias_t_2 = v.rus_J_3_t_17*rus_bias_t*rus_omega_1_in_axes3_y -
         rus_bias_t*v.rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
     const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*m->rus_platform_joint_offset_x[i];
-    const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y -
-        rus_bias_t_2*rus_omega_1_in_axes3_y - rus_qd_3*rus_qd_3_t;
+    const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t
+        - rus_bias_t_2*rus_omega_1_in_axes3_y;
     const real rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
         rus_bias_t_3*rus_omega_2_in_axes3_x;
-    const real rus_bias_in_axes3_z = rus_W_3_in_axes3_xz*m->rus_platform_joint_offset_x[i] +
-        rus_omega_2_in_axes3_x*rus_qd_3_t -
+    const real rus_bias_in_axes3_z = rus_omega_2_in_axes3_x*rus_qd_3_t -
         rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-        rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
+        rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y +
+        rus_W_3_in_axes3_xz*m->rus_platform_joint_offset_x[i];
     /* (rus-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
        */
     const real rus_rel_o_in_axes3_x = rus_u_1_in_axes3_x - rus_bias_in_axes3_x;
@@ -2346,34 +2357,34 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
     const real rus_mu_3_o_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
     const real rus_mu_3_o_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
     const real rus_mu_3_o_t_3 = rus_qd_3*rus_qd_3;
-    const real rus_mu_3_o_in_axes3_x = rus_B_3_o_in_axes3_yx*m->rus_J_3_in_spec3_xy[i] +
-        rus_B_3_o_in_axes3_zx*m->rus_J_3_in_spec3_xz[i] +
-        rus_B_3_o_in_axes3_zy*m->rus_Sigma_3_in_axes3_yy[i] +
-        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_x -
-        m->rus_J_3_in_spec3_yz[i]*(rus_mu_3_o_t_2 - rus_mu_3_o_t_3) -
+    const real rus_mu_3_o_in_axes3_x = rus_B_3_o_in_axes3_yx*m->rus_J_3_in_spec3_xy[i] -
+        rus_acc_3_o_in_axes3_z*m->rus_h_3_in_spec3_z[i] -
         rus_acc_3_o_in_axes3_y*m->rus_h_3_in_spec3_y[i] -
-        rus_acc_3_o_in_axes3_z*m->rus_h_3_in_spec3_z[i];
-    const real rus_mu_3_o_in_axes3_y = rus_B_3_o_in_axes3_xy*m->rus_J_3_in_spec3_yz[i] +
-        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_y +
-        rus_acc_3_o_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
+        m->rus_J_3_in_spec3_yz[i]*(rus_mu_3_o_t_2 - rus_mu_3_o_t_3) +
+        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_x +
+        rus_B_3_o_in_axes3_zx*m->rus_J_3_in_spec3_xz[i] +
+        rus_B_3_o_in_axes3_zy*m->rus_Sigma_3_in_axes3_yy[i];
+    const real rus_mu_3_o_in_axes3_y = rus_acc_3_o_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
+        rus_acc_3_o_in_axes3_z*m->rus_h_3_in_spec3_x[i] -
+        m->rus_J_3_in_spec3_xy[i]*(rus_mu_3_o_t - rus_mu_3_o_t_3) +
+        rus_B_3_o_in_axes3_xy*m->rus_J_3_in_spec3_yz[i] +
+        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_y -
         rus_B_3_o_in_axes3_zx*m->rus_Sigma_3_in_axes3_xx[i] -
-        rus_B_3_o_in_axes3_zy*m->rus_J_3_in_spec3_xz[i] -
-        m->rus_J_3_in_spec3_xy[i]*(rus_mu_3_o_t - rus_mu_3_o_t_3) -
-        rus_acc_3_o_in_axes3_z*m->rus_h_3_in_spec3_x[i];
-    const real rus_mu_3_o_in_axes3_z = rus_B_3_o_in_axes3_yx*m->rus_Sigma_3_in_axes3_xx[i] +
-        m->rus_J_3_in_spec3_xy[i]*rus_alpha_2_o_in_axes3_x +
-        rus_acc_3_o_in_axes3_x*m->rus_h_3_in_spec3_z[i] +
-        rus_acc_3_o_in_axes3_y*m->rus_h_3_in_spec3_x[i] -
+        rus_B_3_o_in_axes3_zy*m->rus_J_3_in_spec3_xz[i];
+    const real rus_mu_3_o_in_axes3_z = rus_acc_3_o_in_axes3_y*m->rus_h_3_in_spec3_x[i] +
+        rus_acc_3_o_in_axes3_x*m->rus_h_3_in_spec3_z[i] -
+        m->rus_J_3_in_spec3_xz[i]*(rus_mu_3_o_t - rus_mu_3_o_t_2) +
+        rus_B_3_o_in_axes3_yx*m->rus_Sigma_3_in_axes3_xx[i] +
+        m->rus_J_3_in_spec3_xy[i]*rus_alpha_2_o_in_axes3_x -
         rus_B_3_o_in_axes3_xy*m->rus_Sigma_3_in_axes3_yy[i] -
-        m->rus_J_3_in_spec3_xz[i]*(rus_mu_3_o_t - rus_mu_3_o_t_2) -
         m->rus_J_3_in_spec3_yz[i]*rus_alpha_2_o_in_axes3_y;
     const real rus_mu_3_o_in_axes1_z = v.rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x -
         v.rus_J_3_t_17*rus_mu_3_o_in_axes3_y;
     /* (rus-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
     const real rus_mu_1_o_in_axes1_z = m->rus_h_1_in_spec1_y[i]*(v.rus_c_1*m->rus_mu_1_t[i] +
-        m->rus_mu_1_t_2[i]*v.rus_s_1) - m->rus_J_1_in_spec1_zz[i]*rus_qdd_1_o_t -
-        m->rus_h_1_in_spec1_x[i]*(v.rus_c_1*m->rus_mu_1_t_2[i] - m->rus_mu_1_t[i]*v.rus_s_1);
+        m->rus_mu_1_t_2[i]*v.rus_s_1) - m->rus_h_1_in_spec1_x[i]*(v.rus_c_1*m->rus_mu_1_t_2[i]
+        - m->rus_mu_1_t[i]*v.rus_s_1) - m->rus_J_1_in_spec1_zz[i]*rus_qdd_1_o_t;
     /* (rus-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
        connection point left out */
     const real rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z;
@@ -2383,31 +2394,30 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
     const real rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*m->rus_w_3_in_axes3_y[i];
     /* (rus-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
-    const real rus_c_o_in_axes3_x = v.inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z +
-        rus_G_o_in_axes3_y*v.rus_v_1_t_3 - rus_G_o_in_axes3_z*v.rus_v_1_in_axes3_z) +
-        rus_B_3_o_in_axes3_xy*m->rus_h_3_in_spec3_z[i] +
-        m->rus_h_3_in_spec3_x[i]*(rus_mu_3_o_t_2 + rus_mu_3_o_t_3) -
-        rus_alpha_2_o_in_axes3_y*m->rus_h_3_in_spec3_y[i];
+    const real rus_c_o_in_axes3_x = m->rus_h_3_in_spec3_x[i]*(rus_mu_3_o_t_3 + rus_mu_3_o_t_2)
+        + rus_B_3_o_in_axes3_xy*m->rus_h_3_in_spec3_z[i] -
+        rus_alpha_2_o_in_axes3_y*m->rus_h_3_in_spec3_y[i] +
+        v.inv_rus_v_1_t_2*(rus_G_o_in_axes3_y*v.rus_v_1_t_3 + rus_N_1_o_in_axes1_z -
+        rus_G_o_in_axes3_z*v.rus_v_1_in_axes3_z);
     const real rus_c_o_in_axes3_y = rus_alpha_2_o_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
-        rus_G_o_in_axes3_y - rus_B_3_o_in_axes3_yx*m->rus_h_3_in_spec3_x[i] -
-        m->rus_h_3_in_spec3_z[i]*(rus_mu_3_o_t + rus_mu_3_o_t_3);
-    const real rus_c_o_in_axes3_z = rus_B_3_o_in_axes3_zy*m->rus_h_3_in_spec3_z[i] +
-        m->rus_h_3_in_spec3_y[i]*(rus_mu_3_o_t + rus_mu_3_o_t_2) - rus_G_o_in_axes3_z -
-        rus_B_3_o_in_axes3_zx*m->rus_h_3_in_spec3_x[i];
+        m->rus_h_3_in_spec3_z[i]*(rus_mu_3_o_t_3 + rus_mu_3_o_t) -
+        rus_B_3_o_in_axes3_yx*m->rus_h_3_in_spec3_x[i] - rus_G_o_in_axes3_y;
+    const real rus_c_o_in_axes3_z = m->rus_h_3_in_spec3_y[i]*(rus_mu_3_o_t + rus_mu_3_o_t_2) +
+        rus_B_3_o_in_axes3_zy*m->rus_h_3_in_spec3_z[i] -
+        rus_B_3_o_in_axes3_zx*m->rus_h_3_in_spec3_x[i] - rus_G_o_in_axes3_z;
     /* (rus-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real rus_Q_t = v.rus_d_c_in_axes3_xx - m->rus_d_c_in_axes3_yy[i];
     const real rus_Q_t_2 = R(0.5)*rus_Q_t;
-    const real rus_Q_t_3 = v.rus_d_c_in_axes3_xx +
-        v.rus_d_Gamma_2_in_axes3_z*v.rus_w_2_in_axes3_z +
-        v.rus_d_alpha_3_t*m->rus_h_3_in_spec3_x[i] -
-        v.rus_d_alpha_3_in_axes3_xz*m->rus_h_3_in_spec3_z[i];
+    const real rus_Q_t_3 = v.rus_d_alpha_3_t*m->rus_h_3_in_spec3_x[i] -
+        v.rus_d_alpha_3_in_axes3_xz*m->rus_h_3_in_spec3_z[i] +
+        v.rus_d_Gamma_2_in_axes3_z*v.rus_w_2_in_axes3_z + v.rus_d_c_in_axes3_xx;
     const real rus_Q_t_4 = R(0.5)*rus_Q_t_3;
-    const real rus_Q_t_5 = axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xy +
-        axis_z_rus_axes3_x*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_x*rus_Q_t_2;
-    const real rus_Q_t_6 = axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xy +
-        axis_z_rus_axes3_y*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_y*rus_Q_t_2;
-    const real rus_Q_t_7 = axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xy +
-        axis_z_rus_axes3_z*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_z*rus_Q_t_2;
+    const real rus_Q_t_5 = axis_z_rus_axes3_x*v.rus_d_c_in_axes3_yz +
+        axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xy - axis_y_rus_axes3_x*rus_Q_t_2;
+    const real rus_Q_t_6 = axis_z_rus_axes3_y*v.rus_d_c_in_axes3_yz +
+        axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xy - axis_y_rus_axes3_y*rus_Q_t_2;
+    const real rus_Q_t_7 = axis_z_rus_axes3_z*v.rus_d_c_in_axes3_yz +
+        axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xy - axis_y_rus_axes3_z*rus_Q_t_2;
     const real rus_Q_t_8 = axis_z_rus_axes3_x*rus_Q_t_4 -
         axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xz;
     const real rus_Q_t_9 = axis_z_rus_axes3_y*rus_Q_t_4 -
@@ -2415,24 +2425,24 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
     const real rus_Q_t_10 = axis_z_rus_axes3_z*rus_Q_t_4 -
         axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xz;
     const real rus_Q_t_11 = axis_y_rus_axes3_x*rus_Q_t_5 - axis_z_rus_axes3_x*rus_Q_t_8;
-    const real rus_Q_xx = -2*rus_Q_t_11 - v.rus_d_c_in_axes3_xx;
+    const real rus_Q_xx = -v.rus_d_c_in_axes3_xx - 2*rus_Q_t_11;
     const real rus_Q_xy = axis_z_rus_axes3_x*rus_Q_t_9 + axis_z_rus_axes3_y*rus_Q_t_8 -
         axis_y_rus_axes3_x*rus_Q_t_6 - axis_y_rus_axes3_y*rus_Q_t_5;
     const real rus_Q_xz = axis_z_rus_axes3_x*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_8 -
         axis_y_rus_axes3_x*rus_Q_t_7 - axis_y_rus_axes3_z*rus_Q_t_5;
     const real rus_Q_t_12 = axis_y_rus_axes3_y*rus_Q_t_6 - axis_z_rus_axes3_y*rus_Q_t_9;
-    const real rus_Q_yy = -2*rus_Q_t_12 - v.rus_d_c_in_axes3_xx;
+    const real rus_Q_yy = -v.rus_d_c_in_axes3_xx - 2*rus_Q_t_12;
     const real rus_Q_yz = axis_z_rus_axes3_y*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_9 -
         axis_y_rus_axes3_y*rus_Q_t_7 - axis_y_rus_axes3_z*rus_Q_t_6;
     const real rus_Q_t_13 = axis_y_rus_axes3_z*rus_Q_t_7 - axis_z_rus_axes3_z*rus_Q_t_10;
-    const real rus_Q_zz = -2*rus_Q_t_13 - v.rus_d_c_in_axes3_xx;
+    const real rus_Q_zz = -v.rus_d_c_in_axes3_xx - 2*rus_Q_t_13;
     /* (rus-U) velocity and gravity terms of the leg force */
-    const real rus_U_x = -axis_x_rus_axes3_x*rus_c_o_in_axes3_x -
-        axis_y_rus_axes3_x*rus_c_o_in_axes3_y - axis_z_rus_axes3_x*rus_c_o_in_axes3_z;
-    const real rus_U_y = -axis_x_rus_axes3_y*rus_c_o_in_axes3_x -
-        axis_y_rus_axes3_y*rus_c_o_in_axes3_y - axis_z_rus_axes3_y*rus_c_o_in_axes3_z;
-    const real rus_U_z = -axis_x_rus_axes3_z*rus_c_o_in_axes3_x -
-        axis_y_rus_axes3_z*rus_c_o_in_axes3_y - axis_z_rus_axes3_z*rus_c_o_in_axes3_z;
+    const real rus_U_x = -axis_y_rus_axes3_x*rus_c_o_in_axes3_y -
+        axis_z_rus_axes3_x*rus_c_o_in_axes3_z - axis_x_rus_axes3_x*rus_c_o_in_axes3_x;
+    const real rus_U_y = -axis_y_rus_axes3_y*rus_c_o_in_axes3_y -
+        axis_z_rus_axes3_y*rus_c_o_in_axes3_z - axis_x_rus_axes3_y*rus_c_o_in_axes3_x;
+    const real rus_U_z = -axis_y_rus_axes3_z*rus_c_o_in_axes3_y -
+        axis_z_rus_axes3_z*rus_c_o_in_axes3_z - axis_x_rus_axes3_z*rus_c_o_in_axes3_x;
     /* (M_ta) coupling block of M */
     const real rus_M_ta_t = -rus_Q_xy*v.rus_q_z;
     const real rus_M_ta_t_2 = rus_Q_xz*v.rus_q_y;
@@ -2530,15 +2540,15 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[11*w + k];
-    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
     const real h_star_y = s[10*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -2546,9 +2556,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[9*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
@@ -2583,13 +2593,13 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[24*w + k];
     const real Z_q_x = s[21*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[25*w + k];
     const real Z_q_y = s[22*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[26*w + k];
     const real Z_q_z = s[23*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
     const real M_tt_xy = sums[1*w + k];
@@ -2654,7 +2664,8 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 {
     real s[24] = {0}, sums[27] = {0};
     real terms_rus[27*LEGS(LEGS_OF_rus)] = {0}, o_rus[9*LEGS(LEGS_OF_rus)] = {0};
-    dynamics_before(m, 1, 0, X, V, s, t);
+    values v;
+    dynamics_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         dynamics_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, s, X, V, terms_rus, o_rus);
     }
@@ -2664,6 +2675,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t n = 0; n < 27; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
+    dynamics_between(m, 1, 0, V, &v, s);
     dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
@@ -2673,7 +2685,9 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real s[24*LANES], sums[27*LANES];
     real o_rus[9*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        dynamics_before(m, LANES, k, X, V, s, t);
+        values v;
+        dynamics_before(m, LANES, k, X, &v, s, t);
+        dynamics_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 27*LANES);
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
@@ -2690,30 +2704,34 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_M_dynamics(m, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.h_star_x;
-    s[10*w + k] = v.h_star_y;
-    s[11*w + k] = v.h_star_z;
-    s[12*w + k] = v.J_star_xx;
-    s[13*w + k] = v.J_star_xy;
-    s[14*w + k] = v.J_star_xz;
-    s[15*w + k] = v.J_star_yy;
-    s[16*w + k] = v.J_star_yz;
-    s[17*w + k] = v.J_star_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->h_star_x;
+    s[10*w + k] = v->h_star_y;
+    s[11*w + k] = v->h_star_z;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void M_between(const prepared *m, size_t w, size_t k, values *v, real *s)
+{
+    stage_M_dynamics(m, v);
+    s[12*w + k] = v->J_star_xx;
+    s[13*w + k] = v->J_star_xy;
+    s[14*w + k] = v->J_star_xz;
+    s[15*w + k] = v->J_star_yy;
+    s[16*w + k] = v->J_star_yz;
+    s[17*w + k] = v->J_star_zz;
 }
 
 INLINE void M_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2735,12 +2753,12 @@ INLINE void M_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real rus_Q_t_4 = v.rus_e_1_in_axes3_x*v.rus_s_2_t;
     const real rus_Q_t_5 = rus_Q_t_3*v.rus_c_1 + rus_Q_t_4*v.rus_s_1;
     const real rus_Q_t_6 = rus_Q_t_3*v.rus_s_1 - rus_Q_t_4*v.rus_c_1;
-    const real axis_y_rus_axes3_x = rus_Q_t_5*m->rus_base_frame_xx[i] +
-        rus_Q_t_6*m->rus_base_frame_xy[i] - v.rus_J_3_t_17*m->rus_base_frame_xz[i];
-    const real axis_y_rus_axes3_y = rus_Q_t_5*m->rus_base_frame_yx[i] +
-        rus_Q_t_6*m->rus_base_frame_yy[i] - v.rus_J_3_t_17*m->rus_base_frame_yz[i];
-    const real axis_y_rus_axes3_z = rus_Q_t_5*m->rus_base_frame_zx[i] +
-        rus_Q_t_6*m->rus_base_frame_zy[i] - v.rus_J_3_t_17*m->rus_base_frame_zz[i];
+    const real axis_y_rus_axes3_x = rus_Q_t_5*m->rus_base_frame_xx[i] -
+        v.rus_J_3_t_17*m->rus_base_frame_xz[i] + rus_Q_t_6*m->rus_base_frame_xy[i];
+    const real axis_y_rus_axes3_y = rus_Q_t_5*m->rus_base_frame_yx[i] -
+        v.rus_J_3_t_17*m->rus_base_frame_yz[i] + rus_Q_t_6*m->rus_base_frame_yy[i];
+    const real axis_y_rus_axes3_z = rus_Q_t_5*m->rus_base_frame_zx[i] -
+        v.rus_J_3_t_17*m->rus_base_frame_zz[i] + rus_Q_t_6*m->rus_base_frame_zy[i];
     const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
         axis_y_rus_axes3_z*axis_z_rus_axes3_y;
     const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
@@ -2749,17 +2767,16 @@ INLINE void M_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
         axis_y_rus_axes3_y*axis_z_rus_axes3_x;
     const real rus_Q_t_7 = v.rus_d_c_in_axes3_xx - m->rus_d_c_in_axes3_yy[i];
     const real rus_Q_t_8 = R(0.5)*rus_Q_t_7;
-    const real rus_Q_t_9 = v.rus_d_c_in_axes3_xx +
-        v.rus_d_Gamma_2_in_axes3_z*v.rus_w_2_in_axes3_z +
-        v.rus_d_alpha_3_t*m->rus_h_3_in_spec3_x[i] -
-        v.rus_d_alpha_3_in_axes3_xz*m->rus_h_3_in_spec3_z[i];
+    const real rus_Q_t_9 = v.rus_d_alpha_3_t*m->rus_h_3_in_spec3_x[i] -
+        v.rus_d_alpha_3_in_axes3_xz*m->rus_h_3_in_spec3_z[i] +
+        v.rus_d_Gamma_2_in_axes3_z*v.rus_w_2_in_axes3_z + v.rus_d_c_in_axes3_xx;
     const real rus_Q_t_10 = R(0.5)*rus_Q_t_9;
-    const real rus_Q_t_11 = axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xy +
-        axis_z_rus_axes3_x*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_x*rus_Q_t_8;
-    const real rus_Q_t_12 = axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xy +
-        axis_z_rus_axes3_y*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_y*rus_Q_t_8;
-    const real rus_Q_t_13 = axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xy +
-        axis_z_rus_axes3_z*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_z*rus_Q_t_8;
+    const real rus_Q_t_11 = axis_z_rus_axes3_x*v.rus_d_c_in_axes3_yz +
+        axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xy - axis_y_rus_axes3_x*rus_Q_t_8;
+    const real rus_Q_t_12 = axis_z_rus_axes3_y*v.rus_d_c_in_axes3_yz +
+        axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xy - axis_y_rus_axes3_y*rus_Q_t_8;
+    const real rus_Q_t_13 = axis_z_rus_axes3_z*v.rus_d_c_in_axes3_yz +
+        axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xy - axis_y_rus_axes3_z*rus_Q_t_8;
     const real rus_Q_t_14 = axis_z_rus_axes3_x*rus_Q_t_10 -
         axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xz;
     const real rus_Q_t_15 = axis_z_rus_axes3_y*rus_Q_t_10 -
@@ -2767,17 +2784,17 @@ INLINE void M_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real rus_Q_t_16 = axis_z_rus_axes3_z*rus_Q_t_10 -
         axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xz;
     const real rus_Q_t_17 = axis_y_rus_axes3_x*rus_Q_t_11 - axis_z_rus_axes3_x*rus_Q_t_14;
-    const real rus_Q_xx = -2*rus_Q_t_17 - v.rus_d_c_in_axes3_xx;
+    const real rus_Q_xx = -v.rus_d_c_in_axes3_xx - 2*rus_Q_t_17;
     const real rus_Q_xy = axis_z_rus_axes3_x*rus_Q_t_15 + axis_z_rus_axes3_y*rus_Q_t_14 -
         axis_y_rus_axes3_x*rus_Q_t_12 - axis_y_rus_axes3_y*rus_Q_t_11;
     const real rus_Q_xz = axis_z_rus_axes3_x*rus_Q_t_16 + axis_z_rus_axes3_z*rus_Q_t_14 -
         axis_y_rus_axes3_x*rus_Q_t_13 - axis_y_rus_axes3_z*rus_Q_t_11;
     const real rus_Q_t_18 = axis_y_rus_axes3_y*rus_Q_t_12 - axis_z_rus_axes3_y*rus_Q_t_15;
-    const real rus_Q_yy = -2*rus_Q_t_18 - v.rus_d_c_in_axes3_xx;
+    const real rus_Q_yy = -v.rus_d_c_in_axes3_xx - 2*rus_Q_t_18;
     const real rus_Q_yz = axis_z_rus_axes3_y*rus_Q_t_16 + axis_z_rus_axes3_z*rus_Q_t_15 -
         axis_y_rus_axes3_y*rus_Q_t_13 - axis_y_rus_axes3_z*rus_Q_t_12;
     const real rus_Q_t_19 = axis_y_rus_axes3_z*rus_Q_t_13 - axis_z_rus_axes3_z*rus_Q_t_16;
-    const real rus_Q_zz = -2*rus_Q_t_19 - v.rus_d_c_in_axes3_xx;
+    const real rus_Q_zz = -v.rus_d_c_in_axes3_xx - 2*rus_Q_t_19;
     /* (M_ta) coupling block of M */
     const real rus_M_ta_t = -rus_Q_xy*v.rus_q_z;
     const real rus_M_ta_t_2 = rus_Q_xz*v.rus_q_y;
@@ -2841,15 +2858,15 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[11*w + k];
-    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
     const real h_star_y = s[10*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -2857,9 +2874,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[9*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
@@ -2936,7 +2953,8 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
     real s[18] = {0}, sums[21] = {0};
     real terms_rus[21*LEGS(LEGS_OF_rus)] = {0}, o_rus[2*LEGS(LEGS_OF_rus)] = {0};
-    M_before(m, 1, 0, X, s, t);
+    values v;
+    M_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         M_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, s, X, terms_rus, o_rus);
     }
@@ -2946,6 +2964,7 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     for (size_t n = 0; n < 21; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
+    M_between(m, 1, 0, &v, s);
     M_after(m, 1, 0, s, sums, M, t);
 }
 
@@ -2954,7 +2973,9 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
     real s[18*LANES], sums[21*LANES];
     real o_rus[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        M_before(m, LANES, k, X, s, t);
+        values v;
+        M_before(m, LANES, k, X, &v, s, t);
+        M_between(m, LANES, k, &v, s);
     }
     clear(sums, 21*LANES);
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
@@ -2971,29 +2992,32 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s,
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
     verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_Z_dynamics(m, w, k, V, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.Z_p_x;
-    s[10*w + k] = v.Z_p_y;
-    s[11*w + k] = v.Z_p_z;
-    s[12*w + k] = v.Z_q_x;
-    s[13*w + k] = v.Z_q_y;
-    s[14*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_Z_dynamics(m, w, k, V, v);
+    s[9*w + k] = v->Z_p_x;
+    s[10*w + k] = v->Z_p_y;
+    s[11*w + k] = v->Z_p_z;
+    s[12*w + k] = v->Z_q_x;
+    s[13*w + k] = v->Z_q_y;
+    s[14*w + k] = v->Z_q_z;
 }
 
 INLINE void Z_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3009,12 +3033,12 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
         m->rus_base_frame_yy[i]*v.rus_qd_1_t_2;
     const real axis_z_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t +
         m->rus_base_frame_zy[i]*v.rus_qd_1_t_2;
-    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*v.rus_qd_1_t_5 +
-        m->rus_base_frame_xy[i]*v.rus_qd_1_t_6 - m->rus_base_frame_xz[i]*v.rus_c_3;
-    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*v.rus_qd_1_t_5 +
-        m->rus_base_frame_yy[i]*v.rus_qd_1_t_6 - m->rus_base_frame_yz[i]*v.rus_c_3;
-    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t_5 +
-        m->rus_base_frame_zy[i]*v.rus_qd_1_t_6 - m->rus_base_frame_zz[i]*v.rus_c_3;
+    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*v.rus_qd_1_t_5 -
+        m->rus_base_frame_xz[i]*v.rus_c_3 + m->rus_base_frame_xy[i]*v.rus_qd_1_t_6;
+    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*v.rus_qd_1_t_5 -
+        m->rus_base_frame_yz[i]*v.rus_c_3 + m->rus_base_frame_yy[i]*v.rus_qd_1_t_6;
+    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t_5 -
+        m->rus_base_frame_zz[i]*v.rus_c_3 + m->rus_base_frame_zy[i]*v.rus_qd_1_t_6;
     const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
         axis_y_rus_axes3_z*axis_z_rus_axes3_y;
     const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
@@ -3058,14 +3082,14 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real rus_bias_t_2 = v.rus_bias_t*v.rus_c_3*rus_omega_1_in_axes3_y -
         v.rus_bias_t*v.rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
     const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*m->rus_platform_joint_offset_x[i];
-    const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y -
-        rus_bias_t_2*rus_omega_1_in_axes3_y - rus_qd_3*rus_qd_3_t;
+    const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t
+        - rus_bias_t_2*rus_omega_1_in_axes3_y;
     const real rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
         rus_bias_t_3*rus_omega_2_in_axes3_x;
-    const real rus_bias_in_axes3_z = rus_W_3_in_axes3_xz*m->rus_platform_joint_offset_x[i] +
-        rus_omega_2_in_axes3_x*rus_qd_3_t -
+    const real rus_bias_in_axes3_z = rus_omega_2_in_axes3_x*rus_qd_3_t -
         v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-        v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
+        v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y +
+        rus_W_3_in_axes3_xz*m->rus_platform_joint_offset_x[i];
     /* (rus-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
        */
     const real rus_rel_o_in_axes3_x = rus_u_1_in_axes3_x - rus_bias_in_axes3_x;
@@ -3101,34 +3125,34 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real rus_mu_3_o_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
     const real rus_mu_3_o_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
     const real rus_mu_3_o_t_3 = rus_qd_3*rus_qd_3;
-    const real rus_mu_3_o_in_axes3_x = rus_B_3_o_in_axes3_yx*m->rus_J_3_in_spec3_xy[i] +
-        rus_B_3_o_in_axes3_zx*m->rus_J_3_in_spec3_xz[i] +
-        rus_B_3_o_in_axes3_zy*m->rus_Sigma_3_in_axes3_yy[i] +
-        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_x -
-        m->rus_J_3_in_spec3_yz[i]*(rus_mu_3_o_t_2 - rus_mu_3_o_t_3) -
+    const real rus_mu_3_o_in_axes3_x = rus_B_3_o_in_axes3_yx*m->rus_J_3_in_spec3_xy[i] -
+        rus_acc_3_o_in_axes3_z*m->rus_h_3_in_spec3_z[i] -
         rus_acc_3_o_in_axes3_y*m->rus_h_3_in_spec3_y[i] -
-        rus_acc_3_o_in_axes3_z*m->rus_h_3_in_spec3_z[i];
-    const real rus_mu_3_o_in_axes3_y = rus_B_3_o_in_axes3_xy*m->rus_J_3_in_spec3_yz[i] +
-        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_y +
-        rus_acc_3_o_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
+        m->rus_J_3_in_spec3_yz[i]*(rus_mu_3_o_t_2 - rus_mu_3_o_t_3) +
+        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_x +
+        rus_B_3_o_in_axes3_zx*m->rus_J_3_in_spec3_xz[i] +
+        rus_B_3_o_in_axes3_zy*m->rus_Sigma_3_in_axes3_yy[i];
+    const real rus_mu_3_o_in_axes3_y = rus_acc_3_o_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
+        rus_acc_3_o_in_axes3_z*m->rus_h_3_in_spec3_x[i] -
+        m->rus_J_3_in_spec3_xy[i]*(rus_mu_3_o_t - rus_mu_3_o_t_3) +
+        rus_B_3_o_in_axes3_xy*m->rus_J_3_in_spec3_yz[i] +
+        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_y -
         rus_B_3_o_in_axes3_zx*m->rus_Sigma_3_in_axes3_xx[i] -
-        rus_B_3_o_in_axes3_zy*m->rus_J_3_in_spec3_xz[i] -
-        m->rus_J_3_in_spec3_xy[i]*(rus_mu_3_o_t - rus_mu_3_o_t_3) -
-        rus_acc_3_o_in_axes3_z*m->rus_h_3_in_spec3_x[i];
-    const real rus_mu_3_o_in_axes3_z = rus_B_3_o_in_axes3_yx*m->rus_Sigma_3_in_axes3_xx[i] +
-        m->rus_J_3_in_spec3_xy[i]*rus_alpha_2_o_in_axes3_x +
-        rus_acc_3_o_in_axes3_x*m->rus_h_3_in_spec3_z[i] +
-        rus_acc_3_o_in_axes3_y*m->rus_h_3_in_spec3_x[i] -
+        rus_B_3_o_in_axes3_zy*m->rus_J_3_in_spec3_xz[i];
+    const real rus_mu_3_o_in_axes3_z = rus_acc_3_o_in_axes3_y*m->rus_h_3_in_spec3_x[i] +
+        rus_acc_3_o_in_axes3_x*m->rus_h_3_in_spec3_z[i] -
+        m->rus_J_3_in_spec3_xz[i]*(rus_mu_3_o_t - rus_mu_3_o_t_2) +
+        rus_B_3_o_in_axes3_yx*m->rus_Sigma_3_in_axes3_xx[i] +
+        m->rus_J_3_in_spec3_xy[i]*rus_alpha_2_o_in_axes3_x -
         rus_B_3_o_in_axes3_xy*m->rus_Sigma_3_in_axes3_yy[i] -
-        m->rus_J_3_in_spec3_xz[i]*(rus_mu_3_o_t - rus_mu_3_o_t_2) -
         m->rus_J_3_in_spec3_yz[i]*rus_alpha_2_o_in_axes3_y;
     const real rus_mu_3_o_in_axes1_z = v.rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x -
         v.rus_c_3*rus_mu_3_o_in_axes3_y;
     /* (rus-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
     const real rus_mu_1_o_in_axes1_z = m->rus_h_1_in_spec1_y[i]*(v.rus_c_1*m->rus_mu_1_t[i] +
-        m->rus_mu_1_t_2[i]*v.rus_s_1) - m->rus_J_1_in_spec1_zz[i]*rus_qdd_1_o_t -
-        m->rus_h_1_in_spec1_x[i]*(v.rus_c_1*m->rus_mu_1_t_2[i] - m->rus_mu_1_t[i]*v.rus_s_1);
+        m->rus_mu_1_t_2[i]*v.rus_s_1) - m->rus_h_1_in_spec1_x[i]*(v.rus_c_1*m->rus_mu_1_t_2[i]
+        - m->rus_mu_1_t[i]*v.rus_s_1) - m->rus_J_1_in_spec1_zz[i]*rus_qdd_1_o_t;
     /* (rus-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
        connection point left out */
     const real rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z;
@@ -3138,24 +3162,24 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*m->rus_w_3_in_axes3_y[i];
     /* (rus-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
-    const real rus_c_o_in_axes3_x = v.inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z +
-        rus_G_o_in_axes3_y*v.rus_v_1_t_3 - rus_G_o_in_axes3_z*v.rus_v_1_in_axes3_z) +
-        rus_B_3_o_in_axes3_xy*m->rus_h_3_in_spec3_z[i] +
-        m->rus_h_3_in_spec3_x[i]*(rus_mu_3_o_t_2 + rus_mu_3_o_t_3) -
-        rus_alpha_2_o_in_axes3_y*m->rus_h_3_in_spec3_y[i];
+    const real rus_c_o_in_axes3_x = m->rus_h_3_in_spec3_x[i]*(rus_mu_3_o_t_3 + rus_mu_3_o_t_2)
+        + rus_B_3_o_in_axes3_xy*m->rus_h_3_in_spec3_z[i] -
+        rus_alpha_2_o_in_axes3_y*m->rus_h_3_in_spec3_y[i] +
+        v.inv_rus_v_1_t_2*(rus_G_o_in_axes3_y*v.rus_v_1_t_3 + rus_N_1_o_in_axes1_z -
+        rus_G_o_in_axes3_z*v.rus_v_1_in_axes3_z);
     const real rus_c_o_in_axes3_y = rus_alpha_2_o_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
-        rus_G_o_in_axes3_y - rus_B_3_o_in_axes3_yx*m->rus_h_3_in_spec3_x[i] -
-        m->rus_h_3_in_spec3_z[i]*(rus_mu_3_o_t + rus_mu_3_o_t_3);
-    const real rus_c_o_in_axes3_z = rus_B_3_o_in_axes3_zy*m->rus_h_3_in_spec3_z[i] +
-        m->rus_h_3_in_spec3_y[i]*(rus_mu_3_o_t + rus_mu_3_o_t_2) - rus_G_o_in_axes3_z -
-        rus_B_3_o_in_axes3_zx*m->rus_h_3_in_spec3_x[i];
+        m->rus_h_3_in_spec3_z[i]*(rus_mu_3_o_t_3 + rus_mu_3_o_t) -
+        rus_B_3_o_in_axes3_yx*m->rus_h_3_in_spec3_x[i] - rus_G_o_in_axes3_y;
+    const real rus_c_o_in_axes3_z = m->rus_h_3_in_spec3_y[i]*(rus_mu_3_o_t + rus_mu_3_o_t_2) +
+        rus_B_3_o_in_axes3_zy*m->rus_h_3_in_spec3_z[i] -
+        rus_B_3_o_in_axes3_zx*m->rus_h_3_in_spec3_x[i] - rus_G_o_in_axes3_z;
     /* (rus-U) velocity and gravity terms of the leg force */
-    const real rus_U_x = -axis_x_rus_axes3_x*rus_c_o_in_axes3_x -
-        axis_y_rus_axes3_x*rus_c_o_in_axes3_y - axis_z_rus_axes3_x*rus_c_o_in_axes3_z;
-    const real rus_U_y = -axis_x_rus_axes3_y*rus_c_o_in_axes3_x -
-        axis_y_rus_axes3_y*rus_c_o_in_axes3_y - axis_z_rus_axes3_y*rus_c_o_in_axes3_z;
-    const real rus_U_z = -axis_x_rus_axes3_z*rus_c_o_in_axes3_x -
-        axis_y_rus_axes3_z*rus_c_o_in_axes3_y - axis_z_rus_axes3_z*rus_c_o_in_axes3_z;
+    const real rus_U_x = -axis_y_rus_axes3_x*rus_c_o_in_axes3_y -
+        axis_z_rus_axes3_x*rus_c_o_in_axes3_z - axis_x_rus_axes3_x*rus_c_o_in_axes3_x;
+    const real rus_U_y = -axis_y_rus_axes3_y*rus_c_o_in_axes3_y -
+        axis_z_rus_axes3_y*rus_c_o_in_axes3_z - axis_x_rus_axes3_y*rus_c_o_in_axes3_x;
+    const real rus_U_z = -axis_y_rus_axes3_z*rus_c_o_in_axes3_y -
+        axis_z_rus_axes3_z*rus_c_o_in_axes3_z - axis_x_rus_axes3_z*rus_c_o_in_axes3_x;
     /* (Z_a) rotational part of Z */
     const real rus_Z_a_t = rus_U_z*v.rus_q_y - rus_U_y*v.rus_q_z;
     const real rus_Z_a_t_2 = rus_U_x*v.rus_q_z - rus_U_z*v.rus_q_x;
@@ -3196,13 +3220,13 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[3*w + k];
     const real Z_q_x = s[12*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[4*w + k];
     const real Z_q_y = s[13*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[5*w + k];
     const real Z_q_z = s[14*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
     Z[1*w + k] = Z_t_y;
@@ -3218,7 +3242,8 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_rus[6*LEGS(LEGS_OF_rus)] = {0}, o_rus[2*LEGS(LEGS_OF_rus)] = {0};
-    Z_before(m, 1, 0, X, V, s, t);
+    values v;
+    Z_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         Z_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, s, X, V, terms_rus, o_rus);
     }
@@ -3228,6 +3253,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
+    Z_between(m, 1, 0, V, &v, s);
     Z_after(1, 0, s, sums, Z, t);
 }
 
@@ -3237,7 +3263,9 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real s[15*LANES], sums[6*LANES];
     real o_rus[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        Z_before(m, LANES, k, X, V, s, t);
+        values v;
+        Z_before(m, LANES, k, X, &v, s, t);
+        Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
@@ -3254,20 +3282,20 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void H_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3311,7 +3339,8 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
     real s[9] = {0};
     real o_rus[9*LEGS(LEGS_OF_rus)] = {0};
-    H_before(m, 1, 0, X, s, t);
+    values v;
+    H_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         H_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), s, X, o_rus);
     }
@@ -3325,7 +3354,8 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
     real s[9*LANES];
     real o_rus[9*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        H_before(m, LANES, k, X, s, t);
+        values v;
+        H_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3338,12 +3368,26 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, real *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
+    values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
     /* (W_p) centripetal tensor of the platform */
     const real omega_x = V[3*w + k];
     const real omega_y = V[4*w + k];
@@ -3358,72 +3402,62 @@ INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X
     const real a_t_y = t_ddot_y - m->gravity_y;
     const real t_ddot_z = A[2*w + k];
     const real a_t_z = t_ddot_z - m->gravity_z;
-    const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
-    const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
-    const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
+    const real a_t_in_platform_x = v->R_yx*a_t_y + v->R_zx*a_t_z + v->R_xx*a_t_x;
+    const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
+    const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
     const real f_p_t = omega_x*omega_x;
     const real f_p_t_2 = omega_y*omega_y;
     const real f_p_t_3 = omega_z*omega_z;
     const real alpha_y = A[4*w + k];
     const real alpha_z = A[5*w + k];
-    const real f_p_x = a_t_x*m->m_star + v.h_star_y*(W_p_xy - alpha_z) + v.h_star_z*(W_p_xz +
-        alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+    const real f_p_x = a_t_x*m->m_star + v->h_star_y*(W_p_xy - alpha_z) + v->h_star_z*(alpha_y
+        + W_p_xz) - v->h_star_x*(f_p_t_2 + f_p_t_3);
     const real alpha_x = A[3*w + k];
-    const real f_p_y = a_t_y*m->m_star + v.h_star_x*(W_p_xy + alpha_z) + v.h_star_z*(W_p_yz -
-        alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
-    const real f_p_z = a_t_z*m->m_star + v.h_star_x*(W_p_xz - alpha_y) + v.h_star_y*(W_p_yz +
-        alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
+    const real f_p_y = a_t_y*m->m_star + v->h_star_x*(alpha_z + W_p_xy) + v->h_star_z*(W_p_yz
+        - alpha_x) - v->h_star_y*(f_p_t + f_p_t_3);
+    const real f_p_z = a_t_z*m->m_star + v->h_star_x*(W_p_xz - alpha_y) + v->h_star_y*(alpha_x
+        + W_p_yz) - v->h_star_z*(f_p_t + f_p_t_2);
     /* (mu_p) inertia moment of the platform less that of its weight */
-    const real mu_p_t = m->J_star_in_platform_xx*v.omega_in_platform_x +
-        m->J_star_in_platform_xy*v.omega_in_platform_y +
-        m->J_star_in_platform_xz*v.omega_in_platform_z;
-    const real mu_p_t_2 = m->J_star_in_platform_xy*v.omega_in_platform_x +
-        m->J_star_in_platform_yy*v.omega_in_platform_y +
-        m->J_star_in_platform_yz*v.omega_in_platform_z;
-    const real mu_p_t_3 = m->J_star_in_platform_xz*v.omega_in_platform_x +
-        m->J_star_in_platform_yz*v.omega_in_platform_y +
-        m->J_star_in_platform_zz*v.omega_in_platform_z;
-    const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
-    const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
-    const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+    const real mu_p_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
+        m->J_star_in_platform_xy*v->omega_in_platform_y +
+        m->J_star_in_platform_xz*v->omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
+        m->J_star_in_platform_yy*v->omega_in_platform_y +
+        m->J_star_in_platform_yz*v->omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
+        m->J_star_in_platform_yz*v->omega_in_platform_y +
+        m->J_star_in_platform_zz*v->omega_in_platform_z;
+    const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
+    const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
+    const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
     const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
         m->J_star_in_platform_xy*alpha_in_platform_y +
         m->J_star_in_platform_xz*alpha_in_platform_z +
-        a_t_in_platform_z*m->h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
-        a_t_in_platform_y*m->h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+        a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
+        + mu_p_t_3*v->omega_in_platform_y - mu_p_t_2*v->omega_in_platform_z;
     const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
         m->J_star_in_platform_yz*alpha_in_platform_z +
-        a_t_in_platform_x*m->h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
-        a_t_in_platform_z*m->h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
+        a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
+        + mu_p_t*v->omega_in_platform_z - mu_p_t_3*v->omega_in_platform_x;
     const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
         m->J_star_in_platform_zz*alpha_in_platform_z +
-        a_t_in_platform_y*m->h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
-        a_t_in_platform_x*m->h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
-    const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
-        v.R_xz*mu_p_in_platform_z;
-    const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
-        v.R_yz*mu_p_in_platform_z;
-    const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
-        v.R_zz*mu_p_in_platform_z;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+        a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
+        + mu_p_t_2*v->omega_in_platform_x - mu_p_t*v->omega_in_platform_y;
+    const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
+        v->R_xz*mu_p_in_platform_z;
+    const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
+        v->R_yz*mu_p_in_platform_z;
+    const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
+        v->R_zz*mu_p_in_platform_z;
     s[9*w + k] = f_p_x;
     s[10*w + k] = f_p_y;
     s[11*w + k] = f_p_z;
     s[12*w + k] = mu_p_x;
     s[13*w + k] = mu_p_y;
     s[14*w + k] = mu_p_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void required_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3438,12 +3472,12 @@ INLINE void required_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
     stage_rus_legs_required(m, i, &v);
     /* (rus-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rus_c_x = v.axis_x_rus_axes3_x*v.rus_c_in_axes3_x +
-        v.axis_y_rus_axes3_x*v.rus_c_in_axes3_y + v.axis_z_rus_axes3_x*v.rus_c_in_axes3_z;
-    const real rus_c_y = v.axis_x_rus_axes3_y*v.rus_c_in_axes3_x +
-        v.axis_y_rus_axes3_y*v.rus_c_in_axes3_y + v.axis_z_rus_axes3_y*v.rus_c_in_axes3_z;
-    const real rus_c_z = v.axis_x_rus_axes3_z*v.rus_c_in_axes3_x +
-        v.axis_y_rus_axes3_z*v.rus_c_in_axes3_y + v.axis_z_rus_axes3_z*v.rus_c_in_axes3_z;
+    const real rus_c_x = v.axis_y_rus_axes3_x*v.rus_c_in_axes3_y +
+        v.axis_z_rus_axes3_x*v.rus_c_in_axes3_z + v.axis_x_rus_axes3_x*v.rus_c_in_axes3_x;
+    const real rus_c_y = v.axis_y_rus_axes3_y*v.rus_c_in_axes3_y +
+        v.axis_z_rus_axes3_y*v.rus_c_in_axes3_z + v.axis_x_rus_axes3_y*v.rus_c_in_axes3_x;
+    const real rus_c_z = v.axis_y_rus_axes3_z*v.rus_c_in_axes3_y +
+        v.axis_z_rus_axes3_z*v.rus_c_in_axes3_z + v.axis_x_rus_axes3_z*v.rus_c_in_axes3_x;
     /* (R_a) moment that actuators and external wrench must give */
     const real rus_R_a_t = rus_c_y*v.rus_q_z - rus_c_z*v.rus_q_y;
     const real rus_R_a_t_2 = rus_c_z*v.rus_q_x - rus_c_x*v.rus_q_z;
@@ -3503,13 +3537,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[12*w + k];
-    const real R_a_x = R_a_x_of_legs + mu_p_x;
+    const real R_a_x = mu_p_x + R_a_x_of_legs;
     const real R_a_y_of_legs = sums[4*w + k];
     const real mu_p_y = s[13*w + k];
-    const real R_a_y = R_a_y_of_legs + mu_p_y;
+    const real R_a_y = mu_p_y + R_a_y_of_legs;
     const real R_a_z_of_legs = sums[5*w + k];
     const real mu_p_z = s[14*w + k];
-    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
     required[1*w + k] = R_t_y;
@@ -3520,12 +3554,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[5*w + k] = R_a_z;
 }
 
-APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_rus[6*LEGS(LEGS_OF_rus)] = {0}, o_rus[8*LEGS(LEGS_OF_rus)] = {0};
-    required_before(m, 1, 0, X, V, A, s, t);
+    values v;
+    required_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         required_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, s, X, V, A, terms_rus, o_rus);
     }
@@ -3535,6 +3570,7 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
+    required_between(m, 1, 0, V, A, &v, s);
     required_after(1, 0, s, sums, required);
 }
 
@@ -3544,7 +3580,9 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real s[15*LANES], sums[6*LANES];
     real o_rus[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        required_before(m, LANES, k, X, V, A, s, t);
+        values v;
+        required_before(m, LANES, k, X, &v, s, t);
+        required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
@@ -3561,21 +3599,20 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s, verdict *t)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
+    *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void inverse_kinematics_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k,
@@ -3584,8 +3621,8 @@ INLINE void inverse_kinematics_legs_rus(const prepared *m, size_t w, size_t i, s
     values_rus v;
     stage_rus_inverse_kinematics_potential(m, w, i, j, s, X, &v);
     /* (rus-q_1) displacement of joint 1 */
-    const real rus_q_1 = angle(v.inv_rus_rho2_1*(v.rus_Kc_1*v.rus_root_1 +
-        v.rus_Kd_1*v.rus_Ks_1), v.inv_rus_rho2_1*(v.rus_Kc_1*v.rus_Kd_1 -
+    const real rus_q_1 = angle(v.inv_rus_rho2_1*(v.rus_Kd_1*v.rus_Ks_1 +
+        v.rus_Kc_1*v.rus_root_1), v.inv_rus_rho2_1*(v.rus_Kc_1*v.rus_Kd_1 -
         v.rus_Ks_1*v.rus_root_1));
     /* (rus-q_2) displacement of joint 2 */
     const real rus_q_2 = angle(-v.inv_rus_rho2_2*v.rus_root_2*v.rus_xi_1_t,
@@ -3622,7 +3659,8 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 {
     real s[9] = {0};
     real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
-    inverse_kinematics_before(m, 1, 0, X, s, t);
+    values v;
+    inverse_kinematics_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         inverse_kinematics_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), s, X, o_rus);
     }
@@ -3637,7 +3675,8 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real s[9*LANES];
     real o_rus[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        inverse_kinematics_before(m, LANES, k, X, s, t);
+        values v;
+        inverse_kinematics_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3650,21 +3689,20 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_rates_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3691,12 +3729,12 @@ INLINE void joint_rates_legs_rus(const prepared *m, size_t w, size_t i, size_t j
         m->rus_base_frame_yy[i]*v.rus_qd_1_t_2;
     const real axis_z_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t +
         m->rus_base_frame_zy[i]*v.rus_qd_1_t_2;
-    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*v.rus_qd_1_t_5 +
-        m->rus_base_frame_xy[i]*v.rus_qd_1_t_6 - m->rus_base_frame_xz[i]*v.rus_c_3;
-    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*v.rus_qd_1_t_5 +
-        m->rus_base_frame_yy[i]*v.rus_qd_1_t_6 - m->rus_base_frame_yz[i]*v.rus_c_3;
-    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t_5 +
-        m->rus_base_frame_zy[i]*v.rus_qd_1_t_6 - m->rus_base_frame_zz[i]*v.rus_c_3;
+    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*v.rus_qd_1_t_5 -
+        m->rus_base_frame_xz[i]*v.rus_c_3 + m->rus_base_frame_xy[i]*v.rus_qd_1_t_6;
+    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*v.rus_qd_1_t_5 -
+        m->rus_base_frame_yz[i]*v.rus_c_3 + m->rus_base_frame_yy[i]*v.rus_qd_1_t_6;
+    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t_5 -
+        m->rus_base_frame_zz[i]*v.rus_c_3 + m->rus_base_frame_zy[i]*v.rus_qd_1_t_6;
     const real rus_qd_1_t_7 = (rus_S_dot_x*(axis_y_rus_axes3_y*axis_z_rus_axes3_z -
         axis_y_rus_axes3_z*axis_z_rus_axes3_y) +
         rus_S_dot_y*(axis_y_rus_axes3_z*axis_z_rus_axes3_x -
@@ -3706,9 +3744,9 @@ INLINE void joint_rates_legs_rus(const prepared *m, size_t w, size_t i, size_t j
     /* (rus-qd_2) rate of joint 2 */
     const real rus_qd_2_t = v.rus_c_2*v.rus_r_1_in_axes1_x + v.rus_r_1_t_2*v.rus_s_2_t;
     const real rus_qd_2_t_2 = axis_z_rus_axes3_x*rus_S_dot_x + axis_z_rus_axes3_y*rus_S_dot_y
-        + axis_z_rus_axes3_z*rus_S_dot_z + rus_qd_1_t_7*(v.rus_c_3*(v.rus_c_3*rus_qd_2_t +
-        v.rus_e_1_in_axes3_x*v.rus_r_1_in_axes1_z) +
-        v.rus_e_1_in_axes3_x*(v.rus_e_1_in_axes3_x*rus_qd_2_t -
+        + axis_z_rus_axes3_z*rus_S_dot_z +
+        rus_qd_1_t_7*(v.rus_c_3*(v.rus_e_1_in_axes3_x*v.rus_r_1_in_axes1_z +
+        v.rus_c_3*rus_qd_2_t) + v.rus_e_1_in_axes3_x*(v.rus_e_1_in_axes3_x*rus_qd_2_t -
         v.rus_c_3*v.rus_r_1_in_axes1_z));
     const real rus_qd_2 = rus_qd_2_t_2/v.rus_r_1_t;
     /* (rus-qd_3) rate of joint 3 */
@@ -3744,7 +3782,8 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 {
     real s[9] = {0};
     real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
-    joint_rates_before(m, 1, 0, X, s, t);
+    values v;
+    joint_rates_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         joint_rates_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), s, X, V, o_rus);
     }
@@ -3759,7 +3798,8 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real s[9*LANES];
     real o_rus[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_rates_before(m, LANES, k, X, s, t);
+        values v;
+        joint_rates_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3772,21 +3812,20 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
+    values *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_accelerations_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t
@@ -3804,12 +3843,12 @@ INLINE void joint_accelerations_legs_rus(const prepared *m, size_t w, size_t i, 
         m->rus_base_frame_yy[i]*v.rus_qd_1_t_2;
     const real axis_z_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t +
         m->rus_base_frame_zy[i]*v.rus_qd_1_t_2;
-    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*v.rus_qd_1_t_5 +
-        m->rus_base_frame_xy[i]*v.rus_qd_1_t_6 - m->rus_base_frame_xz[i]*v.rus_c_3;
-    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*v.rus_qd_1_t_5 +
-        m->rus_base_frame_yy[i]*v.rus_qd_1_t_6 - m->rus_base_frame_yz[i]*v.rus_c_3;
-    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t_5 +
-        m->rus_base_frame_zy[i]*v.rus_qd_1_t_6 - m->rus_base_frame_zz[i]*v.rus_c_3;
+    const real axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*v.rus_qd_1_t_5 -
+        m->rus_base_frame_xz[i]*v.rus_c_3 + m->rus_base_frame_xy[i]*v.rus_qd_1_t_6;
+    const real axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*v.rus_qd_1_t_5 -
+        m->rus_base_frame_yz[i]*v.rus_c_3 + m->rus_base_frame_yy[i]*v.rus_qd_1_t_6;
+    const real axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*v.rus_qd_1_t_5 -
+        m->rus_base_frame_zz[i]*v.rus_c_3 + m->rus_base_frame_zy[i]*v.rus_qd_1_t_6;
     const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
         axis_y_rus_axes3_z*axis_z_rus_axes3_y;
     const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
@@ -3836,14 +3875,14 @@ INLINE void joint_accelerations_legs_rus(const prepared *m, size_t w, size_t i, 
     const real rus_bias_t_2 = v.rus_bias_t*v.rus_c_3*rus_omega_1_in_axes3_y -
         v.rus_bias_t*v.rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
     const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*m->rus_platform_joint_offset_x[i];
-    const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y -
-        rus_bias_t_2*rus_omega_1_in_axes3_y - rus_qd_3*rus_qd_3_t;
+    const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t
+        - rus_bias_t_2*rus_omega_1_in_axes3_y;
     const real rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
         rus_bias_t_3*rus_omega_2_in_axes3_x;
-    const real rus_bias_in_axes3_z = rus_omega_2_in_axes3_x*rus_qd_3_t +
-        rus_omega_2_in_axes3_x*m->rus_platform_joint_offset_x[i]*rus_qd_3 -
+    const real rus_bias_in_axes3_z = rus_omega_2_in_axes3_x*rus_qd_3_t -
         v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-        v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
+        v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y +
+        rus_omega_2_in_axes3_x*m->rus_platform_joint_offset_x[i]*rus_qd_3;
     /* (rus-rel) acceleration of the connection point left to the joint accelerations */
     const real rus_rel_in_axes3_x = axis_x_rus_axes3_x*v.rus_S_ddot_x +
         axis_x_rus_axes3_y*v.rus_S_ddot_y + axis_x_rus_axes3_z*v.rus_S_ddot_z -
@@ -3892,7 +3931,8 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 {
     real s[9] = {0};
     real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
-    joint_accelerations_before(m, 1, 0, X, s, t);
+    values v;
+    joint_accelerations_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         joint_accelerations_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), s, X, V, A, o_rus);
     }
@@ -3907,7 +3947,8 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real s[9*LANES];
     real o_rus[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_accelerations_before(m, LANES, k, X, s, t);
+        values v;
+        joint_accelerations_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3920,20 +3961,20 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void legs_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3952,15 +3993,15 @@ INLINE void legs_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_
         v.rus_acc_3_in_axes3_y*m->rus_link3_mass[i];
     const real rus_c_true_in_axes3_z = v.rus_c_in_axes3_z -
         v.rus_acc_3_in_axes3_z*m->rus_link3_mass[i];
-    const real rus_c_true_x = v.axis_x_rus_axes3_x*rus_c_true_in_axes3_x +
-        v.axis_y_rus_axes3_x*rus_c_true_in_axes3_y +
-        v.axis_z_rus_axes3_x*rus_c_true_in_axes3_z;
-    const real rus_c_true_y = v.axis_x_rus_axes3_y*rus_c_true_in_axes3_x +
-        v.axis_y_rus_axes3_y*rus_c_true_in_axes3_y +
-        v.axis_z_rus_axes3_y*rus_c_true_in_axes3_z;
-    const real rus_c_true_z = v.axis_x_rus_axes3_z*rus_c_true_in_axes3_x +
-        v.axis_y_rus_axes3_z*rus_c_true_in_axes3_y +
-        v.axis_z_rus_axes3_z*rus_c_true_in_axes3_z;
+    const real rus_c_true_x = v.axis_y_rus_axes3_x*rus_c_true_in_axes3_y +
+        v.axis_z_rus_axes3_x*rus_c_true_in_axes3_z +
+        v.axis_x_rus_axes3_x*rus_c_true_in_axes3_x;
+    const real rus_c_true_y = v.axis_y_rus_axes3_y*rus_c_true_in_axes3_y +
+        v.axis_z_rus_axes3_y*rus_c_true_in_axes3_z +
+        v.axis_x_rus_axes3_y*rus_c_true_in_axes3_x;
+    const real rus_c_true_z = v.axis_y_rus_axes3_z*rus_c_true_in_axes3_y +
+        v.axis_z_rus_axes3_z*rus_c_true_in_axes3_z +
+        v.axis_x_rus_axes3_z*rus_c_true_in_axes3_x;
     /* (rus-c_true) */
     o[0*count + k] = rus_c_true_x;
     o[1*count + k] = rus_c_true_y;
@@ -3994,7 +4035,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 {
     real s[9] = {0};
     real o_rus[8*LEGS(LEGS_OF_rus)] = {0};
-    legs_before(m, 1, 0, X, s, t);
+    values v;
+    legs_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         legs_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), s, X, V, A, o_rus);
     }
@@ -4004,32 +4046,36 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s)
+{
     /* (potential) potential energy */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
-    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x +
-        v.R_xy*m->h_star_in_platform_y + v.R_xz*m->h_star_in_platform_z + m->m_star*t_x) +
-        m->gravity_y*(v.R_yx*m->h_star_in_platform_x + v.R_yy*m->h_star_in_platform_y +
-        v.R_yz*m->h_star_in_platform_z + m->m_star*t_y) +
-        m->gravity_z*(v.R_zx*m->h_star_in_platform_x + v.R_zy*m->h_star_in_platform_y +
-        v.R_zz*m->h_star_in_platform_z + m->m_star*t_z);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+    const real potential_t = m->gravity_x*(m->m_star*t_x + v->R_xy*m->h_star_in_platform_y +
+        v->R_xz*m->h_star_in_platform_z + v->R_xx*m->h_star_in_platform_x) +
+        m->gravity_y*(m->m_star*t_y + v->R_yx*m->h_star_in_platform_x +
+        v->R_yz*m->h_star_in_platform_z + v->R_yy*m->h_star_in_platform_y) +
+        m->gravity_z*(m->m_star*t_z + v->R_zx*m->h_star_in_platform_x +
+        v->R_zy*m->h_star_in_platform_y + v->R_zz*m->h_star_in_platform_z);
     s[9*w + k] = potential_t;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void potential_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -4040,7 +4086,7 @@ INLINE void potential_legs_rus(const prepared *m, size_t w, size_t i, size_t j, 
     /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
     const real rus_c_1 = v.inv_rus_rho2_1*(v.rus_Kc_1*v.rus_Kd_1 - v.rus_Ks_1*v.rus_root_1);
     /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rus_s_1 = v.inv_rus_rho2_1*(v.rus_Kc_1*v.rus_root_1 + v.rus_Kd_1*v.rus_Ks_1);
+    const real rus_s_1 = v.inv_rus_rho2_1*(v.rus_Kd_1*v.rus_Ks_1 + v.rus_Kc_1*v.rus_root_1);
     /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
     const real rus_c_2 = v.inv_rus_rho2_2*v.rus_root_2*v.rus_x_2_in_axes1_x;
     /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
@@ -4055,15 +4101,14 @@ INLINE void potential_legs_rus(const prepared *m, size_t w, size_t i, size_t j, 
     const real rus_potential_t_4 = rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_z[i] -
         rus_c_3*m->rus_h_3_in_spec3_x[i];
     const real rus_potential_t_5 = m->rus_g_in_axes1_z[i]*(m->rus_h_1_in_spec1_z[i] +
-        m->rus_potential_t_3[i] + rus_c_3*m->rus_h_3_in_spec3_z[i] +
-        rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_x[i]) + (rus_c_1*m->rus_mu_1_t[i] +
+        m->rus_potential_t_3[i] + rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_x[i] +
+        rus_c_3*m->rus_h_3_in_spec3_z[i]) + (rus_c_1*m->rus_mu_1_t[i] +
         m->rus_mu_1_t_2[i]*rus_s_1)*(m->rus_h_1_in_spec1_x[i] +
-        m->rus_h_3_in_spec3_y[i]*rus_s_2_t +
         m->rus_link1_mass[i]*(rus_c_1*m->rus_potential_t[i] + m->rus_potential_t_2[i]*rus_s_1)
-        - rus_c_2*rus_potential_t_4) + (rus_c_1*m->rus_mu_1_t_2[i] -
-        m->rus_mu_1_t[i]*rus_s_1)*(m->rus_h_1_in_spec1_y[i] + rus_c_2*m->rus_h_3_in_spec3_y[i]
-        + m->rus_link1_mass[i]*(rus_c_1*m->rus_potential_t_2[i] -
-        m->rus_potential_t[i]*rus_s_1) + rus_potential_t_4*rus_s_2_t);
+        + m->rus_h_3_in_spec3_y[i]*rus_s_2_t - rus_c_2*rus_potential_t_4) +
+        (rus_c_1*m->rus_mu_1_t_2[i] - m->rus_mu_1_t[i]*rus_s_1)*(m->rus_h_1_in_spec1_y[i] +
+        m->rus_link1_mass[i]*(rus_c_1*m->rus_potential_t_2[i] - m->rus_potential_t[i]*rus_s_1)
+        + rus_c_2*m->rus_h_3_in_spec3_y[i] + rus_potential_t_4*rus_s_2_t);
     /* (potential) */
     gather(&terms[0*count + k], add, rus_potential_t_5);  /* potential_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
@@ -4082,7 +4127,7 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     /* (potential) */
     const real potential_of_legs = sums[0*w + k];
     const real potential_t = s[9*w + k];
-    const real potential_ = -potential_of_legs - potential_t;
+    const real potential_ = -potential_t - potential_of_legs;
     /* (potential) */
     potential[0*w + k] = potential_;
 }
@@ -4091,7 +4136,8 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 {
     real s[10] = {0}, sums[1] = {0};
     real terms_rus[LEGS(LEGS_OF_rus)] = {0}, o_rus[2*LEGS(LEGS_OF_rus)] = {0};
-    potential_before(m, 1, 0, X, s, t);
+    values v;
+    potential_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         potential_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, s, X, terms_rus, o_rus);
     }
@@ -4101,28 +4147,28 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
+    potential_between(m, 1, 0, X, &v, s);
     potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
-    *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, real *lengths, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void condition_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -4201,7 +4247,8 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 {
     real s[9] = {0}, sums[1] = {0};
     real terms_rus[LEGS(LEGS_OF_rus)] = {0}, o_rus[11*LEGS(LEGS_OF_rus)] = {0};
-    condition_before(m, 1, 0, X, s, lengths, t);
+    values v;
+    condition_before(m, 1, 0, X, &v, s, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         condition_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, s, X, terms_rus, o_rus);
     }
@@ -4225,11 +4272,7 @@ int hexapod_6rus_M(const prepared *m, const real *X, real *M_out)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-    }
-    return code;
+    return settled(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -4256,11 +4299,7 @@ int hexapod_6rus_Z(const prepared *m, const real *X, const real *V, real *Z_out)
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, Z_out);
-    }
-    return code;
+    return settled(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -4284,11 +4323,7 @@ int hexapod_6rus_H(const prepared *m, const real *X, real *H_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -4311,11 +4346,7 @@ int hexapod_6rus_inverse_kinematics(const prepared *m, const real *X, real *q_ou
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, q_out);
-    }
-    return code;
+    return settled(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -4342,11 +4373,7 @@ int hexapod_6rus_joint_rates(const prepared *m, const real *X, const real *V, re
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qd_out);
-    }
-    return code;
+    return settled(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -4377,11 +4404,7 @@ int hexapod_6rus_joint_accelerations(const prepared *m, const real *X, const rea
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qdd_out);
-    }
-    return code;
+    return settled(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4414,13 +4437,9 @@ int hexapod_6rus_dynamics(const prepared *m, const real *X, const real *V, real 
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-        refuse(NV, Z_out);
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    settled(&why, NV*NV, M_out);
+    settled(&why, NV, Z_out);
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -4614,7 +4633,8 @@ static const real sizes_tau[] = {1.0, 4.0, 4.0, 1.0, 1.0, 1.0};
 int hexapod_6rus_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out)
 {
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    static const real no_wrench[NW] = {0};
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
@@ -4624,7 +4644,7 @@ int hexapod_6rus_inverse_dynamics(const prepared *m, const real *X, const real *
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -4638,11 +4658,7 @@ int hexapod_6rus_inverse_dynamics(const prepared *m, const real *X, const real *
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, tau_out);
-    }
-    return code;
+    return settled(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -4671,8 +4687,9 @@ static const real sizes_A[] = {16.0, 16.0, 16.0, 1.0, 1.0, 1.0};
 int hexapod_6rus_forward_dynamics(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out)
 {
-    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] =
-        {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    static const real no_wrench[NW] = {0};
+    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
+        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
@@ -4681,7 +4698,7 @@ int hexapod_6rus_forward_dynamics(const prepared *m, const real *X, const real *
         check(NV, 1, V, why.invalid);
         check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     for (size_t i = 0; i < NV; ++i) {
@@ -4699,11 +4716,7 @@ int hexapod_6rus_forward_dynamics(const prepared *m, const real *X, const real *
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, A_out);
-    }
-    return code;
+    return settled(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4744,18 +4757,15 @@ int hexapod_6rus_complete_acceleration(const prepared *m, const real *X, const r
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, completed_out);
-    }
-    return code;
+    return settled(&why, NV, completed_out);
 }
 
 int hexapod_6rus_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out)
 {
+    static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2, 3, 4, 5};
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
         unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[18] = {0}, forces[3*NL] = {0},
         work[NV*PADDED(NV)];
     verdict why;
@@ -4766,7 +4776,7 @@ int hexapod_6rus_leg_reactions(const prepared *m, const real *X, const real *V, 
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -4784,11 +4794,7 @@ int hexapod_6rus_leg_reactions(const prepared *m, const real *X, const real *V, 
     add_forces(NL, 3, 1, places_forces, solve_1, actuator, forces);
     check(3*NL, 1, forces, why.overflow);
     copy(3*NL, forces, forces_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(3*NL, forces_out);
-    }
-    return code;
+    return settled(&why, 3*NL, forces_out);
 }
 
 int hexapod_6rus_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
@@ -4810,25 +4816,22 @@ int hexapod_6rus_energy(const prepared *m, const real *X, const real *V, real *k
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, kinetic_out);
-        refuse(1, potential_out);
-    }
-    return code;
+    settled(&why, 1, kinetic_out);
+    return settled(&why, 1, potential_out);
 }
 
 int hexapod_6rus_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
     const real *length = NULL;
+    static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real length_in[1], H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
+        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, length, 0, length_in, why.invalid);
+    length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
@@ -4846,12 +4849,8 @@ int hexapod_6rus_condition(const prepared *m, const real *X, real *sigma_out, re
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, sigma_out);
-        refuse(NL, legs_out);
-    }
-    return code;
+    settled(&why, NV, sigma_out);
+    return settled(&why, NL, legs_out);
 }
 
 int hexapod_6rus_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -4885,12 +4884,8 @@ int hexapod_6rus_manipulability(const prepared *m, const real *X, real *measure_
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, measure_out);
-        refuse(1, isotropy_out);
-    }
-    return code;
+    settled(&why, 1, measure_out);
+    return settled(&why, 1, isotropy_out);
 }
 
 int hexapod_6rus_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
@@ -4924,12 +4919,8 @@ int hexapod_6rus_singularity_distance(const prepared *m, const real *X, real *ac
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, actuators_out);
-        refuse(1, legs_out);
-    }
-    return code;
+    settled(&why, 1, actuators_out);
+    return settled(&why, 1, legs_out);
 }
 
 static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
@@ -4954,11 +4945,7 @@ static int mismatch_one(const prepared *m, const real *X, const real *q_actuated
     wrap_turns(NU, 1, places_gap, gap);
     check(NU, 1, gap, why.overflow);
     copy(NU, gap, gap_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, gap_out);
-    }
-    return code;
+    return settled(&why, NU, gap_out);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
@@ -4970,11 +4957,7 @@ static int slope_one(const prepared *m, const real *X, real *slope_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, slope_out);
-    }
-    return code;
+    return settled(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -5036,11 +5019,7 @@ int hexapod_6rus_forward_kinematics(const prepared *m, const real *q_actuated, c
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int hexapod_6rus_dissipation(const prepared *m, const real *X, const real *V, real
@@ -5058,11 +5037,7 @@ int hexapod_6rus_dissipation(const prepared *m, const real *X, const real *V, re
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, dissipation_out);
-    }
-    return code;
+    return settled(&why, 1, dissipation_out);
 }
 
 int hexapod_6rus_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
@@ -5079,11 +5054,7 @@ int hexapod_6rus_momentum(const prepared *m, const real *X, const real *V, real 
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, momentum_out);
-    }
-    return code;
+    return settled(&why, NV, momentum_out);
 }
 
 int hexapod_6rus_joint_margins(const prepared *m, const real *X, real *margins_out)
@@ -5100,11 +5071,7 @@ int hexapod_6rus_joint_margins(const prepared *m, const real *X, real *margins_o
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, margins_out);
-    }
-    return code;
+    return settled(&why, NJ, margins_out);
 }
 
 int hexapod_6rus_within_limits(const prepared *m, const real *X, real *within_out)
@@ -5120,11 +5087,7 @@ int hexapod_6rus_within_limits(const prepared *m, const real *X, real *within_ou
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, within_out);
-    }
-    return code;
+    return settled(&why, 1, within_out);
 }
 
 int hexapod_6rus_actuator_positions(const prepared *m, const real *X, real *q_out)
@@ -5137,11 +5100,7 @@ int hexapod_6rus_actuator_positions(const prepared *m, const real *X, real *q_ou
     take(NU, 1, hexapod_6rus_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, q_out);
-    }
-    return code;
+    return settled(&why, NU, q_out);
 }
 
 int hexapod_6rus_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
@@ -5158,11 +5117,7 @@ int hexapod_6rus_actuator_rates(const prepared *m, const real *X, const real *V,
     take(NU, 1, hexapod_6rus_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qd_out);
-    }
-    return code;
+    return settled(&why, NU, qd_out);
 }
 
 int hexapod_6rus_actuator_accelerations(const prepared *m, const real *X, const real *V, const
@@ -5181,11 +5136,7 @@ int hexapod_6rus_actuator_accelerations(const prepared *m, const real *X, const 
     take(NU, 1, hexapod_6rus_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qdd_out);
-    }
-    return code;
+    return settled(&why, NU, qdd_out);
 }
 
 int hexapod_6rus_power(const prepared *m, const real *X, const real *V, const real *tau, real
@@ -5205,11 +5156,7 @@ int hexapod_6rus_power(const prepared *m, const real *X, const real *V, const re
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, power_out);
-    }
-    return code;
+    return settled(&why, 1, power_out);
 }
 
 int hexapod_6rus_rotation(const real *X, real *R_out)
@@ -5222,11 +5169,7 @@ int hexapod_6rus_rotation(const real *X, real *R_out)
     rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     copy(9, R, R_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(9, R_out);
-    }
-    return code;
+    return settled(&why, 9, R_out);
 }
 
 int hexapod_6rus_pose(const real *t, const real *R, real *X_out)
@@ -5244,11 +5187,7 @@ int hexapod_6rus_pose(const real *t, const real *R, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int hexapod_6rus_X_dot(const real *X, const real *V, real *X_dot_out)
@@ -5268,11 +5207,7 @@ int hexapod_6rus_X_dot(const real *X, const real *V, real *X_dot_out)
     beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_dot_out);
-    }
-    return code;
+    return settled(&why, NQ, X_dot_out);
 }
 
 int hexapod_6rus_pose_from_rpy(const real *t, const real *rpy, real *X_out)
@@ -5290,11 +5225,7 @@ int hexapod_6rus_pose_from_rpy(const real *t, const real *rpy, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int hexapod_6rus_retract(const real *X, const real *step, real *X_moved_out)
@@ -5318,11 +5249,7 @@ int hexapod_6rus_retract(const real *X, const real *step, real *X_moved_out)
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_moved_out);
-    }
-    return code;
+    return settled(&why, NQ, X_moved_out);
 }
 
 int hexapod_6rus_difference(const real *X0, const real *X1, real *step_out)
@@ -5346,11 +5273,7 @@ int hexapod_6rus_difference(const real *X0, const real *X1, real *step_out)
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, step_out);
-    }
-    return code;
+    return settled(&why, NV, step_out);
 }
 
 int hexapod_6rus_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
@@ -5388,11 +5311,7 @@ int hexapod_6rus_interpolate(const real *X0, const real *X1, const real *s, real
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 /* ---- one state, and batches ---- */

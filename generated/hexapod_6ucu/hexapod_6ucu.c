@@ -236,15 +236,12 @@ INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *t
 }
 
 /* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
-INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+INLINE const real *optional(size_t size, const real *x, const real *none, real *flags)
 {
-    for (size_t e = 0; e < size && !x; ++e) {
-        own[e] = none;
-    }
     if (x) {
         check(size, 1, x, flags);
     }
-    return x ? x : own;
+    return x ? x : none;
 }
 
 INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
@@ -301,6 +298,16 @@ APART void refuse(size_t size, real *out)
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
     }
+}
+
+/* The status of a state; an output is refused where it is impossible. */
+INLINE int settled(const verdict *t, size_t size, real *out)
+{
+    const int code = judge(t);
+    if (code != OK) {
+        refuse(size, out);
+    }
+    return code;
 }
 
 /* Outputs of a state where the user wants them, and of states side by side, state by state. */
@@ -430,10 +437,10 @@ INLINE int all_rotations(const real *x, size_t n)
 /* ---- parameters ---- */
 
 const hexapod_6ucu_params hexapod_6ucu_default_params = {
-    {R(0.0), R(0.0), R(-9.81)},  /* gravity */
+    {0, 0, R(-9.81)},  /* gravity */
     R(12.0),  /* platform_mass */
-    {R(0.0), R(0.0), R(0.04)},  /* platform_centre_of_mass */
-    {{R(0.35), R(0.0), R(0.0)}, {R(0.0), R(0.35), R(0.0)}, {R(0.0), R(0.0), R(0.6)}},  /* platform_inertia */
+    {0, 0, R(0.04)},  /* platform_centre_of_mass */
+    {{R(0.35), 0, 0}, {0, R(0.35), 0}, {0, 0, R(0.6)}},  /* platform_inertia */
     {  /* ucu_base_point */
         {R(-0.07595833716604927), R(0.3902743704941056), R(0.017731158385886236)},
         {R(0.3759666878769001), R(0.12935533563203033), R(0.017731158385886236)},
@@ -443,12 +450,12 @@ const hexapod_6ucu_params hexapod_6ucu_default_params = {
         {R(-0.07595833716604977), R(-0.39027437049410546), R(0.017731158385886236)},
     },
     {  /* ucu_base_frame */
-        {{R(0.0), R(0.7666445685820955), R(-0.6420717292200091)}, {R(0.0), R(0.6420717292200091), R(0.7666445685820955)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(0.17272814426528374), R(-0.9849695366754605)}, {R(0.0), R(0.9849695366754605), R(0.17272814426528374)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.9393727128473789), R(-0.34289780745545156)}, {R(0.0), R(0.34289780745545156), R(-0.9393727128473789)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.9393727128473789), R(0.34289780745545134)}, {R(0.0), R(-0.34289780745545134), R(-0.9393727128473789)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(0.17272814426528307), R(0.9849695366754606)}, {R(0.0), R(-0.9849695366754606), R(0.17272814426528307)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(0.7666445685820946), R(0.6420717292200101)}, {R(0.0), R(-0.6420717292200101), R(0.7666445685820946)}, {R(1.0), R(0.0), R(0.0)}},
+        {{0, R(0.7666445685820955), R(-0.6420717292200091)}, {0, R(0.6420717292200091), R(0.7666445685820955)}, {1, 0, 0}},
+        {{0, R(0.17272814426528374), R(-0.9849695366754605)}, {0, R(0.9849695366754605), R(0.17272814426528374)}, {1, 0, 0}},
+        {{0, R(-0.9393727128473789), R(-0.34289780745545156)}, {0, R(0.34289780745545156), R(-0.9393727128473789)}, {1, 0, 0}},
+        {{0, R(-0.9393727128473789), R(0.34289780745545134)}, {0, R(-0.34289780745545134), R(-0.9393727128473789)}, {1, 0, 0}},
+        {{0, R(0.17272814426528307), R(0.9849695366754606)}, {0, R(-0.9849695366754606), R(0.17272814426528307)}, {1, 0, 0}},
+        {{0, R(0.7666445685820946), R(0.6420717292200101)}, {0, R(-0.6420717292200101), R(0.7666445685820946)}, {1, 0, 0}},
     },
     {  /* ucu_platform_point */
         {R(0.22999337057462865), R(0.19262151876600273), R(-0.02)},
@@ -475,20 +482,20 @@ const hexapod_6ucu_params hexapod_6ucu_default_params = {
         R(2.4),
     },
     {  /* ucu_link2_centre_of_mass */
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
     },
     {  /* ucu_link2_inertia */
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
     },
     {  /* ucu_link4_mass */
         R(1.1),
@@ -499,24 +506,24 @@ const hexapod_6ucu_params hexapod_6ucu_default_params = {
         R(1.1),
     },
     {  /* ucu_link4_centre_of_mass */
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
     },
     {  /* ucu_link4_inertia */
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
     },
 };
 
-const hexapod_6ucu_real hexapod_6ucu_HOME_X[HEXAPOD_6UCU_NQ] = {R(0.0), R(0.0), R(0.75), R(0.0), R(0.0), R(0.0), R(1.0)};
+const hexapod_6ucu_real hexapod_6ucu_HOME_X[HEXAPOD_6UCU_NQ] = {0, 0, R(0.75), 0, 0, 0, 1};
 const hexapod_6ucu_real hexapod_6ucu_HOME_Q[HEXAPOD_6UCU_NJ] = {R(0.14999999999999997), R(0.45), R(0.8), R(0.20000000000000026), R(0.15), R(-0.45), R(0.8), R(0.2000000000000001), R(0.15), R(0.45), R(0.8), R(0.20000000000000084), R(0.15), R(-0.45), R(0.8), R(0.2000000000000002), R(0.15), R(0.44999999999999996), R(0.8), R(0.19999999999999998), R(0.15000000000000002), R(-0.44999999999999996), R(0.8), R(0.19999999999999987)};
 const size_t hexapod_6ucu_ACTUATED[HEXAPOD_6UCU_NU] = {2, 6, 10, 14, 18, 22};
 const char *const hexapod_6ucu_ACTUATOR_NAMES[HEXAPOD_6UCU_NU] = {
@@ -555,6 +562,9 @@ static int acceptable(const hexapod_6ucu_params *p)
     ok &= all_inertias(&p->ucu_link4_inertia[0][0][0], LEGS_OF_ucu);
     return ok;
 }
+
+#define KEEP(name) model->name = name
+#define KEEP_OF_LEG(name) model->name[leg] = name
 
 int hexapod_6ucu_prepare(const hexapod_6ucu_params *params, hexapod_6ucu_model *model)
 {
@@ -607,11 +617,11 @@ int hexapod_6ucu_prepare(const hexapod_6ucu_params *params, hexapod_6ucu_model *
     const real spread_t = R(0.16666666666666666)*root(6);
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = R(1.9595917942265426)*spread_t;
-    model->gravity_x = gravity_x;
-    model->gravity_y = gravity_y;
-    model->gravity_z = gravity_z;
-    model->legs_size = legs_size;
-    model->spread_t = spread_t;
+    KEEP(gravity_x);
+    KEEP(gravity_y);
+    KEEP(gravity_z);
+    KEEP(legs_size);
+    KEEP(spread_t);
     for (size_t leg = 0; leg < FILLED(LEGS_OF_ucu); ++leg) {
         const size_t own = leg < LEGS_OF_ucu ? leg : 0;
         const real ucu_base_point_x = params->ucu_base_point[own][0];
@@ -746,59 +756,59 @@ int hexapod_6ucu_prepare(const hexapod_6ucu_params *params, hexapod_6ucu_model *
             ucu_base_frame_yy*ucu_base_point_y + ucu_base_frame_zy*ucu_base_point_z;
         const real ucu_potential_t_3 = ucu_base_frame_xz*ucu_base_point_x +
             ucu_base_frame_yz*ucu_base_point_y + ucu_base_frame_zz*ucu_base_point_z;
-        model->ucu_J_2_in_spec2_xy[leg] = ucu_J_2_in_spec2_xy;
-        model->ucu_J_2_in_spec2_xz[leg] = ucu_J_2_in_spec2_xz;
-        model->ucu_J_2_in_spec2_yy[leg] = ucu_J_2_in_spec2_yy;
-        model->ucu_J_2_in_spec2_yz[leg] = ucu_J_2_in_spec2_yz;
-        model->ucu_J_2_in_spec2_zz[leg] = ucu_J_2_in_spec2_zz;
-        model->ucu_J_4_in_spec4_xx[leg] = ucu_J_4_in_spec4_xx;
-        model->ucu_J_4_in_spec4_xy[leg] = ucu_J_4_in_spec4_xy;
-        model->ucu_J_4_in_spec4_xz[leg] = ucu_J_4_in_spec4_xz;
-        model->ucu_J_4_in_spec4_yy[leg] = ucu_J_4_in_spec4_yy;
-        model->ucu_J_4_in_spec4_yz[leg] = ucu_J_4_in_spec4_yz;
-        model->ucu_J_4_in_spec4_zz[leg] = ucu_J_4_in_spec4_zz;
-        model->ucu_Jc_2_in_axes2_xx[leg] = ucu_Jc_2_in_axes2_xx;
-        model->ucu_Sigma_2_in_axes2_xx[leg] = ucu_Sigma_2_in_axes2_xx;
-        model->ucu_Sigma_2_in_axes2_yy[leg] = ucu_Sigma_2_in_axes2_yy;
-        model->ucu_Sigma_2_in_axes2_zz[leg] = ucu_Sigma_2_in_axes2_zz;
-        model->ucu_Sigma_4_in_axes4_xx[leg] = ucu_Sigma_4_in_axes4_xx;
-        model->ucu_Sigma_4_in_axes4_yy[leg] = ucu_Sigma_4_in_axes4_yy;
-        model->ucu_Sigma_4_in_axes4_zz[leg] = ucu_Sigma_4_in_axes4_zz;
-        model->ucu_base_frame_xx[leg] = ucu_base_frame_xx;
-        model->ucu_base_frame_xy[leg] = ucu_base_frame_xy;
-        model->ucu_base_frame_xz[leg] = ucu_base_frame_xz;
-        model->ucu_base_frame_yx[leg] = ucu_base_frame_yx;
-        model->ucu_base_frame_yy[leg] = ucu_base_frame_yy;
-        model->ucu_base_frame_yz[leg] = ucu_base_frame_yz;
-        model->ucu_base_frame_zx[leg] = ucu_base_frame_zx;
-        model->ucu_base_frame_zy[leg] = ucu_base_frame_zy;
-        model->ucu_base_frame_zz[leg] = ucu_base_frame_zz;
-        model->ucu_base_point_x[leg] = ucu_base_point_x;
-        model->ucu_base_point_y[leg] = ucu_base_point_y;
-        model->ucu_base_point_z[leg] = ucu_base_point_z;
-        model->ucu_branch_1[leg] = ucu_branch_1;
-        model->ucu_branch_2[leg] = ucu_branch_2;
-        model->ucu_branch_4[leg] = ucu_branch_4;
-        model->ucu_h_2_in_spec2_x[leg] = ucu_h_2_in_spec2_x;
-        model->ucu_h_2_in_spec2_y[leg] = ucu_h_2_in_spec2_y;
-        model->ucu_h_2_in_spec2_z[leg] = ucu_h_2_in_spec2_z;
-        model->ucu_h_4_in_spec4_x[leg] = ucu_h_4_in_spec4_x;
-        model->ucu_h_4_in_spec4_y[leg] = ucu_h_4_in_spec4_y;
-        model->ucu_h_4_in_spec4_z[leg] = ucu_h_4_in_spec4_z;
-        model->ucu_link2_mass[leg] = ucu_link2_mass;
-        model->ucu_link4_mass[leg] = ucu_link4_mass;
-        model->ucu_mu_2_t[leg] = ucu_mu_2_t;
-        model->ucu_mu_2_t_2[leg] = ucu_mu_2_t_2;
-        model->ucu_mu_2_t_3[leg] = ucu_mu_2_t_3;
-        model->ucu_platform_joint_axis_platform_x[leg] = ucu_platform_joint_axis_platform_x;
-        model->ucu_platform_joint_axis_platform_y[leg] = ucu_platform_joint_axis_platform_y;
-        model->ucu_platform_joint_axis_platform_z[leg] = ucu_platform_joint_axis_platform_z;
-        model->ucu_platform_point_x[leg] = ucu_platform_point_x;
-        model->ucu_platform_point_y[leg] = ucu_platform_point_y;
-        model->ucu_platform_point_z[leg] = ucu_platform_point_z;
-        model->ucu_potential_t[leg] = ucu_potential_t;
-        model->ucu_potential_t_2[leg] = ucu_potential_t_2;
-        model->ucu_potential_t_3[leg] = ucu_potential_t_3;
+        KEEP_OF_LEG(ucu_J_2_in_spec2_xy);
+        KEEP_OF_LEG(ucu_J_2_in_spec2_xz);
+        KEEP_OF_LEG(ucu_J_2_in_spec2_yy);
+        KEEP_OF_LEG(ucu_J_2_in_spec2_yz);
+        KEEP_OF_LEG(ucu_J_2_in_spec2_zz);
+        KEEP_OF_LEG(ucu_J_4_in_spec4_xx);
+        KEEP_OF_LEG(ucu_J_4_in_spec4_xy);
+        KEEP_OF_LEG(ucu_J_4_in_spec4_xz);
+        KEEP_OF_LEG(ucu_J_4_in_spec4_yy);
+        KEEP_OF_LEG(ucu_J_4_in_spec4_yz);
+        KEEP_OF_LEG(ucu_J_4_in_spec4_zz);
+        KEEP_OF_LEG(ucu_Jc_2_in_axes2_xx);
+        KEEP_OF_LEG(ucu_Sigma_2_in_axes2_xx);
+        KEEP_OF_LEG(ucu_Sigma_2_in_axes2_yy);
+        KEEP_OF_LEG(ucu_Sigma_2_in_axes2_zz);
+        KEEP_OF_LEG(ucu_Sigma_4_in_axes4_xx);
+        KEEP_OF_LEG(ucu_Sigma_4_in_axes4_yy);
+        KEEP_OF_LEG(ucu_Sigma_4_in_axes4_zz);
+        KEEP_OF_LEG(ucu_base_frame_xx);
+        KEEP_OF_LEG(ucu_base_frame_xy);
+        KEEP_OF_LEG(ucu_base_frame_xz);
+        KEEP_OF_LEG(ucu_base_frame_yx);
+        KEEP_OF_LEG(ucu_base_frame_yy);
+        KEEP_OF_LEG(ucu_base_frame_yz);
+        KEEP_OF_LEG(ucu_base_frame_zx);
+        KEEP_OF_LEG(ucu_base_frame_zy);
+        KEEP_OF_LEG(ucu_base_frame_zz);
+        KEEP_OF_LEG(ucu_base_point_x);
+        KEEP_OF_LEG(ucu_base_point_y);
+        KEEP_OF_LEG(ucu_base_point_z);
+        KEEP_OF_LEG(ucu_branch_1);
+        KEEP_OF_LEG(ucu_branch_2);
+        KEEP_OF_LEG(ucu_branch_4);
+        KEEP_OF_LEG(ucu_h_2_in_spec2_x);
+        KEEP_OF_LEG(ucu_h_2_in_spec2_y);
+        KEEP_OF_LEG(ucu_h_2_in_spec2_z);
+        KEEP_OF_LEG(ucu_h_4_in_spec4_x);
+        KEEP_OF_LEG(ucu_h_4_in_spec4_y);
+        KEEP_OF_LEG(ucu_h_4_in_spec4_z);
+        KEEP_OF_LEG(ucu_link2_mass);
+        KEEP_OF_LEG(ucu_link4_mass);
+        KEEP_OF_LEG(ucu_mu_2_t);
+        KEEP_OF_LEG(ucu_mu_2_t_2);
+        KEEP_OF_LEG(ucu_mu_2_t_3);
+        KEEP_OF_LEG(ucu_platform_joint_axis_platform_x);
+        KEEP_OF_LEG(ucu_platform_joint_axis_platform_y);
+        KEEP_OF_LEG(ucu_platform_joint_axis_platform_z);
+        KEEP_OF_LEG(ucu_platform_point_x);
+        KEEP_OF_LEG(ucu_platform_point_y);
+        KEEP_OF_LEG(ucu_platform_point_z);
+        KEEP_OF_LEG(ucu_potential_t);
+        KEEP_OF_LEG(ucu_potential_t_2);
+        KEEP_OF_LEG(ucu_potential_t_3);
         m_star_of_legs += leg < LEGS_OF_ucu ? ucu_link4_mass : 0;
         h_star_in_platform_x_of_legs += leg < LEGS_OF_ucu ? ucu_h_star_t : 0;
         h_star_in_platform_y_of_legs += leg < LEGS_OF_ucu ? ucu_h_star_t_2 : 0;
@@ -844,24 +854,24 @@ int hexapod_6ucu_prepare(const hexapod_6ucu_params *params, hexapod_6ucu_model *
     const real b_c_in_platform_x = R(0.16666666666666666)*b_c_ucu_in_platform_x;
     const real b_c_in_platform_y = R(0.16666666666666666)*b_c_ucu_in_platform_y;
     const real b_c_in_platform_z = R(0.16666666666666666)*b_c_ucu_in_platform_z;
-    model->J_star_in_platform_xx = J_star_in_platform_xx;
-    model->J_star_in_platform_xy = J_star_in_platform_xy;
-    model->J_star_in_platform_xz = J_star_in_platform_xz;
-    model->J_star_in_platform_yy = J_star_in_platform_yy;
-    model->J_star_in_platform_yz = J_star_in_platform_yz;
-    model->J_star_in_platform_zz = J_star_in_platform_zz;
-    model->J_star_t_12 = J_star_t_12;
-    model->J_star_t_14 = J_star_t_14;
-    model->Z_p_t = Z_p_t;
-    model->Z_p_t_2 = Z_p_t_2;
-    model->Z_p_t_3 = Z_p_t_3;
-    model->b_c_in_platform_x = b_c_in_platform_x;
-    model->b_c_in_platform_y = b_c_in_platform_y;
-    model->b_c_in_platform_z = b_c_in_platform_z;
-    model->h_star_in_platform_x = h_star_in_platform_x;
-    model->h_star_in_platform_y = h_star_in_platform_y;
-    model->h_star_in_platform_z = h_star_in_platform_z;
-    model->m_star = m_star;
+    KEEP(J_star_in_platform_xx);
+    KEEP(J_star_in_platform_xy);
+    KEEP(J_star_in_platform_xz);
+    KEEP(J_star_in_platform_yy);
+    KEEP(J_star_in_platform_yz);
+    KEEP(J_star_in_platform_zz);
+    KEEP(J_star_t_12);
+    KEEP(J_star_t_14);
+    KEEP(Z_p_t);
+    KEEP(Z_p_t_2);
+    KEEP(Z_p_t_3);
+    KEEP(b_c_in_platform_x);
+    KEEP(b_c_in_platform_y);
+    KEEP(b_c_in_platform_z);
+    KEEP(h_star_in_platform_x);
+    KEEP(h_star_in_platform_y);
+    KEEP(h_star_in_platform_z);
+    KEEP(m_star);
     return OK;
 }
 
@@ -1440,10 +1450,10 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real R_zy = quaternion_wx + quaternion_yz;
     const real R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = R_xx*m->h_star_in_platform_x + R_xy*m->h_star_in_platform_y +
-        R_xz*m->h_star_in_platform_z;
-    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yy*m->h_star_in_platform_y +
-        R_yz*m->h_star_in_platform_z;
+    const real h_star_x = R_xy*m->h_star_in_platform_y + R_xz*m->h_star_in_platform_z +
+        R_xx*m->h_star_in_platform_x;
+    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yz*m->h_star_in_platform_z +
+        R_yy*m->h_star_in_platform_y;
     const real h_star_z = R_zx*m->h_star_in_platform_x + R_zy*m->h_star_in_platform_y +
         R_zz*m->h_star_in_platform_z;
     v->quaternion_scale = quaternion_scale;
@@ -1467,8 +1477,8 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
     const real omega_x = V[3*w + k];
     const real omega_y = V[4*w + k];
     const real omega_z = V[5*w + k];
-    const real omega_in_platform_x = v->R_xx*omega_x + v->R_yx*omega_y + v->R_zx*omega_z;
-    const real omega_in_platform_y = v->R_xy*omega_x + v->R_yy*omega_y + v->R_zy*omega_z;
+    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
     const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
     v->omega_in_platform_x = omega_in_platform_x;
     v->omega_in_platform_y = omega_in_platform_y;
@@ -1478,24 +1488,24 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
 INLINE void stage_M_dynamics(const prepared *m, values *v)
 {
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_t = m->J_star_in_platform_xy*v->R_xx + m->J_star_in_platform_yz*v->R_xz
-        - m->J_star_t_12*v->R_xy;
+    const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
+        m->J_star_in_platform_xy*v->R_xx;
     const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
         m->J_star_in_platform_yz*v->R_yz - m->J_star_t_12*v->R_yy;
-    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx +
-        m->J_star_in_platform_yz*v->R_zz - m->J_star_t_12*v->R_zy;
+    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx - m->J_star_t_12*v->R_zy +
+        m->J_star_in_platform_yz*v->R_zz;
     const real J_star_t_4 = m->J_star_t_14*v->R_xz - m->J_star_in_platform_xz*v->R_xx;
     const real J_star_t_5 = m->J_star_t_14*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
     const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
-    const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
-        J_star_t_5*v->R_xz;
+    const real J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
+        J_star_t_4*v->R_yz;
     const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
     const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
     const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
-    const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
+    const real J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
     const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
     const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
@@ -1520,10 +1530,10 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
     const real Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real g_in_platform_x = v->R_xx*m->gravity_x + v->R_yx*m->gravity_y +
-        v->R_zx*m->gravity_z;
-    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_yy*m->gravity_y +
-        v->R_zy*m->gravity_z;
+    const real g_in_platform_x = v->R_yx*m->gravity_y + v->R_zx*m->gravity_z +
+        v->R_xx*m->gravity_x;
+    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_zy*m->gravity_z +
+        v->R_yy*m->gravity_y;
     const real g_in_platform_z = v->R_xz*m->gravity_x + v->R_yz*m->gravity_y +
         v->R_zz*m->gravity_z;
     const real Z_q_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
@@ -1535,15 +1545,15 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
         m->J_star_in_platform_yz*v->omega_in_platform_y +
         m->J_star_in_platform_zz*v->omega_in_platform_z;
-    const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
-        g_in_platform_y*m->h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
-        g_in_platform_z*m->h_star_in_platform_y;
-    const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
-        g_in_platform_z*m->h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
-        g_in_platform_x*m->h_star_in_platform_z;
-    const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
-        g_in_platform_x*m->h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
-        g_in_platform_y*m->h_star_in_platform_x;
+    const real Z_q_in_platform_x = g_in_platform_y*m->h_star_in_platform_z -
+        g_in_platform_z*m->h_star_in_platform_y + Z_q_t_3*v->omega_in_platform_y -
+        Z_q_t_2*v->omega_in_platform_z;
+    const real Z_q_in_platform_y = g_in_platform_z*m->h_star_in_platform_x -
+        g_in_platform_x*m->h_star_in_platform_z + Z_q_t*v->omega_in_platform_z -
+        Z_q_t_3*v->omega_in_platform_x;
+    const real Z_q_in_platform_z = g_in_platform_x*m->h_star_in_platform_y -
+        g_in_platform_y*m->h_star_in_platform_x + Z_q_t_2*v->omega_in_platform_x -
+        Z_q_t*v->omega_in_platform_y;
     const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
         v->R_xz*Z_q_in_platform_z;
     const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
@@ -1592,13 +1602,13 @@ INLINE void stage_ucu_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real ucu_q_x = R_xx*m->ucu_platform_point_x[i] + R_xy*m->ucu_platform_point_y[i] +
-        R_xz*m->ucu_platform_point_z[i];
+    const real ucu_q_x = R_xy*m->ucu_platform_point_y[i] + R_xz*m->ucu_platform_point_z[i] +
+        R_xx*m->ucu_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real ucu_q_y = R_yx*m->ucu_platform_point_x[i] + R_yy*m->ucu_platform_point_y[i] +
-        R_yz*m->ucu_platform_point_z[i];
+    const real ucu_q_y = R_yx*m->ucu_platform_point_x[i] + R_yz*m->ucu_platform_point_z[i] +
+        R_yy*m->ucu_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
@@ -1606,11 +1616,11 @@ INLINE void stage_ucu_X(const prepared *m, size_t w, size_t i, size_t j, const r
         R_zz*m->ucu_platform_point_z[i];
     /* (ucu-S) from the base point to the connection point */
     const real t_x = X[0*w + j];
-    const real ucu_S_x = t_x + ucu_q_x - m->ucu_base_point_x[i];
+    const real ucu_S_x = t_x - m->ucu_base_point_x[i] + ucu_q_x;
     const real t_y = X[1*w + j];
-    const real ucu_S_y = t_y + ucu_q_y - m->ucu_base_point_y[i];
+    const real ucu_S_y = t_y - m->ucu_base_point_y[i] + ucu_q_y;
     const real t_z = X[2*w + j];
-    const real ucu_S_z = t_z + ucu_q_z - m->ucu_base_point_z[i];
+    const real ucu_S_z = t_z - m->ucu_base_point_z[i] + ucu_q_z;
     const real ucu_S_in_turn1_x = ucu_S_x*m->ucu_base_frame_xx[i] +
         ucu_S_y*m->ucu_base_frame_yx[i] + ucu_S_z*m->ucu_base_frame_zx[i];
     const real ucu_S_in_turn1_y = ucu_S_x*m->ucu_base_frame_xy[i] +
@@ -1635,24 +1645,24 @@ INLINE void stage_ucu_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (ucu-root_4) amplitude, the length across axis 4, with the sign of the branch */
     const real ucu_e_1_in_axes4_z = inv_ucu_root_2*ucu_S_in_turn1_z;
     const real ucu_root_4_t =
-        m->ucu_platform_joint_axis_platform_x[i]*(R_xx*m->ucu_base_frame_xx[i] +
-        R_yx*m->ucu_base_frame_yx[i] + R_zx*m->ucu_base_frame_zx[i]) +
+        m->ucu_platform_joint_axis_platform_x[i]*(R_yx*m->ucu_base_frame_yx[i] +
+        R_zx*m->ucu_base_frame_zx[i] + R_xx*m->ucu_base_frame_xx[i]) +
         m->ucu_platform_joint_axis_platform_y[i]*(R_xy*m->ucu_base_frame_xx[i] +
-        R_yy*m->ucu_base_frame_yx[i] + R_zy*m->ucu_base_frame_zx[i]) +
+        R_zy*m->ucu_base_frame_zx[i] + R_yy*m->ucu_base_frame_yx[i]) +
         m->ucu_platform_joint_axis_platform_z[i]*(R_xz*m->ucu_base_frame_xx[i] +
         R_yz*m->ucu_base_frame_yx[i] + R_zz*m->ucu_base_frame_zx[i]);
     const real ucu_root_4_t_2 =
-        m->ucu_platform_joint_axis_platform_x[i]*(R_xx*m->ucu_base_frame_xy[i] +
-        R_yx*m->ucu_base_frame_yy[i] + R_zx*m->ucu_base_frame_zy[i]) +
+        m->ucu_platform_joint_axis_platform_x[i]*(R_yx*m->ucu_base_frame_yy[i] +
+        R_zx*m->ucu_base_frame_zy[i] + R_xx*m->ucu_base_frame_xy[i]) +
         m->ucu_platform_joint_axis_platform_y[i]*(R_xy*m->ucu_base_frame_xy[i] +
-        R_yy*m->ucu_base_frame_yy[i] + R_zy*m->ucu_base_frame_zy[i]) +
+        R_zy*m->ucu_base_frame_zy[i] + R_yy*m->ucu_base_frame_yy[i]) +
         m->ucu_platform_joint_axis_platform_z[i]*(R_xz*m->ucu_base_frame_xy[i] +
         R_yz*m->ucu_base_frame_yy[i] + R_zz*m->ucu_base_frame_zy[i]);
     const real ucu_root_4_t_3 =
-        m->ucu_platform_joint_axis_platform_x[i]*(R_xx*m->ucu_base_frame_xz[i] +
-        R_yx*m->ucu_base_frame_yz[i] + R_zx*m->ucu_base_frame_zz[i]) +
+        m->ucu_platform_joint_axis_platform_x[i]*(R_yx*m->ucu_base_frame_yz[i] +
+        R_zx*m->ucu_base_frame_zz[i] + R_xx*m->ucu_base_frame_xz[i]) +
         m->ucu_platform_joint_axis_platform_y[i]*(R_xy*m->ucu_base_frame_xz[i] +
-        R_yy*m->ucu_base_frame_yz[i] + R_zy*m->ucu_base_frame_zz[i]) +
+        R_zy*m->ucu_base_frame_zz[i] + R_yy*m->ucu_base_frame_yz[i]) +
         m->ucu_platform_joint_axis_platform_z[i]*(R_xz*m->ucu_base_frame_xz[i] +
         R_yz*m->ucu_base_frame_yz[i] + R_zz*m->ucu_base_frame_zz[i]);
     const real ucu_root_4_t_4 = ucu_c_1*ucu_root_4_t + ucu_root_4_t_2*ucu_s_1;
@@ -1701,14 +1711,14 @@ INLINE void stage_ucu_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real ucu_H_a_3_z = ucu_q_x*ucu_w_3_y - ucu_q_y*ucu_w_3_x;
     /* (ucu-qd_4) rate of joint 4 */
     const real ucu_qd_4_t = ucu_c_4*ucu_e_1_in_axes4_z;
-    const real ucu_qd_4_t_2 = -ucu_c_1*ucu_qd_4_t - ucu_e_2_in_axes4_y*ucu_s_1;
+    const real ucu_qd_4_t_2 = -ucu_e_2_in_axes4_y*ucu_s_1 - ucu_c_1*ucu_qd_4_t;
     const real ucu_qd_4_t_3 = ucu_c_1*ucu_e_2_in_axes4_y - ucu_qd_4_t*ucu_s_1;
-    const real axis_y_ucu_axes4_x = m->ucu_base_frame_xx[i]*ucu_qd_4_t_2 +
-        m->ucu_base_frame_xy[i]*ucu_qd_4_t_3 + m->ucu_base_frame_xz[i]*ucu_e_1_in_axes4_y;
-    const real axis_y_ucu_axes4_y = m->ucu_base_frame_yx[i]*ucu_qd_4_t_2 +
-        m->ucu_base_frame_yy[i]*ucu_qd_4_t_3 + m->ucu_base_frame_yz[i]*ucu_e_1_in_axes4_y;
-    const real axis_y_ucu_axes4_z = m->ucu_base_frame_zx[i]*ucu_qd_4_t_2 +
-        m->ucu_base_frame_zy[i]*ucu_qd_4_t_3 + m->ucu_base_frame_zz[i]*ucu_e_1_in_axes4_y;
+    const real axis_y_ucu_axes4_x = m->ucu_base_frame_xz[i]*ucu_e_1_in_axes4_y +
+        m->ucu_base_frame_xx[i]*ucu_qd_4_t_2 + m->ucu_base_frame_xy[i]*ucu_qd_4_t_3;
+    const real axis_y_ucu_axes4_y = m->ucu_base_frame_yz[i]*ucu_e_1_in_axes4_y +
+        m->ucu_base_frame_yx[i]*ucu_qd_4_t_2 + m->ucu_base_frame_yy[i]*ucu_qd_4_t_3;
+    const real axis_y_ucu_axes4_z = m->ucu_base_frame_zz[i]*ucu_e_1_in_axes4_y +
+        m->ucu_base_frame_zx[i]*ucu_qd_4_t_2 + m->ucu_base_frame_zy[i]*ucu_qd_4_t_3;
     const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_y*ucu_w_3_z -
         axis_y_ucu_axes4_z*ucu_w_3_y;
     const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_z*ucu_w_3_x -
@@ -1816,14 +1826,14 @@ INLINE void stage_ucu_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real ucu_qd_1 = v->inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_5*v->ucu_c_1 -
         ucu_S_dot_t_4*v->ucu_s_1);
     /* (ucu-qd_2) rate of joint 2 */
-    const real ucu_qd_2 = v->inv_ucu_root_2*(ucu_S_dot_t_7*v->ucu_e_1_in_axes4_z +
-        ucu_qd_1*v->ucu_v_1_t_2 - ucu_S_dot_t_6*v->ucu_c_2);
+    const real ucu_qd_2 = v->inv_ucu_root_2*(ucu_S_dot_t_7*v->ucu_e_1_in_axes4_z -
+        ucu_S_dot_t_6*v->ucu_c_2 + ucu_qd_1*v->ucu_v_1_t_2);
     /* (ucu-omega_1) angular velocity of link 1 */
     const real ucu_omega_1_in_axes2_x = v->ucu_e_1_in_axes4_z*ucu_qd_1;
     const real ucu_omega_1_in_axes2_y = -v->ucu_c_2*ucu_qd_1;
     /* (ucu-omega_2) angular velocity of link 2 */
-    const real ucu_omega_2_in_axes4_x = v->ucu_c_4*ucu_qd_2 +
-        v->ucu_e_2_in_axes4_y*ucu_omega_1_in_axes2_y;
+    const real ucu_omega_2_in_axes4_x = v->ucu_e_2_in_axes4_y*ucu_omega_1_in_axes2_y +
+        v->ucu_c_4*ucu_qd_2;
     const real ucu_omega_2_in_axes4_y = v->ucu_e_2_in_axes4_y*ucu_qd_2 -
         v->ucu_c_4*ucu_omega_1_in_axes2_y;
     /* (ucu-W_2) centripetal tensor of link 2 */
@@ -1838,8 +1848,9 @@ INLINE void stage_ucu_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real ucu_bias_in_axes4_x = ucu_bias_t*ucu_omega_2_in_axes4_y +
         v->ucu_root_2*(ucu_W_2_in_axes2_xz*v->ucu_c_4 +
         ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_x);
-    const real ucu_bias_in_axes4_y = v->ucu_root_2*(ucu_zeta_2_t +
-        ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) - ucu_bias_t*ucu_omega_2_in_axes4_x;
+    const real ucu_bias_in_axes4_y =
+        v->ucu_root_2*(ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y + ucu_zeta_2_t) -
+        ucu_bias_t*ucu_omega_2_in_axes4_x;
     /* (ucu-nd_m1) rate of moment direction 1 */
     const real ucu_omega_in_axes4_z = omega_x*v->ucu_w_3_x + omega_y*v->ucu_w_3_y +
         omega_z*v->ucu_w_3_z;
@@ -1858,8 +1869,8 @@ INLINE void stage_ucu_V_X(const prepared *m, size_t w, size_t i, size_t j, const
         v->ucu_end_p1_in_axes4_x*ucu_omega_in_axes4_y -
         v->ucu_end_p1_in_axes4_y*ucu_omega_2_in_axes4_x;
     const real ucu_nd_m1_in_axes4_z = v->ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_z -
-        v->ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z -
-        v->ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y;
+        v->ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y -
+        v->ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z;
     /* (ucu-nu_1) bias of the angular acceleration along moment direction 1 */
     const real ucu_nu_1_t_2 = ucu_nd_m1_in_axes4_x*(ucu_omega_2_in_axes4_x -
         ucu_omega_in_axes4_x) + ucu_nd_m1_in_axes4_z*(ucu_omega_4_in_axes4_z -
@@ -1896,13 +1907,13 @@ INLINE void stage_ucu_A_V_X(size_t w, size_t j, const real *V, values_ucu *v)
     /* (ucu-S_ddot) acceleration of the connection point */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
-    const real ucu_S_ddot_x = v->ucu_a_p_x + omega_y*v->ucu_S_dot_t_3 -
-        omega_z*v->ucu_S_dot_t_2;
+    const real ucu_S_ddot_x = omega_y*v->ucu_S_dot_t_3 - omega_z*v->ucu_S_dot_t_2 +
+        v->ucu_a_p_x;
     const real omega_x = V[3*w + j];
-    const real ucu_S_ddot_y = v->ucu_a_p_y + omega_z*v->ucu_S_dot_t -
-        omega_x*v->ucu_S_dot_t_3;
-    const real ucu_S_ddot_z = v->ucu_a_p_z + omega_x*v->ucu_S_dot_t_2 -
-        omega_y*v->ucu_S_dot_t;
+    const real ucu_S_ddot_y = omega_z*v->ucu_S_dot_t - omega_x*v->ucu_S_dot_t_3 +
+        v->ucu_a_p_y;
+    const real ucu_S_ddot_z = omega_x*v->ucu_S_dot_t_2 - omega_y*v->ucu_S_dot_t +
+        v->ucu_a_p_z;
     v->ucu_S_ddot_x = ucu_S_ddot_x;
     v->ucu_S_ddot_y = ucu_S_ddot_y;
     v->ucu_S_ddot_z = ucu_S_ddot_z;
@@ -1913,11 +1924,11 @@ INLINE void stage_ucu_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
 {
     /* (ucu-h_4) first moment of link 4 about the connection point */
     const real t_x = X[0*w + j];
-    const real ucu_h_4_t = t_x + v->ucu_q_x - m->ucu_base_point_x[i];
+    const real ucu_h_4_t = t_x - m->ucu_base_point_x[i] + v->ucu_q_x;
     const real t_y = X[1*w + j];
-    const real ucu_h_4_t_2 = t_y + v->ucu_q_y - m->ucu_base_point_y[i];
+    const real ucu_h_4_t_2 = t_y - m->ucu_base_point_y[i] + v->ucu_q_y;
     const real t_z = X[2*w + j];
-    const real ucu_h_4_t_3 = t_z + v->ucu_q_z - m->ucu_base_point_z[i];
+    const real ucu_h_4_t_3 = t_z - m->ucu_base_point_z[i] + v->ucu_q_z;
     const real ucu_h_4_t_4 = m->ucu_base_frame_xx[i]*ucu_h_4_t +
         m->ucu_base_frame_yx[i]*ucu_h_4_t_2 + m->ucu_base_frame_zx[i]*ucu_h_4_t_3;
     const real ucu_h_4_t_5 = m->ucu_base_frame_xy[i]*ucu_h_4_t +
@@ -1944,24 +1955,24 @@ INLINE void stage_ucu_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real ucu_h_4_t_14 =
-        m->ucu_platform_joint_axis_platform_x[i]*(R_xx*m->ucu_base_frame_xx[i] +
-        R_yx*m->ucu_base_frame_yx[i] + R_zx*m->ucu_base_frame_zx[i]) +
+        m->ucu_platform_joint_axis_platform_x[i]*(R_yx*m->ucu_base_frame_yx[i] +
+        R_zx*m->ucu_base_frame_zx[i] + R_xx*m->ucu_base_frame_xx[i]) +
         m->ucu_platform_joint_axis_platform_y[i]*(R_xy*m->ucu_base_frame_xx[i] +
-        R_yy*m->ucu_base_frame_yx[i] + R_zy*m->ucu_base_frame_zx[i]) +
+        R_zy*m->ucu_base_frame_zx[i] + R_yy*m->ucu_base_frame_yx[i]) +
         m->ucu_platform_joint_axis_platform_z[i]*(R_xz*m->ucu_base_frame_xx[i] +
         R_yz*m->ucu_base_frame_yx[i] + R_zz*m->ucu_base_frame_zx[i]);
     const real ucu_h_4_t_15 =
-        m->ucu_platform_joint_axis_platform_x[i]*(R_xx*m->ucu_base_frame_xy[i] +
-        R_yx*m->ucu_base_frame_yy[i] + R_zx*m->ucu_base_frame_zy[i]) +
+        m->ucu_platform_joint_axis_platform_x[i]*(R_yx*m->ucu_base_frame_yy[i] +
+        R_zx*m->ucu_base_frame_zy[i] + R_xx*m->ucu_base_frame_xy[i]) +
         m->ucu_platform_joint_axis_platform_y[i]*(R_xy*m->ucu_base_frame_xy[i] +
-        R_yy*m->ucu_base_frame_yy[i] + R_zy*m->ucu_base_frame_zy[i]) +
+        R_zy*m->ucu_base_frame_zy[i] + R_yy*m->ucu_base_frame_yy[i]) +
         m->ucu_platform_joint_axis_platform_z[i]*(R_xz*m->ucu_base_frame_xy[i] +
         R_yz*m->ucu_base_frame_yy[i] + R_zz*m->ucu_base_frame_zy[i]);
     const real ucu_h_4_t_16 =
-        m->ucu_platform_joint_axis_platform_x[i]*(R_xx*m->ucu_base_frame_xz[i] +
-        R_yx*m->ucu_base_frame_yz[i] + R_zx*m->ucu_base_frame_zz[i]) +
+        m->ucu_platform_joint_axis_platform_x[i]*(R_yx*m->ucu_base_frame_yz[i] +
+        R_zx*m->ucu_base_frame_zz[i] + R_xx*m->ucu_base_frame_xz[i]) +
         m->ucu_platform_joint_axis_platform_y[i]*(R_xy*m->ucu_base_frame_xz[i] +
-        R_yy*m->ucu_base_frame_yz[i] + R_zy*m->ucu_base_frame_zz[i]) +
+        R_zy*m->ucu_base_frame_zz[i] + R_yy*m->ucu_base_frame_yz[i]) +
         m->ucu_platform_joint_axis_platform_z[i]*(R_xz*m->ucu_base_frame_xz[i] +
         R_yz*m->ucu_base_frame_yz[i] + R_zz*m->ucu_base_frame_zz[i]);
     const real ucu_h_4_t_17 = ucu_h_4_t_10*ucu_h_4_t_15 + ucu_h_4_t_14*ucu_h_4_t_9;
@@ -1996,12 +2007,12 @@ INLINE void stage_ucu_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real ucu_n_m1_t = ucu_e_1_in_axes4_z*ucu_e_2_in_axes4_x;
     const real ucu_n_m1_t_2 = -ucu_e_2_in_axes4_y*ucu_h_4_t_10 - ucu_h_4_t_9*ucu_n_m1_t;
     const real ucu_n_m1_t_3 = ucu_e_2_in_axes4_y*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_n_m1_t;
-    const real axis_y_ucu_axes4_x = m->ucu_base_frame_xx[i]*ucu_n_m1_t_2 +
-        m->ucu_base_frame_xy[i]*ucu_n_m1_t_3 + m->ucu_base_frame_xz[i]*ucu_e_1_in_axes4_y;
-    const real axis_y_ucu_axes4_y = m->ucu_base_frame_yx[i]*ucu_n_m1_t_2 +
-        m->ucu_base_frame_yy[i]*ucu_n_m1_t_3 + m->ucu_base_frame_yz[i]*ucu_e_1_in_axes4_y;
-    const real axis_y_ucu_axes4_z = m->ucu_base_frame_zx[i]*ucu_n_m1_t_2 +
-        m->ucu_base_frame_zy[i]*ucu_n_m1_t_3 + m->ucu_base_frame_zz[i]*ucu_e_1_in_axes4_y;
+    const real axis_y_ucu_axes4_x = m->ucu_base_frame_xz[i]*ucu_e_1_in_axes4_y +
+        m->ucu_base_frame_xx[i]*ucu_n_m1_t_2 + m->ucu_base_frame_xy[i]*ucu_n_m1_t_3;
+    const real axis_y_ucu_axes4_y = m->ucu_base_frame_yz[i]*ucu_e_1_in_axes4_y +
+        m->ucu_base_frame_yx[i]*ucu_n_m1_t_2 + m->ucu_base_frame_yy[i]*ucu_n_m1_t_3;
+    const real axis_y_ucu_axes4_z = m->ucu_base_frame_zz[i]*ucu_e_1_in_axes4_y +
+        m->ucu_base_frame_zx[i]*ucu_n_m1_t_2 + m->ucu_base_frame_zy[i]*ucu_n_m1_t_3;
     const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_y*axis_z_ucu_axes4_z -
         axis_y_ucu_axes4_z*axis_z_ucu_axes4_y;
     const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_z*axis_z_ucu_axes4_x -
@@ -2041,8 +2052,8 @@ INLINE void stage_ucu_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
     /* (ucu-o_4) moment part of reciprocal wrench 4 */
     const real ucu_o_4_t = inv_ucu_end_p1_in_axes4_x*ucu_n_m1_in_axes4_x;
     /* (ucu-d_alpha_4) coefficient of the acceleration in: angular acceleration of link 4 */
-    const real ucu_d_alpha_4_in_axes4_zy = ucu_w_4_in_axes4_y +
-        ucu_e_1_in_axes4_z*ucu_w_1_in_axes4_y;
+    const real ucu_d_alpha_4_in_axes4_zy = ucu_e_1_in_axes4_z*ucu_w_1_in_axes4_y +
+        ucu_w_4_in_axes4_y;
     /* (ucu-D_1_4) inertia of joint 4 along joint 1 */
     const real ucu_D_1_4 = m->ucu_J_4_in_spec4_xx[i]*ucu_e_1_in_axes4_z +
         m->ucu_J_4_in_spec4_xz[i]*ucu_e_1_in_axes4_y - m->ucu_J_4_in_spec4_xy[i]*ucu_v_1_t;
@@ -2065,12 +2076,12 @@ INLINE void stage_ucu_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real ucu_d_Gamma_4_t = inv_ucu_end_p1_in_axes4_x*m->ucu_J_4_in_spec4_xx[i];
     const real ucu_d_Gamma_4_t_2 = inv_ucu_h_4_t_12*(ucu_J_4_in_axes2_xz +
         ucu_d_Gamma_4_t*ucu_n_m1_in_axes2_z);
-    const real ucu_d_Gamma_4_t_3 = inv_ucu_v_1_in_axes2_z*(ucu_D_1_4 +
-        ucu_d_Gamma_4_t_2*ucu_v_1_t_2 - ucu_d_Gamma_4_t*ucu_w_4_t);
-    const real ucu_d_Gamma_4_in_axes4_x = ucu_d_Gamma_4_t_2*ucu_e_2_in_axes4_y +
-        ucu_d_Gamma_4_t_3*ucu_e_2_in_axes4_x - m->ucu_h_4_in_spec4_z[i];
-    const real ucu_d_Gamma_4_in_axes4_y = m->ucu_h_4_in_spec4_y[i] +
-        ucu_d_Gamma_4_t_3*ucu_e_2_in_axes4_y - ucu_d_Gamma_4_t_2*ucu_e_2_in_axes4_x;
+    const real ucu_d_Gamma_4_t_3 = inv_ucu_v_1_in_axes2_z*(ucu_D_1_4 -
+        ucu_d_Gamma_4_t*ucu_w_4_t + ucu_d_Gamma_4_t_2*ucu_v_1_t_2);
+    const real ucu_d_Gamma_4_in_axes4_x = ucu_d_Gamma_4_t_2*ucu_e_2_in_axes4_y -
+        m->ucu_h_4_in_spec4_z[i] + ucu_d_Gamma_4_t_3*ucu_e_2_in_axes4_x;
+    const real ucu_d_Gamma_4_in_axes4_y = m->ucu_h_4_in_spec4_y[i] -
+        ucu_d_Gamma_4_t_2*ucu_e_2_in_axes4_x + ucu_d_Gamma_4_t_3*ucu_e_2_in_axes4_y;
     /* (ucu-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
        links' inertia and weight */
     const real ucu_dalpha_Gamma_2_t = ucu_J_4_in_axes2_xz*ucu_o_4_t;
@@ -2078,12 +2089,12 @@ INLINE void stage_ucu_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
        inertia and weight */
     const real ucu_d_Gamma_2_t = inv_ucu_end_p1_in_axes4_x*ucu_J_4_in_axes2_xz;
     const real ucu_d_Gamma_2_t_2 = inv_ucu_h_4_t_12*(m->ucu_J_2_in_spec2_yy[i] +
-        ucu_d_Gamma_2_t*ucu_n_m1_in_axes2_z + ucu_e_2_in_axes4_x*(ucu_Jc_2_t +
-        m->ucu_J_4_in_spec4_yy[i]*ucu_e_2_in_axes4_x) + ucu_e_2_in_axes4_y*(ucu_Jc_2_t_2 +
-        m->ucu_J_4_in_spec4_zz[i]*ucu_e_2_in_axes4_y));
+        ucu_e_2_in_axes4_x*(m->ucu_J_4_in_spec4_yy[i]*ucu_e_2_in_axes4_x + ucu_Jc_2_t) +
+        ucu_e_2_in_axes4_y*(m->ucu_J_4_in_spec4_zz[i]*ucu_e_2_in_axes4_y + ucu_Jc_2_t_2) +
+        ucu_d_Gamma_2_t*ucu_n_m1_in_axes2_z);
     const real ucu_d_Gamma_2_in_axes2_z = -inv_ucu_v_1_in_axes2_z*(ucu_d_Gamma_2_t*ucu_w_4_t -
         ucu_Jc_2_in_axes1_yz - ucu_d_Gamma_2_t_2*ucu_v_1_t_2);
-    const real ucu_d_Gamma_2_in_axes2_y = ucu_d_Gamma_2_t_2 + m->ucu_h_4_in_spec4_x[i];
+    const real ucu_d_Gamma_2_in_axes2_y = m->ucu_h_4_in_spec4_x[i] + ucu_d_Gamma_2_t_2;
     const real ucu_d_Gamma_2_in_axes4_y = ucu_d_Gamma_2_in_axes2_z*ucu_e_2_in_axes4_y -
         ucu_d_Gamma_2_in_axes2_y*ucu_e_2_in_axes4_x;
     /* (ucu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
@@ -2094,18 +2105,17 @@ INLINE void stage_ucu_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real ucu_d_Gamma_1_t = inv_ucu_end_p1_in_axes4_x*ucu_D_1_4;
     const real ucu_d_Gamma_1_t_2 = inv_ucu_h_4_t_12*(-ucu_Jc_2_in_axes1_yz -
         ucu_d_Gamma_1_t*ucu_n_m1_in_axes2_z);
-    const real ucu_d_Gamma_1_t_3 = ucu_d_Gamma_1_t*ucu_w_4_t + ucu_d_Gamma_1_t_2*ucu_v_1_t_2 +
-        ucu_e_1_in_axes4_z*(ucu_Jc_2_in_axes2_xy*ucu_h_4_t_13 -
+    const real ucu_d_Gamma_1_t_3 = ucu_e_1_in_axes4_z*(ucu_Jc_2_in_axes2_xy*ucu_h_4_t_13 -
         m->ucu_Jc_2_in_axes2_xx[i]*ucu_e_1_in_axes4_z) -
         ucu_h_4_t_13*(ucu_h_4_t_13*(m->ucu_J_2_in_spec2_zz[i] +
         ucu_Jc_2_t_3*ucu_e_2_in_axes4_y + ucu_Jc_2_t_4*ucu_e_2_in_axes4_x) -
-        ucu_Jc_2_in_axes2_xy*ucu_e_1_in_axes4_z);
+        ucu_Jc_2_in_axes2_xy*ucu_e_1_in_axes4_z) + ucu_d_Gamma_1_t*ucu_w_4_t +
+        ucu_d_Gamma_1_t_2*ucu_v_1_t_2;
     const real ucu_d_Gamma_1_in_axes1_z = ucu_d_Gamma_1_t_2*ucu_h_4_t_13;
-    const real ucu_d_Gamma_1_in_axes1_x = -ucu_d_Gamma_1_t_2*ucu_e_1_in_axes4_z -
-        ucu_e_2_in_axes4_x*m->ucu_h_4_in_spec4_y[i] -
-        ucu_e_2_in_axes4_y*m->ucu_h_4_in_spec4_z[i];
+    const real ucu_d_Gamma_1_in_axes1_x = -ucu_e_2_in_axes4_x*m->ucu_h_4_in_spec4_y[i] -
+        ucu_e_2_in_axes4_y*m->ucu_h_4_in_spec4_z[i] - ucu_d_Gamma_1_t_2*ucu_e_1_in_axes4_z;
     const real ucu_d_Gamma_1_in_axes1_y = m->ucu_h_4_in_spec4_x[i]*ucu_h_4_t_13 -
-        inv_ucu_v_1_in_axes2_z*ucu_d_Gamma_1_t_3 - ucu_e_1_in_axes4_z*ucu_h_4_in_spec2_z;
+        ucu_e_1_in_axes4_z*ucu_h_4_in_spec2_z - inv_ucu_v_1_in_axes2_z*ucu_d_Gamma_1_t_3;
     const real ucu_d_Gamma_1_in_axes4_z = ucu_d_Gamma_1_in_axes1_x*ucu_h_4_t_13 +
         ucu_d_Gamma_1_in_axes1_z*ucu_e_1_in_axes4_z;
     const real ucu_d_Gamma_1_t_4 = ucu_d_Gamma_1_in_axes1_x*ucu_e_1_in_axes4_z -
@@ -2143,22 +2153,23 @@ INLINE void stage_ucu_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real ucu_d_G_m_yx = ucu_d_G_m1_x*ucu_n_m1_y;
     /* (ucu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
        and without the mass at the connection point */
-    const real ucu_dalpha_c_in_axes4_xx = ucu_dalpha_Gamma_1_t*ucu_w_1_in_axes4_x +
-        ucu_dalpha_Gamma_2_t*ucu_w_2_in_axes4_x + ucu_dalpha_Gamma_4_t*ucu_w_4_in_axes4_x -
-        m->ucu_h_4_in_spec4_z[i]*ucu_o_4_t;
+    const real ucu_dalpha_c_in_axes4_xx = ucu_dalpha_Gamma_1_t*ucu_w_1_in_axes4_x -
+        m->ucu_h_4_in_spec4_z[i]*ucu_o_4_t + ucu_dalpha_Gamma_2_t*ucu_w_2_in_axes4_x +
+        ucu_dalpha_Gamma_4_t*ucu_w_4_in_axes4_x;
     const real ucu_dalpha_c_in_axes4_xz = m->ucu_h_4_in_spec4_z[i] -
         ucu_D_1_4*ucu_w_1_in_axes4_x - ucu_J_4_in_axes2_xz*ucu_w_2_in_axes4_x -
         m->ucu_J_4_in_spec4_xx[i]*ucu_w_4_in_axes4_x;
-    const real ucu_dalpha_c_in_axes4_yx = ucu_dalpha_Gamma_1_t*ucu_w_1_in_axes4_y +
-        ucu_dalpha_Gamma_2_t*ucu_w_2_in_axes4_y + ucu_dalpha_Gamma_4_t*ucu_w_4_in_axes4_y +
-        m->ucu_h_4_in_spec4_y[i]*ucu_o_4_t;
+    const real ucu_dalpha_c_in_axes4_yx = m->ucu_h_4_in_spec4_y[i]*ucu_o_4_t +
+        ucu_dalpha_Gamma_1_t*ucu_w_1_in_axes4_y + ucu_dalpha_Gamma_2_t*ucu_w_2_in_axes4_y +
+        ucu_dalpha_Gamma_4_t*ucu_w_4_in_axes4_y;
     const real ucu_dalpha_c_in_axes4_yz = -m->ucu_h_4_in_spec4_y[i] -
         ucu_D_1_4*ucu_w_1_in_axes4_y - ucu_J_4_in_axes2_xz*ucu_w_2_in_axes4_y -
         m->ucu_J_4_in_spec4_xx[i]*ucu_w_4_in_axes4_y;
     /* (ucu-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
        without the mass at the connection point */
-    const real ucu_d_c_in_axes4_xx = m->ucu_h_4_in_spec4_z[i]*(ucu_w_4_in_axes4_x +
-        ucu_e_1_in_axes4_z*ucu_w_1_in_axes4_x) - ucu_d_Gamma_4_in_axes4_x*ucu_w_4_in_axes4_x -
+    const real ucu_d_c_in_axes4_xx =
+        m->ucu_h_4_in_spec4_z[i]*(ucu_e_1_in_axes4_z*ucu_w_1_in_axes4_x + ucu_w_4_in_axes4_x)
+        - ucu_d_Gamma_4_in_axes4_x*ucu_w_4_in_axes4_x -
         m->ucu_h_4_in_spec4_x[i]*(ucu_e_1_in_axes4_y*ucu_w_1_in_axes4_x +
         ucu_e_2_in_axes4_y*ucu_w_2_in_axes4_x) -
         ucu_w_1_in_axes4_x*(ucu_d_Gamma_1_in_axes1_y*ucu_e_2_in_axes4_x +
@@ -2180,12 +2191,12 @@ INLINE void stage_ucu_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
     /* (ucu-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real ucu_Q_t = R(0.5)*ucu_d_c_in_axes4_xx;
     const real ucu_Q_t_2 = R(0.5)*ucu_d_c_in_axes4_yy;
-    const real ucu_Q_t_3 = axis_x_ucu_axes4_x*ucu_Q_t + axis_y_ucu_axes4_x*ucu_d_c_in_axes4_xy
-        - axis_z_ucu_axes4_x*ucu_d_G_in_axes4_xz;
+    const real ucu_Q_t_3 = axis_x_ucu_axes4_x*ucu_Q_t - axis_z_ucu_axes4_x*ucu_d_G_in_axes4_xz
+        + axis_y_ucu_axes4_x*ucu_d_c_in_axes4_xy;
     const real ucu_Q_t_4 = axis_z_ucu_axes4_y*ucu_d_G_in_axes4_xz - axis_x_ucu_axes4_y*ucu_Q_t
         - axis_y_ucu_axes4_y*ucu_d_c_in_axes4_xy;
-    const real ucu_Q_t_5 = axis_x_ucu_axes4_z*ucu_Q_t + axis_y_ucu_axes4_z*ucu_d_c_in_axes4_xy
-        - axis_z_ucu_axes4_z*ucu_d_G_in_axes4_xz;
+    const real ucu_Q_t_5 = axis_x_ucu_axes4_z*ucu_Q_t - axis_z_ucu_axes4_z*ucu_d_G_in_axes4_xz
+        + axis_y_ucu_axes4_z*ucu_d_c_in_axes4_xy;
     const real ucu_Q_t_6 = axis_z_ucu_axes4_x*ucu_d_G_in_axes4_yz -
         axis_y_ucu_axes4_x*ucu_Q_t_2;
     const real ucu_Q_t_7 = axis_y_ucu_axes4_y*ucu_Q_t_2 -
@@ -2194,15 +2205,15 @@ INLINE void stage_ucu_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
         axis_z_ucu_axes4_z*ucu_d_G_in_axes4_yz;
     const real ucu_Q_t_9 = axis_x_ucu_axes4_x*ucu_Q_t_3 - axis_y_ucu_axes4_x*ucu_Q_t_6;
     const real ucu_Q_xx = -2*ucu_Q_t_9;
-    const real ucu_Q_xy = axis_x_ucu_axes4_x*ucu_Q_t_4 + axis_y_ucu_axes4_y*ucu_Q_t_6 -
-        axis_x_ucu_axes4_y*ucu_Q_t_3 - axis_y_ucu_axes4_x*ucu_Q_t_7;
-    const real ucu_Q_xz = axis_y_ucu_axes4_z*ucu_Q_t_6 - axis_x_ucu_axes4_x*ucu_Q_t_5 -
-        axis_x_ucu_axes4_z*ucu_Q_t_3 - axis_y_ucu_axes4_x*ucu_Q_t_8;
+    const real ucu_Q_xy = axis_y_ucu_axes4_y*ucu_Q_t_6 - axis_y_ucu_axes4_x*ucu_Q_t_7 +
+        axis_x_ucu_axes4_x*ucu_Q_t_4 - axis_x_ucu_axes4_y*ucu_Q_t_3;
+    const real ucu_Q_xz = axis_y_ucu_axes4_z*ucu_Q_t_6 - axis_y_ucu_axes4_x*ucu_Q_t_8 -
+        axis_x_ucu_axes4_x*ucu_Q_t_5 - axis_x_ucu_axes4_z*ucu_Q_t_3;
     const real ucu_Q_t_10 = axis_y_ucu_axes4_y*ucu_Q_t_7 - axis_x_ucu_axes4_y*ucu_Q_t_4;
     const real ucu_Q_yy = -2*ucu_Q_t_10;
-    const real ucu_Q_yz = axis_x_ucu_axes4_z*ucu_Q_t_4 - axis_x_ucu_axes4_y*ucu_Q_t_5 -
-        axis_y_ucu_axes4_y*ucu_Q_t_8 - axis_y_ucu_axes4_z*ucu_Q_t_7;
-    const real ucu_Q_t_11 = axis_x_ucu_axes4_z*ucu_Q_t_5 + axis_y_ucu_axes4_z*ucu_Q_t_8;
+    const real ucu_Q_yz = axis_x_ucu_axes4_z*ucu_Q_t_4 - axis_y_ucu_axes4_y*ucu_Q_t_8 -
+        axis_y_ucu_axes4_z*ucu_Q_t_7 - axis_x_ucu_axes4_y*ucu_Q_t_5;
+    const real ucu_Q_t_11 = axis_y_ucu_axes4_z*ucu_Q_t_8 + axis_x_ucu_axes4_z*ucu_Q_t_5;
     const real ucu_Q_zz = -2*ucu_Q_t_11;
     /* (M_ta) coupling block of M */
     const real ucu_M_ta_t = axis_x_ucu_axes4_x*ucu_dalpha_c_in_axes4_xx +
@@ -2220,42 +2231,41 @@ INLINE void stage_ucu_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real ucu_M_ta_t_7 = -ucu_Q_xy*v->ucu_q_z;
     const real ucu_M_ta_t_8 = ucu_Q_xz*v->ucu_q_y;
     const real ucu_M_ta_t_9 = ucu_Q_yz*v->ucu_q_x;
-    const real ucu_M_ta_t_10 = ucu_M_ta_t_7 + ucu_M_ta_t_8 - axis_x_ucu_axes4_x*ucu_M_ta_t -
-        axis_z_ucu_axes4_x*ucu_M_ta_t_4;
+    const real ucu_M_ta_t_10 = ucu_M_ta_t_7 - axis_x_ucu_axes4_x*ucu_M_ta_t -
+        axis_z_ucu_axes4_x*ucu_M_ta_t_4 + ucu_M_ta_t_8;
     const real ucu_M_ta_t_11 = ucu_Q_xx*v->ucu_q_z - axis_x_ucu_axes4_y*ucu_M_ta_t -
         axis_z_ucu_axes4_y*ucu_M_ta_t_4 - ucu_Q_xz*v->ucu_q_x;
     const real ucu_M_ta_t_12 = ucu_Q_xy*v->ucu_q_x - axis_x_ucu_axes4_z*ucu_M_ta_t -
         axis_z_ucu_axes4_z*ucu_M_ta_t_4 - ucu_Q_xx*v->ucu_q_y;
     const real ucu_M_ta_t_13 = ucu_Q_yz*v->ucu_q_y - axis_x_ucu_axes4_x*ucu_M_ta_t_2 -
         axis_z_ucu_axes4_x*ucu_M_ta_t_5 - ucu_Q_yy*v->ucu_q_z;
-    const real ucu_M_ta_t_14 = ucu_M_ta_t_7 + ucu_M_ta_t_9 + axis_x_ucu_axes4_y*ucu_M_ta_t_2 +
-        axis_z_ucu_axes4_y*ucu_M_ta_t_5;
+    const real ucu_M_ta_t_14 = axis_x_ucu_axes4_y*ucu_M_ta_t_2 +
+        axis_z_ucu_axes4_y*ucu_M_ta_t_5 + ucu_M_ta_t_7 + ucu_M_ta_t_9;
     const real ucu_M_ta_t_15 = ucu_Q_yy*v->ucu_q_x - axis_x_ucu_axes4_z*ucu_M_ta_t_2 -
         axis_z_ucu_axes4_z*ucu_M_ta_t_5 - ucu_Q_xy*v->ucu_q_y;
     const real ucu_M_ta_t_16 = ucu_Q_zz*v->ucu_q_y - axis_x_ucu_axes4_x*ucu_M_ta_t_3 -
         axis_z_ucu_axes4_x*ucu_M_ta_t_6 - ucu_Q_yz*v->ucu_q_z;
     const real ucu_M_ta_t_17 = ucu_Q_xz*v->ucu_q_z - axis_x_ucu_axes4_y*ucu_M_ta_t_3 -
         axis_z_ucu_axes4_y*ucu_M_ta_t_6 - ucu_Q_zz*v->ucu_q_x;
-    const real ucu_M_ta_t_18 = ucu_M_ta_t_9 - ucu_M_ta_t_8 - axis_x_ucu_axes4_z*ucu_M_ta_t_3 -
-        axis_z_ucu_axes4_z*ucu_M_ta_t_6;
+    const real ucu_M_ta_t_18 = ucu_M_ta_t_9 - axis_x_ucu_axes4_z*ucu_M_ta_t_3 -
+        axis_z_ucu_axes4_z*ucu_M_ta_t_6 - ucu_M_ta_t_8;
     /* (M_aa) rotational block of M */
-    const real ucu_M_aa_t = ucu_M_ta_t_16*v->ucu_q_y + ucu_d_G_m_xz*v->ucu_q_y +
-        ucu_n_m1_x*(axis_x_ucu_axes4_x*ucu_dalpha_G_m1_in_axes4_x -
-        axis_z_ucu_axes4_x*ucu_d_Gamma_4_t) - ucu_M_ta_t_13*v->ucu_q_z -
-        ucu_d_G_m_xy*v->ucu_q_z;
-    const real ucu_M_aa_t_2 = ucu_M_ta_t_14*v->ucu_q_z + ucu_M_ta_t_17*v->ucu_q_y +
-        ucu_d_G_m_xx*v->ucu_q_z + ucu_dalpha_G_m1_y*ucu_n_m1_x - ucu_d_G_m_xz*v->ucu_q_x;
-    const real ucu_M_aa_t_3 = ucu_M_ta_t_18*v->ucu_q_y + ucu_d_G_m_xy*v->ucu_q_x +
-        ucu_dalpha_G_m1_z*ucu_n_m1_x - ucu_M_ta_t_15*v->ucu_q_z - ucu_d_G_m_xx*v->ucu_q_y;
-    const real ucu_M_aa_t_4 = ucu_M_ta_t_11*v->ucu_q_z + ucu_d_G_m_yx*v->ucu_q_z +
-        ucu_dalpha_G_m1_y*ucu_n_m1_y - ucu_M_ta_t_17*v->ucu_q_x -
-        ucu_d_G_m1_z*ucu_n_m1_y*v->ucu_q_x;
-    const real ucu_M_aa_t_5 = ucu_M_ta_t_12*v->ucu_q_z + ucu_dalpha_G_m1_z*ucu_n_m1_y +
-        ucu_d_G_m1_y*ucu_n_m1_y*v->ucu_q_x - ucu_M_ta_t_18*v->ucu_q_x -
-        ucu_d_G_m_yx*v->ucu_q_y;
-    const real ucu_M_aa_t_6 = ucu_M_ta_t_15*v->ucu_q_x + ucu_dalpha_G_m1_z*ucu_n_m1_z +
-        ucu_d_G_m1_y*ucu_n_m1_z*v->ucu_q_x - ucu_M_ta_t_12*v->ucu_q_y -
-        ucu_d_G_m1_x*ucu_n_m1_z*v->ucu_q_y;
+    const real ucu_M_aa_t = ucu_n_m1_x*(axis_x_ucu_axes4_x*ucu_dalpha_G_m1_in_axes4_x -
+        axis_z_ucu_axes4_x*ucu_d_Gamma_4_t) + ucu_d_G_m_xz*v->ucu_q_y -
+        ucu_d_G_m_xy*v->ucu_q_z + ucu_M_ta_t_16*v->ucu_q_y - ucu_M_ta_t_13*v->ucu_q_z;
+    const real ucu_M_aa_t_2 = ucu_dalpha_G_m1_y*ucu_n_m1_x + ucu_d_G_m_xx*v->ucu_q_z -
+        ucu_d_G_m_xz*v->ucu_q_x + ucu_M_ta_t_17*v->ucu_q_y + ucu_M_ta_t_14*v->ucu_q_z;
+    const real ucu_M_aa_t_3 = ucu_dalpha_G_m1_z*ucu_n_m1_x + ucu_d_G_m_xy*v->ucu_q_x -
+        ucu_d_G_m_xx*v->ucu_q_y - ucu_M_ta_t_15*v->ucu_q_z + ucu_M_ta_t_18*v->ucu_q_y;
+    const real ucu_M_aa_t_4 = ucu_dalpha_G_m1_y*ucu_n_m1_y + ucu_d_G_m_yx*v->ucu_q_z -
+        ucu_d_G_m1_z*ucu_n_m1_y*v->ucu_q_x + ucu_M_ta_t_11*v->ucu_q_z -
+        ucu_M_ta_t_17*v->ucu_q_x;
+    const real ucu_M_aa_t_5 = ucu_dalpha_G_m1_z*ucu_n_m1_y +
+        ucu_d_G_m1_y*ucu_n_m1_y*v->ucu_q_x - ucu_d_G_m_yx*v->ucu_q_y +
+        ucu_M_ta_t_12*v->ucu_q_z - ucu_M_ta_t_18*v->ucu_q_x;
+    const real ucu_M_aa_t_6 = ucu_dalpha_G_m1_z*ucu_n_m1_z +
+        ucu_d_G_m1_y*ucu_n_m1_z*v->ucu_q_x - ucu_d_G_m1_x*ucu_n_m1_z*v->ucu_q_y +
+        ucu_M_ta_t_15*v->ucu_q_x - ucu_M_ta_t_12*v->ucu_q_y;
     v->ucu_h_4_t_7 = ucu_h_4_t_7;
     v->ucu_h_4_t_9 = ucu_h_4_t_9;
     v->ucu_h_4_t_10 = ucu_h_4_t_10;
@@ -2320,23 +2330,20 @@ INLINE void stage_ucu_inverse_kinematics_potential(const prepared *m, size_t w, 
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
     const real t_x = X[0*w + j];
-    const real ucu_S_x = t_x + R_xx*m->ucu_platform_point_x[i] +
-        R_xy*m->ucu_platform_point_y[i] + R_xz*m->ucu_platform_point_z[i] -
-        m->ucu_base_point_x[i];
+    const real ucu_S_x = t_x - m->ucu_base_point_x[i] + R_xy*m->ucu_platform_point_y[i] +
+        R_xz*m->ucu_platform_point_z[i] + R_xx*m->ucu_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real t_y = X[1*w + j];
-    const real ucu_S_y = t_y + R_yx*m->ucu_platform_point_x[i] +
-        R_yy*m->ucu_platform_point_y[i] + R_yz*m->ucu_platform_point_z[i] -
-        m->ucu_base_point_y[i];
+    const real ucu_S_y = t_y - m->ucu_base_point_y[i] + R_yx*m->ucu_platform_point_x[i] +
+        R_yz*m->ucu_platform_point_z[i] + R_yy*m->ucu_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real t_z = X[2*w + j];
-    const real ucu_S_z = t_z + R_zx*m->ucu_platform_point_x[i] +
-        R_zy*m->ucu_platform_point_y[i] + R_zz*m->ucu_platform_point_z[i] -
-        m->ucu_base_point_z[i];
+    const real ucu_S_z = t_z - m->ucu_base_point_z[i] + R_zx*m->ucu_platform_point_x[i] +
+        R_zy*m->ucu_platform_point_y[i] + R_zz*m->ucu_platform_point_z[i];
     const real ucu_S_in_turn1_x = ucu_S_x*m->ucu_base_frame_xx[i] +
         ucu_S_y*m->ucu_base_frame_yx[i] + ucu_S_z*m->ucu_base_frame_zx[i];
     const real ucu_S_in_turn1_y = ucu_S_x*m->ucu_base_frame_xy[i] +
@@ -2409,8 +2416,8 @@ INLINE void stage_ucu_legs_required(const prepared *m, size_t i, values_ucu *v)
     const real ucu_qdd_1 = v->inv_ucu_v_1_in_axes2_z*(v->ucu_c_4*ucu_rel_in_axes4_x +
         v->ucu_e_2_in_axes4_y*ucu_rel_in_axes4_y);
     /* (ucu-qdd_2) acceleration of joint 2 */
-    const real ucu_qdd_2 = v->inv_ucu_root_2*(v->ucu_e_2_in_axes4_y*ucu_rel_in_axes4_x +
-        ucu_qdd_1*v->ucu_v_1_t_2 - v->ucu_c_4*ucu_rel_in_axes4_y);
+    const real ucu_qdd_2 = v->inv_ucu_root_2*(v->ucu_e_2_in_axes4_y*ucu_rel_in_axes4_x -
+        v->ucu_c_4*ucu_rel_in_axes4_y + ucu_qdd_1*v->ucu_v_1_t_2);
     /* (ucu-alpha_1) angular acceleration of link 1 */
     const real ucu_alpha_1_in_axes2_x = v->ucu_e_1_in_axes4_z*ucu_qdd_1;
     const real ucu_alpha_1_in_axes2_y = -v->ucu_c_2*ucu_qdd_1;
@@ -2426,9 +2433,9 @@ INLINE void stage_ucu_legs_required(const prepared *m, size_t i, values_ucu *v)
     const real ucu_alpha_4_in_axes4_x = ucu_zeta_4_in_axes4_x +
         ucu_alpha_2_in_axes2_y*v->ucu_e_2_in_axes4_y + v->ucu_c_4*ucu_qdd_2;
     const real ucu_alpha_4_in_axes4_y = v->ucu_e_2_in_axes4_y*ucu_qdd_2 -
-        ucu_alpha_2_in_axes2_y*v->ucu_c_4 - v->ucu_omega_2_in_axes4_x*v->ucu_qd_4;
+        v->ucu_omega_2_in_axes4_x*v->ucu_qd_4 - ucu_alpha_2_in_axes2_y*v->ucu_c_4;
     const real ucu_alpha_4_in_axes4_z = ucu_alpha_2_in_axes2_x -
-        v->inv_ucu_end_p1_in_axes4_x*(ucu_etad_1 + v->ucu_qd_4_t_4*ucu_qdd_1 -
+        v->inv_ucu_end_p1_in_axes4_x*(v->ucu_qd_4_t_4*ucu_qdd_1 + ucu_etad_1 -
         v->ucu_n_m1_in_axes2_z*ucu_qdd_2);
     /* (ucu-B_4) acceleration tensor of link 4 */
     const real ucu_B_4_in_axes4_xy = v->ucu_W_2_in_axes4_xy - ucu_alpha_4_in_axes4_z;
@@ -2456,26 +2463,24 @@ INLINE void stage_ucu_legs_required(const prepared *m, size_t i, values_ucu *v)
         v->ucu_e_1_in_axes4_z*m->ucu_mu_2_t_3[i];
     const real ucu_g_in_axes2_y = v->ucu_e_1_in_axes4_z*ucu_mu_2_t_7 -
         v->ucu_c_2*m->ucu_mu_2_t_3[i];
-    const real ucu_mu_2_in_axes2_x = ucu_B_2_in_axes2_yx*m->ucu_J_2_in_spec2_xy[i] +
+    const real ucu_mu_2_in_axes2_x = v->ucu_g_in_axes2_z*m->ucu_h_2_in_spec2_z[i] +
+        ucu_g_in_axes2_y*m->ucu_h_2_in_spec2_y[i] - m->ucu_J_2_in_spec2_yz[i]*(ucu_mu_2_t_5 -
+        ucu_mu_2_t_6) + m->ucu_Sigma_2_in_axes2_zz[i]*ucu_alpha_1_in_axes2_x +
+        ucu_B_2_in_axes2_yx*m->ucu_J_2_in_spec2_xy[i] +
         ucu_B_2_in_axes2_zx*m->ucu_J_2_in_spec2_xz[i] +
-        ucu_B_2_in_axes2_zy*m->ucu_Sigma_2_in_axes2_yy[i] +
-        m->ucu_Sigma_2_in_axes2_zz[i]*ucu_alpha_1_in_axes2_x +
-        ucu_g_in_axes2_y*m->ucu_h_2_in_spec2_y[i] +
-        v->ucu_g_in_axes2_z*m->ucu_h_2_in_spec2_z[i] - m->ucu_J_2_in_spec2_yz[i]*(ucu_mu_2_t_5
-        - ucu_mu_2_t_6);
-    const real ucu_mu_2_in_axes2_y = ucu_B_2_in_axes2_xy*m->ucu_J_2_in_spec2_yz[i] +
-        m->ucu_Sigma_2_in_axes2_zz[i]*ucu_alpha_1_in_axes2_y +
-        v->ucu_g_in_axes2_z*m->ucu_h_2_in_spec2_x[i] -
+        ucu_B_2_in_axes2_zy*m->ucu_Sigma_2_in_axes2_yy[i];
+    const real ucu_mu_2_in_axes2_y = v->ucu_g_in_axes2_z*m->ucu_h_2_in_spec2_x[i] -
+        ucu_g_in_axes2_x*m->ucu_h_2_in_spec2_y[i] - m->ucu_J_2_in_spec2_xy[i]*(ucu_mu_2_t_4 -
+        ucu_mu_2_t_6) + m->ucu_Sigma_2_in_axes2_zz[i]*ucu_alpha_1_in_axes2_y +
+        ucu_B_2_in_axes2_xy*m->ucu_J_2_in_spec2_yz[i] -
         ucu_B_2_in_axes2_zx*m->ucu_Sigma_2_in_axes2_xx[i] -
-        ucu_B_2_in_axes2_zy*m->ucu_J_2_in_spec2_xz[i] -
-        m->ucu_J_2_in_spec2_xy[i]*(ucu_mu_2_t_4 - ucu_mu_2_t_6) -
-        ucu_g_in_axes2_x*m->ucu_h_2_in_spec2_y[i];
-    const real ucu_mu_2_in_axes2_z = ucu_B_2_in_axes2_yx*m->ucu_Sigma_2_in_axes2_xx[i] +
-        m->ucu_J_2_in_spec2_xy[i]*ucu_alpha_1_in_axes2_x -
-        ucu_B_2_in_axes2_xy*m->ucu_Sigma_2_in_axes2_yy[i] -
-        m->ucu_J_2_in_spec2_xz[i]*(ucu_mu_2_t_4 - ucu_mu_2_t_5) -
-        m->ucu_J_2_in_spec2_yz[i]*ucu_alpha_1_in_axes2_y -
-        ucu_g_in_axes2_x*m->ucu_h_2_in_spec2_z[i] - ucu_g_in_axes2_y*m->ucu_h_2_in_spec2_x[i];
+        ucu_B_2_in_axes2_zy*m->ucu_J_2_in_spec2_xz[i];
+    const real ucu_mu_2_in_axes2_z = m->ucu_J_2_in_spec2_xy[i]*ucu_alpha_1_in_axes2_x -
+        ucu_g_in_axes2_x*m->ucu_h_2_in_spec2_z[i] - ucu_g_in_axes2_y*m->ucu_h_2_in_spec2_x[i]
+        - m->ucu_J_2_in_spec2_xz[i]*(ucu_mu_2_t_4 - ucu_mu_2_t_5) -
+        m->ucu_J_2_in_spec2_yz[i]*ucu_alpha_1_in_axes2_y +
+        ucu_B_2_in_axes2_yx*m->ucu_Sigma_2_in_axes2_xx[i] -
+        ucu_B_2_in_axes2_xy*m->ucu_Sigma_2_in_axes2_yy[i];
     v->ucu_B_4_in_axes4_xy = ucu_B_4_in_axes4_xy;
     v->ucu_B_4_in_axes4_xz = ucu_B_4_in_axes4_xz;
     v->ucu_B_4_in_axes4_yx = ucu_B_4_in_axes4_yx;
@@ -2493,39 +2498,43 @@ INLINE void stage_ucu_legs_required(const prepared *m, size_t i, values_ucu *v)
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    real *s, verdict *t)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_M_dynamics(m, &v);
-    stage_Z_dynamics(m, w, k, V, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.h_star_x;
-    s[10*w + k] = v.h_star_y;
-    s[11*w + k] = v.h_star_z;
-    s[12*w + k] = v.J_star_xx;
-    s[13*w + k] = v.J_star_xy;
-    s[14*w + k] = v.J_star_xz;
-    s[15*w + k] = v.J_star_yy;
-    s[16*w + k] = v.J_star_yz;
-    s[17*w + k] = v.J_star_zz;
-    s[18*w + k] = v.Z_p_x;
-    s[19*w + k] = v.Z_p_y;
-    s[20*w + k] = v.Z_p_z;
-    s[21*w + k] = v.Z_q_x;
-    s[22*w + k] = v.Z_q_y;
-    s[23*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->h_star_x;
+    s[10*w + k] = v->h_star_y;
+    s[11*w + k] = v->h_star_z;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
+    *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_M_dynamics(m, v);
+    stage_Z_dynamics(m, w, k, V, v);
+    s[12*w + k] = v->J_star_xx;
+    s[13*w + k] = v->J_star_xy;
+    s[14*w + k] = v->J_star_xz;
+    s[15*w + k] = v->J_star_yy;
+    s[16*w + k] = v->J_star_yz;
+    s[17*w + k] = v->J_star_zz;
+    s[18*w + k] = v->Z_p_x;
+    s[19*w + k] = v->Z_p_y;
+    s[20*w + k] = v->Z_p_z;
+    s[21*w + k] = v->Z_q_x;
+    s[22*w + k] = v->Z_q_y;
+    s[23*w + k] = v->Z_q_z;
 }
 
 INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2548,8 +2557,8 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, s
     const real ucu_qd_1 = v.inv_ucu_v_1_in_axes2_z*(v.ucu_S_dot_t_5*v.ucu_h_4_t_9 -
         v.ucu_S_dot_t_4*v.ucu_h_4_t_10);
     /* (ucu-qd_2) rate of joint 2 */
-    const real ucu_qd_2 = v.inv_ucu_h_4_t_12*(ucu_S_dot_t_7*v.ucu_e_1_in_axes4_z +
-        ucu_qd_1*v.ucu_v_1_t_2 - v.ucu_S_dot_t_6*v.ucu_h_4_t_13);
+    const real ucu_qd_2 = v.inv_ucu_h_4_t_12*(ucu_S_dot_t_7*v.ucu_e_1_in_axes4_z -
+        v.ucu_S_dot_t_6*v.ucu_h_4_t_13 + ucu_qd_1*v.ucu_v_1_t_2);
     /* (ucu-qd_4) rate of joint 4 */
     const real ucu_qd_4 = -v.inv_ucu_end_p1_in_axes4_x*(ucu_eta_1 + ucu_qd_1*v.ucu_w_4_t -
         v.ucu_n_m1_in_axes2_z*ucu_qd_2);
@@ -2557,8 +2566,8 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, s
     const real ucu_omega_1_in_axes2_x = v.ucu_e_1_in_axes4_z*ucu_qd_1;
     const real ucu_omega_1_in_axes2_y = -v.ucu_h_4_t_13*ucu_qd_1;
     /* (ucu-omega_2) angular velocity of link 2 */
-    const real ucu_omega_2_in_axes4_x = v.ucu_e_2_in_axes4_x*ucu_qd_2 +
-        v.ucu_e_2_in_axes4_y*ucu_omega_1_in_axes2_y;
+    const real ucu_omega_2_in_axes4_x = v.ucu_e_2_in_axes4_y*ucu_omega_1_in_axes2_y +
+        v.ucu_e_2_in_axes4_x*ucu_qd_2;
     const real ucu_omega_2_in_axes4_y = v.ucu_e_2_in_axes4_y*ucu_qd_2 -
         v.ucu_e_2_in_axes4_x*ucu_omega_1_in_axes2_y;
     /* (ucu-W_2) centripetal tensor of link 2 */
@@ -2590,8 +2599,9 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, s
     const real ucu_bias_in_axes4_x = ucu_bias_t*ucu_omega_2_in_axes4_y +
         v.ucu_h_4_t_12*(ucu_W_2_in_axes2_xz*v.ucu_e_2_in_axes4_x +
         ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_x);
-    const real ucu_bias_in_axes4_y = v.ucu_h_4_t_12*(ucu_zeta_2_t +
-        ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) - ucu_bias_t*ucu_omega_2_in_axes4_x;
+    const real ucu_bias_in_axes4_y =
+        v.ucu_h_4_t_12*(ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y + ucu_zeta_2_t) -
+        ucu_bias_t*ucu_omega_2_in_axes4_x;
     /* (ucu-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
        */
     const real ucu_rel_o_in_axes4_x = ucu_u_1_in_axes4_x - ucu_bias_in_axes4_x;
@@ -2609,8 +2619,8 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, s
         v.ucu_end_p1_in_axes4_x*ucu_omega_in_axes4_y -
         ucu_end_p1_in_axes4_y*ucu_omega_2_in_axes4_x;
     const real ucu_nd_m1_in_axes4_z = ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_z -
-        ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z -
-        v.ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y;
+        v.ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y -
+        ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z;
     /* (ucu-nu_1) bias of the angular acceleration along moment direction 1 */
     const real ucu_nu_1_t = ucu_beta_4_in_axes4_x*v.ucu_n_m1_in_axes4_x -
         ucu_W_2_in_axes2_yz*v.ucu_end_p1_in_axes4_x;
@@ -2625,8 +2635,8 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, s
         v.inv_ucu_v_1_in_axes2_z*(v.ucu_e_2_in_axes4_x*ucu_rel_o_in_axes4_x +
         v.ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_y);
     /* (ucu-qdd_2_o) remainder of: acceleration of joint 2 */
-    const real ucu_qdd_2_o = v.inv_ucu_h_4_t_12*(v.ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_x +
-        ucu_qdd_1_o*v.ucu_v_1_t_2 - v.ucu_e_2_in_axes4_x*ucu_rel_o_in_axes4_y);
+    const real ucu_qdd_2_o = v.inv_ucu_h_4_t_12*(v.ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_x -
+        v.ucu_e_2_in_axes4_x*ucu_rel_o_in_axes4_y + ucu_qdd_1_o*v.ucu_v_1_t_2);
     /* (ucu-alpha_1_o) remainder of: angular acceleration of link 1 */
     const real ucu_alpha_1_o_in_axes2_x = v.ucu_e_1_in_axes4_z*ucu_qdd_1_o;
     const real ucu_alpha_1_o_in_axes2_y = -v.ucu_h_4_t_13*ucu_qdd_1_o;
@@ -2642,7 +2652,7 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, s
     const real ucu_alpha_4_o_in_axes4_x = ucu_zeta_4_in_axes4_x +
         ucu_alpha_2_o_in_axes2_y*v.ucu_e_2_in_axes4_y + v.ucu_e_2_in_axes4_x*ucu_qdd_2_o;
     const real ucu_alpha_4_o_in_axes4_y = v.ucu_e_2_in_axes4_y*ucu_qdd_2_o -
-        ucu_alpha_2_o_in_axes2_y*v.ucu_e_2_in_axes4_x - ucu_omega_2_in_axes4_x*ucu_qd_4;
+        ucu_omega_2_in_axes4_x*ucu_qd_4 - ucu_alpha_2_o_in_axes2_y*v.ucu_e_2_in_axes4_x;
     const real ucu_alpha_4_o_in_axes4_z = ucu_alpha_2_o_in_axes2_x -
         v.inv_ucu_end_p1_in_axes4_x*(ucu_nu_1 + ucu_qdd_1_o*v.ucu_w_4_t -
         v.ucu_n_m1_in_axes2_z*ucu_qdd_2_o);
@@ -2666,33 +2676,33 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, s
        */
     const real ucu_phi_4_o_t = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_x;
     const real ucu_phi_4_o_t_2 = ucu_omega_2_in_axes4_y*ucu_omega_2_in_axes4_y;
-    const real ucu_phi_4_o_in_axes4_z = ucu_B_4_o_in_axes4_zx*m->ucu_h_4_in_spec4_y[i] +
-        ucu_B_4_o_in_axes4_zy*m->ucu_h_4_in_spec4_z[i] -
-        m->ucu_h_4_in_spec4_x[i]*(ucu_phi_4_o_t + ucu_phi_4_o_t_2);
+    const real ucu_phi_4_o_in_axes4_z = ucu_B_4_o_in_axes4_zx*m->ucu_h_4_in_spec4_y[i] -
+        m->ucu_h_4_in_spec4_x[i]*(ucu_phi_4_o_t + ucu_phi_4_o_t_2) +
+        ucu_B_4_o_in_axes4_zy*m->ucu_h_4_in_spec4_z[i];
     /* (ucu-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their
        reference points */
     const real ucu_mu_4_o_t = ucu_omega_4_in_axes4_z*ucu_omega_4_in_axes4_z;
-    const real ucu_mu_4_o_in_axes4_x = ucu_B_4_o_in_axes4_yx*m->ucu_J_4_in_spec4_xy[i] +
-        ucu_B_4_o_in_axes4_zy*m->ucu_Sigma_4_in_axes4_yy[i] +
+    const real ucu_mu_4_o_in_axes4_x = ucu_acc_4_o_in_axes4_z*m->ucu_h_4_in_spec4_z[i] -
+        ucu_acc_4_o_in_axes4_y*m->ucu_h_4_in_spec4_x[i] +
         m->ucu_J_4_in_spec4_xz[i]*(ucu_phi_4_o_t_2 - ucu_mu_4_o_t) +
-        ucu_acc_4_o_in_axes4_z*m->ucu_h_4_in_spec4_z[i] -
+        ucu_B_4_o_in_axes4_yx*m->ucu_J_4_in_spec4_xy[i] +
+        ucu_B_4_o_in_axes4_zy*m->ucu_Sigma_4_in_axes4_yy[i] -
         ucu_B_4_o_in_axes4_yz*m->ucu_Sigma_4_in_axes4_zz[i] -
-        ucu_B_4_o_in_axes4_zx*m->ucu_J_4_in_spec4_yz[i] -
-        ucu_acc_4_o_in_axes4_y*m->ucu_h_4_in_spec4_x[i];
-    const real ucu_mu_4_o_in_axes4_y = ucu_B_4_o_in_axes4_xz*m->ucu_Sigma_4_in_axes4_zz[i] +
-        ucu_B_4_o_in_axes4_zy*m->ucu_J_4_in_spec4_yz[i] +
-        ucu_acc_4_o_in_axes4_x*m->ucu_h_4_in_spec4_x[i] -
+        ucu_B_4_o_in_axes4_zx*m->ucu_J_4_in_spec4_yz[i];
+    const real ucu_mu_4_o_in_axes4_y = ucu_acc_4_o_in_axes4_x*m->ucu_h_4_in_spec4_x[i] -
+        ucu_acc_4_o_in_axes4_z*m->ucu_h_4_in_spec4_y[i] -
+        m->ucu_J_4_in_spec4_xy[i]*(ucu_phi_4_o_t - ucu_mu_4_o_t) +
+        ucu_B_4_o_in_axes4_xz*m->ucu_Sigma_4_in_axes4_zz[i] +
+        ucu_B_4_o_in_axes4_zy*m->ucu_J_4_in_spec4_yz[i] -
         ucu_B_4_o_in_axes4_xy*m->ucu_J_4_in_spec4_xz[i] -
-        ucu_B_4_o_in_axes4_zx*m->ucu_Sigma_4_in_axes4_xx[i] -
-        m->ucu_J_4_in_spec4_xy[i]*(ucu_phi_4_o_t - ucu_mu_4_o_t) -
-        ucu_acc_4_o_in_axes4_z*m->ucu_h_4_in_spec4_y[i];
-    const real ucu_mu_4_o_in_axes4_z = ucu_B_4_o_in_axes4_xz*m->ucu_J_4_in_spec4_xz[i] +
-        ucu_B_4_o_in_axes4_yx*m->ucu_Sigma_4_in_axes4_xx[i] +
+        ucu_B_4_o_in_axes4_zx*m->ucu_Sigma_4_in_axes4_xx[i];
+    const real ucu_mu_4_o_in_axes4_z = ucu_acc_4_o_in_axes4_y*m->ucu_h_4_in_spec4_y[i] -
+        ucu_acc_4_o_in_axes4_x*m->ucu_h_4_in_spec4_z[i] +
         m->ucu_J_4_in_spec4_yz[i]*(ucu_phi_4_o_t - ucu_phi_4_o_t_2) +
-        ucu_acc_4_o_in_axes4_y*m->ucu_h_4_in_spec4_y[i] -
+        ucu_B_4_o_in_axes4_xz*m->ucu_J_4_in_spec4_xz[i] +
+        ucu_B_4_o_in_axes4_yx*m->ucu_Sigma_4_in_axes4_xx[i] -
         ucu_B_4_o_in_axes4_xy*m->ucu_Sigma_4_in_axes4_yy[i] -
-        ucu_B_4_o_in_axes4_yz*m->ucu_J_4_in_spec4_xy[i] -
-        ucu_acc_4_o_in_axes4_x*m->ucu_h_4_in_spec4_z[i];
+        ucu_B_4_o_in_axes4_yz*m->ucu_J_4_in_spec4_xy[i];
     /* (ucu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real ucu_mu_2_o_t = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_x;
@@ -2706,25 +2716,24 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, s
         v.ucu_h_4_t_13*ucu_mu_2_o_t_4;
     const real ucu_g_in_axes2_y = v.ucu_e_1_in_axes4_z*ucu_mu_2_o_t_4 -
         v.ucu_h_4_t_13*m->ucu_mu_2_t_3[i];
-    const real ucu_mu_2_o_in_axes2_x = ucu_B_2_o_in_axes2_yx*m->ucu_J_2_in_spec2_xy[i] +
+    const real ucu_mu_2_o_in_axes2_x = ucu_g_in_axes2_z*m->ucu_h_2_in_spec2_z[i] +
+        ucu_g_in_axes2_y*m->ucu_h_2_in_spec2_y[i] - m->ucu_J_2_in_spec2_yz[i]*(ucu_mu_2_o_t_2
+        - ucu_mu_2_o_t_3) + m->ucu_Sigma_2_in_axes2_zz[i]*ucu_alpha_1_o_in_axes2_x +
+        ucu_B_2_o_in_axes2_yx*m->ucu_J_2_in_spec2_xy[i] +
         ucu_B_2_o_in_axes2_zx*m->ucu_J_2_in_spec2_xz[i] +
-        ucu_B_2_o_in_axes2_zy*m->ucu_Sigma_2_in_axes2_yy[i] +
-        m->ucu_Sigma_2_in_axes2_zz[i]*ucu_alpha_1_o_in_axes2_x +
-        ucu_g_in_axes2_y*m->ucu_h_2_in_spec2_y[i] + ucu_g_in_axes2_z*m->ucu_h_2_in_spec2_z[i]
-        - m->ucu_J_2_in_spec2_yz[i]*(ucu_mu_2_o_t_2 - ucu_mu_2_o_t_3);
-    const real ucu_mu_2_o_in_axes2_y = ucu_B_2_o_in_axes2_xy*m->ucu_J_2_in_spec2_yz[i] +
-        m->ucu_Sigma_2_in_axes2_zz[i]*ucu_alpha_1_o_in_axes2_y +
-        ucu_g_in_axes2_z*m->ucu_h_2_in_spec2_x[i] -
+        ucu_B_2_o_in_axes2_zy*m->ucu_Sigma_2_in_axes2_yy[i];
+    const real ucu_mu_2_o_in_axes2_y = ucu_g_in_axes2_z*m->ucu_h_2_in_spec2_x[i] -
+        ucu_g_in_axes2_x*m->ucu_h_2_in_spec2_y[i] - m->ucu_J_2_in_spec2_xy[i]*(ucu_mu_2_o_t -
+        ucu_mu_2_o_t_3) + m->ucu_Sigma_2_in_axes2_zz[i]*ucu_alpha_1_o_in_axes2_y +
+        ucu_B_2_o_in_axes2_xy*m->ucu_J_2_in_spec2_yz[i] -
         ucu_B_2_o_in_axes2_zx*m->ucu_Sigma_2_in_axes2_xx[i] -
-        ucu_B_2_o_in_axes2_zy*m->ucu_J_2_in_spec2_xz[i] -
-        m->ucu_J_2_in_spec2_xy[i]*(ucu_mu_2_o_t - ucu_mu_2_o_t_3) -
-        ucu_g_in_axes2_x*m->ucu_h_2_in_spec2_y[i];
-    const real ucu_mu_2_o_in_axes2_z = ucu_B_2_o_in_axes2_yx*m->ucu_Sigma_2_in_axes2_xx[i] +
-        m->ucu_J_2_in_spec2_xy[i]*ucu_alpha_1_o_in_axes2_x -
-        ucu_B_2_o_in_axes2_xy*m->ucu_Sigma_2_in_axes2_yy[i] -
-        m->ucu_J_2_in_spec2_xz[i]*(ucu_mu_2_o_t - ucu_mu_2_o_t_2) -
-        m->ucu_J_2_in_spec2_yz[i]*ucu_alpha_1_o_in_axes2_y -
-        ucu_g_in_axes2_x*m->ucu_h_2_in_spec2_z[i] - ucu_g_in_axes2_y*m->ucu_h_2_in_spec2_x[i];
+        ucu_B_2_o_in_axes2_zy*m->ucu_J_2_in_spec2_xz[i];
+    const real ucu_mu_2_o_in_axes2_z = m->ucu_J_2_in_spec2_xy[i]*ucu_alpha_1_o_in_axes2_x -
+        ucu_g_in_axes2_x*m->ucu_h_2_in_spec2_z[i] - ucu_g_in_axes2_y*m->ucu_h_2_in_spec2_x[i]
+        - m->ucu_J_2_in_spec2_xz[i]*(ucu_mu_2_o_t - ucu_mu_2_o_t_2) -
+        m->ucu_J_2_in_spec2_yz[i]*ucu_alpha_1_o_in_axes2_y +
+        ucu_B_2_o_in_axes2_yx*m->ucu_Sigma_2_in_axes2_xx[i] -
+        ucu_B_2_o_in_axes2_xy*m->ucu_Sigma_2_in_axes2_yy[i];
     /* (ucu-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
        connection point left out */
     const real ucu_N_2_o_in_axes2_x = ucu_mu_2_o_in_axes2_x + ucu_mu_4_o_in_axes4_z;
@@ -2739,19 +2748,19 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, s
     const real ucu_G_m1_o_t = v.inv_ucu_end_p1_in_axes4_x*ucu_mu_4_o_in_axes4_z;
     /* (ucu-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
-    const real ucu_c_o_t = v.inv_ucu_h_4_t_12*(ucu_N_2_o_in_axes2_z +
-        ucu_G_m1_o_t*v.ucu_n_m1_in_axes2_z);
-    const real ucu_c_o_t_2 = v.inv_ucu_v_1_in_axes2_z*(ucu_G_m1_o_t*v.ucu_w_4_t +
-        ucu_N_2_o_in_axes2_y*v.ucu_h_4_t_13 - ucu_N_2_o_in_axes2_x*v.ucu_e_1_in_axes4_z -
+    const real ucu_c_o_t = v.inv_ucu_h_4_t_12*(ucu_G_m1_o_t*v.ucu_n_m1_in_axes2_z +
+        ucu_N_2_o_in_axes2_z);
+    const real ucu_c_o_t_2 = v.inv_ucu_v_1_in_axes2_z*(ucu_G_m1_o_t*v.ucu_w_4_t -
+        ucu_N_2_o_in_axes2_x*v.ucu_e_1_in_axes4_z + ucu_N_2_o_in_axes2_y*v.ucu_h_4_t_13 -
         ucu_c_o_t*v.ucu_v_1_t_2);
-    const real ucu_c_o_in_axes4_x = ucu_c_o_t_2*v.ucu_e_2_in_axes4_x +
-        m->ucu_h_4_in_spec4_y[i]*(ucu_mu_4_o_t + ucu_phi_4_o_t_2) -
-        ucu_B_4_o_in_axes4_xy*m->ucu_h_4_in_spec4_z[i] -
-        ucu_B_4_o_in_axes4_xz*m->ucu_h_4_in_spec4_x[i] - ucu_c_o_t*v.ucu_e_2_in_axes4_y;
-    const real ucu_c_o_in_axes4_y = ucu_c_o_t*v.ucu_e_2_in_axes4_x +
-        ucu_c_o_t_2*v.ucu_e_2_in_axes4_y + m->ucu_h_4_in_spec4_z[i]*(ucu_mu_4_o_t +
-        ucu_phi_4_o_t) - ucu_B_4_o_in_axes4_yx*m->ucu_h_4_in_spec4_y[i] -
-        ucu_B_4_o_in_axes4_yz*m->ucu_h_4_in_spec4_x[i];
+    const real ucu_c_o_in_axes4_x = m->ucu_h_4_in_spec4_y[i]*(ucu_phi_4_o_t_2 + ucu_mu_4_o_t)
+        - ucu_B_4_o_in_axes4_xy*m->ucu_h_4_in_spec4_z[i] -
+        ucu_B_4_o_in_axes4_xz*m->ucu_h_4_in_spec4_x[i] - ucu_c_o_t*v.ucu_e_2_in_axes4_y +
+        ucu_c_o_t_2*v.ucu_e_2_in_axes4_x;
+    const real ucu_c_o_in_axes4_y = m->ucu_h_4_in_spec4_z[i]*(ucu_phi_4_o_t + ucu_mu_4_o_t) -
+        ucu_B_4_o_in_axes4_yx*m->ucu_h_4_in_spec4_y[i] -
+        ucu_B_4_o_in_axes4_yz*m->ucu_h_4_in_spec4_x[i] + ucu_c_o_t*v.ucu_e_2_in_axes4_x +
+        ucu_c_o_t_2*v.ucu_e_2_in_axes4_y;
     /* (ucu-c_m_o) remainder of: moment of the leg on the platform without actuation */
     const real ucu_c_m_o_in_axes4_x = ucu_G_m1_o_t*v.ucu_n_m1_in_axes4_x;
     /* (ucu-U) velocity and gravity terms of the leg force */
@@ -2762,12 +2771,12 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, s
     const real ucu_U_z = v.axis_z_ucu_axes4_z*ucu_phi_4_o_in_axes4_z -
         v.axis_x_ucu_axes4_z*ucu_c_o_in_axes4_x - v.axis_y_ucu_axes4_z*ucu_c_o_in_axes4_y;
     /* (Z_a) rotational part of Z */
-    const real ucu_Z_a_t = v.axis_z_ucu_axes4_x*ucu_mu_4_o_in_axes4_z + ucu_U_z*v.ucu_q_y -
-        v.axis_x_ucu_axes4_x*ucu_c_m_o_in_axes4_x - ucu_U_y*v.ucu_q_z;
-    const real ucu_Z_a_t_2 = v.axis_z_ucu_axes4_y*ucu_mu_4_o_in_axes4_z + ucu_U_x*v.ucu_q_z -
-        v.axis_x_ucu_axes4_y*ucu_c_m_o_in_axes4_x - ucu_U_z*v.ucu_q_x;
-    const real ucu_Z_a_t_3 = v.axis_z_ucu_axes4_z*ucu_mu_4_o_in_axes4_z + ucu_U_y*v.ucu_q_x -
-        v.axis_x_ucu_axes4_z*ucu_c_m_o_in_axes4_x - ucu_U_x*v.ucu_q_y;
+    const real ucu_Z_a_t = v.axis_z_ucu_axes4_x*ucu_mu_4_o_in_axes4_z -
+        v.axis_x_ucu_axes4_x*ucu_c_m_o_in_axes4_x + ucu_U_z*v.ucu_q_y - ucu_U_y*v.ucu_q_z;
+    const real ucu_Z_a_t_2 = v.axis_z_ucu_axes4_y*ucu_mu_4_o_in_axes4_z -
+        v.axis_x_ucu_axes4_y*ucu_c_m_o_in_axes4_x + ucu_U_x*v.ucu_q_z - ucu_U_z*v.ucu_q_x;
+    const real ucu_Z_a_t_3 = v.axis_z_ucu_axes4_z*ucu_mu_4_o_in_axes4_z -
+        v.axis_x_ucu_axes4_z*ucu_c_m_o_in_axes4_x + ucu_U_y*v.ucu_q_x - ucu_U_x*v.ucu_q_y;
     /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
     const real ucu_H_a_3_x = v.axis_z_ucu_axes4_z*v.ucu_q_y - v.axis_z_ucu_axes4_y*v.ucu_q_z;
     const real ucu_H_a_3_y = v.axis_z_ucu_axes4_x*v.ucu_q_z - v.axis_z_ucu_axes4_z*v.ucu_q_x;
@@ -2839,15 +2848,15 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[11*w + k];
-    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
     const real h_star_y = s[10*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -2855,9 +2864,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[9*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
@@ -2892,13 +2901,13 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[24*w + k];
     const real Z_q_x = s[21*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[25*w + k];
     const real Z_q_y = s[22*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[26*w + k];
     const real Z_q_z = s[23*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
     const real M_tt_xy = sums[1*w + k];
@@ -2963,7 +2972,8 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 {
     real s[24] = {0}, sums[27] = {0};
     real terms_ucu[27*LEGS(LEGS_OF_ucu)] = {0}, o_ucu[8*LEGS(LEGS_OF_ucu)] = {0};
-    dynamics_before(m, 1, 0, X, V, s, t);
+    values v;
+    dynamics_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
         dynamics_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), 0, s, X, V, terms_ucu, o_ucu);
     }
@@ -2973,6 +2983,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t n = 0; n < 27; ++n) {
         sums[n] = total(terms_ucu + n*LEGS(LEGS_OF_ucu), LEGS_OF_ucu);
     }
+    dynamics_between(m, 1, 0, V, &v, s);
     dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
@@ -2982,7 +2993,9 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real s[24*LANES], sums[27*LANES];
     real o_ucu[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        dynamics_before(m, LANES, k, X, V, s, t);
+        values v;
+        dynamics_before(m, LANES, k, X, &v, s, t);
+        dynamics_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 27*LANES);
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
@@ -2999,30 +3012,34 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_M_dynamics(m, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.h_star_x;
-    s[10*w + k] = v.h_star_y;
-    s[11*w + k] = v.h_star_z;
-    s[12*w + k] = v.J_star_xx;
-    s[13*w + k] = v.J_star_xy;
-    s[14*w + k] = v.J_star_xz;
-    s[15*w + k] = v.J_star_yy;
-    s[16*w + k] = v.J_star_yz;
-    s[17*w + k] = v.J_star_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->h_star_x;
+    s[10*w + k] = v->h_star_y;
+    s[11*w + k] = v->h_star_z;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void M_between(const prepared *m, size_t w, size_t k, values *v, real *s)
+{
+    stage_M_dynamics(m, v);
+    s[12*w + k] = v->J_star_xx;
+    s[13*w + k] = v->J_star_xy;
+    s[14*w + k] = v->J_star_xz;
+    s[15*w + k] = v->J_star_yy;
+    s[16*w + k] = v->J_star_yz;
+    s[17*w + k] = v->J_star_zz;
 }
 
 INLINE void M_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3072,15 +3089,15 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[11*w + k];
-    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
     const real h_star_y = s[10*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -3088,9 +3105,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[9*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
@@ -3167,7 +3184,8 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
     real s[18] = {0}, sums[21] = {0};
     real terms_ucu[21*LEGS(LEGS_OF_ucu)] = {0}, o_ucu[LEGS(LEGS_OF_ucu)] = {0};
-    M_before(m, 1, 0, X, s, t);
+    values v;
+    M_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
         M_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), 0, s, X, terms_ucu, o_ucu);
     }
@@ -3177,6 +3195,7 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     for (size_t n = 0; n < 21; ++n) {
         sums[n] = total(terms_ucu + n*LEGS(LEGS_OF_ucu), LEGS_OF_ucu);
     }
+    M_between(m, 1, 0, &v, s);
     M_after(m, 1, 0, s, sums, M, t);
 }
 
@@ -3185,7 +3204,9 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
     real s[18*LANES], sums[21*LANES];
     real o_ucu[LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        M_before(m, LANES, k, X, s, t);
+        values v;
+        M_before(m, LANES, k, X, &v, s, t);
+        M_between(m, LANES, k, &v, s);
     }
     clear(sums, 21*LANES);
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
@@ -3202,29 +3223,32 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s,
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
     verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_Z_dynamics(m, w, k, V, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.Z_p_x;
-    s[10*w + k] = v.Z_p_y;
-    s[11*w + k] = v.Z_p_z;
-    s[12*w + k] = v.Z_q_x;
-    s[13*w + k] = v.Z_q_y;
-    s[14*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_Z_dynamics(m, w, k, V, v);
+    s[9*w + k] = v->Z_p_x;
+    s[10*w + k] = v->Z_p_y;
+    s[11*w + k] = v->Z_p_z;
+    s[12*w + k] = v->Z_q_x;
+    s[13*w + k] = v->Z_q_y;
+    s[14*w + k] = v->Z_q_z;
 }
 
 INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3235,14 +3259,14 @@ INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_ucu_V_X(m, w, i, j, V, &v);
     /* (ucu-eta_1) rate at which the joints turn along moment direction 1 */
     const real ucu_eta_1_t = v.ucu_c_4*v.ucu_e_1_in_axes4_z;
-    const real ucu_eta_1_t_2 = -v.ucu_c_1*ucu_eta_1_t - v.ucu_e_2_in_axes4_y*v.ucu_s_1;
+    const real ucu_eta_1_t_2 = -v.ucu_e_2_in_axes4_y*v.ucu_s_1 - v.ucu_c_1*ucu_eta_1_t;
     const real ucu_eta_1_t_3 = v.ucu_c_1*v.ucu_e_2_in_axes4_y - ucu_eta_1_t*v.ucu_s_1;
-    const real axis_y_ucu_axes4_x = m->ucu_base_frame_xx[i]*ucu_eta_1_t_2 +
-        m->ucu_base_frame_xy[i]*ucu_eta_1_t_3 + m->ucu_base_frame_xz[i]*v.ucu_e_1_in_axes4_y;
-    const real axis_y_ucu_axes4_y = m->ucu_base_frame_yx[i]*ucu_eta_1_t_2 +
-        m->ucu_base_frame_yy[i]*ucu_eta_1_t_3 + m->ucu_base_frame_yz[i]*v.ucu_e_1_in_axes4_y;
-    const real axis_y_ucu_axes4_z = m->ucu_base_frame_zx[i]*ucu_eta_1_t_2 +
-        m->ucu_base_frame_zy[i]*ucu_eta_1_t_3 + m->ucu_base_frame_zz[i]*v.ucu_e_1_in_axes4_y;
+    const real axis_y_ucu_axes4_x = m->ucu_base_frame_xz[i]*v.ucu_e_1_in_axes4_y +
+        m->ucu_base_frame_xx[i]*ucu_eta_1_t_2 + m->ucu_base_frame_xy[i]*ucu_eta_1_t_3;
+    const real axis_y_ucu_axes4_y = m->ucu_base_frame_yz[i]*v.ucu_e_1_in_axes4_y +
+        m->ucu_base_frame_yx[i]*ucu_eta_1_t_2 + m->ucu_base_frame_yy[i]*ucu_eta_1_t_3;
+    const real axis_y_ucu_axes4_z = m->ucu_base_frame_zz[i]*v.ucu_e_1_in_axes4_y +
+        m->ucu_base_frame_zx[i]*ucu_eta_1_t_2 + m->ucu_base_frame_zy[i]*ucu_eta_1_t_3;
     const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_y*v.ucu_w_3_z -
         axis_y_ucu_axes4_z*v.ucu_w_3_y;
     const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_z*v.ucu_w_3_x -
@@ -3293,8 +3317,8 @@ INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k
         v.ucu_end_p1_in_axes4_x*ucu_omega_in_axes4_y -
         v.ucu_end_p1_in_axes4_y*v.ucu_omega_2_in_axes4_x;
     const real ucu_nd_m1_in_axes4_z = v.ucu_end_p1_in_axes4_y*v.ucu_omega_in_axes4_z -
-        v.ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z -
-        v.ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y;
+        v.ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y -
+        v.ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z;
     /* (ucu-nu_1) bias of the angular acceleration along moment direction 1 */
     const real ucu_nu_1_t = ucu_beta_4_in_axes4_x*v.ucu_n_m1_in_axes4_x -
         v.ucu_W_2_in_axes2_yz*v.ucu_end_p1_in_axes4_x;
@@ -3308,8 +3332,8 @@ INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real ucu_qdd_1_o = v.inv_ucu_v_1_in_axes2_z*(v.ucu_c_4*ucu_rel_o_in_axes4_x +
         v.ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_y);
     /* (ucu-qdd_2_o) remainder of: acceleration of joint 2 */
-    const real ucu_qdd_2_o = v.inv_ucu_root_2*(v.ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_x +
-        ucu_qdd_1_o*v.ucu_v_1_t_2 - v.ucu_c_4*ucu_rel_o_in_axes4_y);
+    const real ucu_qdd_2_o = v.inv_ucu_root_2*(v.ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_x -
+        v.ucu_c_4*ucu_rel_o_in_axes4_y + ucu_qdd_1_o*v.ucu_v_1_t_2);
     /* (ucu-alpha_1_o) remainder of: angular acceleration of link 1 */
     const real ucu_alpha_1_o_in_axes2_x = v.ucu_e_1_in_axes4_z*ucu_qdd_1_o;
     const real ucu_alpha_1_o_in_axes2_y = -v.ucu_c_2*ucu_qdd_1_o;
@@ -3325,7 +3349,7 @@ INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real ucu_alpha_4_o_in_axes4_x = ucu_zeta_4_in_axes4_x +
         ucu_alpha_2_o_in_axes2_y*v.ucu_e_2_in_axes4_y + v.ucu_c_4*ucu_qdd_2_o;
     const real ucu_alpha_4_o_in_axes4_y = v.ucu_e_2_in_axes4_y*ucu_qdd_2_o -
-        ucu_alpha_2_o_in_axes2_y*v.ucu_c_4 - v.ucu_omega_2_in_axes4_x*ucu_qd_4;
+        v.ucu_omega_2_in_axes4_x*ucu_qd_4 - ucu_alpha_2_o_in_axes2_y*v.ucu_c_4;
     const real ucu_alpha_4_o_in_axes4_z = ucu_alpha_2_o_in_axes2_x -
         v.inv_ucu_end_p1_in_axes4_x*(ucu_nu_1 + ucu_qd_4_t*ucu_qdd_1_o -
         v.ucu_n_m1_in_axes2_z*ucu_qdd_2_o);
@@ -3348,33 +3372,33 @@ INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k
        */
     const real ucu_phi_4_o_t = v.ucu_omega_2_in_axes4_x*v.ucu_omega_2_in_axes4_x;
     const real ucu_phi_4_o_t_2 = v.ucu_omega_2_in_axes4_y*v.ucu_omega_2_in_axes4_y;
-    const real ucu_phi_4_o_in_axes4_z = ucu_B_4_o_in_axes4_zx*m->ucu_h_4_in_spec4_y[i] +
-        ucu_B_4_o_in_axes4_zy*m->ucu_h_4_in_spec4_z[i] -
-        m->ucu_h_4_in_spec4_x[i]*(ucu_phi_4_o_t + ucu_phi_4_o_t_2);
+    const real ucu_phi_4_o_in_axes4_z = ucu_B_4_o_in_axes4_zx*m->ucu_h_4_in_spec4_y[i] -
+        m->ucu_h_4_in_spec4_x[i]*(ucu_phi_4_o_t + ucu_phi_4_o_t_2) +
+        ucu_B_4_o_in_axes4_zy*m->ucu_h_4_in_spec4_z[i];
     /* (ucu-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their
        reference points */
     const real ucu_mu_4_o_t = ucu_omega_4_in_axes4_z*ucu_omega_4_in_axes4_z;
-    const real ucu_mu_4_o_in_axes4_x = ucu_B_4_o_in_axes4_yx*m->ucu_J_4_in_spec4_xy[i] +
-        ucu_B_4_o_in_axes4_zy*m->ucu_Sigma_4_in_axes4_yy[i] +
+    const real ucu_mu_4_o_in_axes4_x = ucu_acc_4_o_in_axes4_z*m->ucu_h_4_in_spec4_z[i] -
+        ucu_acc_4_o_in_axes4_y*m->ucu_h_4_in_spec4_x[i] +
         m->ucu_J_4_in_spec4_xz[i]*(ucu_phi_4_o_t_2 - ucu_mu_4_o_t) +
-        ucu_acc_4_o_in_axes4_z*m->ucu_h_4_in_spec4_z[i] -
+        ucu_B_4_o_in_axes4_yx*m->ucu_J_4_in_spec4_xy[i] +
+        ucu_B_4_o_in_axes4_zy*m->ucu_Sigma_4_in_axes4_yy[i] -
         ucu_B_4_o_in_axes4_yz*m->ucu_Sigma_4_in_axes4_zz[i] -
-        ucu_B_4_o_in_axes4_zx*m->ucu_J_4_in_spec4_yz[i] -
-        ucu_acc_4_o_in_axes4_y*m->ucu_h_4_in_spec4_x[i];
-    const real ucu_mu_4_o_in_axes4_y = ucu_B_4_o_in_axes4_xz*m->ucu_Sigma_4_in_axes4_zz[i] +
-        ucu_B_4_o_in_axes4_zy*m->ucu_J_4_in_spec4_yz[i] +
-        ucu_acc_4_o_in_axes4_x*m->ucu_h_4_in_spec4_x[i] -
+        ucu_B_4_o_in_axes4_zx*m->ucu_J_4_in_spec4_yz[i];
+    const real ucu_mu_4_o_in_axes4_y = ucu_acc_4_o_in_axes4_x*m->ucu_h_4_in_spec4_x[i] -
+        ucu_acc_4_o_in_axes4_z*m->ucu_h_4_in_spec4_y[i] -
+        m->ucu_J_4_in_spec4_xy[i]*(ucu_phi_4_o_t - ucu_mu_4_o_t) +
+        ucu_B_4_o_in_axes4_xz*m->ucu_Sigma_4_in_axes4_zz[i] +
+        ucu_B_4_o_in_axes4_zy*m->ucu_J_4_in_spec4_yz[i] -
         ucu_B_4_o_in_axes4_xy*m->ucu_J_4_in_spec4_xz[i] -
-        ucu_B_4_o_in_axes4_zx*m->ucu_Sigma_4_in_axes4_xx[i] -
-        m->ucu_J_4_in_spec4_xy[i]*(ucu_phi_4_o_t - ucu_mu_4_o_t) -
-        ucu_acc_4_o_in_axes4_z*m->ucu_h_4_in_spec4_y[i];
-    const real ucu_mu_4_o_in_axes4_z = ucu_B_4_o_in_axes4_xz*m->ucu_J_4_in_spec4_xz[i] +
-        ucu_B_4_o_in_axes4_yx*m->ucu_Sigma_4_in_axes4_xx[i] +
+        ucu_B_4_o_in_axes4_zx*m->ucu_Sigma_4_in_axes4_xx[i];
+    const real ucu_mu_4_o_in_axes4_z = ucu_acc_4_o_in_axes4_y*m->ucu_h_4_in_spec4_y[i] -
+        ucu_acc_4_o_in_axes4_x*m->ucu_h_4_in_spec4_z[i] +
         m->ucu_J_4_in_spec4_yz[i]*(ucu_phi_4_o_t - ucu_phi_4_o_t_2) +
-        ucu_acc_4_o_in_axes4_y*m->ucu_h_4_in_spec4_y[i] -
+        ucu_B_4_o_in_axes4_xz*m->ucu_J_4_in_spec4_xz[i] +
+        ucu_B_4_o_in_axes4_yx*m->ucu_Sigma_4_in_axes4_xx[i] -
         ucu_B_4_o_in_axes4_xy*m->ucu_Sigma_4_in_axes4_yy[i] -
-        ucu_B_4_o_in_axes4_yz*m->ucu_J_4_in_spec4_xy[i] -
-        ucu_acc_4_o_in_axes4_x*m->ucu_h_4_in_spec4_z[i];
+        ucu_B_4_o_in_axes4_yz*m->ucu_J_4_in_spec4_xy[i];
     /* (ucu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real ucu_mu_2_o_t = v.ucu_omega_1_in_axes2_x*v.ucu_omega_1_in_axes2_x;
@@ -3385,26 +3409,24 @@ INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k
         v.ucu_e_1_in_axes4_z*m->ucu_mu_2_t_3[i];
     const real ucu_g_in_axes2_y = v.ucu_e_1_in_axes4_z*ucu_mu_2_o_t_4 -
         v.ucu_c_2*m->ucu_mu_2_t_3[i];
-    const real ucu_mu_2_o_in_axes2_x = ucu_B_2_o_in_axes2_yx*m->ucu_J_2_in_spec2_xy[i] +
+    const real ucu_mu_2_o_in_axes2_x = v.ucu_g_in_axes2_z*m->ucu_h_2_in_spec2_z[i] +
+        ucu_g_in_axes2_y*m->ucu_h_2_in_spec2_y[i] - m->ucu_J_2_in_spec2_yz[i]*(ucu_mu_2_o_t_2
+        - ucu_mu_2_o_t_3) + m->ucu_Sigma_2_in_axes2_zz[i]*ucu_alpha_1_o_in_axes2_x +
+        ucu_B_2_o_in_axes2_yx*m->ucu_J_2_in_spec2_xy[i] +
         ucu_B_2_o_in_axes2_zx*m->ucu_J_2_in_spec2_xz[i] +
-        ucu_B_2_o_in_axes2_zy*m->ucu_Sigma_2_in_axes2_yy[i] +
-        m->ucu_Sigma_2_in_axes2_zz[i]*ucu_alpha_1_o_in_axes2_x +
-        ucu_g_in_axes2_y*m->ucu_h_2_in_spec2_y[i] +
-        v.ucu_g_in_axes2_z*m->ucu_h_2_in_spec2_z[i] -
-        m->ucu_J_2_in_spec2_yz[i]*(ucu_mu_2_o_t_2 - ucu_mu_2_o_t_3);
-    const real ucu_mu_2_o_in_axes2_y = ucu_B_2_o_in_axes2_xy*m->ucu_J_2_in_spec2_yz[i] +
-        m->ucu_Sigma_2_in_axes2_zz[i]*ucu_alpha_1_o_in_axes2_y +
-        v.ucu_g_in_axes2_z*m->ucu_h_2_in_spec2_x[i] -
+        ucu_B_2_o_in_axes2_zy*m->ucu_Sigma_2_in_axes2_yy[i];
+    const real ucu_mu_2_o_in_axes2_y = v.ucu_g_in_axes2_z*m->ucu_h_2_in_spec2_x[i] -
+        ucu_g_in_axes2_x*m->ucu_h_2_in_spec2_y[i] - m->ucu_J_2_in_spec2_xy[i]*(ucu_mu_2_o_t -
+        ucu_mu_2_o_t_3) + m->ucu_Sigma_2_in_axes2_zz[i]*ucu_alpha_1_o_in_axes2_y +
+        ucu_B_2_o_in_axes2_xy*m->ucu_J_2_in_spec2_yz[i] -
         ucu_B_2_o_in_axes2_zx*m->ucu_Sigma_2_in_axes2_xx[i] -
-        ucu_B_2_o_in_axes2_zy*m->ucu_J_2_in_spec2_xz[i] -
-        m->ucu_J_2_in_spec2_xy[i]*(ucu_mu_2_o_t - ucu_mu_2_o_t_3) -
-        ucu_g_in_axes2_x*m->ucu_h_2_in_spec2_y[i];
-    const real ucu_mu_2_o_in_axes2_z = ucu_B_2_o_in_axes2_yx*m->ucu_Sigma_2_in_axes2_xx[i] +
-        m->ucu_J_2_in_spec2_xy[i]*ucu_alpha_1_o_in_axes2_x -
-        ucu_B_2_o_in_axes2_xy*m->ucu_Sigma_2_in_axes2_yy[i] -
-        m->ucu_J_2_in_spec2_xz[i]*(ucu_mu_2_o_t - ucu_mu_2_o_t_2) -
-        m->ucu_J_2_in_spec2_yz[i]*ucu_alpha_1_o_in_axes2_y -
-        ucu_g_in_axes2_x*m->ucu_h_2_in_spec2_z[i] - ucu_g_in_axes2_y*m->ucu_h_2_in_spec2_x[i];
+        ucu_B_2_o_in_axes2_zy*m->ucu_J_2_in_spec2_xz[i];
+    const real ucu_mu_2_o_in_axes2_z = m->ucu_J_2_in_spec2_xy[i]*ucu_alpha_1_o_in_axes2_x -
+        ucu_g_in_axes2_x*m->ucu_h_2_in_spec2_z[i] - ucu_g_in_axes2_y*m->ucu_h_2_in_spec2_x[i]
+        - m->ucu_J_2_in_spec2_xz[i]*(ucu_mu_2_o_t - ucu_mu_2_o_t_2) -
+        m->ucu_J_2_in_spec2_yz[i]*ucu_alpha_1_o_in_axes2_y +
+        ucu_B_2_o_in_axes2_yx*m->ucu_Sigma_2_in_axes2_xx[i] -
+        ucu_B_2_o_in_axes2_xy*m->ucu_Sigma_2_in_axes2_yy[i];
     /* (ucu-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
        connection point left out */
     const real ucu_N_2_o_in_axes2_x = ucu_mu_2_o_in_axes2_x + ucu_mu_4_o_in_axes4_z;
@@ -3417,19 +3439,19 @@ INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real ucu_G_m1_o_t = v.inv_ucu_end_p1_in_axes4_x*ucu_mu_4_o_in_axes4_z;
     /* (ucu-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
-    const real ucu_c_o_t = v.inv_ucu_root_2*(ucu_N_2_o_in_axes2_z +
-        ucu_G_m1_o_t*v.ucu_n_m1_in_axes2_z);
-    const real ucu_c_o_t_2 = v.inv_ucu_v_1_in_axes2_z*(ucu_G_m1_o_t*ucu_qd_4_t +
-        ucu_N_2_o_in_axes2_y*v.ucu_c_2 - ucu_N_2_o_in_axes2_x*v.ucu_e_1_in_axes4_z -
+    const real ucu_c_o_t = v.inv_ucu_root_2*(ucu_G_m1_o_t*v.ucu_n_m1_in_axes2_z +
+        ucu_N_2_o_in_axes2_z);
+    const real ucu_c_o_t_2 = v.inv_ucu_v_1_in_axes2_z*(ucu_G_m1_o_t*ucu_qd_4_t -
+        ucu_N_2_o_in_axes2_x*v.ucu_e_1_in_axes4_z + ucu_N_2_o_in_axes2_y*v.ucu_c_2 -
         ucu_c_o_t*v.ucu_v_1_t_2);
-    const real ucu_c_o_in_axes4_x = v.ucu_c_4*ucu_c_o_t_2 +
-        m->ucu_h_4_in_spec4_y[i]*(ucu_mu_4_o_t + ucu_phi_4_o_t_2) -
-        ucu_B_4_o_in_axes4_xy*m->ucu_h_4_in_spec4_z[i] -
-        ucu_B_4_o_in_axes4_xz*m->ucu_h_4_in_spec4_x[i] - ucu_c_o_t*v.ucu_e_2_in_axes4_y;
-    const real ucu_c_o_in_axes4_y = v.ucu_c_4*ucu_c_o_t + ucu_c_o_t_2*v.ucu_e_2_in_axes4_y +
-        m->ucu_h_4_in_spec4_z[i]*(ucu_mu_4_o_t + ucu_phi_4_o_t) -
+    const real ucu_c_o_in_axes4_x = m->ucu_h_4_in_spec4_y[i]*(ucu_phi_4_o_t_2 + ucu_mu_4_o_t)
+        - ucu_B_4_o_in_axes4_xy*m->ucu_h_4_in_spec4_z[i] -
+        ucu_B_4_o_in_axes4_xz*m->ucu_h_4_in_spec4_x[i] - ucu_c_o_t*v.ucu_e_2_in_axes4_y +
+        v.ucu_c_4*ucu_c_o_t_2;
+    const real ucu_c_o_in_axes4_y = m->ucu_h_4_in_spec4_z[i]*(ucu_phi_4_o_t + ucu_mu_4_o_t) -
         ucu_B_4_o_in_axes4_yx*m->ucu_h_4_in_spec4_y[i] -
-        ucu_B_4_o_in_axes4_yz*m->ucu_h_4_in_spec4_x[i];
+        ucu_B_4_o_in_axes4_yz*m->ucu_h_4_in_spec4_x[i] + v.ucu_c_4*ucu_c_o_t +
+        ucu_c_o_t_2*v.ucu_e_2_in_axes4_y;
     /* (ucu-c_m_o) remainder of: moment of the leg on the platform without actuation */
     const real ucu_c_m_o_in_axes4_x = ucu_G_m1_o_t*v.ucu_n_m1_in_axes4_x;
     /* (ucu-U) velocity and gravity terms of the leg force */
@@ -3440,12 +3462,12 @@ INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real ucu_U_z = ucu_phi_4_o_in_axes4_z*v.ucu_w_3_z -
         axis_x_ucu_axes4_z*ucu_c_o_in_axes4_x - axis_y_ucu_axes4_z*ucu_c_o_in_axes4_y;
     /* (Z_a) rotational part of Z */
-    const real ucu_Z_a_t = ucu_U_z*v.ucu_q_y + ucu_mu_4_o_in_axes4_z*v.ucu_w_3_x -
-        axis_x_ucu_axes4_x*ucu_c_m_o_in_axes4_x - ucu_U_y*v.ucu_q_z;
-    const real ucu_Z_a_t_2 = ucu_U_x*v.ucu_q_z + ucu_mu_4_o_in_axes4_z*v.ucu_w_3_y -
-        axis_x_ucu_axes4_y*ucu_c_m_o_in_axes4_x - ucu_U_z*v.ucu_q_x;
-    const real ucu_Z_a_t_3 = ucu_U_y*v.ucu_q_x + ucu_mu_4_o_in_axes4_z*v.ucu_w_3_z -
-        axis_x_ucu_axes4_z*ucu_c_m_o_in_axes4_x - ucu_U_x*v.ucu_q_y;
+    const real ucu_Z_a_t = ucu_mu_4_o_in_axes4_z*v.ucu_w_3_x -
+        axis_x_ucu_axes4_x*ucu_c_m_o_in_axes4_x + ucu_U_z*v.ucu_q_y - ucu_U_y*v.ucu_q_z;
+    const real ucu_Z_a_t_2 = ucu_mu_4_o_in_axes4_z*v.ucu_w_3_y -
+        axis_x_ucu_axes4_y*ucu_c_m_o_in_axes4_x + ucu_U_x*v.ucu_q_z - ucu_U_z*v.ucu_q_x;
+    const real ucu_Z_a_t_3 = ucu_mu_4_o_in_axes4_z*v.ucu_w_3_z -
+        axis_x_ucu_axes4_z*ucu_c_m_o_in_axes4_x + ucu_U_y*v.ucu_q_x - ucu_U_x*v.ucu_q_y;
     /* (Z_t) translational part of Z */
     gather(&terms[0*count + k], add, ucu_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, ucu_U_y);  /* Z_t_y_of_legs */
@@ -3481,13 +3503,13 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[3*w + k];
     const real Z_q_x = s[12*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[4*w + k];
     const real Z_q_y = s[13*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[5*w + k];
     const real Z_q_z = s[14*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
     Z[1*w + k] = Z_t_y;
@@ -3503,7 +3525,8 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_ucu[6*LEGS(LEGS_OF_ucu)] = {0}, o_ucu[LEGS(LEGS_OF_ucu)] = {0};
-    Z_before(m, 1, 0, X, V, s, t);
+    values v;
+    Z_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
         Z_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), 0, s, X, V, terms_ucu, o_ucu);
     }
@@ -3513,6 +3536,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_ucu + n*LEGS(LEGS_OF_ucu), LEGS_OF_ucu);
     }
+    Z_between(m, 1, 0, V, &v, s);
     Z_after(1, 0, s, sums, Z, t);
 }
 
@@ -3522,7 +3546,9 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real s[15*LANES], sums[6*LANES];
     real o_ucu[LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        Z_before(m, LANES, k, X, V, s, t);
+        values v;
+        Z_before(m, LANES, k, X, &v, s, t);
+        Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
@@ -3539,20 +3565,20 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void H_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3592,7 +3618,8 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
     real s[9] = {0};
     real o_ucu[8*LEGS(LEGS_OF_ucu)] = {0};
-    H_before(m, 1, 0, X, s, t);
+    values v;
+    H_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
         H_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), s, X, o_ucu);
     }
@@ -3606,7 +3633,8 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
     real s[9*LANES];
     real o_ucu[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        H_before(m, LANES, k, X, s, t);
+        values v;
+        H_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3619,12 +3647,26 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, real *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
+    values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
     /* (W_p) centripetal tensor of the platform */
     const real omega_x = V[3*w + k];
     const real omega_y = V[4*w + k];
@@ -3639,72 +3681,62 @@ INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X
     const real a_t_y = t_ddot_y - m->gravity_y;
     const real t_ddot_z = A[2*w + k];
     const real a_t_z = t_ddot_z - m->gravity_z;
-    const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
-    const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
-    const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
+    const real a_t_in_platform_x = v->R_yx*a_t_y + v->R_zx*a_t_z + v->R_xx*a_t_x;
+    const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
+    const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
     const real f_p_t = omega_x*omega_x;
     const real f_p_t_2 = omega_y*omega_y;
     const real f_p_t_3 = omega_z*omega_z;
     const real alpha_y = A[4*w + k];
     const real alpha_z = A[5*w + k];
-    const real f_p_x = a_t_x*m->m_star + v.h_star_y*(W_p_xy - alpha_z) + v.h_star_z*(W_p_xz +
-        alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+    const real f_p_x = a_t_x*m->m_star + v->h_star_y*(W_p_xy - alpha_z) + v->h_star_z*(alpha_y
+        + W_p_xz) - v->h_star_x*(f_p_t_2 + f_p_t_3);
     const real alpha_x = A[3*w + k];
-    const real f_p_y = a_t_y*m->m_star + v.h_star_x*(W_p_xy + alpha_z) + v.h_star_z*(W_p_yz -
-        alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
-    const real f_p_z = a_t_z*m->m_star + v.h_star_x*(W_p_xz - alpha_y) + v.h_star_y*(W_p_yz +
-        alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
+    const real f_p_y = a_t_y*m->m_star + v->h_star_x*(alpha_z + W_p_xy) + v->h_star_z*(W_p_yz
+        - alpha_x) - v->h_star_y*(f_p_t + f_p_t_3);
+    const real f_p_z = a_t_z*m->m_star + v->h_star_x*(W_p_xz - alpha_y) + v->h_star_y*(alpha_x
+        + W_p_yz) - v->h_star_z*(f_p_t + f_p_t_2);
     /* (mu_p) inertia moment of the platform less that of its weight */
-    const real mu_p_t = m->J_star_in_platform_xx*v.omega_in_platform_x +
-        m->J_star_in_platform_xy*v.omega_in_platform_y +
-        m->J_star_in_platform_xz*v.omega_in_platform_z;
-    const real mu_p_t_2 = m->J_star_in_platform_xy*v.omega_in_platform_x +
-        m->J_star_in_platform_yy*v.omega_in_platform_y +
-        m->J_star_in_platform_yz*v.omega_in_platform_z;
-    const real mu_p_t_3 = m->J_star_in_platform_xz*v.omega_in_platform_x +
-        m->J_star_in_platform_yz*v.omega_in_platform_y +
-        m->J_star_in_platform_zz*v.omega_in_platform_z;
-    const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
-    const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
-    const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+    const real mu_p_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
+        m->J_star_in_platform_xy*v->omega_in_platform_y +
+        m->J_star_in_platform_xz*v->omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
+        m->J_star_in_platform_yy*v->omega_in_platform_y +
+        m->J_star_in_platform_yz*v->omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
+        m->J_star_in_platform_yz*v->omega_in_platform_y +
+        m->J_star_in_platform_zz*v->omega_in_platform_z;
+    const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
+    const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
+    const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
     const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
         m->J_star_in_platform_xy*alpha_in_platform_y +
         m->J_star_in_platform_xz*alpha_in_platform_z +
-        a_t_in_platform_z*m->h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
-        a_t_in_platform_y*m->h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+        a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
+        + mu_p_t_3*v->omega_in_platform_y - mu_p_t_2*v->omega_in_platform_z;
     const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
         m->J_star_in_platform_yz*alpha_in_platform_z +
-        a_t_in_platform_x*m->h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
-        a_t_in_platform_z*m->h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
+        a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
+        + mu_p_t*v->omega_in_platform_z - mu_p_t_3*v->omega_in_platform_x;
     const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
         m->J_star_in_platform_zz*alpha_in_platform_z +
-        a_t_in_platform_y*m->h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
-        a_t_in_platform_x*m->h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
-    const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
-        v.R_xz*mu_p_in_platform_z;
-    const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
-        v.R_yz*mu_p_in_platform_z;
-    const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
-        v.R_zz*mu_p_in_platform_z;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+        a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
+        + mu_p_t_2*v->omega_in_platform_x - mu_p_t*v->omega_in_platform_y;
+    const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
+        v->R_xz*mu_p_in_platform_z;
+    const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
+        v->R_yz*mu_p_in_platform_z;
+    const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
+        v->R_zz*mu_p_in_platform_z;
     s[9*w + k] = f_p_x;
     s[10*w + k] = f_p_y;
     s[11*w + k] = f_p_z;
     s[12*w + k] = mu_p_x;
     s[13*w + k] = mu_p_y;
     s[14*w + k] = mu_p_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void required_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3720,32 +3752,32 @@ INLINE void required_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, s
     /* (ucu-phi_4) inertia force of link 4 from its turning about its reference point */
     const real ucu_phi_4_t = v.ucu_omega_2_in_axes4_x*v.ucu_omega_2_in_axes4_x;
     const real ucu_phi_4_t_2 = v.ucu_omega_2_in_axes4_y*v.ucu_omega_2_in_axes4_y;
-    const real ucu_phi_4_in_axes4_z = v.ucu_B_4_in_axes4_zx*m->ucu_h_4_in_spec4_y[i] +
-        v.ucu_B_4_in_axes4_zy*m->ucu_h_4_in_spec4_z[i] - m->ucu_h_4_in_spec4_x[i]*(ucu_phi_4_t
-        + ucu_phi_4_t_2);
+    const real ucu_phi_4_in_axes4_z = v.ucu_B_4_in_axes4_zx*m->ucu_h_4_in_spec4_y[i] -
+        m->ucu_h_4_in_spec4_x[i]*(ucu_phi_4_t + ucu_phi_4_t_2) +
+        v.ucu_B_4_in_axes4_zy*m->ucu_h_4_in_spec4_z[i];
     /* (ucu-mu_4) inertia moment of the links that turn with link 4, about their reference points */
     const real ucu_mu_4_t = v.ucu_omega_4_in_axes4_z*v.ucu_omega_4_in_axes4_z;
-    const real ucu_mu_4_in_axes4_x = v.ucu_B_4_in_axes4_yx*m->ucu_J_4_in_spec4_xy[i] +
-        v.ucu_B_4_in_axes4_zy*m->ucu_Sigma_4_in_axes4_yy[i] +
+    const real ucu_mu_4_in_axes4_x = v.ucu_acc_4_in_axes4_z*m->ucu_h_4_in_spec4_z[i] -
+        v.ucu_acc_4_in_axes4_y*m->ucu_h_4_in_spec4_x[i] +
         m->ucu_J_4_in_spec4_xz[i]*(ucu_phi_4_t_2 - ucu_mu_4_t) +
-        v.ucu_acc_4_in_axes4_z*m->ucu_h_4_in_spec4_z[i] -
+        v.ucu_B_4_in_axes4_yx*m->ucu_J_4_in_spec4_xy[i] +
+        v.ucu_B_4_in_axes4_zy*m->ucu_Sigma_4_in_axes4_yy[i] -
         v.ucu_B_4_in_axes4_yz*m->ucu_Sigma_4_in_axes4_zz[i] -
-        v.ucu_B_4_in_axes4_zx*m->ucu_J_4_in_spec4_yz[i] -
-        v.ucu_acc_4_in_axes4_y*m->ucu_h_4_in_spec4_x[i];
-    const real ucu_mu_4_in_axes4_y = v.ucu_B_4_in_axes4_xz*m->ucu_Sigma_4_in_axes4_zz[i] +
-        v.ucu_B_4_in_axes4_zy*m->ucu_J_4_in_spec4_yz[i] +
-        v.ucu_acc_4_in_axes4_x*m->ucu_h_4_in_spec4_x[i] -
+        v.ucu_B_4_in_axes4_zx*m->ucu_J_4_in_spec4_yz[i];
+    const real ucu_mu_4_in_axes4_y = v.ucu_acc_4_in_axes4_x*m->ucu_h_4_in_spec4_x[i] -
+        v.ucu_acc_4_in_axes4_z*m->ucu_h_4_in_spec4_y[i] -
+        m->ucu_J_4_in_spec4_xy[i]*(ucu_phi_4_t - ucu_mu_4_t) +
+        v.ucu_B_4_in_axes4_xz*m->ucu_Sigma_4_in_axes4_zz[i] +
+        v.ucu_B_4_in_axes4_zy*m->ucu_J_4_in_spec4_yz[i] -
         v.ucu_B_4_in_axes4_xy*m->ucu_J_4_in_spec4_xz[i] -
-        v.ucu_B_4_in_axes4_zx*m->ucu_Sigma_4_in_axes4_xx[i] -
-        m->ucu_J_4_in_spec4_xy[i]*(ucu_phi_4_t - ucu_mu_4_t) -
-        v.ucu_acc_4_in_axes4_z*m->ucu_h_4_in_spec4_y[i];
-    const real ucu_mu_4_in_axes4_z = v.ucu_B_4_in_axes4_xz*m->ucu_J_4_in_spec4_xz[i] +
-        v.ucu_B_4_in_axes4_yx*m->ucu_Sigma_4_in_axes4_xx[i] +
+        v.ucu_B_4_in_axes4_zx*m->ucu_Sigma_4_in_axes4_xx[i];
+    const real ucu_mu_4_in_axes4_z = v.ucu_acc_4_in_axes4_y*m->ucu_h_4_in_spec4_y[i] -
+        v.ucu_acc_4_in_axes4_x*m->ucu_h_4_in_spec4_z[i] +
         m->ucu_J_4_in_spec4_yz[i]*(ucu_phi_4_t - ucu_phi_4_t_2) +
-        v.ucu_acc_4_in_axes4_y*m->ucu_h_4_in_spec4_y[i] -
+        v.ucu_B_4_in_axes4_xz*m->ucu_J_4_in_spec4_xz[i] +
+        v.ucu_B_4_in_axes4_yx*m->ucu_Sigma_4_in_axes4_xx[i] -
         v.ucu_B_4_in_axes4_xy*m->ucu_Sigma_4_in_axes4_yy[i] -
-        v.ucu_B_4_in_axes4_yz*m->ucu_J_4_in_spec4_xy[i] -
-        v.ucu_acc_4_in_axes4_x*m->ucu_h_4_in_spec4_z[i];
+        v.ucu_B_4_in_axes4_yz*m->ucu_J_4_in_spec4_xy[i];
     /* (ucu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
        left out */
     const real ucu_N_2_in_axes2_x = v.ucu_mu_2_in_axes2_x + ucu_mu_4_in_axes4_z;
@@ -3758,33 +3790,34 @@ INLINE void required_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, s
     const real ucu_G_m1_t = v.inv_ucu_end_p1_in_axes4_x*ucu_mu_4_in_axes4_z;
     /* (ucu-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real ucu_c_t = v.inv_ucu_root_2*(ucu_N_2_in_axes2_z +
-        ucu_G_m1_t*v.ucu_n_m1_in_axes2_z);
-    const real ucu_c_t_2 = v.inv_ucu_v_1_in_axes2_z*(ucu_G_m1_t*v.ucu_qd_4_t_4 +
-        ucu_N_2_in_axes2_y*v.ucu_c_2 - ucu_N_2_in_axes2_x*v.ucu_e_1_in_axes4_z -
+    const real ucu_c_t = v.inv_ucu_root_2*(ucu_G_m1_t*v.ucu_n_m1_in_axes2_z +
+        ucu_N_2_in_axes2_z);
+    const real ucu_c_t_2 = v.inv_ucu_v_1_in_axes2_z*(ucu_G_m1_t*v.ucu_qd_4_t_4 -
+        ucu_N_2_in_axes2_x*v.ucu_e_1_in_axes4_z + ucu_N_2_in_axes2_y*v.ucu_c_2 -
         ucu_c_t*v.ucu_v_1_t_2);
-    const real ucu_c_in_axes4_x = v.ucu_c_4*ucu_c_t_2 + m->ucu_h_4_in_spec4_y[i]*(ucu_mu_4_t +
-        ucu_phi_4_t_2) - v.ucu_B_4_in_axes4_xy*m->ucu_h_4_in_spec4_z[i] -
-        v.ucu_B_4_in_axes4_xz*m->ucu_h_4_in_spec4_x[i] - ucu_c_t*v.ucu_e_2_in_axes4_y;
-    const real ucu_c_in_axes4_y = v.ucu_c_4*ucu_c_t + ucu_c_t_2*v.ucu_e_2_in_axes4_y +
-        m->ucu_h_4_in_spec4_z[i]*(ucu_mu_4_t + ucu_phi_4_t) -
+    const real ucu_c_in_axes4_x = m->ucu_h_4_in_spec4_y[i]*(ucu_phi_4_t_2 + ucu_mu_4_t) -
+        v.ucu_B_4_in_axes4_xy*m->ucu_h_4_in_spec4_z[i] -
+        v.ucu_B_4_in_axes4_xz*m->ucu_h_4_in_spec4_x[i] - ucu_c_t*v.ucu_e_2_in_axes4_y +
+        v.ucu_c_4*ucu_c_t_2;
+    const real ucu_c_in_axes4_y = m->ucu_h_4_in_spec4_z[i]*(ucu_phi_4_t + ucu_mu_4_t) -
         v.ucu_B_4_in_axes4_yx*m->ucu_h_4_in_spec4_y[i] -
-        v.ucu_B_4_in_axes4_yz*m->ucu_h_4_in_spec4_x[i];
-    const real ucu_c_x = v.axis_x_ucu_axes4_x*ucu_c_in_axes4_x +
-        v.axis_y_ucu_axes4_x*ucu_c_in_axes4_y - ucu_phi_4_in_axes4_z*v.ucu_w_3_x;
-    const real ucu_c_y = v.axis_x_ucu_axes4_y*ucu_c_in_axes4_x +
-        v.axis_y_ucu_axes4_y*ucu_c_in_axes4_y - ucu_phi_4_in_axes4_z*v.ucu_w_3_y;
-    const real ucu_c_z = v.axis_x_ucu_axes4_z*ucu_c_in_axes4_x +
-        v.axis_y_ucu_axes4_z*ucu_c_in_axes4_y - ucu_phi_4_in_axes4_z*v.ucu_w_3_z;
+        v.ucu_B_4_in_axes4_yz*m->ucu_h_4_in_spec4_x[i] + v.ucu_c_4*ucu_c_t +
+        ucu_c_t_2*v.ucu_e_2_in_axes4_y;
+    const real ucu_c_x = v.axis_x_ucu_axes4_x*ucu_c_in_axes4_x -
+        ucu_phi_4_in_axes4_z*v.ucu_w_3_x + v.axis_y_ucu_axes4_x*ucu_c_in_axes4_y;
+    const real ucu_c_y = v.axis_x_ucu_axes4_y*ucu_c_in_axes4_x -
+        ucu_phi_4_in_axes4_z*v.ucu_w_3_y + v.axis_y_ucu_axes4_y*ucu_c_in_axes4_y;
+    const real ucu_c_z = v.axis_x_ucu_axes4_z*ucu_c_in_axes4_x -
+        ucu_phi_4_in_axes4_z*v.ucu_w_3_z + v.axis_y_ucu_axes4_z*ucu_c_in_axes4_y;
     /* (ucu-c_m) moment of the leg on the platform without actuation */
     const real ucu_c_m_in_axes4_x = ucu_G_m1_t*v.ucu_n_m1_in_axes4_x;
     /* (R_a) moment that actuators and external wrench must give */
-    const real ucu_R_a_t = ucu_c_y*v.ucu_q_z + ucu_mu_4_in_axes4_z*v.ucu_w_3_x -
-        v.axis_x_ucu_axes4_x*ucu_c_m_in_axes4_x - ucu_c_z*v.ucu_q_y;
-    const real ucu_R_a_t_2 = ucu_c_z*v.ucu_q_x + ucu_mu_4_in_axes4_z*v.ucu_w_3_y -
-        v.axis_x_ucu_axes4_y*ucu_c_m_in_axes4_x - ucu_c_x*v.ucu_q_z;
-    const real ucu_R_a_t_3 = ucu_c_x*v.ucu_q_y + ucu_mu_4_in_axes4_z*v.ucu_w_3_z -
-        v.axis_x_ucu_axes4_z*ucu_c_m_in_axes4_x - ucu_c_y*v.ucu_q_x;
+    const real ucu_R_a_t = ucu_mu_4_in_axes4_z*v.ucu_w_3_x -
+        v.axis_x_ucu_axes4_x*ucu_c_m_in_axes4_x + ucu_c_y*v.ucu_q_z - ucu_c_z*v.ucu_q_y;
+    const real ucu_R_a_t_2 = ucu_mu_4_in_axes4_z*v.ucu_w_3_y -
+        v.axis_x_ucu_axes4_y*ucu_c_m_in_axes4_x + ucu_c_z*v.ucu_q_x - ucu_c_x*v.ucu_q_z;
+    const real ucu_R_a_t_3 = ucu_mu_4_in_axes4_z*v.ucu_w_3_z -
+        v.axis_x_ucu_axes4_z*ucu_c_m_in_axes4_x + ucu_c_x*v.ucu_q_y - ucu_c_y*v.ucu_q_x;
     /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, ucu_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, ucu_c_y);  /* R_t_y_of_legs */
@@ -3835,13 +3868,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[12*w + k];
-    const real R_a_x = R_a_x_of_legs + mu_p_x;
+    const real R_a_x = mu_p_x + R_a_x_of_legs;
     const real R_a_y_of_legs = sums[4*w + k];
     const real mu_p_y = s[13*w + k];
-    const real R_a_y = R_a_y_of_legs + mu_p_y;
+    const real R_a_y = mu_p_y + R_a_y_of_legs;
     const real R_a_z_of_legs = sums[5*w + k];
     const real mu_p_z = s[14*w + k];
-    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
     required[1*w + k] = R_t_y;
@@ -3852,12 +3885,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[5*w + k] = R_a_z;
 }
 
-APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_ucu[6*LEGS(LEGS_OF_ucu)] = {0}, o_ucu[7*LEGS(LEGS_OF_ucu)] = {0};
-    required_before(m, 1, 0, X, V, A, s, t);
+    values v;
+    required_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
         required_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), 0, s, X, V, A, terms_ucu, o_ucu);
     }
@@ -3867,6 +3901,7 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_ucu + n*LEGS(LEGS_OF_ucu), LEGS_OF_ucu);
     }
+    required_between(m, 1, 0, V, A, &v, s);
     required_after(1, 0, s, sums, required);
 }
 
@@ -3876,7 +3911,9 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real s[15*LANES], sums[6*LANES];
     real o_ucu[7*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        required_before(m, LANES, k, X, V, A, s, t);
+        values v;
+        required_before(m, LANES, k, X, &v, s, t);
+        required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
@@ -3893,21 +3930,20 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s, verdict *t)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
+    *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void inverse_kinematics_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k,
@@ -3952,7 +3988,8 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 {
     real s[9] = {0};
     real o_ucu[6*LEGS(LEGS_OF_ucu)] = {0};
-    inverse_kinematics_before(m, 1, 0, X, s, t);
+    values v;
+    inverse_kinematics_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
         inverse_kinematics_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), s, X, o_ucu);
     }
@@ -3967,7 +4004,8 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real s[9*LANES];
     real o_ucu[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        inverse_kinematics_before(m, LANES, k, X, s, t);
+        values v;
+        inverse_kinematics_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3980,21 +4018,20 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_rates_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -4025,9 +4062,9 @@ INLINE void joint_rates_legs_ucu(const prepared *m, size_t w, size_t i, size_t j
     const real ucu_qd_1 = (ucu_S_dot_t_2*v.ucu_c_1 -
         ucu_S_dot_t*v.ucu_s_1)/v.ucu_v_1_in_axes2_z;
     /* (ucu-qd_2) rate of joint 2 */
-    const real ucu_qd_2 = v.inv_ucu_root_2*(ucu_S_dot_t_4*v.ucu_e_1_in_axes4_z +
-        ucu_qd_1*(v.ucu_c_4*v.ucu_v_1_in_axes4_y - v.ucu_e_2_in_axes4_y*v.ucu_v_1_in_axes4_x)
-        - ucu_S_dot_t_3*v.ucu_c_2);
+    const real ucu_qd_2 = v.inv_ucu_root_2*(ucu_S_dot_t_4*v.ucu_e_1_in_axes4_z -
+        ucu_S_dot_t_3*v.ucu_c_2 + ucu_qd_1*(v.ucu_c_4*v.ucu_v_1_in_axes4_y -
+        v.ucu_e_2_in_axes4_y*v.ucu_v_1_in_axes4_x));
     /* (ucu-qd_4) rate of joint 4 */
     const real ucu_qd_4_t_5 = v.ucu_n_m1_in_axes4_x*(omega_x*(v.axis_y_ucu_axes4_y*v.ucu_w_3_z
         - v.axis_y_ucu_axes4_z*v.ucu_w_3_y) + omega_y*(v.axis_y_ucu_axes4_z*v.ucu_w_3_x -
@@ -4067,7 +4104,8 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 {
     real s[9] = {0};
     real o_ucu[6*LEGS(LEGS_OF_ucu)] = {0};
-    joint_rates_before(m, 1, 0, X, s, t);
+    values v;
+    joint_rates_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
         joint_rates_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), s, X, V, o_ucu);
     }
@@ -4082,7 +4120,8 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real s[9*LANES];
     real o_ucu[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_rates_before(m, LANES, k, X, s, t);
+        values v;
+        joint_rates_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -4095,21 +4134,20 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
+    values *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_accelerations_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t
@@ -4143,11 +4181,11 @@ INLINE void joint_accelerations_legs_ucu(const prepared *m, size_t w, size_t i, 
     const real ucu_qdd_1 = v.inv_ucu_v_1_in_axes2_z*(v.ucu_c_4*ucu_rel_in_axes4_x +
         v.ucu_e_2_in_axes4_y*ucu_rel_in_axes4_y);
     /* (ucu-qdd_2) acceleration of joint 2 */
-    const real ucu_qdd_2 = v.inv_ucu_root_2*(v.ucu_e_2_in_axes4_y*ucu_rel_in_axes4_x +
-        ucu_qdd_1*v.ucu_v_1_t_2 - v.ucu_c_4*ucu_rel_in_axes4_y);
+    const real ucu_qdd_2 = v.inv_ucu_root_2*(v.ucu_e_2_in_axes4_y*ucu_rel_in_axes4_x -
+        v.ucu_c_4*ucu_rel_in_axes4_y + ucu_qdd_1*v.ucu_v_1_t_2);
     /* (ucu-qdd_4) acceleration of joint 4 */
-    const real ucu_qdd_4_t = v.inv_ucu_end_p1_in_axes4_x*(ucu_etad_1 +
-        v.ucu_qd_4_t_4*ucu_qdd_1 - v.ucu_n_m1_in_axes2_z*ucu_qdd_2);
+    const real ucu_qdd_4_t = v.inv_ucu_end_p1_in_axes4_x*(v.ucu_qd_4_t_4*ucu_qdd_1 +
+        ucu_etad_1 - v.ucu_n_m1_in_axes2_z*ucu_qdd_2);
     /* (ucu-qdd_1) */
     o[0*count + k] = ucu_qdd_1;
     /* (ucu-qdd_2) */
@@ -4180,7 +4218,8 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 {
     real s[9] = {0};
     real o_ucu[6*LEGS(LEGS_OF_ucu)] = {0};
-    joint_accelerations_before(m, 1, 0, X, s, t);
+    values v;
+    joint_accelerations_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
         joint_accelerations_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), s, X, V, A, o_ucu);
     }
@@ -4195,7 +4234,8 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real s[9*LANES];
     real o_ucu[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_accelerations_before(m, LANES, k, X, s, t);
+        values v;
+        joint_accelerations_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -4208,20 +4248,20 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void legs_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -4237,27 +4277,27 @@ INLINE void legs_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_
     const real ucu_mu_4_t = v.ucu_omega_2_in_axes4_x*v.ucu_omega_2_in_axes4_x;
     const real ucu_mu_4_t_2 = v.ucu_omega_2_in_axes4_y*v.ucu_omega_2_in_axes4_y;
     const real ucu_mu_4_t_3 = v.ucu_omega_4_in_axes4_z*v.ucu_omega_4_in_axes4_z;
-    const real ucu_mu_4_in_axes4_x = v.ucu_B_4_in_axes4_yx*m->ucu_J_4_in_spec4_xy[i] +
-        v.ucu_B_4_in_axes4_zy*m->ucu_Sigma_4_in_axes4_yy[i] +
+    const real ucu_mu_4_in_axes4_x = v.ucu_acc_4_in_axes4_z*m->ucu_h_4_in_spec4_z[i] -
+        v.ucu_acc_4_in_axes4_y*m->ucu_h_4_in_spec4_x[i] +
         m->ucu_J_4_in_spec4_xz[i]*(ucu_mu_4_t_2 - ucu_mu_4_t_3) +
-        v.ucu_acc_4_in_axes4_z*m->ucu_h_4_in_spec4_z[i] -
+        v.ucu_B_4_in_axes4_yx*m->ucu_J_4_in_spec4_xy[i] +
+        v.ucu_B_4_in_axes4_zy*m->ucu_Sigma_4_in_axes4_yy[i] -
         v.ucu_B_4_in_axes4_yz*m->ucu_Sigma_4_in_axes4_zz[i] -
-        v.ucu_B_4_in_axes4_zx*m->ucu_J_4_in_spec4_yz[i] -
-        v.ucu_acc_4_in_axes4_y*m->ucu_h_4_in_spec4_x[i];
-    const real ucu_mu_4_in_axes4_y = v.ucu_B_4_in_axes4_xz*m->ucu_Sigma_4_in_axes4_zz[i] +
-        v.ucu_B_4_in_axes4_zy*m->ucu_J_4_in_spec4_yz[i] +
-        v.ucu_acc_4_in_axes4_x*m->ucu_h_4_in_spec4_x[i] -
+        v.ucu_B_4_in_axes4_zx*m->ucu_J_4_in_spec4_yz[i];
+    const real ucu_mu_4_in_axes4_y = v.ucu_acc_4_in_axes4_x*m->ucu_h_4_in_spec4_x[i] -
+        v.ucu_acc_4_in_axes4_z*m->ucu_h_4_in_spec4_y[i] -
+        m->ucu_J_4_in_spec4_xy[i]*(ucu_mu_4_t - ucu_mu_4_t_3) +
+        v.ucu_B_4_in_axes4_xz*m->ucu_Sigma_4_in_axes4_zz[i] +
+        v.ucu_B_4_in_axes4_zy*m->ucu_J_4_in_spec4_yz[i] -
         v.ucu_B_4_in_axes4_xy*m->ucu_J_4_in_spec4_xz[i] -
-        v.ucu_B_4_in_axes4_zx*m->ucu_Sigma_4_in_axes4_xx[i] -
-        m->ucu_J_4_in_spec4_xy[i]*(ucu_mu_4_t - ucu_mu_4_t_3) -
-        v.ucu_acc_4_in_axes4_z*m->ucu_h_4_in_spec4_y[i];
-    const real ucu_mu_4_in_axes4_z = v.ucu_B_4_in_axes4_xz*m->ucu_J_4_in_spec4_xz[i] +
-        v.ucu_B_4_in_axes4_yx*m->ucu_Sigma_4_in_axes4_xx[i] +
+        v.ucu_B_4_in_axes4_zx*m->ucu_Sigma_4_in_axes4_xx[i];
+    const real ucu_mu_4_in_axes4_z = v.ucu_acc_4_in_axes4_y*m->ucu_h_4_in_spec4_y[i] -
+        v.ucu_acc_4_in_axes4_x*m->ucu_h_4_in_spec4_z[i] +
         m->ucu_J_4_in_spec4_yz[i]*(ucu_mu_4_t - ucu_mu_4_t_2) +
-        v.ucu_acc_4_in_axes4_y*m->ucu_h_4_in_spec4_y[i] -
+        v.ucu_B_4_in_axes4_xz*m->ucu_J_4_in_spec4_xz[i] +
+        v.ucu_B_4_in_axes4_yx*m->ucu_Sigma_4_in_axes4_xx[i] -
         v.ucu_B_4_in_axes4_xy*m->ucu_Sigma_4_in_axes4_yy[i] -
-        v.ucu_B_4_in_axes4_yz*m->ucu_J_4_in_spec4_xy[i] -
-        v.ucu_acc_4_in_axes4_x*m->ucu_h_4_in_spec4_z[i];
+        v.ucu_B_4_in_axes4_yz*m->ucu_J_4_in_spec4_xy[i];
     /* (ucu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
        left out */
     const real ucu_N_2_in_axes2_x = v.ucu_mu_2_in_axes2_x + ucu_mu_4_in_axes4_z;
@@ -4270,18 +4310,19 @@ INLINE void legs_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_
     const real ucu_G_m1_t = v.inv_ucu_end_p1_in_axes4_x*ucu_mu_4_in_axes4_z;
     /* (ucu-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real ucu_c_t = v.inv_ucu_root_2*(ucu_N_2_in_axes2_z +
-        ucu_G_m1_t*v.ucu_n_m1_in_axes2_z);
-    const real ucu_c_t_2 = v.inv_ucu_v_1_in_axes2_z*(ucu_G_m1_t*v.ucu_qd_4_t_4 +
-        ucu_N_2_in_axes2_y*v.ucu_c_2 - ucu_N_2_in_axes2_x*v.ucu_e_1_in_axes4_z -
+    const real ucu_c_t = v.inv_ucu_root_2*(ucu_G_m1_t*v.ucu_n_m1_in_axes2_z +
+        ucu_N_2_in_axes2_z);
+    const real ucu_c_t_2 = v.inv_ucu_v_1_in_axes2_z*(ucu_G_m1_t*v.ucu_qd_4_t_4 -
+        ucu_N_2_in_axes2_x*v.ucu_e_1_in_axes4_z + ucu_N_2_in_axes2_y*v.ucu_c_2 -
         ucu_c_t*v.ucu_v_1_t_2);
-    const real ucu_c_in_axes4_x = v.ucu_c_4*ucu_c_t_2 + m->ucu_h_4_in_spec4_y[i]*(ucu_mu_4_t_2
-        + ucu_mu_4_t_3) - v.ucu_B_4_in_axes4_xy*m->ucu_h_4_in_spec4_z[i] -
-        v.ucu_B_4_in_axes4_xz*m->ucu_h_4_in_spec4_x[i] - ucu_c_t*v.ucu_e_2_in_axes4_y;
-    const real ucu_c_in_axes4_y = v.ucu_c_4*ucu_c_t + ucu_c_t_2*v.ucu_e_2_in_axes4_y +
-        m->ucu_h_4_in_spec4_z[i]*(ucu_mu_4_t + ucu_mu_4_t_3) -
+    const real ucu_c_in_axes4_x = m->ucu_h_4_in_spec4_y[i]*(ucu_mu_4_t_2 + ucu_mu_4_t_3) -
+        v.ucu_B_4_in_axes4_xy*m->ucu_h_4_in_spec4_z[i] -
+        v.ucu_B_4_in_axes4_xz*m->ucu_h_4_in_spec4_x[i] - ucu_c_t*v.ucu_e_2_in_axes4_y +
+        v.ucu_c_4*ucu_c_t_2;
+    const real ucu_c_in_axes4_y = m->ucu_h_4_in_spec4_z[i]*(ucu_mu_4_t + ucu_mu_4_t_3) -
         v.ucu_B_4_in_axes4_yx*m->ucu_h_4_in_spec4_y[i] -
-        v.ucu_B_4_in_axes4_yz*m->ucu_h_4_in_spec4_x[i];
+        v.ucu_B_4_in_axes4_yz*m->ucu_h_4_in_spec4_x[i] + v.ucu_c_4*ucu_c_t +
+        ucu_c_t_2*v.ucu_e_2_in_axes4_y;
     /* (ucu-c_m) moment of the leg on the platform without actuation */
     const real ucu_c_m_in_axes4_x = ucu_G_m1_t*v.ucu_n_m1_in_axes4_x;
     const real ucu_c_m_x = v.axis_x_ucu_axes4_x*ucu_c_m_in_axes4_x -
@@ -4296,15 +4337,18 @@ INLINE void legs_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_
     const real ucu_c_true_in_axes4_y = ucu_c_in_axes4_y -
         v.ucu_acc_4_in_axes4_y*m->ucu_link4_mass[i];
     const real ucu_c_true_in_axes4_z = m->ucu_h_4_in_spec4_x[i]*(ucu_mu_4_t + ucu_mu_4_t_2) -
+        v.ucu_acc_4_in_axes4_z*m->ucu_link4_mass[i] -
         v.ucu_B_4_in_axes4_zx*m->ucu_h_4_in_spec4_y[i] -
-        v.ucu_B_4_in_axes4_zy*m->ucu_h_4_in_spec4_z[i] -
-        v.ucu_acc_4_in_axes4_z*m->ucu_link4_mass[i];
-    const real ucu_c_true_x = v.axis_x_ucu_axes4_x*ucu_c_true_in_axes4_x +
-        v.axis_y_ucu_axes4_x*ucu_c_true_in_axes4_y + ucu_c_true_in_axes4_z*v.ucu_w_3_x;
-    const real ucu_c_true_y = v.axis_x_ucu_axes4_y*ucu_c_true_in_axes4_x +
-        v.axis_y_ucu_axes4_y*ucu_c_true_in_axes4_y + ucu_c_true_in_axes4_z*v.ucu_w_3_y;
-    const real ucu_c_true_z = v.axis_x_ucu_axes4_z*ucu_c_true_in_axes4_x +
-        v.axis_y_ucu_axes4_z*ucu_c_true_in_axes4_y + ucu_c_true_in_axes4_z*v.ucu_w_3_z;
+        v.ucu_B_4_in_axes4_zy*m->ucu_h_4_in_spec4_z[i];
+    const real ucu_c_true_x = ucu_c_true_in_axes4_z*v.ucu_w_3_x +
+        v.axis_x_ucu_axes4_x*ucu_c_true_in_axes4_x +
+        v.axis_y_ucu_axes4_x*ucu_c_true_in_axes4_y;
+    const real ucu_c_true_y = ucu_c_true_in_axes4_z*v.ucu_w_3_y +
+        v.axis_x_ucu_axes4_y*ucu_c_true_in_axes4_x +
+        v.axis_y_ucu_axes4_y*ucu_c_true_in_axes4_y;
+    const real ucu_c_true_z = ucu_c_true_in_axes4_z*v.ucu_w_3_z +
+        v.axis_x_ucu_axes4_z*ucu_c_true_in_axes4_x +
+        v.axis_y_ucu_axes4_z*ucu_c_true_in_axes4_y;
     /* (ucu-c_true) */
     o[0*count + k] = ucu_c_true_x;
     o[1*count + k] = ucu_c_true_y;
@@ -4345,7 +4389,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     real s[9] = {0};
     real o_ucu[10*LEGS(LEGS_OF_ucu)] = {0};
     clear(actuator, 36);
-    legs_before(m, 1, 0, X, s, t);
+    values v;
+    legs_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
         legs_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), s, X, V, A, o_ucu);
     }
@@ -4355,32 +4400,36 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s)
+{
     /* (potential) potential energy */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
-    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x +
-        v.R_xy*m->h_star_in_platform_y + v.R_xz*m->h_star_in_platform_z + m->m_star*t_x) +
-        m->gravity_y*(v.R_yx*m->h_star_in_platform_x + v.R_yy*m->h_star_in_platform_y +
-        v.R_yz*m->h_star_in_platform_z + m->m_star*t_y) +
-        m->gravity_z*(v.R_zx*m->h_star_in_platform_x + v.R_zy*m->h_star_in_platform_y +
-        v.R_zz*m->h_star_in_platform_z + m->m_star*t_z);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+    const real potential_t = m->gravity_x*(m->m_star*t_x + v->R_xy*m->h_star_in_platform_y +
+        v->R_xz*m->h_star_in_platform_z + v->R_xx*m->h_star_in_platform_x) +
+        m->gravity_y*(m->m_star*t_y + v->R_yx*m->h_star_in_platform_x +
+        v->R_yz*m->h_star_in_platform_z + v->R_yy*m->h_star_in_platform_y) +
+        m->gravity_z*(m->m_star*t_z + v->R_zx*m->h_star_in_platform_x +
+        v->R_zy*m->h_star_in_platform_y + v->R_zz*m->h_star_in_platform_z);
     s[9*w + k] = potential_t;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void potential_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -4397,17 +4446,17 @@ INLINE void potential_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, 
     const real ucu_potential_t_5 = v.ucu_c_1*m->ucu_potential_t[i] +
         m->ucu_potential_t_2[i]*v.ucu_s_1;
     const real ucu_potential_t_6 = (v.ucu_e_1_in_axes4_z*ucu_potential_t_4 -
-        v.ucu_c_2*m->ucu_mu_2_t_3[i])*(m->ucu_h_2_in_spec2_z[i] +
-        ucu_c_4*m->ucu_h_4_in_spec4_z[i] - ucu_e_2_in_axes4_y*m->ucu_h_4_in_spec4_y[i] -
+        v.ucu_c_2*m->ucu_mu_2_t_3[i])*(m->ucu_h_2_in_spec2_z[i] -
         m->ucu_link2_mass[i]*(v.ucu_e_1_in_axes4_z*ucu_potential_t_5 -
-        v.ucu_c_2*m->ucu_potential_t_3[i])) - (v.ucu_c_1*m->ucu_mu_2_t_2[i] -
-        m->ucu_mu_2_t[i]*v.ucu_s_1)*(m->ucu_h_2_in_spec2_y[i] +
-        ucu_c_4*m->ucu_h_4_in_spec4_y[i] + ucu_e_2_in_axes4_y*m->ucu_h_4_in_spec4_z[i] +
-        m->ucu_link2_mass[i]*(v.ucu_c_1*m->ucu_potential_t_2[i] -
-        m->ucu_potential_t[i]*v.ucu_s_1)) - (v.ucu_c_2*ucu_potential_t_4 +
+        v.ucu_c_2*m->ucu_potential_t_3[i]) + ucu_c_4*m->ucu_h_4_in_spec4_z[i] -
+        ucu_e_2_in_axes4_y*m->ucu_h_4_in_spec4_y[i]) - (v.ucu_c_2*ucu_potential_t_4 +
         v.ucu_e_1_in_axes4_z*m->ucu_mu_2_t_3[i])*(m->ucu_h_2_in_spec2_x[i] +
         m->ucu_h_4_in_spec4_x[i] + m->ucu_link2_mass[i]*(v.ucu_c_2*ucu_potential_t_5 +
-        v.ucu_e_1_in_axes4_z*m->ucu_potential_t_3[i]));
+        v.ucu_e_1_in_axes4_z*m->ucu_potential_t_3[i])) - (v.ucu_c_1*m->ucu_mu_2_t_2[i] -
+        m->ucu_mu_2_t[i]*v.ucu_s_1)*(m->ucu_h_2_in_spec2_y[i] +
+        m->ucu_link2_mass[i]*(v.ucu_c_1*m->ucu_potential_t_2[i] -
+        m->ucu_potential_t[i]*v.ucu_s_1) + ucu_c_4*m->ucu_h_4_in_spec4_y[i] +
+        ucu_e_2_in_axes4_y*m->ucu_h_4_in_spec4_z[i]);
     /* (potential) */
     gather(&terms[0*count + k], add, ucu_potential_t_6);  /* potential_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.ucu_root_1_t) > LEAST_1) +
@@ -4434,7 +4483,8 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 {
     real s[10] = {0}, sums[1] = {0};
     real terms_ucu[LEGS(LEGS_OF_ucu)] = {0}, o_ucu[LEGS(LEGS_OF_ucu)] = {0};
-    potential_before(m, 1, 0, X, s, t);
+    values v;
+    potential_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
         potential_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), 0, s, X, terms_ucu, o_ucu);
     }
@@ -4444,28 +4494,28 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_ucu + n*LEGS(LEGS_OF_ucu), LEGS_OF_ucu);
     }
+    potential_between(m, 1, 0, X, &v, s);
     potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
-    *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, real *lengths, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void condition_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -4559,7 +4609,8 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     real s[9] = {0}, sums[1] = {0};
     real terms_ucu[LEGS(LEGS_OF_ucu)] = {0}, o_ucu[9*LEGS(LEGS_OF_ucu)] = {0};
     clear(reach, NL);
-    condition_before(m, 1, 0, X, s, lengths, t);
+    values v;
+    condition_before(m, 1, 0, X, &v, s, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
         condition_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), 0, s, X, terms_ucu, o_ucu);
     }
@@ -4583,11 +4634,7 @@ int hexapod_6ucu_M(const prepared *m, const real *X, real *M_out)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-    }
-    return code;
+    return settled(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -4614,11 +4661,7 @@ int hexapod_6ucu_Z(const prepared *m, const real *X, const real *V, real *Z_out)
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, Z_out);
-    }
-    return code;
+    return settled(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -4642,11 +4685,7 @@ int hexapod_6ucu_H(const prepared *m, const real *X, real *H_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -4669,11 +4708,7 @@ int hexapod_6ucu_inverse_kinematics(const prepared *m, const real *X, real *q_ou
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, q_out);
-    }
-    return code;
+    return settled(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -4700,11 +4735,7 @@ int hexapod_6ucu_joint_rates(const prepared *m, const real *X, const real *V, re
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qd_out);
-    }
-    return code;
+    return settled(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -4735,11 +4766,7 @@ int hexapod_6ucu_joint_accelerations(const prepared *m, const real *X, const rea
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qdd_out);
-    }
-    return code;
+    return settled(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4772,13 +4799,9 @@ int hexapod_6ucu_dynamics(const prepared *m, const real *X, const real *V, real 
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-        refuse(NV, Z_out);
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    settled(&why, NV*NV, M_out);
+    settled(&why, NV, Z_out);
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -4972,7 +4995,8 @@ static const real sizes_tau[] = {0.25, 1.0, 0.25, 0.25, 0.25, 0.25};
 int hexapod_6ucu_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out)
 {
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    static const real no_wrench[NW] = {0};
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
@@ -4982,7 +5006,7 @@ int hexapod_6ucu_inverse_dynamics(const prepared *m, const real *X, const real *
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -4996,11 +5020,7 @@ int hexapod_6ucu_inverse_dynamics(const prepared *m, const real *X, const real *
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, tau_out);
-    }
-    return code;
+    return settled(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -5029,8 +5049,9 @@ static const real sizes_A[] = {16.0, 16.0, 16.0, 1.0, 1.0, 1.0};
 int hexapod_6ucu_forward_dynamics(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out)
 {
-    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] =
-        {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    static const real no_wrench[NW] = {0};
+    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
+        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
@@ -5039,7 +5060,7 @@ int hexapod_6ucu_forward_dynamics(const prepared *m, const real *X, const real *
         check(NV, 1, V, why.invalid);
         check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     for (size_t i = 0; i < NV; ++i) {
@@ -5057,11 +5078,7 @@ int hexapod_6ucu_forward_dynamics(const prepared *m, const real *X, const real *
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, A_out);
-    }
-    return code;
+    return settled(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -5102,18 +5119,15 @@ int hexapod_6ucu_complete_acceleration(const prepared *m, const real *X, const r
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, completed_out);
-    }
-    return code;
+    return settled(&why, NV, completed_out);
 }
 
 int hexapod_6ucu_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out)
 {
+    static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2, 3, 4, 5};
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
         unsure_solve_1[1] = {0}, leg_force[6*NL] = {0}, actuator[36] = {0}, forces[NL*NL] = {0},
         work[NV*PADDED(NV)];
     verdict why;
@@ -5124,7 +5138,7 @@ int hexapod_6ucu_leg_reactions(const prepared *m, const real *X, const real *V, 
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -5142,11 +5156,7 @@ int hexapod_6ucu_leg_reactions(const prepared *m, const real *X, const real *V, 
     add_forces(NL, 6, 1, places_forces, solve_1, actuator, forces);
     check(NL*NL, 1, forces, why.overflow);
     copy(NL*NL, forces, forces_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NL*NL, forces_out);
-    }
-    return code;
+    return settled(&why, NL*NL, forces_out);
 }
 
 int hexapod_6ucu_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
@@ -5168,25 +5178,22 @@ int hexapod_6ucu_energy(const prepared *m, const real *X, const real *V, real *k
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, kinetic_out);
-        refuse(1, potential_out);
-    }
-    return code;
+    settled(&why, 1, kinetic_out);
+    return settled(&why, 1, potential_out);
 }
 
 int hexapod_6ucu_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
     const real *length = NULL;
+    static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real length_in[1], H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
+        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, length, 0, length_in, why.invalid);
+    length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
@@ -5204,12 +5211,8 @@ int hexapod_6ucu_condition(const prepared *m, const real *X, real *sigma_out, re
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, sigma_out);
-        refuse(NL, legs_out);
-    }
-    return code;
+    settled(&why, NV, sigma_out);
+    return settled(&why, NL, legs_out);
 }
 
 int hexapod_6ucu_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -5243,12 +5246,8 @@ int hexapod_6ucu_manipulability(const prepared *m, const real *X, real *measure_
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, measure_out);
-        refuse(1, isotropy_out);
-    }
-    return code;
+    settled(&why, 1, measure_out);
+    return settled(&why, 1, isotropy_out);
 }
 
 int hexapod_6ucu_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
@@ -5282,12 +5281,8 @@ int hexapod_6ucu_singularity_distance(const prepared *m, const real *X, real *ac
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, actuators_out);
-        refuse(1, legs_out);
-    }
-    return code;
+    settled(&why, 1, actuators_out);
+    return settled(&why, 1, legs_out);
 }
 
 static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
@@ -5307,11 +5302,7 @@ static int mismatch_one(const prepared *m, const real *X, const real *q_actuated
     }
     check(NU, 1, gap, why.overflow);
     copy(NU, gap, gap_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, gap_out);
-    }
-    return code;
+    return settled(&why, NU, gap_out);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
@@ -5323,11 +5314,7 @@ static int slope_one(const prepared *m, const real *X, real *slope_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, slope_out);
-    }
-    return code;
+    return settled(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -5389,11 +5376,7 @@ int hexapod_6ucu_forward_kinematics(const prepared *m, const real *q_actuated, c
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int hexapod_6ucu_dissipation(const prepared *m, const real *X, const real *V, real
@@ -5411,11 +5394,7 @@ int hexapod_6ucu_dissipation(const prepared *m, const real *X, const real *V, re
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, dissipation_out);
-    }
-    return code;
+    return settled(&why, 1, dissipation_out);
 }
 
 int hexapod_6ucu_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
@@ -5432,11 +5411,7 @@ int hexapod_6ucu_momentum(const prepared *m, const real *X, const real *V, real 
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, momentum_out);
-    }
-    return code;
+    return settled(&why, NV, momentum_out);
 }
 
 int hexapod_6ucu_joint_margins(const prepared *m, const real *X, real *margins_out)
@@ -5453,11 +5428,7 @@ int hexapod_6ucu_joint_margins(const prepared *m, const real *X, real *margins_o
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, margins_out);
-    }
-    return code;
+    return settled(&why, NJ, margins_out);
 }
 
 int hexapod_6ucu_within_limits(const prepared *m, const real *X, real *within_out)
@@ -5473,11 +5444,7 @@ int hexapod_6ucu_within_limits(const prepared *m, const real *X, real *within_ou
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, within_out);
-    }
-    return code;
+    return settled(&why, 1, within_out);
 }
 
 int hexapod_6ucu_actuator_positions(const prepared *m, const real *X, real *q_out)
@@ -5490,11 +5457,7 @@ int hexapod_6ucu_actuator_positions(const prepared *m, const real *X, real *q_ou
     take(NU, 1, hexapod_6ucu_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, q_out);
-    }
-    return code;
+    return settled(&why, NU, q_out);
 }
 
 int hexapod_6ucu_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
@@ -5511,11 +5474,7 @@ int hexapod_6ucu_actuator_rates(const prepared *m, const real *X, const real *V,
     take(NU, 1, hexapod_6ucu_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qd_out);
-    }
-    return code;
+    return settled(&why, NU, qd_out);
 }
 
 int hexapod_6ucu_actuator_accelerations(const prepared *m, const real *X, const real *V, const
@@ -5534,11 +5493,7 @@ int hexapod_6ucu_actuator_accelerations(const prepared *m, const real *X, const 
     take(NU, 1, hexapod_6ucu_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qdd_out);
-    }
-    return code;
+    return settled(&why, NU, qdd_out);
 }
 
 int hexapod_6ucu_power(const prepared *m, const real *X, const real *V, const real *tau, real
@@ -5558,11 +5513,7 @@ int hexapod_6ucu_power(const prepared *m, const real *X, const real *V, const re
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, power_out);
-    }
-    return code;
+    return settled(&why, 1, power_out);
 }
 
 int hexapod_6ucu_rotation(const real *X, real *R_out)
@@ -5575,11 +5526,7 @@ int hexapod_6ucu_rotation(const real *X, real *R_out)
     rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     copy(9, R, R_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(9, R_out);
-    }
-    return code;
+    return settled(&why, 9, R_out);
 }
 
 int hexapod_6ucu_pose(const real *t, const real *R, real *X_out)
@@ -5597,11 +5544,7 @@ int hexapod_6ucu_pose(const real *t, const real *R, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int hexapod_6ucu_X_dot(const real *X, const real *V, real *X_dot_out)
@@ -5621,11 +5564,7 @@ int hexapod_6ucu_X_dot(const real *X, const real *V, real *X_dot_out)
     beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_dot_out);
-    }
-    return code;
+    return settled(&why, NQ, X_dot_out);
 }
 
 int hexapod_6ucu_pose_from_rpy(const real *t, const real *rpy, real *X_out)
@@ -5643,11 +5582,7 @@ int hexapod_6ucu_pose_from_rpy(const real *t, const real *rpy, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int hexapod_6ucu_retract(const real *X, const real *step, real *X_moved_out)
@@ -5671,11 +5606,7 @@ int hexapod_6ucu_retract(const real *X, const real *step, real *X_moved_out)
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_moved_out);
-    }
-    return code;
+    return settled(&why, NQ, X_moved_out);
 }
 
 int hexapod_6ucu_difference(const real *X0, const real *X1, real *step_out)
@@ -5699,11 +5630,7 @@ int hexapod_6ucu_difference(const real *X0, const real *X1, real *step_out)
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, step_out);
-    }
-    return code;
+    return settled(&why, NV, step_out);
 }
 
 int hexapod_6ucu_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
@@ -5741,11 +5668,7 @@ int hexapod_6ucu_interpolate(const real *X0, const real *X1, const real *s, real
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 /* ---- one state, and batches ---- */

@@ -231,15 +231,12 @@ INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *t
 }
 
 /* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
-INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+INLINE const real *optional(size_t size, const real *x, const real *none, real *flags)
 {
-    for (size_t e = 0; e < size && !x; ++e) {
-        own[e] = none;
-    }
     if (x) {
         check(size, 1, x, flags);
     }
-    return x ? x : own;
+    return x ? x : none;
 }
 
 INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
@@ -296,6 +293,16 @@ APART void refuse(size_t size, real *out)
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
     }
+}
+
+/* The status of a state; an output is refused where it is impossible. */
+INLINE int settled(const verdict *t, size_t size, real *out)
+{
+    const int code = judge(t);
+    if (code != OK) {
+        refuse(size, out);
+    }
+    return code;
 }
 
 /* Outputs of a state where the user wants them, and of states side by side, state by state. */
@@ -425,10 +432,10 @@ INLINE int all_rotations(const real *x, size_t n)
 /* ---- parameters ---- */
 
 const hexapod_6uhs_params hexapod_6uhs_default_params = {
-    {R(0.0), R(0.0), R(-9.81)},  /* gravity */
+    {0, 0, R(-9.81)},  /* gravity */
     R(12.0),  /* platform_mass */
-    {R(0.0), R(0.0), R(0.04)},  /* platform_centre_of_mass */
-    {{R(0.35), R(0.0), R(0.0)}, {R(0.0), R(0.35), R(0.0)}, {R(0.0), R(0.0), R(0.6)}},  /* platform_inertia */
+    {0, 0, R(0.04)},  /* platform_centre_of_mass */
+    {{R(0.35), 0, 0}, {0, R(0.35), 0}, {0, 0, R(0.6)}},  /* platform_inertia */
     {  /* uhs_base_point */
         {R(-0.07595833716604922), R(0.39027437049410557), R(0.017731158385886348)},
         {R(0.3759666878769001), R(0.12935533563203033), R(0.017731158385886348)},
@@ -438,12 +445,12 @@ const hexapod_6uhs_params hexapod_6uhs_default_params = {
         {R(-0.07595833716604977), R(-0.39027437049410546), R(0.017731158385886348)},
     },
     {  /* uhs_base_frame */
-        {{R(0.0), R(0.7666445685820955), R(-0.6420717292200091)}, {R(0.0), R(0.6420717292200091), R(0.7666445685820955)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(0.17272814426528374), R(-0.9849695366754605)}, {R(0.0), R(0.9849695366754605), R(0.17272814426528374)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.9393727128473789), R(-0.34289780745545156)}, {R(0.0), R(0.34289780745545156), R(-0.9393727128473789)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.9393727128473789), R(0.34289780745545134)}, {R(0.0), R(-0.34289780745545134), R(-0.9393727128473789)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(0.17272814426528307), R(0.9849695366754606)}, {R(0.0), R(-0.9849695366754606), R(0.17272814426528307)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(0.7666445685820946), R(0.6420717292200101)}, {R(0.0), R(-0.6420717292200101), R(0.7666445685820946)}, {R(1.0), R(0.0), R(0.0)}},
+        {{0, R(0.7666445685820955), R(-0.6420717292200091)}, {0, R(0.6420717292200091), R(0.7666445685820955)}, {1, 0, 0}},
+        {{0, R(0.17272814426528374), R(-0.9849695366754605)}, {0, R(0.9849695366754605), R(0.17272814426528374)}, {1, 0, 0}},
+        {{0, R(-0.9393727128473789), R(-0.34289780745545156)}, {0, R(0.34289780745545156), R(-0.9393727128473789)}, {1, 0, 0}},
+        {{0, R(-0.9393727128473789), R(0.34289780745545134)}, {0, R(-0.34289780745545134), R(-0.9393727128473789)}, {1, 0, 0}},
+        {{0, R(0.17272814426528307), R(0.9849695366754606)}, {0, R(-0.9849695366754606), R(0.17272814426528307)}, {1, 0, 0}},
+        {{0, R(0.7666445685820946), R(0.6420717292200101)}, {0, R(-0.6420717292200101), R(0.7666445685820946)}, {1, 0, 0}},
     },
     {  /* uhs_platform_point */
         {R(0.22999337057462865), R(0.19262151876600273), R(-0.02)},
@@ -462,20 +469,20 @@ const hexapod_6uhs_params hexapod_6uhs_default_params = {
         R(0.05),
     },
     {  /* uhs_joint3_offset */
-        {R(0.5), R(0.0), R(0.0)},
-        {R(0.5), R(0.0), R(0.0)},
-        {R(0.5), R(0.0), R(0.0)},
-        {R(0.5), R(0.0), R(0.0)},
-        {R(0.5), R(0.0), R(0.0)},
-        {R(0.5), R(0.0), R(0.0)},
+        {R(0.5), 0, 0},
+        {R(0.5), 0, 0},
+        {R(0.5), 0, 0},
+        {R(0.5), 0, 0},
+        {R(0.5), 0, 0},
+        {R(0.5), 0, 0},
     },
     {  /* uhs_platform_joint_offset */
-        {R(0.05), R(0.0), R(0.0)},
-        {R(0.05), R(0.0), R(0.0)},
-        {R(0.05), R(0.0), R(0.0)},
-        {R(0.05), R(0.0), R(0.0)},
-        {R(0.05), R(0.0), R(0.0)},
-        {R(0.05), R(0.0), R(0.0)},
+        {R(0.05), 0, 0},
+        {R(0.05), 0, 0},
+        {R(0.05), 0, 0},
+        {R(0.05), 0, 0},
+        {R(0.05), 0, 0},
+        {R(0.05), 0, 0},
     },
     {  /* uhs_link2_mass */
         R(2.4),
@@ -486,20 +493,20 @@ const hexapod_6uhs_params hexapod_6uhs_default_params = {
         R(2.4),
     },
     {  /* uhs_link2_centre_of_mass */
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
     },
     {  /* uhs_link2_inertia */
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
     },
     {  /* uhs_link3_mass */
         R(1.1),
@@ -510,24 +517,24 @@ const hexapod_6uhs_params hexapod_6uhs_default_params = {
         R(1.1),
     },
     {  /* uhs_link3_centre_of_mass */
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
     },
     {  /* uhs_link3_inertia */
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
     },
 };
 
-const hexapod_6uhs_real hexapod_6uhs_HOME_X[HEXAPOD_6UHS_NQ] = {R(0.0), R(0.0), R(0.75), R(0.0), R(0.0), R(0.0), R(1.0)};
+const hexapod_6uhs_real hexapod_6uhs_HOME_X[HEXAPOD_6UHS_NQ] = {0, 0, R(0.75), 0, 0, 0, 1};
 const hexapod_6uhs_real hexapod_6uhs_HOME_Q[HEXAPOD_6UHS_NJ] = {R(0.15), R(0.45), R(5.0), R(0.15), R(-0.45), R(5.0), R(0.15), R(0.45), R(5.0), R(0.15), R(-0.45), R(5.0), R(0.15), R(0.45), R(5.0), R(0.15), R(-0.45), R(5.0)};
 const size_t hexapod_6uhs_ACTUATED[HEXAPOD_6UHS_NU] = {2, 5, 8, 11, 14, 17};
 const char *const hexapod_6uhs_ACTUATOR_NAMES[HEXAPOD_6UHS_NU] = {
@@ -571,6 +578,9 @@ static int acceptable(const hexapod_6uhs_params *p)
     ok &= all_inertias(&p->uhs_link3_inertia[0][0][0], LEGS_OF_uhs);
     return ok;
 }
+
+#define KEEP(name) model->name = name
+#define KEEP_OF_LEG(name) model->name[leg] = name
 
 int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *model)
 {
@@ -622,10 +632,10 @@ int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *
     const real J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4);
     /* (spread) rms distance of the platform points from their centroid */
     const real spread_t = R(0.16666666666666666)*root(6);
-    model->gravity_x = gravity_x;
-    model->gravity_y = gravity_y;
-    model->gravity_z = gravity_z;
-    model->spread_t = spread_t;
+    KEEP(gravity_x);
+    KEEP(gravity_y);
+    KEEP(gravity_z);
+    KEEP(spread_t);
     for (size_t leg = 0; leg < FILLED(LEGS_OF_uhs); ++leg) {
         const size_t own = leg < LEGS_OF_uhs ? leg : 0;
         const real uhs_base_point_x = params->uhs_base_point[own][0];
@@ -780,66 +790,66 @@ int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *
             uhs_base_frame_yy*uhs_base_point_y + uhs_base_frame_zy*uhs_base_point_z;
         const real uhs_potential_t_3 = uhs_base_frame_xz*uhs_base_point_x +
             uhs_base_frame_yz*uhs_base_point_y + uhs_base_frame_zz*uhs_base_point_z;
-        model->inv_uhs_joint3_pitch[leg] = inv_uhs_joint3_pitch;
-        model->inv_uhs_size[leg] = inv_uhs_size;
-        model->inv_uhs_size_t[leg] = inv_uhs_size_t;
-        model->uhs_J_2_in_spec2_xy[leg] = uhs_J_2_in_spec2_xy;
-        model->uhs_J_2_in_spec2_xz[leg] = uhs_J_2_in_spec2_xz;
-        model->uhs_J_2_in_spec2_yy[leg] = uhs_J_2_in_spec2_yy;
-        model->uhs_J_2_in_spec2_yz[leg] = uhs_J_2_in_spec2_yz;
-        model->uhs_J_2_in_spec2_zz[leg] = uhs_J_2_in_spec2_zz;
-        model->uhs_J_3_in_spec3_xx[leg] = uhs_J_3_in_spec3_xx;
-        model->uhs_J_3_in_spec3_xy[leg] = uhs_J_3_in_spec3_xy;
-        model->uhs_J_3_in_spec3_xz[leg] = uhs_J_3_in_spec3_xz;
-        model->uhs_J_3_in_spec3_yy[leg] = uhs_J_3_in_spec3_yy;
-        model->uhs_J_3_in_spec3_yz[leg] = uhs_J_3_in_spec3_yz;
-        model->uhs_J_3_in_spec3_zz[leg] = uhs_J_3_in_spec3_zz;
-        model->uhs_Jc_2_in_axes2_xx[leg] = uhs_Jc_2_in_axes2_xx;
-        model->uhs_Sigma_2_in_axes2_xx[leg] = uhs_Sigma_2_in_axes2_xx;
-        model->uhs_Sigma_2_in_axes2_yy[leg] = uhs_Sigma_2_in_axes2_yy;
-        model->uhs_Sigma_2_in_axes2_zz[leg] = uhs_Sigma_2_in_axes2_zz;
-        model->uhs_Sigma_3_in_axes3_xx[leg] = uhs_Sigma_3_in_axes3_xx;
-        model->uhs_Sigma_3_in_axes3_yy[leg] = uhs_Sigma_3_in_axes3_yy;
-        model->uhs_Sigma_3_in_axes3_zz[leg] = uhs_Sigma_3_in_axes3_zz;
-        model->uhs_base_frame_xx[leg] = uhs_base_frame_xx;
-        model->uhs_base_frame_xy[leg] = uhs_base_frame_xy;
-        model->uhs_base_frame_xz[leg] = uhs_base_frame_xz;
-        model->uhs_base_frame_yx[leg] = uhs_base_frame_yx;
-        model->uhs_base_frame_yy[leg] = uhs_base_frame_yy;
-        model->uhs_base_frame_yz[leg] = uhs_base_frame_yz;
-        model->uhs_base_frame_zx[leg] = uhs_base_frame_zx;
-        model->uhs_base_frame_zy[leg] = uhs_base_frame_zy;
-        model->uhs_base_frame_zz[leg] = uhs_base_frame_zz;
-        model->uhs_base_point_x[leg] = uhs_base_point_x;
-        model->uhs_base_point_y[leg] = uhs_base_point_y;
-        model->uhs_base_point_z[leg] = uhs_base_point_z;
-        model->uhs_bias_t[leg] = uhs_bias_t;
-        model->uhs_branch_1[leg] = uhs_branch_1;
-        model->uhs_branch_2[leg] = uhs_branch_2;
-        model->uhs_d_G_in_axes3_zz[leg] = uhs_d_G_in_axes3_zz;
-        model->uhs_d_phi_3_in_axes3_yz[leg] = uhs_d_phi_3_in_axes3_yz;
-        model->uhs_d_phi_3_t[leg] = uhs_d_phi_3_t;
-        model->uhs_h_2_in_spec2_x[leg] = uhs_h_2_in_spec2_x;
-        model->uhs_h_2_in_spec2_y[leg] = uhs_h_2_in_spec2_y;
-        model->uhs_h_2_in_spec2_z[leg] = uhs_h_2_in_spec2_z;
-        model->uhs_h_3_in_spec3_x[leg] = uhs_h_3_in_spec3_x;
-        model->uhs_h_3_in_spec3_y[leg] = uhs_h_3_in_spec3_y;
-        model->uhs_h_3_in_spec3_z[leg] = uhs_h_3_in_spec3_z;
-        model->uhs_joint3_offset_x[leg] = uhs_joint3_offset_x;
-        model->uhs_link2_mass[leg] = uhs_link2_mass;
-        model->uhs_link3_mass[leg] = uhs_link3_mass;
-        model->uhs_mu_2_t[leg] = uhs_mu_2_t;
-        model->uhs_mu_2_t_2[leg] = uhs_mu_2_t_2;
-        model->uhs_mu_2_t_3[leg] = uhs_mu_2_t_3;
-        model->uhs_platform_joint_offset_x[leg] = uhs_platform_joint_offset_x;
-        model->uhs_platform_point_x[leg] = uhs_platform_point_x;
-        model->uhs_platform_point_y[leg] = uhs_platform_point_y;
-        model->uhs_platform_point_z[leg] = uhs_platform_point_z;
-        model->uhs_potential_t[leg] = uhs_potential_t;
-        model->uhs_potential_t_2[leg] = uhs_potential_t_2;
-        model->uhs_potential_t_3[leg] = uhs_potential_t_3;
-        model->uhs_size[leg] = uhs_size;
-        model->uhs_size_t[leg] = uhs_size_t;
+        KEEP_OF_LEG(inv_uhs_joint3_pitch);
+        KEEP_OF_LEG(inv_uhs_size);
+        KEEP_OF_LEG(inv_uhs_size_t);
+        KEEP_OF_LEG(uhs_J_2_in_spec2_xy);
+        KEEP_OF_LEG(uhs_J_2_in_spec2_xz);
+        KEEP_OF_LEG(uhs_J_2_in_spec2_yy);
+        KEEP_OF_LEG(uhs_J_2_in_spec2_yz);
+        KEEP_OF_LEG(uhs_J_2_in_spec2_zz);
+        KEEP_OF_LEG(uhs_J_3_in_spec3_xx);
+        KEEP_OF_LEG(uhs_J_3_in_spec3_xy);
+        KEEP_OF_LEG(uhs_J_3_in_spec3_xz);
+        KEEP_OF_LEG(uhs_J_3_in_spec3_yy);
+        KEEP_OF_LEG(uhs_J_3_in_spec3_yz);
+        KEEP_OF_LEG(uhs_J_3_in_spec3_zz);
+        KEEP_OF_LEG(uhs_Jc_2_in_axes2_xx);
+        KEEP_OF_LEG(uhs_Sigma_2_in_axes2_xx);
+        KEEP_OF_LEG(uhs_Sigma_2_in_axes2_yy);
+        KEEP_OF_LEG(uhs_Sigma_2_in_axes2_zz);
+        KEEP_OF_LEG(uhs_Sigma_3_in_axes3_xx);
+        KEEP_OF_LEG(uhs_Sigma_3_in_axes3_yy);
+        KEEP_OF_LEG(uhs_Sigma_3_in_axes3_zz);
+        KEEP_OF_LEG(uhs_base_frame_xx);
+        KEEP_OF_LEG(uhs_base_frame_xy);
+        KEEP_OF_LEG(uhs_base_frame_xz);
+        KEEP_OF_LEG(uhs_base_frame_yx);
+        KEEP_OF_LEG(uhs_base_frame_yy);
+        KEEP_OF_LEG(uhs_base_frame_yz);
+        KEEP_OF_LEG(uhs_base_frame_zx);
+        KEEP_OF_LEG(uhs_base_frame_zy);
+        KEEP_OF_LEG(uhs_base_frame_zz);
+        KEEP_OF_LEG(uhs_base_point_x);
+        KEEP_OF_LEG(uhs_base_point_y);
+        KEEP_OF_LEG(uhs_base_point_z);
+        KEEP_OF_LEG(uhs_bias_t);
+        KEEP_OF_LEG(uhs_branch_1);
+        KEEP_OF_LEG(uhs_branch_2);
+        KEEP_OF_LEG(uhs_d_G_in_axes3_zz);
+        KEEP_OF_LEG(uhs_d_phi_3_in_axes3_yz);
+        KEEP_OF_LEG(uhs_d_phi_3_t);
+        KEEP_OF_LEG(uhs_h_2_in_spec2_x);
+        KEEP_OF_LEG(uhs_h_2_in_spec2_y);
+        KEEP_OF_LEG(uhs_h_2_in_spec2_z);
+        KEEP_OF_LEG(uhs_h_3_in_spec3_x);
+        KEEP_OF_LEG(uhs_h_3_in_spec3_y);
+        KEEP_OF_LEG(uhs_h_3_in_spec3_z);
+        KEEP_OF_LEG(uhs_joint3_offset_x);
+        KEEP_OF_LEG(uhs_link2_mass);
+        KEEP_OF_LEG(uhs_link3_mass);
+        KEEP_OF_LEG(uhs_mu_2_t);
+        KEEP_OF_LEG(uhs_mu_2_t_2);
+        KEEP_OF_LEG(uhs_mu_2_t_3);
+        KEEP_OF_LEG(uhs_platform_joint_offset_x);
+        KEEP_OF_LEG(uhs_platform_point_x);
+        KEEP_OF_LEG(uhs_platform_point_y);
+        KEEP_OF_LEG(uhs_platform_point_z);
+        KEEP_OF_LEG(uhs_potential_t);
+        KEEP_OF_LEG(uhs_potential_t_2);
+        KEEP_OF_LEG(uhs_potential_t_3);
+        KEEP_OF_LEG(uhs_size);
+        KEEP_OF_LEG(uhs_size_t);
         m_star_of_legs += leg < LEGS_OF_uhs ? uhs_link3_mass : 0;
         h_star_in_platform_x_of_legs += leg < LEGS_OF_uhs ? uhs_h_star_t : 0;
         h_star_in_platform_y_of_legs += leg < LEGS_OF_uhs ? uhs_h_star_t_2 : 0;
@@ -888,25 +898,25 @@ int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *
     const real b_c_in_platform_z = R(0.16666666666666666)*b_c_uhs_in_platform_z;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = root(legs_size_uhs)*spread_t;
-    model->J_star_in_platform_xx = J_star_in_platform_xx;
-    model->J_star_in_platform_xy = J_star_in_platform_xy;
-    model->J_star_in_platform_xz = J_star_in_platform_xz;
-    model->J_star_in_platform_yy = J_star_in_platform_yy;
-    model->J_star_in_platform_yz = J_star_in_platform_yz;
-    model->J_star_in_platform_zz = J_star_in_platform_zz;
-    model->J_star_t_12 = J_star_t_12;
-    model->J_star_t_14 = J_star_t_14;
-    model->Z_p_t = Z_p_t;
-    model->Z_p_t_2 = Z_p_t_2;
-    model->Z_p_t_3 = Z_p_t_3;
-    model->b_c_in_platform_x = b_c_in_platform_x;
-    model->b_c_in_platform_y = b_c_in_platform_y;
-    model->b_c_in_platform_z = b_c_in_platform_z;
-    model->h_star_in_platform_x = h_star_in_platform_x;
-    model->h_star_in_platform_y = h_star_in_platform_y;
-    model->h_star_in_platform_z = h_star_in_platform_z;
-    model->legs_size = legs_size;
-    model->m_star = m_star;
+    KEEP(J_star_in_platform_xx);
+    KEEP(J_star_in_platform_xy);
+    KEEP(J_star_in_platform_xz);
+    KEEP(J_star_in_platform_yy);
+    KEEP(J_star_in_platform_yz);
+    KEEP(J_star_in_platform_zz);
+    KEEP(J_star_t_12);
+    KEEP(J_star_t_14);
+    KEEP(Z_p_t);
+    KEEP(Z_p_t_2);
+    KEEP(Z_p_t_3);
+    KEEP(b_c_in_platform_x);
+    KEEP(b_c_in_platform_y);
+    KEEP(b_c_in_platform_z);
+    KEEP(h_star_in_platform_x);
+    KEEP(h_star_in_platform_y);
+    KEEP(h_star_in_platform_z);
+    KEEP(legs_size);
+    KEEP(m_star);
     return OK;
 }
 
@@ -1485,10 +1495,10 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real R_zy = quaternion_wx + quaternion_yz;
     const real R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = R_xx*m->h_star_in_platform_x + R_xy*m->h_star_in_platform_y +
-        R_xz*m->h_star_in_platform_z;
-    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yy*m->h_star_in_platform_y +
-        R_yz*m->h_star_in_platform_z;
+    const real h_star_x = R_xy*m->h_star_in_platform_y + R_xz*m->h_star_in_platform_z +
+        R_xx*m->h_star_in_platform_x;
+    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yz*m->h_star_in_platform_z +
+        R_yy*m->h_star_in_platform_y;
     const real h_star_z = R_zx*m->h_star_in_platform_x + R_zy*m->h_star_in_platform_y +
         R_zz*m->h_star_in_platform_z;
     v->quaternion_scale = quaternion_scale;
@@ -1512,8 +1522,8 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
     const real omega_x = V[3*w + k];
     const real omega_y = V[4*w + k];
     const real omega_z = V[5*w + k];
-    const real omega_in_platform_x = v->R_xx*omega_x + v->R_yx*omega_y + v->R_zx*omega_z;
-    const real omega_in_platform_y = v->R_xy*omega_x + v->R_yy*omega_y + v->R_zy*omega_z;
+    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
     const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
     v->omega_in_platform_x = omega_in_platform_x;
     v->omega_in_platform_y = omega_in_platform_y;
@@ -1523,24 +1533,24 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
 INLINE void stage_M_dynamics(const prepared *m, values *v)
 {
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_t = m->J_star_in_platform_xy*v->R_xx + m->J_star_in_platform_yz*v->R_xz
-        - m->J_star_t_12*v->R_xy;
+    const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
+        m->J_star_in_platform_xy*v->R_xx;
     const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
         m->J_star_in_platform_yz*v->R_yz - m->J_star_t_12*v->R_yy;
-    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx +
-        m->J_star_in_platform_yz*v->R_zz - m->J_star_t_12*v->R_zy;
+    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx - m->J_star_t_12*v->R_zy +
+        m->J_star_in_platform_yz*v->R_zz;
     const real J_star_t_4 = m->J_star_t_14*v->R_xz - m->J_star_in_platform_xz*v->R_xx;
     const real J_star_t_5 = m->J_star_t_14*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
     const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
-    const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
-        J_star_t_5*v->R_xz;
+    const real J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
+        J_star_t_4*v->R_yz;
     const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
     const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
     const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
-    const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
+    const real J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
     const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
     const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
@@ -1565,10 +1575,10 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
     const real Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real g_in_platform_x = v->R_xx*m->gravity_x + v->R_yx*m->gravity_y +
-        v->R_zx*m->gravity_z;
-    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_yy*m->gravity_y +
-        v->R_zy*m->gravity_z;
+    const real g_in_platform_x = v->R_yx*m->gravity_y + v->R_zx*m->gravity_z +
+        v->R_xx*m->gravity_x;
+    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_zy*m->gravity_z +
+        v->R_yy*m->gravity_y;
     const real g_in_platform_z = v->R_xz*m->gravity_x + v->R_yz*m->gravity_y +
         v->R_zz*m->gravity_z;
     const real Z_q_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
@@ -1580,15 +1590,15 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
         m->J_star_in_platform_yz*v->omega_in_platform_y +
         m->J_star_in_platform_zz*v->omega_in_platform_z;
-    const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
-        g_in_platform_y*m->h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
-        g_in_platform_z*m->h_star_in_platform_y;
-    const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
-        g_in_platform_z*m->h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
-        g_in_platform_x*m->h_star_in_platform_z;
-    const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
-        g_in_platform_x*m->h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
-        g_in_platform_y*m->h_star_in_platform_x;
+    const real Z_q_in_platform_x = g_in_platform_y*m->h_star_in_platform_z -
+        g_in_platform_z*m->h_star_in_platform_y + Z_q_t_3*v->omega_in_platform_y -
+        Z_q_t_2*v->omega_in_platform_z;
+    const real Z_q_in_platform_y = g_in_platform_z*m->h_star_in_platform_x -
+        g_in_platform_x*m->h_star_in_platform_z + Z_q_t*v->omega_in_platform_z -
+        Z_q_t_3*v->omega_in_platform_x;
+    const real Z_q_in_platform_z = g_in_platform_x*m->h_star_in_platform_y -
+        g_in_platform_y*m->h_star_in_platform_x + Z_q_t_2*v->omega_in_platform_x -
+        Z_q_t*v->omega_in_platform_y;
     const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
         v->R_xz*Z_q_in_platform_z;
     const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
@@ -1634,13 +1644,13 @@ INLINE void stage_uhs_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real uhs_q_x = R_xx*m->uhs_platform_point_x[i] + R_xy*m->uhs_platform_point_y[i] +
-        R_xz*m->uhs_platform_point_z[i];
+    const real uhs_q_x = R_xy*m->uhs_platform_point_y[i] + R_xz*m->uhs_platform_point_z[i] +
+        R_xx*m->uhs_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real uhs_q_y = R_yx*m->uhs_platform_point_x[i] + R_yy*m->uhs_platform_point_y[i] +
-        R_yz*m->uhs_platform_point_z[i];
+    const real uhs_q_y = R_yx*m->uhs_platform_point_x[i] + R_yz*m->uhs_platform_point_z[i] +
+        R_yy*m->uhs_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
@@ -1648,11 +1658,11 @@ INLINE void stage_uhs_X(const prepared *m, size_t w, size_t i, size_t j, const r
         R_zz*m->uhs_platform_point_z[i];
     /* (uhs-S) from the base point to the connection point */
     const real t_x = X[0*w + j];
-    const real uhs_S_x = t_x + uhs_q_x - m->uhs_base_point_x[i];
+    const real uhs_S_x = t_x - m->uhs_base_point_x[i] + uhs_q_x;
     const real t_y = X[1*w + j];
-    const real uhs_S_y = t_y + uhs_q_y - m->uhs_base_point_y[i];
+    const real uhs_S_y = t_y - m->uhs_base_point_y[i] + uhs_q_y;
     const real t_z = X[2*w + j];
-    const real uhs_S_z = t_z + uhs_q_z - m->uhs_base_point_z[i];
+    const real uhs_S_z = t_z - m->uhs_base_point_z[i] + uhs_q_z;
     const real uhs_S_in_turn1_x = uhs_S_x*m->uhs_base_frame_xx[i] +
         uhs_S_y*m->uhs_base_frame_yx[i] + uhs_S_z*m->uhs_base_frame_zx[i];
     const real uhs_S_in_turn1_y = uhs_S_x*m->uhs_base_frame_xy[i] +
@@ -1777,8 +1787,8 @@ INLINE void stage_uhs_V_X(const prepared *m, size_t w, size_t i, size_t j, const
         uhs_qd_1_t*v->uhs_s_1);
     /* (uhs-qd_2) */
     const real uhs_qd_2_t_2 = v->uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*v->uhs_s_1;
-    const real uhs_qd_2 = v->inv_uhs_root_2*(v->uhs_e_1_in_axes3_z*uhs_qd_2_t_2 +
-        uhs_qd_1*v->uhs_v_1_t_2 - v->uhs_c_2*uhs_qd_2_t);
+    const real uhs_qd_2 = v->inv_uhs_root_2*(v->uhs_e_1_in_axes3_z*uhs_qd_2_t_2 -
+        v->uhs_c_2*uhs_qd_2_t + uhs_qd_1*v->uhs_v_1_t_2);
     /* (uhs-qd_3) rate of joint 3 */
     const real uhs_qd_3 = m->inv_uhs_joint3_pitch[i]*(v->uhs_c_2*uhs_qd_2_t_2 +
         v->uhs_e_1_in_axes3_z*uhs_qd_2_t);
@@ -1799,7 +1809,7 @@ INLINE void stage_uhs_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real uhs_W_2_in_axes3_xy = uhs_omega_2_in_axes3_x*uhs_omega_2_in_axes3_y;
     const real uhs_W_2_t_3 = uhs_W_2_t + uhs_W_2_t_2;
     /* (uhs-omega_3) angular velocity of link 3 */
-    const real uhs_omega_3_in_axes3_z = uhs_omega_1_in_axes2_x + uhs_qd_3;
+    const real uhs_omega_3_in_axes3_z = uhs_qd_3 + uhs_omega_1_in_axes2_x;
     /* (uhs-W_3) centripetal tensor of link 3 */
     const real uhs_W_3_in_axes3_xz = uhs_omega_2_in_axes3_x*uhs_omega_3_in_axes3_z;
     const real uhs_W_3_in_axes3_yz = uhs_omega_2_in_axes3_y*uhs_omega_3_in_axes3_z;
@@ -1815,13 +1825,13 @@ INLINE void stage_uhs_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     /* (uhs-bias) acceleration of the connection point at zero joint accelerations */
     const real uhs_bias_t_2 = m->uhs_bias_t[i]*uhs_qd_3;
     const real uhs_bias_in_axes3_x = uhs_bias_t_2*uhs_omega_2_in_axes3_y +
-        m->uhs_joint3_offset_x[i]*(uhs_zeta_2_in_axes3_y +
-        uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x) +
-        v->uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_xz + uhs_beta_3_in_axes3_y);
+        m->uhs_joint3_offset_x[i]*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x +
+        uhs_zeta_2_in_axes3_y) + v->uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_xz +
+        uhs_beta_3_in_axes3_y);
     const real uhs_bias_in_axes3_y =
         m->uhs_joint3_offset_x[i]*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y -
-        uhs_zeta_2_in_axes3_x) + v->uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_yz -
-        uhs_beta_3_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x;
+        uhs_zeta_2_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x +
+        v->uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_yz - uhs_beta_3_in_axes3_x);
     const real uhs_bias_in_axes3_z = -uhs_W_2_t_3*m->uhs_joint3_offset_x[i] -
         uhs_W_2_t_3*v->uhs_x_3_in_axes2_x;
     v->uhs_S_dot_t = uhs_S_dot_t;
@@ -1861,13 +1871,13 @@ INLINE void stage_uhs_A_V_X(size_t w, size_t j, const real *V, values_uhs *v)
     /* (uhs-S_ddot) acceleration of the connection point */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
-    const real uhs_S_ddot_x = v->uhs_a_p_x + omega_y*v->uhs_S_dot_t_3 -
-        omega_z*v->uhs_S_dot_t_2;
+    const real uhs_S_ddot_x = omega_y*v->uhs_S_dot_t_3 - omega_z*v->uhs_S_dot_t_2 +
+        v->uhs_a_p_x;
     const real omega_x = V[3*w + j];
-    const real uhs_S_ddot_y = v->uhs_a_p_y + omega_z*v->uhs_S_dot_t -
-        omega_x*v->uhs_S_dot_t_3;
-    const real uhs_S_ddot_z = v->uhs_a_p_z + omega_x*v->uhs_S_dot_t_2 -
-        omega_y*v->uhs_S_dot_t;
+    const real uhs_S_ddot_y = omega_z*v->uhs_S_dot_t - omega_x*v->uhs_S_dot_t_3 +
+        v->uhs_a_p_y;
+    const real uhs_S_ddot_z = omega_x*v->uhs_S_dot_t_2 - omega_y*v->uhs_S_dot_t +
+        v->uhs_a_p_z;
     v->uhs_S_ddot_x = uhs_S_ddot_x;
     v->uhs_S_ddot_y = uhs_S_ddot_y;
     v->uhs_S_ddot_z = uhs_S_ddot_z;
@@ -1896,11 +1906,11 @@ INLINE void stage_uhs_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
 {
     /* (uhs-h_3) first moment of link 3 about the connection point */
     const real t_x = X[0*w + j];
-    const real uhs_h_3_t = t_x + v->uhs_q_x - m->uhs_base_point_x[i];
+    const real uhs_h_3_t = t_x - m->uhs_base_point_x[i] + v->uhs_q_x;
     const real t_y = X[1*w + j];
-    const real uhs_h_3_t_2 = t_y + v->uhs_q_y - m->uhs_base_point_y[i];
+    const real uhs_h_3_t_2 = t_y - m->uhs_base_point_y[i] + v->uhs_q_y;
     const real t_z = X[2*w + j];
-    const real uhs_h_3_t_3 = t_z + v->uhs_q_z - m->uhs_base_point_z[i];
+    const real uhs_h_3_t_3 = t_z - m->uhs_base_point_z[i] + v->uhs_q_z;
     const real uhs_h_3_t_4 = m->uhs_base_frame_xx[i]*uhs_h_3_t +
         m->uhs_base_frame_yx[i]*uhs_h_3_t_2 + m->uhs_base_frame_zx[i]*uhs_h_3_t_3;
     const real uhs_h_3_t_5 = m->uhs_base_frame_xy[i]*uhs_h_3_t +
@@ -1965,8 +1975,8 @@ INLINE void stage_uhs_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
        about the connection point */
     const real uhs_Jc_2_t = m->uhs_J_3_in_spec3_yz[i]*uhs_h_3_t_12;
     const real uhs_Jc_2_t_2 = m->uhs_J_3_in_spec3_yz[i]*uhs_e_2_in_axes3_x;
-    const real uhs_Jc_2_t_3 = uhs_Jc_2_t_2 + m->uhs_J_3_in_spec3_yy[i]*uhs_h_3_t_12;
-    const real uhs_Jc_2_t_4 = uhs_Jc_2_t + m->uhs_J_3_in_spec3_zz[i]*uhs_e_2_in_axes3_x;
+    const real uhs_Jc_2_t_3 = m->uhs_J_3_in_spec3_yy[i]*uhs_h_3_t_12 + uhs_Jc_2_t_2;
+    const real uhs_Jc_2_t_4 = m->uhs_J_3_in_spec3_zz[i]*uhs_e_2_in_axes3_x + uhs_Jc_2_t;
     const real uhs_Jc_2_in_axes2_xy = -m->uhs_J_2_in_spec2_xz[i] -
         m->uhs_J_3_in_spec3_xy[i]*uhs_h_3_t_12 - m->uhs_J_3_in_spec3_xz[i]*uhs_e_2_in_axes3_x;
     const real uhs_Jc_2_in_axes1_yz = uhs_e_1_in_axes3_z*(m->uhs_J_2_in_spec2_xy[i] +
@@ -1981,7 +1991,7 @@ INLINE void stage_uhs_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
         uhs_d_Gamma_2_t*uhs_v_1_t_2);
     const real uhs_d_Gamma_2_in_axes2_x = uhs_h_3_in_spec2_z +
         m->inv_uhs_joint3_pitch[i]*uhs_J_3_in_axes2_xz;
-    const real uhs_d_Gamma_2_in_axes2_y = uhs_d_Gamma_2_t + m->uhs_h_3_in_spec3_x[i];
+    const real uhs_d_Gamma_2_in_axes2_y = m->uhs_h_3_in_spec3_x[i] + uhs_d_Gamma_2_t;
     const real uhs_d_Gamma_2_in_axes3_y = uhs_d_Gamma_2_t_2*uhs_h_3_t_12 -
         uhs_d_Gamma_2_in_axes2_y*uhs_e_2_in_axes3_x;
     /* (uhs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
@@ -1989,17 +1999,17 @@ INLINE void stage_uhs_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real uhs_d_Gamma_1_t = inv_uhs_h_3_t_9*uhs_Jc_2_in_axes1_yz;
     const real uhs_d_Gamma_1_t_2 = uhs_c_2*(uhs_c_2*(m->uhs_J_2_in_spec2_zz[i] +
         uhs_Jc_2_t_3*uhs_h_3_t_12 + uhs_Jc_2_t_4*uhs_e_2_in_axes3_x) -
-        uhs_Jc_2_in_axes2_xy*uhs_e_1_in_axes3_z) + uhs_d_Gamma_1_t*uhs_v_1_t_2 -
+        uhs_Jc_2_in_axes2_xy*uhs_e_1_in_axes3_z) -
         uhs_e_1_in_axes3_z*(uhs_Jc_2_in_axes2_xy*uhs_c_2 -
-        m->uhs_Jc_2_in_axes2_xx[i]*uhs_e_1_in_axes3_z);
+        m->uhs_Jc_2_in_axes2_xx[i]*uhs_e_1_in_axes3_z) + uhs_d_Gamma_1_t*uhs_v_1_t_2;
     const real uhs_d_Gamma_1_t_3 = m->inv_uhs_joint3_pitch[i]*uhs_D_1_3;
     const real uhs_d_Gamma_1_in_axes1_z = uhs_d_Gamma_1_t_3*uhs_e_1_in_axes3_z -
         uhs_c_2*uhs_d_Gamma_1_t;
-    const real uhs_d_Gamma_1_in_axes1_x = uhs_c_2*uhs_d_Gamma_1_t_3 +
-        uhs_d_Gamma_1_t*uhs_e_1_in_axes3_z + m->uhs_h_3_in_spec3_z[i]*uhs_h_3_t_12 -
-        uhs_e_2_in_axes3_x*m->uhs_h_3_in_spec3_y[i];
-    const real uhs_d_Gamma_1_in_axes1_y = inv_uhs_v_1_in_axes2_z*uhs_d_Gamma_1_t_2 +
-        uhs_c_2*m->uhs_h_3_in_spec3_x[i] - uhs_e_1_in_axes3_z*uhs_h_3_in_spec2_z;
+    const real uhs_d_Gamma_1_in_axes1_x = m->uhs_h_3_in_spec3_z[i]*uhs_h_3_t_12 -
+        uhs_e_2_in_axes3_x*m->uhs_h_3_in_spec3_y[i] + uhs_c_2*uhs_d_Gamma_1_t_3 +
+        uhs_d_Gamma_1_t*uhs_e_1_in_axes3_z;
+    const real uhs_d_Gamma_1_in_axes1_y = uhs_c_2*m->uhs_h_3_in_spec3_x[i] -
+        uhs_e_1_in_axes3_z*uhs_h_3_in_spec2_z + inv_uhs_v_1_in_axes2_z*uhs_d_Gamma_1_t_2;
     const real uhs_d_Gamma_1_in_axes3_z = uhs_c_2*uhs_d_Gamma_1_in_axes1_x +
         uhs_d_Gamma_1_in_axes1_z*uhs_e_1_in_axes3_z;
     const real uhs_d_Gamma_1_t_4 = uhs_d_Gamma_1_in_axes1_x*uhs_e_1_in_axes3_z -
@@ -2010,12 +2020,12 @@ INLINE void stage_uhs_M_dynamics(const prepared *m, size_t w, size_t i, size_t j
        without the mass at the connection point */
     const real uhs_d_c_in_axes3_xx =
         uhs_e_1_in_axes3_z*m->uhs_h_3_in_spec3_z[i]*uhs_w_1_in_axes3_x -
-        m->uhs_h_3_in_spec3_x[i]*(uhs_e_1_in_axes3_y*uhs_w_1_in_axes3_x -
-        uhs_h_3_t_12*uhs_w_2_in_axes3_x) -
         uhs_w_1_in_axes3_x*(uhs_d_Gamma_1_in_axes1_y*uhs_e_2_in_axes3_x -
         uhs_d_Gamma_1_t_4*uhs_h_3_t_12) -
         uhs_w_2_in_axes3_x*(-uhs_d_Gamma_2_in_axes2_y*uhs_h_3_t_12 -
-        uhs_d_Gamma_2_t_2*uhs_e_2_in_axes3_x);
+        uhs_d_Gamma_2_t_2*uhs_e_2_in_axes3_x) -
+        m->uhs_h_3_in_spec3_x[i]*(uhs_e_1_in_axes3_y*uhs_w_1_in_axes3_x -
+        uhs_h_3_t_12*uhs_w_2_in_axes3_x);
     const real uhs_d_c_in_axes3_xy = uhs_d_alpha_3_in_axes3_zy*m->uhs_h_3_in_spec3_z[i] -
         uhs_d_Gamma_1_in_axes3_y*uhs_w_1_in_axes3_x -
         uhs_d_Gamma_2_in_axes3_y*uhs_w_2_in_axes3_x -
@@ -2065,23 +2075,20 @@ INLINE void stage_uhs_inverse_kinematics_potential(const prepared *m, size_t w, 
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
     const real t_x = X[0*w + j];
-    const real uhs_S_x = t_x + R_xx*m->uhs_platform_point_x[i] +
-        R_xy*m->uhs_platform_point_y[i] + R_xz*m->uhs_platform_point_z[i] -
-        m->uhs_base_point_x[i];
+    const real uhs_S_x = t_x - m->uhs_base_point_x[i] + R_xy*m->uhs_platform_point_y[i] +
+        R_xz*m->uhs_platform_point_z[i] + R_xx*m->uhs_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real t_y = X[1*w + j];
-    const real uhs_S_y = t_y + R_yx*m->uhs_platform_point_x[i] +
-        R_yy*m->uhs_platform_point_y[i] + R_yz*m->uhs_platform_point_z[i] -
-        m->uhs_base_point_y[i];
+    const real uhs_S_y = t_y - m->uhs_base_point_y[i] + R_yx*m->uhs_platform_point_x[i] +
+        R_yz*m->uhs_platform_point_z[i] + R_yy*m->uhs_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real t_z = X[2*w + j];
-    const real uhs_S_z = t_z + R_zx*m->uhs_platform_point_x[i] +
-        R_zy*m->uhs_platform_point_y[i] + R_zz*m->uhs_platform_point_z[i] -
-        m->uhs_base_point_z[i];
+    const real uhs_S_z = t_z - m->uhs_base_point_z[i] + R_zx*m->uhs_platform_point_x[i] +
+        R_zy*m->uhs_platform_point_y[i] + R_zz*m->uhs_platform_point_z[i];
     const real uhs_S_in_turn1_x = uhs_S_x*m->uhs_base_frame_xx[i] +
         uhs_S_y*m->uhs_base_frame_yx[i] + uhs_S_z*m->uhs_base_frame_zx[i];
     const real uhs_S_in_turn1_y = uhs_S_x*m->uhs_base_frame_xy[i] +
@@ -2127,16 +2134,13 @@ INLINE void stage_uhs_legs_required(const prepared *m, size_t i, values_uhs *v)
     /* (uhs-S_ddot) acceleration of the connection point */
     const real uhs_S_ddot_t = v->uhs_c_3*v->uhs_e_1_in_axes3_z;
     const real uhs_S_ddot_t_2 = v->uhs_s_1*v->uhs_s_3 - uhs_S_ddot_t*v->uhs_c_1;
-    const real uhs_S_ddot_t_3 = -uhs_S_ddot_t*v->uhs_s_1 - v->uhs_c_1*v->uhs_s_3;
-    const real axis_y_uhs_axes3_x = uhs_S_ddot_t_2*m->uhs_base_frame_xx[i] +
-        uhs_S_ddot_t_3*m->uhs_base_frame_xy[i] +
-        m->uhs_base_frame_xz[i]*v->uhs_e_1_in_axes3_y;
-    const real axis_y_uhs_axes3_y = uhs_S_ddot_t_2*m->uhs_base_frame_yx[i] +
-        uhs_S_ddot_t_3*m->uhs_base_frame_yy[i] +
-        m->uhs_base_frame_yz[i]*v->uhs_e_1_in_axes3_y;
-    const real axis_y_uhs_axes3_z = uhs_S_ddot_t_2*m->uhs_base_frame_zx[i] +
-        uhs_S_ddot_t_3*m->uhs_base_frame_zy[i] +
-        m->uhs_base_frame_zz[i]*v->uhs_e_1_in_axes3_y;
+    const real uhs_S_ddot_t_3 = -v->uhs_c_1*v->uhs_s_3 - uhs_S_ddot_t*v->uhs_s_1;
+    const real axis_y_uhs_axes3_x = m->uhs_base_frame_xz[i]*v->uhs_e_1_in_axes3_y +
+        uhs_S_ddot_t_2*m->uhs_base_frame_xx[i] + uhs_S_ddot_t_3*m->uhs_base_frame_xy[i];
+    const real axis_y_uhs_axes3_y = m->uhs_base_frame_yz[i]*v->uhs_e_1_in_axes3_y +
+        uhs_S_ddot_t_2*m->uhs_base_frame_yx[i] + uhs_S_ddot_t_3*m->uhs_base_frame_yy[i];
+    const real axis_y_uhs_axes3_z = m->uhs_base_frame_zz[i]*v->uhs_e_1_in_axes3_y +
+        uhs_S_ddot_t_2*m->uhs_base_frame_zx[i] + uhs_S_ddot_t_3*m->uhs_base_frame_zy[i];
     const real axis_x_uhs_axes3_x = axis_y_uhs_axes3_y*v->axis_z_uhs_axes3_z -
         axis_y_uhs_axes3_z*v->axis_z_uhs_axes3_y;
     const real axis_x_uhs_axes3_y = axis_y_uhs_axes3_z*v->axis_z_uhs_axes3_x -
@@ -2175,8 +2179,8 @@ INLINE void stage_uhs_legs_required(const prepared *m, size_t i, values_uhs *v)
         uhs_alpha_2_in_axes2_y*v->uhs_s_3;
     const real uhs_alpha_3_in_axes3_y = v->uhs_zeta_3_in_axes3_y -
         uhs_alpha_2_in_axes2_y*v->uhs_c_3 - uhs_qdd_2*v->uhs_s_3;
-    const real uhs_alpha_3_in_axes3_z = uhs_alpha_2_in_axes2_x +
-        m->inv_uhs_joint3_pitch[i]*uhs_rel_in_axes3_z;
+    const real uhs_alpha_3_in_axes3_z = m->inv_uhs_joint3_pitch[i]*uhs_rel_in_axes3_z +
+        uhs_alpha_2_in_axes2_x;
     /* (uhs-B_3) acceleration tensor of link 3 */
     const real uhs_B_3_in_axes3_xy = v->uhs_W_2_in_axes3_xy - uhs_alpha_3_in_axes3_z;
     const real uhs_B_3_in_axes3_xz = v->uhs_W_3_in_axes3_xz + uhs_alpha_3_in_axes3_y;
@@ -2194,27 +2198,27 @@ INLINE void stage_uhs_legs_required(const prepared *m, size_t i, values_uhs *v)
         v->axis_z_uhs_axes3_z*m->gravity_z;
     /* (uhs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
     const real uhs_mu_3_t = v->uhs_omega_3_in_axes3_z*v->uhs_omega_3_in_axes3_z;
-    const real uhs_mu_3_in_axes3_x = uhs_B_3_in_axes3_yx*m->uhs_J_3_in_spec3_xy[i] +
-        uhs_B_3_in_axes3_zy*m->uhs_Sigma_3_in_axes3_yy[i] +
+    const real uhs_mu_3_in_axes3_x = uhs_acc_3_in_axes3_z*m->uhs_h_3_in_spec3_z[i] -
+        uhs_acc_3_in_axes3_y*m->uhs_h_3_in_spec3_x[i] +
         m->uhs_J_3_in_spec3_xz[i]*(v->uhs_W_2_t_2 - uhs_mu_3_t) +
-        uhs_acc_3_in_axes3_z*m->uhs_h_3_in_spec3_z[i] -
+        uhs_B_3_in_axes3_yx*m->uhs_J_3_in_spec3_xy[i] +
+        uhs_B_3_in_axes3_zy*m->uhs_Sigma_3_in_axes3_yy[i] -
         uhs_B_3_in_axes3_yz*m->uhs_Sigma_3_in_axes3_zz[i] -
-        uhs_B_3_in_axes3_zx*m->uhs_J_3_in_spec3_yz[i] -
-        uhs_acc_3_in_axes3_y*m->uhs_h_3_in_spec3_x[i];
-    const real uhs_mu_3_in_axes3_y = uhs_B_3_in_axes3_xz*m->uhs_Sigma_3_in_axes3_zz[i] +
-        uhs_B_3_in_axes3_zy*m->uhs_J_3_in_spec3_yz[i] +
-        uhs_acc_3_in_axes3_x*m->uhs_h_3_in_spec3_x[i] -
-        uhs_B_3_in_axes3_xy*m->uhs_J_3_in_spec3_xz[i] -
-        uhs_B_3_in_axes3_zx*m->uhs_Sigma_3_in_axes3_xx[i] -
+        uhs_B_3_in_axes3_zx*m->uhs_J_3_in_spec3_yz[i];
+    const real uhs_mu_3_in_axes3_y = uhs_acc_3_in_axes3_x*m->uhs_h_3_in_spec3_x[i] -
+        uhs_acc_3_in_axes3_z*m->uhs_h_3_in_spec3_y[i] -
         m->uhs_J_3_in_spec3_xy[i]*(v->uhs_W_2_t - uhs_mu_3_t) -
-        uhs_acc_3_in_axes3_z*m->uhs_h_3_in_spec3_y[i];
-    const real uhs_mu_3_in_axes3_z = uhs_B_3_in_axes3_xz*m->uhs_J_3_in_spec3_xz[i] +
-        uhs_B_3_in_axes3_yx*m->uhs_Sigma_3_in_axes3_xx[i] +
+        uhs_B_3_in_axes3_xy*m->uhs_J_3_in_spec3_xz[i] +
+        uhs_B_3_in_axes3_xz*m->uhs_Sigma_3_in_axes3_zz[i] +
+        uhs_B_3_in_axes3_zy*m->uhs_J_3_in_spec3_yz[i] -
+        uhs_B_3_in_axes3_zx*m->uhs_Sigma_3_in_axes3_xx[i];
+    const real uhs_mu_3_in_axes3_z = uhs_acc_3_in_axes3_y*m->uhs_h_3_in_spec3_y[i] -
+        uhs_acc_3_in_axes3_x*m->uhs_h_3_in_spec3_z[i] +
         m->uhs_J_3_in_spec3_yz[i]*(v->uhs_W_2_t - v->uhs_W_2_t_2) +
-        uhs_acc_3_in_axes3_y*m->uhs_h_3_in_spec3_y[i] -
-        uhs_B_3_in_axes3_xy*m->uhs_Sigma_3_in_axes3_yy[i] -
-        uhs_B_3_in_axes3_yz*m->uhs_J_3_in_spec3_xy[i] -
-        uhs_acc_3_in_axes3_x*m->uhs_h_3_in_spec3_z[i];
+        uhs_B_3_in_axes3_yx*m->uhs_Sigma_3_in_axes3_xx[i] -
+        uhs_B_3_in_axes3_xy*m->uhs_Sigma_3_in_axes3_yy[i] +
+        uhs_B_3_in_axes3_xz*m->uhs_J_3_in_spec3_xz[i] -
+        uhs_B_3_in_axes3_yz*m->uhs_J_3_in_spec3_xy[i];
     /* (uhs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real uhs_mu_2_t_4 = v->uhs_omega_1_in_axes2_x*v->uhs_omega_1_in_axes2_x;
     const real uhs_mu_2_t_5 = v->uhs_omega_1_in_axes2_y*v->uhs_omega_1_in_axes2_y;
@@ -2224,26 +2228,24 @@ INLINE void stage_uhs_legs_required(const prepared *m, size_t i, values_uhs *v)
         v->uhs_e_1_in_axes3_z*m->uhs_mu_2_t_3[i];
     const real uhs_g_in_axes2_y = v->uhs_e_1_in_axes3_z*uhs_mu_2_t_7 -
         v->uhs_c_2*m->uhs_mu_2_t_3[i];
-    const real uhs_mu_2_in_axes2_x = uhs_B_2_in_axes2_yx*m->uhs_J_2_in_spec2_xy[i] +
+    const real uhs_mu_2_in_axes2_x = v->uhs_g_in_axes2_z*m->uhs_h_2_in_spec2_z[i] +
+        uhs_g_in_axes2_y*m->uhs_h_2_in_spec2_y[i] - m->uhs_J_2_in_spec2_yz[i]*(uhs_mu_2_t_5 -
+        uhs_mu_2_t_6) + m->uhs_Sigma_2_in_axes2_zz[i]*uhs_alpha_1_in_axes2_x +
+        uhs_B_2_in_axes2_yx*m->uhs_J_2_in_spec2_xy[i] +
         uhs_B_2_in_axes2_zx*m->uhs_J_2_in_spec2_xz[i] +
-        uhs_B_2_in_axes2_zy*m->uhs_Sigma_2_in_axes2_yy[i] +
-        m->uhs_Sigma_2_in_axes2_zz[i]*uhs_alpha_1_in_axes2_x +
-        uhs_g_in_axes2_y*m->uhs_h_2_in_spec2_y[i] +
-        v->uhs_g_in_axes2_z*m->uhs_h_2_in_spec2_z[i] - m->uhs_J_2_in_spec2_yz[i]*(uhs_mu_2_t_5
-        - uhs_mu_2_t_6);
-    const real uhs_mu_2_in_axes2_y = uhs_B_2_in_axes2_xy*m->uhs_J_2_in_spec2_yz[i] +
-        m->uhs_Sigma_2_in_axes2_zz[i]*uhs_alpha_1_in_axes2_y +
-        v->uhs_g_in_axes2_z*m->uhs_h_2_in_spec2_x[i] -
+        uhs_B_2_in_axes2_zy*m->uhs_Sigma_2_in_axes2_yy[i];
+    const real uhs_mu_2_in_axes2_y = v->uhs_g_in_axes2_z*m->uhs_h_2_in_spec2_x[i] -
+        uhs_g_in_axes2_x*m->uhs_h_2_in_spec2_y[i] - m->uhs_J_2_in_spec2_xy[i]*(uhs_mu_2_t_4 -
+        uhs_mu_2_t_6) + m->uhs_Sigma_2_in_axes2_zz[i]*uhs_alpha_1_in_axes2_y +
+        uhs_B_2_in_axes2_xy*m->uhs_J_2_in_spec2_yz[i] -
         uhs_B_2_in_axes2_zx*m->uhs_Sigma_2_in_axes2_xx[i] -
-        uhs_B_2_in_axes2_zy*m->uhs_J_2_in_spec2_xz[i] -
-        m->uhs_J_2_in_spec2_xy[i]*(uhs_mu_2_t_4 - uhs_mu_2_t_6) -
-        uhs_g_in_axes2_x*m->uhs_h_2_in_spec2_y[i];
-    const real uhs_mu_2_in_axes2_z = uhs_B_2_in_axes2_yx*m->uhs_Sigma_2_in_axes2_xx[i] +
-        m->uhs_J_2_in_spec2_xy[i]*uhs_alpha_1_in_axes2_x -
-        uhs_B_2_in_axes2_xy*m->uhs_Sigma_2_in_axes2_yy[i] -
-        m->uhs_J_2_in_spec2_xz[i]*(uhs_mu_2_t_4 - uhs_mu_2_t_5) -
-        m->uhs_J_2_in_spec2_yz[i]*uhs_alpha_1_in_axes2_y -
-        uhs_g_in_axes2_x*m->uhs_h_2_in_spec2_z[i] - uhs_g_in_axes2_y*m->uhs_h_2_in_spec2_x[i];
+        uhs_B_2_in_axes2_zy*m->uhs_J_2_in_spec2_xz[i];
+    const real uhs_mu_2_in_axes2_z = m->uhs_J_2_in_spec2_xy[i]*uhs_alpha_1_in_axes2_x -
+        uhs_g_in_axes2_x*m->uhs_h_2_in_spec2_z[i] - uhs_g_in_axes2_y*m->uhs_h_2_in_spec2_x[i]
+        - m->uhs_J_2_in_spec2_xz[i]*(uhs_mu_2_t_4 - uhs_mu_2_t_5) -
+        m->uhs_J_2_in_spec2_yz[i]*uhs_alpha_1_in_axes2_y +
+        uhs_B_2_in_axes2_yx*m->uhs_Sigma_2_in_axes2_xx[i] -
+        uhs_B_2_in_axes2_xy*m->uhs_Sigma_2_in_axes2_yy[i];
     /* (uhs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
        left out */
     const real uhs_N_2_in_axes2_x = uhs_mu_2_in_axes2_x + uhs_mu_3_in_axes3_z;
@@ -2255,19 +2257,19 @@ INLINE void stage_uhs_legs_required(const prepared *m, size_t i, values_uhs *v)
        point */
     const real uhs_c_t = v->inv_uhs_root_2*uhs_N_2_in_axes2_z;
     const real uhs_c_t_2 = v->inv_uhs_v_1_in_axes2_z*(uhs_N_2_in_axes2_x*v->uhs_e_1_in_axes3_z
-        + uhs_c_t*v->uhs_v_1_t_2 - uhs_N_2_in_axes2_y*v->uhs_c_2);
-    const real uhs_c_in_axes3_x = uhs_c_t*v->uhs_s_3 +
-        m->uhs_h_3_in_spec3_y[i]*(v->uhs_W_2_t_2 + uhs_mu_3_t) -
+        - uhs_N_2_in_axes2_y*v->uhs_c_2 + uhs_c_t*v->uhs_v_1_t_2);
+    const real uhs_c_in_axes3_x = m->uhs_h_3_in_spec3_y[i]*(uhs_mu_3_t + v->uhs_W_2_t_2) -
         uhs_B_3_in_axes3_xy*m->uhs_h_3_in_spec3_z[i] -
-        uhs_B_3_in_axes3_xz*m->uhs_h_3_in_spec3_x[i] - v->uhs_c_3*uhs_c_t_2;
-    const real uhs_c_in_axes3_y = v->uhs_c_3*uhs_c_t + uhs_c_t_2*v->uhs_s_3 +
-        m->uhs_h_3_in_spec3_z[i]*(v->uhs_W_2_t + uhs_mu_3_t) -
+        uhs_B_3_in_axes3_xz*m->uhs_h_3_in_spec3_x[i] + uhs_c_t*v->uhs_s_3 -
+        v->uhs_c_3*uhs_c_t_2;
+    const real uhs_c_in_axes3_y = m->uhs_h_3_in_spec3_z[i]*(uhs_mu_3_t + v->uhs_W_2_t) -
         uhs_B_3_in_axes3_yx*m->uhs_h_3_in_spec3_y[i] -
-        uhs_B_3_in_axes3_yz*m->uhs_h_3_in_spec3_x[i];
+        uhs_B_3_in_axes3_yz*m->uhs_h_3_in_spec3_x[i] + v->uhs_c_3*uhs_c_t +
+        uhs_c_t_2*v->uhs_s_3;
     const real uhs_c_in_axes3_z = v->uhs_W_2_t_3*m->uhs_h_3_in_spec3_x[i] -
-        m->inv_uhs_joint3_pitch[i]*uhs_mu_3_in_axes3_z -
         uhs_B_3_in_axes3_zx*m->uhs_h_3_in_spec3_y[i] -
-        uhs_B_3_in_axes3_zy*m->uhs_h_3_in_spec3_z[i];
+        uhs_B_3_in_axes3_zy*m->uhs_h_3_in_spec3_z[i] -
+        m->inv_uhs_joint3_pitch[i]*uhs_mu_3_in_axes3_z;
     v->uhs_w_3_x = uhs_w_3_x;
     v->uhs_w_3_y = uhs_w_3_y;
     v->uhs_w_3_z = uhs_w_3_z;
@@ -2288,39 +2290,43 @@ INLINE void stage_uhs_legs_required(const prepared *m, size_t i, values_uhs *v)
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    real *s, verdict *t)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_M_dynamics(m, &v);
-    stage_Z_dynamics(m, w, k, V, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.h_star_x;
-    s[10*w + k] = v.h_star_y;
-    s[11*w + k] = v.h_star_z;
-    s[12*w + k] = v.J_star_xx;
-    s[13*w + k] = v.J_star_xy;
-    s[14*w + k] = v.J_star_xz;
-    s[15*w + k] = v.J_star_yy;
-    s[16*w + k] = v.J_star_yz;
-    s[17*w + k] = v.J_star_zz;
-    s[18*w + k] = v.Z_p_x;
-    s[19*w + k] = v.Z_p_y;
-    s[20*w + k] = v.Z_p_z;
-    s[21*w + k] = v.Z_q_x;
-    s[22*w + k] = v.Z_q_y;
-    s[23*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->h_star_x;
+    s[10*w + k] = v->h_star_y;
+    s[11*w + k] = v->h_star_z;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
+    *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_M_dynamics(m, v);
+    stage_Z_dynamics(m, w, k, V, v);
+    s[12*w + k] = v->J_star_xx;
+    s[13*w + k] = v->J_star_xy;
+    s[14*w + k] = v->J_star_xz;
+    s[15*w + k] = v->J_star_yy;
+    s[16*w + k] = v->J_star_yz;
+    s[17*w + k] = v->J_star_zz;
+    s[18*w + k] = v->Z_p_x;
+    s[19*w + k] = v->Z_p_y;
+    s[20*w + k] = v->Z_p_z;
+    s[21*w + k] = v->Z_q_x;
+    s[22*w + k] = v->Z_q_y;
+    s[23*w + k] = v->Z_q_z;
 }
 
 INLINE void dynamics_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2339,8 +2345,8 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, s
         v.uhs_qd_1_t*v.uhs_s_1);
     /* (uhs-qd_2) rate of joint 2 */
     const real uhs_qd_2_t_2 = v.uhs_c_1*v.uhs_qd_1_t + v.uhs_qd_1_t_2*v.uhs_s_1;
-    const real uhs_qd_2 = v.inv_uhs_h_3_t_9*(v.uhs_e_1_in_axes3_z*uhs_qd_2_t_2 +
-        uhs_qd_1*v.uhs_v_1_t_2 - v.uhs_c_2*v.uhs_qd_2_t);
+    const real uhs_qd_2 = v.inv_uhs_h_3_t_9*(v.uhs_e_1_in_axes3_z*uhs_qd_2_t_2 -
+        v.uhs_c_2*v.uhs_qd_2_t + uhs_qd_1*v.uhs_v_1_t_2);
     /* (uhs-qd_3) rate of joint 3 */
     const real uhs_qd_3 = m->inv_uhs_joint3_pitch[i]*(v.uhs_c_2*uhs_qd_2_t_2 +
         v.uhs_e_1_in_axes3_z*v.uhs_qd_2_t);
@@ -2361,7 +2367,7 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, s
     const real uhs_W_2_in_axes3_xy = uhs_omega_2_in_axes3_x*uhs_omega_2_in_axes3_y;
     const real uhs_W_2_t_3 = uhs_W_2_t + uhs_W_2_t_2;
     /* (uhs-omega_3) angular velocity of link 3 */
-    const real uhs_omega_3_in_axes3_z = uhs_omega_1_in_axes2_x + uhs_qd_3;
+    const real uhs_omega_3_in_axes3_z = uhs_qd_3 + uhs_omega_1_in_axes2_x;
     /* (uhs-W_3) centripetal tensor of link 3 */
     const real uhs_W_3_in_axes3_xz = uhs_omega_2_in_axes3_x*uhs_omega_3_in_axes3_z;
     const real uhs_W_3_in_axes3_yz = uhs_omega_2_in_axes3_y*uhs_omega_3_in_axes3_z;
@@ -2369,12 +2375,12 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, s
     const real uhs_u_1_t = v.uhs_e_1_in_axes3_z*v.uhs_e_2_in_axes3_x;
     const real uhs_u_1_t_2 = v.uhs_h_3_t_12*v.uhs_s_1 - v.uhs_c_1*uhs_u_1_t;
     const real uhs_u_1_t_3 = -v.uhs_c_1*v.uhs_h_3_t_12 - v.uhs_s_1*uhs_u_1_t;
-    const real axis_y_uhs_axes3_x = m->uhs_base_frame_xx[i]*uhs_u_1_t_2 +
-        m->uhs_base_frame_xy[i]*uhs_u_1_t_3 + m->uhs_base_frame_xz[i]*v.uhs_e_1_in_axes3_y;
-    const real axis_y_uhs_axes3_y = m->uhs_base_frame_yx[i]*uhs_u_1_t_2 +
-        m->uhs_base_frame_yy[i]*uhs_u_1_t_3 + m->uhs_base_frame_yz[i]*v.uhs_e_1_in_axes3_y;
-    const real axis_y_uhs_axes3_z = m->uhs_base_frame_zx[i]*uhs_u_1_t_2 +
-        m->uhs_base_frame_zy[i]*uhs_u_1_t_3 + m->uhs_base_frame_zz[i]*v.uhs_e_1_in_axes3_y;
+    const real axis_y_uhs_axes3_x = m->uhs_base_frame_xz[i]*v.uhs_e_1_in_axes3_y +
+        m->uhs_base_frame_xx[i]*uhs_u_1_t_2 + m->uhs_base_frame_xy[i]*uhs_u_1_t_3;
+    const real axis_y_uhs_axes3_y = m->uhs_base_frame_yz[i]*v.uhs_e_1_in_axes3_y +
+        m->uhs_base_frame_yx[i]*uhs_u_1_t_2 + m->uhs_base_frame_yy[i]*uhs_u_1_t_3;
+    const real axis_y_uhs_axes3_z = m->uhs_base_frame_zz[i]*v.uhs_e_1_in_axes3_y +
+        m->uhs_base_frame_zx[i]*uhs_u_1_t_2 + m->uhs_base_frame_zy[i]*uhs_u_1_t_3;
     const real axis_x_uhs_axes3_x = axis_y_uhs_axes3_y*v.axis_z_uhs_axes3_z -
         axis_y_uhs_axes3_z*v.axis_z_uhs_axes3_y;
     const real axis_x_uhs_axes3_y = axis_y_uhs_axes3_z*v.axis_z_uhs_axes3_x -
@@ -2405,13 +2411,12 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, s
     /* (uhs-bias) acceleration of the connection point at zero joint accelerations */
     const real uhs_bias_t_2 = m->uhs_bias_t[i]*uhs_qd_3;
     const real uhs_bias_in_axes3_x = uhs_bias_t_2*uhs_omega_2_in_axes3_y +
-        v.uhs_h_3_t_10*(uhs_W_3_in_axes3_xz + uhs_beta_3_in_axes3_y) +
-        m->uhs_joint3_offset_x[i]*(uhs_zeta_2_in_axes3_y +
-        uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x);
-    const real uhs_bias_in_axes3_y = v.uhs_h_3_t_10*(uhs_W_3_in_axes3_yz -
-        uhs_beta_3_in_axes3_x) +
+        m->uhs_joint3_offset_x[i]*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x +
+        uhs_zeta_2_in_axes3_y) + v.uhs_h_3_t_10*(uhs_W_3_in_axes3_xz + uhs_beta_3_in_axes3_y);
+    const real uhs_bias_in_axes3_y =
         m->uhs_joint3_offset_x[i]*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y -
-        uhs_zeta_2_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x;
+        uhs_zeta_2_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x +
+        v.uhs_h_3_t_10*(uhs_W_3_in_axes3_yz - uhs_beta_3_in_axes3_x);
     const real uhs_bias_in_axes3_z = -uhs_W_2_t_3*v.uhs_h_3_t_10 -
         uhs_W_2_t_3*m->uhs_joint3_offset_x[i];
     /* (uhs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
@@ -2442,8 +2447,8 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, s
         v.uhs_e_2_in_axes3_x*uhs_qdd_2_o - uhs_alpha_2_o_in_axes2_y*v.uhs_h_3_t_12;
     const real uhs_alpha_3_o_in_axes3_y = uhs_zeta_3_in_axes3_y -
         uhs_alpha_2_o_in_axes2_y*v.uhs_e_2_in_axes3_x - v.uhs_h_3_t_12*uhs_qdd_2_o;
-    const real uhs_alpha_3_o_in_axes3_z = uhs_alpha_2_o_in_axes2_x +
-        m->inv_uhs_joint3_pitch[i]*uhs_rel_o_in_axes3_z;
+    const real uhs_alpha_3_o_in_axes3_z = m->inv_uhs_joint3_pitch[i]*uhs_rel_o_in_axes3_z +
+        uhs_alpha_2_o_in_axes2_x;
     /* (uhs-B_3_o) remainder of the acceleration tensor of link 3 */
     const real uhs_B_3_o_in_axes3_xy = uhs_W_2_in_axes3_xy - uhs_alpha_3_o_in_axes3_z;
     const real uhs_B_3_o_in_axes3_xz = uhs_W_3_in_axes3_xz + uhs_alpha_3_o_in_axes3_y;
@@ -2461,27 +2466,25 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, s
     /* (uhs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
        reference points */
     const real uhs_mu_3_o_t = uhs_omega_3_in_axes3_z*uhs_omega_3_in_axes3_z;
-    const real uhs_mu_3_o_in_axes3_x = uhs_B_3_o_in_axes3_yx*m->uhs_J_3_in_spec3_xy[i] +
-        uhs_B_3_o_in_axes3_zy*m->uhs_Sigma_3_in_axes3_yy[i] +
+    const real uhs_mu_3_o_in_axes3_x = uhs_acc_3_o_in_axes3_z*m->uhs_h_3_in_spec3_z[i] -
+        uhs_acc_3_o_in_axes3_y*m->uhs_h_3_in_spec3_x[i] +
         m->uhs_J_3_in_spec3_xz[i]*(uhs_W_2_t_2 - uhs_mu_3_o_t) +
-        uhs_acc_3_o_in_axes3_z*m->uhs_h_3_in_spec3_z[i] -
+        uhs_B_3_o_in_axes3_yx*m->uhs_J_3_in_spec3_xy[i] +
+        uhs_B_3_o_in_axes3_zy*m->uhs_Sigma_3_in_axes3_yy[i] -
         uhs_B_3_o_in_axes3_yz*m->uhs_Sigma_3_in_axes3_zz[i] -
-        uhs_B_3_o_in_axes3_zx*m->uhs_J_3_in_spec3_yz[i] -
-        uhs_acc_3_o_in_axes3_y*m->uhs_h_3_in_spec3_x[i];
-    const real uhs_mu_3_o_in_axes3_y = uhs_B_3_o_in_axes3_xz*m->uhs_Sigma_3_in_axes3_zz[i] +
-        uhs_B_3_o_in_axes3_zy*m->uhs_J_3_in_spec3_yz[i] +
-        uhs_acc_3_o_in_axes3_x*m->uhs_h_3_in_spec3_x[i] -
-        uhs_B_3_o_in_axes3_xy*m->uhs_J_3_in_spec3_xz[i] -
-        uhs_B_3_o_in_axes3_zx*m->uhs_Sigma_3_in_axes3_xx[i] -
-        m->uhs_J_3_in_spec3_xy[i]*(uhs_W_2_t - uhs_mu_3_o_t) -
-        uhs_acc_3_o_in_axes3_z*m->uhs_h_3_in_spec3_y[i];
-    const real uhs_mu_3_o_in_axes3_z = uhs_B_3_o_in_axes3_xz*m->uhs_J_3_in_spec3_xz[i] +
-        uhs_B_3_o_in_axes3_yx*m->uhs_Sigma_3_in_axes3_xx[i] +
-        m->uhs_J_3_in_spec3_yz[i]*(uhs_W_2_t - uhs_W_2_t_2) +
-        uhs_acc_3_o_in_axes3_y*m->uhs_h_3_in_spec3_y[i] -
-        uhs_B_3_o_in_axes3_xy*m->uhs_Sigma_3_in_axes3_yy[i] -
-        uhs_B_3_o_in_axes3_yz*m->uhs_J_3_in_spec3_xy[i] -
-        uhs_acc_3_o_in_axes3_x*m->uhs_h_3_in_spec3_z[i];
+        uhs_B_3_o_in_axes3_zx*m->uhs_J_3_in_spec3_yz[i];
+    const real uhs_mu_3_o_in_axes3_y = uhs_acc_3_o_in_axes3_x*m->uhs_h_3_in_spec3_x[i] -
+        uhs_acc_3_o_in_axes3_z*m->uhs_h_3_in_spec3_y[i] - m->uhs_J_3_in_spec3_xy[i]*(uhs_W_2_t
+        - uhs_mu_3_o_t) - uhs_B_3_o_in_axes3_xy*m->uhs_J_3_in_spec3_xz[i] +
+        uhs_B_3_o_in_axes3_xz*m->uhs_Sigma_3_in_axes3_zz[i] +
+        uhs_B_3_o_in_axes3_zy*m->uhs_J_3_in_spec3_yz[i] -
+        uhs_B_3_o_in_axes3_zx*m->uhs_Sigma_3_in_axes3_xx[i];
+    const real uhs_mu_3_o_in_axes3_z = uhs_acc_3_o_in_axes3_y*m->uhs_h_3_in_spec3_y[i] -
+        uhs_acc_3_o_in_axes3_x*m->uhs_h_3_in_spec3_z[i] + m->uhs_J_3_in_spec3_yz[i]*(uhs_W_2_t
+        - uhs_W_2_t_2) + uhs_B_3_o_in_axes3_yx*m->uhs_Sigma_3_in_axes3_xx[i] -
+        uhs_B_3_o_in_axes3_xy*m->uhs_Sigma_3_in_axes3_yy[i] +
+        uhs_B_3_o_in_axes3_xz*m->uhs_J_3_in_spec3_xz[i] -
+        uhs_B_3_o_in_axes3_yz*m->uhs_J_3_in_spec3_xy[i];
     /* (uhs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real uhs_mu_2_o_t = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x;
@@ -2493,25 +2496,24 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, s
         v.uhs_e_1_in_axes3_z*m->uhs_mu_2_t_3[i];
     const real uhs_g_in_axes2_y = v.uhs_e_1_in_axes3_z*uhs_mu_2_o_t_4 -
         v.uhs_c_2*m->uhs_mu_2_t_3[i];
-    const real uhs_mu_2_o_in_axes2_x = uhs_B_2_o_in_axes2_yx*m->uhs_J_2_in_spec2_xy[i] +
+    const real uhs_mu_2_o_in_axes2_x = uhs_g_in_axes2_z*m->uhs_h_2_in_spec2_z[i] +
+        uhs_g_in_axes2_y*m->uhs_h_2_in_spec2_y[i] - m->uhs_J_2_in_spec2_yz[i]*(uhs_mu_2_o_t_2
+        - uhs_mu_2_o_t_3) + m->uhs_Sigma_2_in_axes2_zz[i]*uhs_alpha_1_o_in_axes2_x +
+        uhs_B_2_o_in_axes2_yx*m->uhs_J_2_in_spec2_xy[i] +
         uhs_B_2_o_in_axes2_zx*m->uhs_J_2_in_spec2_xz[i] +
-        uhs_B_2_o_in_axes2_zy*m->uhs_Sigma_2_in_axes2_yy[i] +
-        m->uhs_Sigma_2_in_axes2_zz[i]*uhs_alpha_1_o_in_axes2_x +
-        uhs_g_in_axes2_y*m->uhs_h_2_in_spec2_y[i] + uhs_g_in_axes2_z*m->uhs_h_2_in_spec2_z[i]
-        - m->uhs_J_2_in_spec2_yz[i]*(uhs_mu_2_o_t_2 - uhs_mu_2_o_t_3);
-    const real uhs_mu_2_o_in_axes2_y = uhs_B_2_o_in_axes2_xy*m->uhs_J_2_in_spec2_yz[i] +
-        m->uhs_Sigma_2_in_axes2_zz[i]*uhs_alpha_1_o_in_axes2_y +
-        uhs_g_in_axes2_z*m->uhs_h_2_in_spec2_x[i] -
+        uhs_B_2_o_in_axes2_zy*m->uhs_Sigma_2_in_axes2_yy[i];
+    const real uhs_mu_2_o_in_axes2_y = uhs_g_in_axes2_z*m->uhs_h_2_in_spec2_x[i] -
+        uhs_g_in_axes2_x*m->uhs_h_2_in_spec2_y[i] - m->uhs_J_2_in_spec2_xy[i]*(uhs_mu_2_o_t -
+        uhs_mu_2_o_t_3) + m->uhs_Sigma_2_in_axes2_zz[i]*uhs_alpha_1_o_in_axes2_y +
+        uhs_B_2_o_in_axes2_xy*m->uhs_J_2_in_spec2_yz[i] -
         uhs_B_2_o_in_axes2_zx*m->uhs_Sigma_2_in_axes2_xx[i] -
-        uhs_B_2_o_in_axes2_zy*m->uhs_J_2_in_spec2_xz[i] -
-        m->uhs_J_2_in_spec2_xy[i]*(uhs_mu_2_o_t - uhs_mu_2_o_t_3) -
-        uhs_g_in_axes2_x*m->uhs_h_2_in_spec2_y[i];
-    const real uhs_mu_2_o_in_axes2_z = uhs_B_2_o_in_axes2_yx*m->uhs_Sigma_2_in_axes2_xx[i] +
-        m->uhs_J_2_in_spec2_xy[i]*uhs_alpha_1_o_in_axes2_x -
-        uhs_B_2_o_in_axes2_xy*m->uhs_Sigma_2_in_axes2_yy[i] -
-        m->uhs_J_2_in_spec2_xz[i]*(uhs_mu_2_o_t - uhs_mu_2_o_t_2) -
-        m->uhs_J_2_in_spec2_yz[i]*uhs_alpha_1_o_in_axes2_y -
-        uhs_g_in_axes2_x*m->uhs_h_2_in_spec2_z[i] - uhs_g_in_axes2_y*m->uhs_h_2_in_spec2_x[i];
+        uhs_B_2_o_in_axes2_zy*m->uhs_J_2_in_spec2_xz[i];
+    const real uhs_mu_2_o_in_axes2_z = m->uhs_J_2_in_spec2_xy[i]*uhs_alpha_1_o_in_axes2_x -
+        uhs_g_in_axes2_x*m->uhs_h_2_in_spec2_z[i] - uhs_g_in_axes2_y*m->uhs_h_2_in_spec2_x[i]
+        - m->uhs_J_2_in_spec2_xz[i]*(uhs_mu_2_o_t - uhs_mu_2_o_t_2) -
+        m->uhs_J_2_in_spec2_yz[i]*uhs_alpha_1_o_in_axes2_y +
+        uhs_B_2_o_in_axes2_yx*m->uhs_Sigma_2_in_axes2_xx[i] -
+        uhs_B_2_o_in_axes2_xy*m->uhs_Sigma_2_in_axes2_yy[i];
     /* (uhs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
        connection point left out */
     const real uhs_N_2_o_in_axes2_x = uhs_mu_2_o_in_axes2_x + uhs_mu_3_o_in_axes3_z;
@@ -2523,36 +2525,35 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, s
        connection point */
     const real uhs_c_o_t = v.inv_uhs_h_3_t_9*uhs_N_2_o_in_axes2_z;
     const real uhs_c_o_t_2 =
-        v.inv_uhs_v_1_in_axes2_z*(uhs_N_2_o_in_axes2_x*v.uhs_e_1_in_axes3_z +
-        uhs_c_o_t*v.uhs_v_1_t_2 - uhs_N_2_o_in_axes2_y*v.uhs_c_2);
-    const real uhs_c_o_in_axes3_x = uhs_c_o_t*v.uhs_h_3_t_12 +
-        m->uhs_h_3_in_spec3_y[i]*(uhs_W_2_t_2 + uhs_mu_3_o_t) -
+        v.inv_uhs_v_1_in_axes2_z*(uhs_N_2_o_in_axes2_x*v.uhs_e_1_in_axes3_z -
+        uhs_N_2_o_in_axes2_y*v.uhs_c_2 + uhs_c_o_t*v.uhs_v_1_t_2);
+    const real uhs_c_o_in_axes3_x = m->uhs_h_3_in_spec3_y[i]*(uhs_mu_3_o_t + uhs_W_2_t_2) -
         uhs_B_3_o_in_axes3_xy*m->uhs_h_3_in_spec3_z[i] -
-        uhs_B_3_o_in_axes3_xz*m->uhs_h_3_in_spec3_x[i] - uhs_c_o_t_2*v.uhs_e_2_in_axes3_x;
-    const real uhs_c_o_in_axes3_y = uhs_c_o_t*v.uhs_e_2_in_axes3_x +
-        uhs_c_o_t_2*v.uhs_h_3_t_12 + m->uhs_h_3_in_spec3_z[i]*(uhs_W_2_t + uhs_mu_3_o_t) -
+        uhs_B_3_o_in_axes3_xz*m->uhs_h_3_in_spec3_x[i] + uhs_c_o_t*v.uhs_h_3_t_12 -
+        uhs_c_o_t_2*v.uhs_e_2_in_axes3_x;
+    const real uhs_c_o_in_axes3_y = m->uhs_h_3_in_spec3_z[i]*(uhs_mu_3_o_t + uhs_W_2_t) -
         uhs_B_3_o_in_axes3_yx*m->uhs_h_3_in_spec3_y[i] -
-        uhs_B_3_o_in_axes3_yz*m->uhs_h_3_in_spec3_x[i];
+        uhs_B_3_o_in_axes3_yz*m->uhs_h_3_in_spec3_x[i] + uhs_c_o_t*v.uhs_e_2_in_axes3_x +
+        uhs_c_o_t_2*v.uhs_h_3_t_12;
     const real uhs_c_o_in_axes3_z = uhs_W_2_t_3*m->uhs_h_3_in_spec3_x[i] -
-        m->inv_uhs_joint3_pitch[i]*uhs_mu_3_o_in_axes3_z -
         uhs_B_3_o_in_axes3_zx*m->uhs_h_3_in_spec3_y[i] -
-        uhs_B_3_o_in_axes3_zy*m->uhs_h_3_in_spec3_z[i];
+        uhs_B_3_o_in_axes3_zy*m->uhs_h_3_in_spec3_z[i] -
+        m->inv_uhs_joint3_pitch[i]*uhs_mu_3_o_in_axes3_z;
     /* (uhs-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real uhs_Q_t = v.uhs_d_c_in_axes3_xx +
-        v.uhs_d_Gamma_1_in_axes3_y*v.uhs_w_1_in_axes3_y +
-        v.uhs_d_Gamma_2_in_axes3_y*v.uhs_w_2_in_axes3_y +
-        v.uhs_d_alpha_3_in_axes3_zy*m->uhs_h_3_in_spec3_y[i] -
+    const real uhs_Q_t = v.uhs_d_Gamma_1_in_axes3_y*v.uhs_w_1_in_axes3_y +
+        v.uhs_d_alpha_3_in_axes3_zy*m->uhs_h_3_in_spec3_y[i] +
+        v.uhs_d_Gamma_2_in_axes3_y*v.uhs_w_2_in_axes3_y -
         m->uhs_h_3_in_spec3_x[i]*(v.uhs_e_1_in_axes3_x*v.uhs_w_1_in_axes3_y +
-        v.uhs_e_2_in_axes3_x*v.uhs_w_2_in_axes3_y);
+        v.uhs_e_2_in_axes3_x*v.uhs_w_2_in_axes3_y) + v.uhs_d_c_in_axes3_xx;
     const real uhs_Q_t_2 = R(0.5)*uhs_Q_t;
     const real uhs_Q_t_3 = m->uhs_d_G_in_axes3_zz[i] + v.uhs_d_c_in_axes3_xx;
     const real uhs_Q_t_4 = R(0.5)*uhs_Q_t_3;
-    const real uhs_Q_t_5 = axis_x_uhs_axes3_x*v.uhs_d_c_in_axes3_xy +
-        v.axis_z_uhs_axes3_x*v.uhs_d_c_in_axes3_yz - axis_y_uhs_axes3_x*uhs_Q_t_2;
-    const real uhs_Q_t_6 = axis_x_uhs_axes3_y*v.uhs_d_c_in_axes3_xy +
-        v.axis_z_uhs_axes3_y*v.uhs_d_c_in_axes3_yz - axis_y_uhs_axes3_y*uhs_Q_t_2;
-    const real uhs_Q_t_7 = axis_x_uhs_axes3_z*v.uhs_d_c_in_axes3_xy +
-        v.axis_z_uhs_axes3_z*v.uhs_d_c_in_axes3_yz - axis_y_uhs_axes3_z*uhs_Q_t_2;
+    const real uhs_Q_t_5 = v.axis_z_uhs_axes3_x*v.uhs_d_c_in_axes3_yz +
+        axis_x_uhs_axes3_x*v.uhs_d_c_in_axes3_xy - axis_y_uhs_axes3_x*uhs_Q_t_2;
+    const real uhs_Q_t_6 = v.axis_z_uhs_axes3_y*v.uhs_d_c_in_axes3_yz +
+        axis_x_uhs_axes3_y*v.uhs_d_c_in_axes3_xy - axis_y_uhs_axes3_y*uhs_Q_t_2;
+    const real uhs_Q_t_7 = v.axis_z_uhs_axes3_z*v.uhs_d_c_in_axes3_yz +
+        axis_x_uhs_axes3_z*v.uhs_d_c_in_axes3_xy - axis_y_uhs_axes3_z*uhs_Q_t_2;
     const real uhs_Q_t_8 = v.axis_z_uhs_axes3_x*uhs_Q_t_4 -
         axis_x_uhs_axes3_x*v.uhs_d_c_in_axes3_xz;
     const real uhs_Q_t_9 = v.axis_z_uhs_axes3_y*uhs_Q_t_4 -
@@ -2560,24 +2561,24 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, s
     const real uhs_Q_t_10 = v.axis_z_uhs_axes3_z*uhs_Q_t_4 -
         axis_x_uhs_axes3_z*v.uhs_d_c_in_axes3_xz;
     const real uhs_Q_t_11 = axis_y_uhs_axes3_x*uhs_Q_t_5 - v.axis_z_uhs_axes3_x*uhs_Q_t_8;
-    const real uhs_Q_xx = -2*uhs_Q_t_11 - v.uhs_d_c_in_axes3_xx;
+    const real uhs_Q_xx = -v.uhs_d_c_in_axes3_xx - 2*uhs_Q_t_11;
     const real uhs_Q_xy = v.axis_z_uhs_axes3_x*uhs_Q_t_9 + v.axis_z_uhs_axes3_y*uhs_Q_t_8 -
         axis_y_uhs_axes3_x*uhs_Q_t_6 - axis_y_uhs_axes3_y*uhs_Q_t_5;
     const real uhs_Q_xz = v.axis_z_uhs_axes3_x*uhs_Q_t_10 + v.axis_z_uhs_axes3_z*uhs_Q_t_8 -
         axis_y_uhs_axes3_x*uhs_Q_t_7 - axis_y_uhs_axes3_z*uhs_Q_t_5;
     const real uhs_Q_t_12 = axis_y_uhs_axes3_y*uhs_Q_t_6 - v.axis_z_uhs_axes3_y*uhs_Q_t_9;
-    const real uhs_Q_yy = -2*uhs_Q_t_12 - v.uhs_d_c_in_axes3_xx;
+    const real uhs_Q_yy = -v.uhs_d_c_in_axes3_xx - 2*uhs_Q_t_12;
     const real uhs_Q_yz = v.axis_z_uhs_axes3_y*uhs_Q_t_10 + v.axis_z_uhs_axes3_z*uhs_Q_t_9 -
         axis_y_uhs_axes3_y*uhs_Q_t_7 - axis_y_uhs_axes3_z*uhs_Q_t_6;
     const real uhs_Q_t_13 = axis_y_uhs_axes3_z*uhs_Q_t_7 - v.axis_z_uhs_axes3_z*uhs_Q_t_10;
-    const real uhs_Q_zz = -2*uhs_Q_t_13 - v.uhs_d_c_in_axes3_xx;
+    const real uhs_Q_zz = -v.uhs_d_c_in_axes3_xx - 2*uhs_Q_t_13;
     /* (uhs-U) velocity and gravity terms of the leg force */
-    const real uhs_U_x = -axis_x_uhs_axes3_x*uhs_c_o_in_axes3_x -
-        axis_y_uhs_axes3_x*uhs_c_o_in_axes3_y - v.axis_z_uhs_axes3_x*uhs_c_o_in_axes3_z;
-    const real uhs_U_y = -axis_x_uhs_axes3_y*uhs_c_o_in_axes3_x -
-        axis_y_uhs_axes3_y*uhs_c_o_in_axes3_y - v.axis_z_uhs_axes3_y*uhs_c_o_in_axes3_z;
-    const real uhs_U_z = -axis_x_uhs_axes3_z*uhs_c_o_in_axes3_x -
-        axis_y_uhs_axes3_z*uhs_c_o_in_axes3_y - v.axis_z_uhs_axes3_z*uhs_c_o_in_axes3_z;
+    const real uhs_U_x = -v.axis_z_uhs_axes3_x*uhs_c_o_in_axes3_z -
+        axis_x_uhs_axes3_x*uhs_c_o_in_axes3_x - axis_y_uhs_axes3_x*uhs_c_o_in_axes3_y;
+    const real uhs_U_y = -v.axis_z_uhs_axes3_y*uhs_c_o_in_axes3_z -
+        axis_x_uhs_axes3_y*uhs_c_o_in_axes3_x - axis_y_uhs_axes3_y*uhs_c_o_in_axes3_y;
+    const real uhs_U_z = -v.axis_z_uhs_axes3_z*uhs_c_o_in_axes3_z -
+        axis_x_uhs_axes3_z*uhs_c_o_in_axes3_x - axis_y_uhs_axes3_z*uhs_c_o_in_axes3_y;
     /* (M_ta) coupling block of M */
     const real uhs_M_ta_t = -uhs_Q_xy*v.uhs_q_z;
     const real uhs_M_ta_t_2 = uhs_Q_xz*v.uhs_q_y;
@@ -2672,15 +2673,15 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[11*w + k];
-    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
     const real h_star_y = s[10*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -2688,9 +2689,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[9*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
@@ -2725,13 +2726,13 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[24*w + k];
     const real Z_q_x = s[21*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[25*w + k];
     const real Z_q_y = s[22*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[26*w + k];
     const real Z_q_z = s[23*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
     const real M_tt_xy = sums[1*w + k];
@@ -2796,7 +2797,8 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 {
     real s[24] = {0}, sums[27] = {0};
     real terms_uhs[27*LEGS(LEGS_OF_uhs)] = {0}, o_uhs[8*LEGS(LEGS_OF_uhs)] = {0};
-    dynamics_before(m, 1, 0, X, V, s, t);
+    values v;
+    dynamics_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
         dynamics_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), 0, s, X, V, terms_uhs, o_uhs);
     }
@@ -2806,6 +2808,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t n = 0; n < 27; ++n) {
         sums[n] = total(terms_uhs + n*LEGS(LEGS_OF_uhs), LEGS_OF_uhs);
     }
+    dynamics_between(m, 1, 0, V, &v, s);
     dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
@@ -2815,7 +2818,9 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real s[24*LANES], sums[27*LANES];
     real o_uhs[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        dynamics_before(m, LANES, k, X, V, s, t);
+        values v;
+        dynamics_before(m, LANES, k, X, &v, s, t);
+        dynamics_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 27*LANES);
     for (size_t i = 0; i < LEGS_OF_uhs; ++i) {
@@ -2832,30 +2837,34 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_M_dynamics(m, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.h_star_x;
-    s[10*w + k] = v.h_star_y;
-    s[11*w + k] = v.h_star_z;
-    s[12*w + k] = v.J_star_xx;
-    s[13*w + k] = v.J_star_xy;
-    s[14*w + k] = v.J_star_xz;
-    s[15*w + k] = v.J_star_yy;
-    s[16*w + k] = v.J_star_yz;
-    s[17*w + k] = v.J_star_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->h_star_x;
+    s[10*w + k] = v->h_star_y;
+    s[11*w + k] = v->h_star_z;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void M_between(const prepared *m, size_t w, size_t k, values *v, real *s)
+{
+    stage_M_dynamics(m, v);
+    s[12*w + k] = v->J_star_xx;
+    s[13*w + k] = v->J_star_xy;
+    s[14*w + k] = v->J_star_xz;
+    s[15*w + k] = v->J_star_yy;
+    s[16*w + k] = v->J_star_yz;
+    s[17*w + k] = v->J_star_zz;
 }
 
 INLINE void M_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2867,34 +2876,33 @@ INLINE void M_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k
     /* (uhs-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real uhs_Q_t = v.uhs_e_1_in_axes3_z*v.uhs_e_2_in_axes3_x;
     const real uhs_Q_t_2 = v.uhs_h_3_t_12*v.uhs_s_1 - uhs_Q_t*v.uhs_c_1;
-    const real uhs_Q_t_3 = -uhs_Q_t*v.uhs_s_1 - v.uhs_c_1*v.uhs_h_3_t_12;
-    const real axis_y_uhs_axes3_x = uhs_Q_t_2*m->uhs_base_frame_xx[i] +
-        uhs_Q_t_3*m->uhs_base_frame_xy[i] + m->uhs_base_frame_xz[i]*v.uhs_e_1_in_axes3_y;
-    const real axis_y_uhs_axes3_y = uhs_Q_t_2*m->uhs_base_frame_yx[i] +
-        uhs_Q_t_3*m->uhs_base_frame_yy[i] + m->uhs_base_frame_yz[i]*v.uhs_e_1_in_axes3_y;
-    const real axis_y_uhs_axes3_z = uhs_Q_t_2*m->uhs_base_frame_zx[i] +
-        uhs_Q_t_3*m->uhs_base_frame_zy[i] + m->uhs_base_frame_zz[i]*v.uhs_e_1_in_axes3_y;
+    const real uhs_Q_t_3 = -v.uhs_c_1*v.uhs_h_3_t_12 - uhs_Q_t*v.uhs_s_1;
+    const real axis_y_uhs_axes3_x = m->uhs_base_frame_xz[i]*v.uhs_e_1_in_axes3_y +
+        uhs_Q_t_2*m->uhs_base_frame_xx[i] + uhs_Q_t_3*m->uhs_base_frame_xy[i];
+    const real axis_y_uhs_axes3_y = m->uhs_base_frame_yz[i]*v.uhs_e_1_in_axes3_y +
+        uhs_Q_t_2*m->uhs_base_frame_yx[i] + uhs_Q_t_3*m->uhs_base_frame_yy[i];
+    const real axis_y_uhs_axes3_z = m->uhs_base_frame_zz[i]*v.uhs_e_1_in_axes3_y +
+        uhs_Q_t_2*m->uhs_base_frame_zx[i] + uhs_Q_t_3*m->uhs_base_frame_zy[i];
     const real axis_x_uhs_axes3_x = axis_y_uhs_axes3_y*v.axis_z_uhs_axes3_z -
         axis_y_uhs_axes3_z*v.axis_z_uhs_axes3_y;
     const real axis_x_uhs_axes3_y = axis_y_uhs_axes3_z*v.axis_z_uhs_axes3_x -
         axis_y_uhs_axes3_x*v.axis_z_uhs_axes3_z;
     const real axis_x_uhs_axes3_z = axis_y_uhs_axes3_x*v.axis_z_uhs_axes3_y -
         axis_y_uhs_axes3_y*v.axis_z_uhs_axes3_x;
-    const real uhs_Q_t_4 = v.uhs_d_c_in_axes3_xx +
-        v.uhs_d_Gamma_1_in_axes3_y*v.uhs_w_1_in_axes3_y +
-        v.uhs_d_Gamma_2_in_axes3_y*v.uhs_w_2_in_axes3_y +
-        v.uhs_d_alpha_3_in_axes3_zy*m->uhs_h_3_in_spec3_y[i] -
+    const real uhs_Q_t_4 = v.uhs_d_Gamma_1_in_axes3_y*v.uhs_w_1_in_axes3_y +
+        v.uhs_d_alpha_3_in_axes3_zy*m->uhs_h_3_in_spec3_y[i] +
+        v.uhs_d_Gamma_2_in_axes3_y*v.uhs_w_2_in_axes3_y -
         m->uhs_h_3_in_spec3_x[i]*(v.uhs_e_1_in_axes3_x*v.uhs_w_1_in_axes3_y +
-        v.uhs_e_2_in_axes3_x*v.uhs_w_2_in_axes3_y);
+        v.uhs_e_2_in_axes3_x*v.uhs_w_2_in_axes3_y) + v.uhs_d_c_in_axes3_xx;
     const real uhs_Q_t_5 = R(0.5)*uhs_Q_t_4;
     const real uhs_Q_t_6 = m->uhs_d_G_in_axes3_zz[i] + v.uhs_d_c_in_axes3_xx;
     const real uhs_Q_t_7 = R(0.5)*uhs_Q_t_6;
-    const real uhs_Q_t_8 = axis_x_uhs_axes3_x*v.uhs_d_c_in_axes3_xy +
-        v.axis_z_uhs_axes3_x*v.uhs_d_c_in_axes3_yz - axis_y_uhs_axes3_x*uhs_Q_t_5;
-    const real uhs_Q_t_9 = axis_x_uhs_axes3_y*v.uhs_d_c_in_axes3_xy +
-        v.axis_z_uhs_axes3_y*v.uhs_d_c_in_axes3_yz - axis_y_uhs_axes3_y*uhs_Q_t_5;
-    const real uhs_Q_t_10 = axis_x_uhs_axes3_z*v.uhs_d_c_in_axes3_xy +
-        v.axis_z_uhs_axes3_z*v.uhs_d_c_in_axes3_yz - axis_y_uhs_axes3_z*uhs_Q_t_5;
+    const real uhs_Q_t_8 = v.axis_z_uhs_axes3_x*v.uhs_d_c_in_axes3_yz +
+        axis_x_uhs_axes3_x*v.uhs_d_c_in_axes3_xy - axis_y_uhs_axes3_x*uhs_Q_t_5;
+    const real uhs_Q_t_9 = v.axis_z_uhs_axes3_y*v.uhs_d_c_in_axes3_yz +
+        axis_x_uhs_axes3_y*v.uhs_d_c_in_axes3_xy - axis_y_uhs_axes3_y*uhs_Q_t_5;
+    const real uhs_Q_t_10 = v.axis_z_uhs_axes3_z*v.uhs_d_c_in_axes3_yz +
+        axis_x_uhs_axes3_z*v.uhs_d_c_in_axes3_xy - axis_y_uhs_axes3_z*uhs_Q_t_5;
     const real uhs_Q_t_11 = v.axis_z_uhs_axes3_x*uhs_Q_t_7 -
         axis_x_uhs_axes3_x*v.uhs_d_c_in_axes3_xz;
     const real uhs_Q_t_12 = v.axis_z_uhs_axes3_y*uhs_Q_t_7 -
@@ -2902,17 +2910,17 @@ INLINE void M_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real uhs_Q_t_13 = v.axis_z_uhs_axes3_z*uhs_Q_t_7 -
         axis_x_uhs_axes3_z*v.uhs_d_c_in_axes3_xz;
     const real uhs_Q_t_14 = axis_y_uhs_axes3_x*uhs_Q_t_8 - v.axis_z_uhs_axes3_x*uhs_Q_t_11;
-    const real uhs_Q_xx = -2*uhs_Q_t_14 - v.uhs_d_c_in_axes3_xx;
+    const real uhs_Q_xx = -v.uhs_d_c_in_axes3_xx - 2*uhs_Q_t_14;
     const real uhs_Q_xy = v.axis_z_uhs_axes3_x*uhs_Q_t_12 + v.axis_z_uhs_axes3_y*uhs_Q_t_11 -
         axis_y_uhs_axes3_x*uhs_Q_t_9 - axis_y_uhs_axes3_y*uhs_Q_t_8;
     const real uhs_Q_xz = v.axis_z_uhs_axes3_x*uhs_Q_t_13 + v.axis_z_uhs_axes3_z*uhs_Q_t_11 -
         axis_y_uhs_axes3_x*uhs_Q_t_10 - axis_y_uhs_axes3_z*uhs_Q_t_8;
     const real uhs_Q_t_15 = axis_y_uhs_axes3_y*uhs_Q_t_9 - v.axis_z_uhs_axes3_y*uhs_Q_t_12;
-    const real uhs_Q_yy = -2*uhs_Q_t_15 - v.uhs_d_c_in_axes3_xx;
+    const real uhs_Q_yy = -v.uhs_d_c_in_axes3_xx - 2*uhs_Q_t_15;
     const real uhs_Q_yz = v.axis_z_uhs_axes3_y*uhs_Q_t_13 + v.axis_z_uhs_axes3_z*uhs_Q_t_12 -
         axis_y_uhs_axes3_y*uhs_Q_t_10 - axis_y_uhs_axes3_z*uhs_Q_t_9;
     const real uhs_Q_t_16 = axis_y_uhs_axes3_z*uhs_Q_t_10 - v.axis_z_uhs_axes3_z*uhs_Q_t_13;
-    const real uhs_Q_zz = -2*uhs_Q_t_16 - v.uhs_d_c_in_axes3_xx;
+    const real uhs_Q_zz = -v.uhs_d_c_in_axes3_xx - 2*uhs_Q_t_16;
     /* (M_ta) coupling block of M */
     const real uhs_M_ta_t = -uhs_Q_xy*v.uhs_q_z;
     const real uhs_M_ta_t_2 = uhs_Q_xz*v.uhs_q_y;
@@ -2973,15 +2981,15 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[11*w + k];
-    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
     const real h_star_y = s[10*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -2989,9 +2997,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[9*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
@@ -3068,7 +3076,8 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
     real s[18] = {0}, sums[21] = {0};
     real terms_uhs[21*LEGS(LEGS_OF_uhs)] = {0}, o_uhs[LEGS(LEGS_OF_uhs)] = {0};
-    M_before(m, 1, 0, X, s, t);
+    values v;
+    M_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
         M_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), 0, s, X, terms_uhs, o_uhs);
     }
@@ -3078,6 +3087,7 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     for (size_t n = 0; n < 21; ++n) {
         sums[n] = total(terms_uhs + n*LEGS(LEGS_OF_uhs), LEGS_OF_uhs);
     }
+    M_between(m, 1, 0, &v, s);
     M_after(m, 1, 0, s, sums, M, t);
 }
 
@@ -3086,7 +3096,9 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
     real s[18*LANES], sums[21*LANES];
     real o_uhs[LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        M_before(m, LANES, k, X, s, t);
+        values v;
+        M_before(m, LANES, k, X, &v, s, t);
+        M_between(m, LANES, k, &v, s);
     }
     clear(sums, 21*LANES);
     for (size_t i = 0; i < LEGS_OF_uhs; ++i) {
@@ -3103,29 +3115,32 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s,
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
     verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_Z_dynamics(m, w, k, V, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.Z_p_x;
-    s[10*w + k] = v.Z_p_y;
-    s[11*w + k] = v.Z_p_z;
-    s[12*w + k] = v.Z_q_x;
-    s[13*w + k] = v.Z_q_y;
-    s[14*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_Z_dynamics(m, w, k, V, v);
+    s[9*w + k] = v->Z_p_x;
+    s[10*w + k] = v->Z_p_y;
+    s[11*w + k] = v->Z_p_z;
+    s[12*w + k] = v->Z_q_x;
+    s[13*w + k] = v->Z_q_y;
+    s[14*w + k] = v->Z_q_z;
 }
 
 INLINE void Z_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3138,12 +3153,12 @@ INLINE void Z_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real uhs_u_1_t = v.uhs_c_3*v.uhs_e_1_in_axes3_z;
     const real uhs_u_1_t_2 = v.uhs_s_1*v.uhs_s_3 - v.uhs_c_1*uhs_u_1_t;
     const real uhs_u_1_t_3 = -v.uhs_c_1*v.uhs_s_3 - v.uhs_s_1*uhs_u_1_t;
-    const real axis_y_uhs_axes3_x = m->uhs_base_frame_xx[i]*uhs_u_1_t_2 +
-        m->uhs_base_frame_xy[i]*uhs_u_1_t_3 + m->uhs_base_frame_xz[i]*v.uhs_e_1_in_axes3_y;
-    const real axis_y_uhs_axes3_y = m->uhs_base_frame_yx[i]*uhs_u_1_t_2 +
-        m->uhs_base_frame_yy[i]*uhs_u_1_t_3 + m->uhs_base_frame_yz[i]*v.uhs_e_1_in_axes3_y;
-    const real axis_y_uhs_axes3_z = m->uhs_base_frame_zx[i]*uhs_u_1_t_2 +
-        m->uhs_base_frame_zy[i]*uhs_u_1_t_3 + m->uhs_base_frame_zz[i]*v.uhs_e_1_in_axes3_y;
+    const real axis_y_uhs_axes3_x = m->uhs_base_frame_xz[i]*v.uhs_e_1_in_axes3_y +
+        m->uhs_base_frame_xx[i]*uhs_u_1_t_2 + m->uhs_base_frame_xy[i]*uhs_u_1_t_3;
+    const real axis_y_uhs_axes3_y = m->uhs_base_frame_yz[i]*v.uhs_e_1_in_axes3_y +
+        m->uhs_base_frame_yx[i]*uhs_u_1_t_2 + m->uhs_base_frame_yy[i]*uhs_u_1_t_3;
+    const real axis_y_uhs_axes3_z = m->uhs_base_frame_zz[i]*v.uhs_e_1_in_axes3_y +
+        m->uhs_base_frame_zx[i]*uhs_u_1_t_2 + m->uhs_base_frame_zy[i]*uhs_u_1_t_3;
     const real axis_x_uhs_axes3_x = axis_y_uhs_axes3_y*v.axis_z_uhs_axes3_z -
         axis_y_uhs_axes3_z*v.axis_z_uhs_axes3_y;
     const real axis_x_uhs_axes3_y = axis_y_uhs_axes3_z*v.axis_z_uhs_axes3_x -
@@ -3189,8 +3204,8 @@ INLINE void Z_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k
         uhs_alpha_2_o_in_axes2_y*v.uhs_s_3;
     const real uhs_alpha_3_o_in_axes3_y = v.uhs_zeta_3_in_axes3_y -
         uhs_alpha_2_o_in_axes2_y*v.uhs_c_3 - uhs_qdd_2_o*v.uhs_s_3;
-    const real uhs_alpha_3_o_in_axes3_z = uhs_alpha_2_o_in_axes2_x +
-        m->inv_uhs_joint3_pitch[i]*uhs_rel_o_in_axes3_z;
+    const real uhs_alpha_3_o_in_axes3_z = m->inv_uhs_joint3_pitch[i]*uhs_rel_o_in_axes3_z +
+        uhs_alpha_2_o_in_axes2_x;
     /* (uhs-B_3_o) remainder of the acceleration tensor of link 3 */
     const real uhs_B_3_o_in_axes3_xy = v.uhs_W_2_in_axes3_xy - uhs_alpha_3_o_in_axes3_z;
     const real uhs_B_3_o_in_axes3_xz = v.uhs_W_3_in_axes3_xz + uhs_alpha_3_o_in_axes3_y;
@@ -3208,27 +3223,27 @@ INLINE void Z_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k
     /* (uhs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
        reference points */
     const real uhs_mu_3_o_t = v.uhs_omega_3_in_axes3_z*v.uhs_omega_3_in_axes3_z;
-    const real uhs_mu_3_o_in_axes3_x = uhs_B_3_o_in_axes3_yx*m->uhs_J_3_in_spec3_xy[i] +
-        uhs_B_3_o_in_axes3_zy*m->uhs_Sigma_3_in_axes3_yy[i] +
+    const real uhs_mu_3_o_in_axes3_x = uhs_acc_3_o_in_axes3_z*m->uhs_h_3_in_spec3_z[i] -
+        uhs_acc_3_o_in_axes3_y*m->uhs_h_3_in_spec3_x[i] +
         m->uhs_J_3_in_spec3_xz[i]*(v.uhs_W_2_t_2 - uhs_mu_3_o_t) +
-        uhs_acc_3_o_in_axes3_z*m->uhs_h_3_in_spec3_z[i] -
+        uhs_B_3_o_in_axes3_yx*m->uhs_J_3_in_spec3_xy[i] +
+        uhs_B_3_o_in_axes3_zy*m->uhs_Sigma_3_in_axes3_yy[i] -
         uhs_B_3_o_in_axes3_yz*m->uhs_Sigma_3_in_axes3_zz[i] -
-        uhs_B_3_o_in_axes3_zx*m->uhs_J_3_in_spec3_yz[i] -
-        uhs_acc_3_o_in_axes3_y*m->uhs_h_3_in_spec3_x[i];
-    const real uhs_mu_3_o_in_axes3_y = uhs_B_3_o_in_axes3_xz*m->uhs_Sigma_3_in_axes3_zz[i] +
-        uhs_B_3_o_in_axes3_zy*m->uhs_J_3_in_spec3_yz[i] +
-        uhs_acc_3_o_in_axes3_x*m->uhs_h_3_in_spec3_x[i] -
-        uhs_B_3_o_in_axes3_xy*m->uhs_J_3_in_spec3_xz[i] -
-        uhs_B_3_o_in_axes3_zx*m->uhs_Sigma_3_in_axes3_xx[i] -
+        uhs_B_3_o_in_axes3_zx*m->uhs_J_3_in_spec3_yz[i];
+    const real uhs_mu_3_o_in_axes3_y = uhs_acc_3_o_in_axes3_x*m->uhs_h_3_in_spec3_x[i] -
+        uhs_acc_3_o_in_axes3_z*m->uhs_h_3_in_spec3_y[i] -
         m->uhs_J_3_in_spec3_xy[i]*(v.uhs_W_2_t - uhs_mu_3_o_t) -
-        uhs_acc_3_o_in_axes3_z*m->uhs_h_3_in_spec3_y[i];
-    const real uhs_mu_3_o_in_axes3_z = uhs_B_3_o_in_axes3_xz*m->uhs_J_3_in_spec3_xz[i] +
-        uhs_B_3_o_in_axes3_yx*m->uhs_Sigma_3_in_axes3_xx[i] +
+        uhs_B_3_o_in_axes3_xy*m->uhs_J_3_in_spec3_xz[i] +
+        uhs_B_3_o_in_axes3_xz*m->uhs_Sigma_3_in_axes3_zz[i] +
+        uhs_B_3_o_in_axes3_zy*m->uhs_J_3_in_spec3_yz[i] -
+        uhs_B_3_o_in_axes3_zx*m->uhs_Sigma_3_in_axes3_xx[i];
+    const real uhs_mu_3_o_in_axes3_z = uhs_acc_3_o_in_axes3_y*m->uhs_h_3_in_spec3_y[i] -
+        uhs_acc_3_o_in_axes3_x*m->uhs_h_3_in_spec3_z[i] +
         m->uhs_J_3_in_spec3_yz[i]*(v.uhs_W_2_t - v.uhs_W_2_t_2) +
-        uhs_acc_3_o_in_axes3_y*m->uhs_h_3_in_spec3_y[i] -
-        uhs_B_3_o_in_axes3_xy*m->uhs_Sigma_3_in_axes3_yy[i] -
-        uhs_B_3_o_in_axes3_yz*m->uhs_J_3_in_spec3_xy[i] -
-        uhs_acc_3_o_in_axes3_x*m->uhs_h_3_in_spec3_z[i];
+        uhs_B_3_o_in_axes3_yx*m->uhs_Sigma_3_in_axes3_xx[i] -
+        uhs_B_3_o_in_axes3_xy*m->uhs_Sigma_3_in_axes3_yy[i] +
+        uhs_B_3_o_in_axes3_xz*m->uhs_J_3_in_spec3_xz[i] -
+        uhs_B_3_o_in_axes3_yz*m->uhs_J_3_in_spec3_xy[i];
     /* (uhs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real uhs_mu_2_o_t = v.uhs_omega_1_in_axes2_x*v.uhs_omega_1_in_axes2_x;
@@ -3239,26 +3254,24 @@ INLINE void Z_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k
         v.uhs_e_1_in_axes3_z*m->uhs_mu_2_t_3[i];
     const real uhs_g_in_axes2_y = v.uhs_e_1_in_axes3_z*uhs_mu_2_o_t_4 -
         v.uhs_c_2*m->uhs_mu_2_t_3[i];
-    const real uhs_mu_2_o_in_axes2_x = uhs_B_2_o_in_axes2_yx*m->uhs_J_2_in_spec2_xy[i] +
+    const real uhs_mu_2_o_in_axes2_x = v.uhs_g_in_axes2_z*m->uhs_h_2_in_spec2_z[i] +
+        uhs_g_in_axes2_y*m->uhs_h_2_in_spec2_y[i] - m->uhs_J_2_in_spec2_yz[i]*(uhs_mu_2_o_t_2
+        - uhs_mu_2_o_t_3) + m->uhs_Sigma_2_in_axes2_zz[i]*uhs_alpha_1_o_in_axes2_x +
+        uhs_B_2_o_in_axes2_yx*m->uhs_J_2_in_spec2_xy[i] +
         uhs_B_2_o_in_axes2_zx*m->uhs_J_2_in_spec2_xz[i] +
-        uhs_B_2_o_in_axes2_zy*m->uhs_Sigma_2_in_axes2_yy[i] +
-        m->uhs_Sigma_2_in_axes2_zz[i]*uhs_alpha_1_o_in_axes2_x +
-        uhs_g_in_axes2_y*m->uhs_h_2_in_spec2_y[i] +
-        v.uhs_g_in_axes2_z*m->uhs_h_2_in_spec2_z[i] -
-        m->uhs_J_2_in_spec2_yz[i]*(uhs_mu_2_o_t_2 - uhs_mu_2_o_t_3);
-    const real uhs_mu_2_o_in_axes2_y = uhs_B_2_o_in_axes2_xy*m->uhs_J_2_in_spec2_yz[i] +
-        m->uhs_Sigma_2_in_axes2_zz[i]*uhs_alpha_1_o_in_axes2_y +
-        v.uhs_g_in_axes2_z*m->uhs_h_2_in_spec2_x[i] -
+        uhs_B_2_o_in_axes2_zy*m->uhs_Sigma_2_in_axes2_yy[i];
+    const real uhs_mu_2_o_in_axes2_y = v.uhs_g_in_axes2_z*m->uhs_h_2_in_spec2_x[i] -
+        uhs_g_in_axes2_x*m->uhs_h_2_in_spec2_y[i] - m->uhs_J_2_in_spec2_xy[i]*(uhs_mu_2_o_t -
+        uhs_mu_2_o_t_3) + m->uhs_Sigma_2_in_axes2_zz[i]*uhs_alpha_1_o_in_axes2_y +
+        uhs_B_2_o_in_axes2_xy*m->uhs_J_2_in_spec2_yz[i] -
         uhs_B_2_o_in_axes2_zx*m->uhs_Sigma_2_in_axes2_xx[i] -
-        uhs_B_2_o_in_axes2_zy*m->uhs_J_2_in_spec2_xz[i] -
-        m->uhs_J_2_in_spec2_xy[i]*(uhs_mu_2_o_t - uhs_mu_2_o_t_3) -
-        uhs_g_in_axes2_x*m->uhs_h_2_in_spec2_y[i];
-    const real uhs_mu_2_o_in_axes2_z = uhs_B_2_o_in_axes2_yx*m->uhs_Sigma_2_in_axes2_xx[i] +
-        m->uhs_J_2_in_spec2_xy[i]*uhs_alpha_1_o_in_axes2_x -
-        uhs_B_2_o_in_axes2_xy*m->uhs_Sigma_2_in_axes2_yy[i] -
-        m->uhs_J_2_in_spec2_xz[i]*(uhs_mu_2_o_t - uhs_mu_2_o_t_2) -
-        m->uhs_J_2_in_spec2_yz[i]*uhs_alpha_1_o_in_axes2_y -
-        uhs_g_in_axes2_x*m->uhs_h_2_in_spec2_z[i] - uhs_g_in_axes2_y*m->uhs_h_2_in_spec2_x[i];
+        uhs_B_2_o_in_axes2_zy*m->uhs_J_2_in_spec2_xz[i];
+    const real uhs_mu_2_o_in_axes2_z = m->uhs_J_2_in_spec2_xy[i]*uhs_alpha_1_o_in_axes2_x -
+        uhs_g_in_axes2_x*m->uhs_h_2_in_spec2_z[i] - uhs_g_in_axes2_y*m->uhs_h_2_in_spec2_x[i]
+        - m->uhs_J_2_in_spec2_xz[i]*(uhs_mu_2_o_t - uhs_mu_2_o_t_2) -
+        m->uhs_J_2_in_spec2_yz[i]*uhs_alpha_1_o_in_axes2_y +
+        uhs_B_2_o_in_axes2_yx*m->uhs_Sigma_2_in_axes2_xx[i] -
+        uhs_B_2_o_in_axes2_xy*m->uhs_Sigma_2_in_axes2_yy[i];
     /* (uhs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
        connection point left out */
     const real uhs_N_2_o_in_axes2_x = uhs_mu_2_o_in_axes2_x + uhs_mu_3_o_in_axes3_z;
@@ -3270,27 +3283,27 @@ INLINE void Z_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k
        connection point */
     const real uhs_c_o_t = v.inv_uhs_root_2*uhs_N_2_o_in_axes2_z;
     const real uhs_c_o_t_2 =
-        v.inv_uhs_v_1_in_axes2_z*(uhs_N_2_o_in_axes2_x*v.uhs_e_1_in_axes3_z +
-        uhs_c_o_t*v.uhs_v_1_t_2 - uhs_N_2_o_in_axes2_y*v.uhs_c_2);
-    const real uhs_c_o_in_axes3_x = uhs_c_o_t*v.uhs_s_3 +
-        m->uhs_h_3_in_spec3_y[i]*(v.uhs_W_2_t_2 + uhs_mu_3_o_t) -
+        v.inv_uhs_v_1_in_axes2_z*(uhs_N_2_o_in_axes2_x*v.uhs_e_1_in_axes3_z -
+        uhs_N_2_o_in_axes2_y*v.uhs_c_2 + uhs_c_o_t*v.uhs_v_1_t_2);
+    const real uhs_c_o_in_axes3_x = m->uhs_h_3_in_spec3_y[i]*(uhs_mu_3_o_t + v.uhs_W_2_t_2) -
         uhs_B_3_o_in_axes3_xy*m->uhs_h_3_in_spec3_z[i] -
-        uhs_B_3_o_in_axes3_xz*m->uhs_h_3_in_spec3_x[i] - v.uhs_c_3*uhs_c_o_t_2;
-    const real uhs_c_o_in_axes3_y = v.uhs_c_3*uhs_c_o_t + uhs_c_o_t_2*v.uhs_s_3 +
-        m->uhs_h_3_in_spec3_z[i]*(v.uhs_W_2_t + uhs_mu_3_o_t) -
+        uhs_B_3_o_in_axes3_xz*m->uhs_h_3_in_spec3_x[i] + uhs_c_o_t*v.uhs_s_3 -
+        v.uhs_c_3*uhs_c_o_t_2;
+    const real uhs_c_o_in_axes3_y = m->uhs_h_3_in_spec3_z[i]*(uhs_mu_3_o_t + v.uhs_W_2_t) -
         uhs_B_3_o_in_axes3_yx*m->uhs_h_3_in_spec3_y[i] -
-        uhs_B_3_o_in_axes3_yz*m->uhs_h_3_in_spec3_x[i];
+        uhs_B_3_o_in_axes3_yz*m->uhs_h_3_in_spec3_x[i] + v.uhs_c_3*uhs_c_o_t +
+        uhs_c_o_t_2*v.uhs_s_3;
     const real uhs_c_o_in_axes3_z = v.uhs_W_2_t_3*m->uhs_h_3_in_spec3_x[i] -
-        m->inv_uhs_joint3_pitch[i]*uhs_mu_3_o_in_axes3_z -
         uhs_B_3_o_in_axes3_zx*m->uhs_h_3_in_spec3_y[i] -
-        uhs_B_3_o_in_axes3_zy*m->uhs_h_3_in_spec3_z[i];
+        uhs_B_3_o_in_axes3_zy*m->uhs_h_3_in_spec3_z[i] -
+        m->inv_uhs_joint3_pitch[i]*uhs_mu_3_o_in_axes3_z;
     /* (uhs-U) velocity and gravity terms of the leg force */
-    const real uhs_U_x = -axis_x_uhs_axes3_x*uhs_c_o_in_axes3_x -
-        axis_y_uhs_axes3_x*uhs_c_o_in_axes3_y - v.axis_z_uhs_axes3_x*uhs_c_o_in_axes3_z;
-    const real uhs_U_y = -axis_x_uhs_axes3_y*uhs_c_o_in_axes3_x -
-        axis_y_uhs_axes3_y*uhs_c_o_in_axes3_y - v.axis_z_uhs_axes3_y*uhs_c_o_in_axes3_z;
-    const real uhs_U_z = -axis_x_uhs_axes3_z*uhs_c_o_in_axes3_x -
-        axis_y_uhs_axes3_z*uhs_c_o_in_axes3_y - v.axis_z_uhs_axes3_z*uhs_c_o_in_axes3_z;
+    const real uhs_U_x = -v.axis_z_uhs_axes3_x*uhs_c_o_in_axes3_z -
+        axis_x_uhs_axes3_x*uhs_c_o_in_axes3_x - axis_y_uhs_axes3_x*uhs_c_o_in_axes3_y;
+    const real uhs_U_y = -v.axis_z_uhs_axes3_y*uhs_c_o_in_axes3_z -
+        axis_x_uhs_axes3_y*uhs_c_o_in_axes3_x - axis_y_uhs_axes3_y*uhs_c_o_in_axes3_y;
+    const real uhs_U_z = -v.axis_z_uhs_axes3_z*uhs_c_o_in_axes3_z -
+        axis_x_uhs_axes3_z*uhs_c_o_in_axes3_x - axis_y_uhs_axes3_z*uhs_c_o_in_axes3_y;
     /* (Z_a) rotational part of Z */
     const real uhs_Z_a_t = uhs_U_z*v.uhs_q_y - uhs_U_y*v.uhs_q_z;
     const real uhs_Z_a_t_2 = uhs_U_x*v.uhs_q_z - uhs_U_z*v.uhs_q_x;
@@ -3329,13 +3342,13 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[3*w + k];
     const real Z_q_x = s[12*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[4*w + k];
     const real Z_q_y = s[13*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[5*w + k];
     const real Z_q_z = s[14*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
     Z[1*w + k] = Z_t_y;
@@ -3351,7 +3364,8 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_uhs[6*LEGS(LEGS_OF_uhs)] = {0}, o_uhs[LEGS(LEGS_OF_uhs)] = {0};
-    Z_before(m, 1, 0, X, V, s, t);
+    values v;
+    Z_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
         Z_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), 0, s, X, V, terms_uhs, o_uhs);
     }
@@ -3361,6 +3375,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_uhs + n*LEGS(LEGS_OF_uhs), LEGS_OF_uhs);
     }
+    Z_between(m, 1, 0, V, &v, s);
     Z_after(1, 0, s, sums, Z, t);
 }
 
@@ -3370,7 +3385,9 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real s[15*LANES], sums[6*LANES];
     real o_uhs[LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        Z_before(m, LANES, k, X, V, s, t);
+        values v;
+        Z_before(m, LANES, k, X, &v, s, t);
+        Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_uhs; ++i) {
@@ -3387,20 +3404,20 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void H_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3441,7 +3458,8 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
     real s[9] = {0};
     real o_uhs[8*LEGS(LEGS_OF_uhs)] = {0};
-    H_before(m, 1, 0, X, s, t);
+    values v;
+    H_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
         H_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), s, X, o_uhs);
     }
@@ -3455,7 +3473,8 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
     real s[9*LANES];
     real o_uhs[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        H_before(m, LANES, k, X, s, t);
+        values v;
+        H_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_uhs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3468,12 +3487,26 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, real *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
+    values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
     /* (W_p) centripetal tensor of the platform */
     const real omega_x = V[3*w + k];
     const real omega_y = V[4*w + k];
@@ -3488,72 +3521,62 @@ INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X
     const real a_t_y = t_ddot_y - m->gravity_y;
     const real t_ddot_z = A[2*w + k];
     const real a_t_z = t_ddot_z - m->gravity_z;
-    const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
-    const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
-    const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
+    const real a_t_in_platform_x = v->R_yx*a_t_y + v->R_zx*a_t_z + v->R_xx*a_t_x;
+    const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
+    const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
     const real f_p_t = omega_x*omega_x;
     const real f_p_t_2 = omega_y*omega_y;
     const real f_p_t_3 = omega_z*omega_z;
     const real alpha_y = A[4*w + k];
     const real alpha_z = A[5*w + k];
-    const real f_p_x = a_t_x*m->m_star + v.h_star_y*(W_p_xy - alpha_z) + v.h_star_z*(W_p_xz +
-        alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+    const real f_p_x = a_t_x*m->m_star + v->h_star_y*(W_p_xy - alpha_z) + v->h_star_z*(alpha_y
+        + W_p_xz) - v->h_star_x*(f_p_t_2 + f_p_t_3);
     const real alpha_x = A[3*w + k];
-    const real f_p_y = a_t_y*m->m_star + v.h_star_x*(W_p_xy + alpha_z) + v.h_star_z*(W_p_yz -
-        alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
-    const real f_p_z = a_t_z*m->m_star + v.h_star_x*(W_p_xz - alpha_y) + v.h_star_y*(W_p_yz +
-        alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
+    const real f_p_y = a_t_y*m->m_star + v->h_star_x*(alpha_z + W_p_xy) + v->h_star_z*(W_p_yz
+        - alpha_x) - v->h_star_y*(f_p_t + f_p_t_3);
+    const real f_p_z = a_t_z*m->m_star + v->h_star_x*(W_p_xz - alpha_y) + v->h_star_y*(alpha_x
+        + W_p_yz) - v->h_star_z*(f_p_t + f_p_t_2);
     /* (mu_p) inertia moment of the platform less that of its weight */
-    const real mu_p_t = m->J_star_in_platform_xx*v.omega_in_platform_x +
-        m->J_star_in_platform_xy*v.omega_in_platform_y +
-        m->J_star_in_platform_xz*v.omega_in_platform_z;
-    const real mu_p_t_2 = m->J_star_in_platform_xy*v.omega_in_platform_x +
-        m->J_star_in_platform_yy*v.omega_in_platform_y +
-        m->J_star_in_platform_yz*v.omega_in_platform_z;
-    const real mu_p_t_3 = m->J_star_in_platform_xz*v.omega_in_platform_x +
-        m->J_star_in_platform_yz*v.omega_in_platform_y +
-        m->J_star_in_platform_zz*v.omega_in_platform_z;
-    const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
-    const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
-    const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+    const real mu_p_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
+        m->J_star_in_platform_xy*v->omega_in_platform_y +
+        m->J_star_in_platform_xz*v->omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
+        m->J_star_in_platform_yy*v->omega_in_platform_y +
+        m->J_star_in_platform_yz*v->omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
+        m->J_star_in_platform_yz*v->omega_in_platform_y +
+        m->J_star_in_platform_zz*v->omega_in_platform_z;
+    const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
+    const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
+    const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
     const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
         m->J_star_in_platform_xy*alpha_in_platform_y +
         m->J_star_in_platform_xz*alpha_in_platform_z +
-        a_t_in_platform_z*m->h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
-        a_t_in_platform_y*m->h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+        a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
+        + mu_p_t_3*v->omega_in_platform_y - mu_p_t_2*v->omega_in_platform_z;
     const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
         m->J_star_in_platform_yz*alpha_in_platform_z +
-        a_t_in_platform_x*m->h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
-        a_t_in_platform_z*m->h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
+        a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
+        + mu_p_t*v->omega_in_platform_z - mu_p_t_3*v->omega_in_platform_x;
     const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
         m->J_star_in_platform_zz*alpha_in_platform_z +
-        a_t_in_platform_y*m->h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
-        a_t_in_platform_x*m->h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
-    const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
-        v.R_xz*mu_p_in_platform_z;
-    const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
-        v.R_yz*mu_p_in_platform_z;
-    const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
-        v.R_zz*mu_p_in_platform_z;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+        a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
+        + mu_p_t_2*v->omega_in_platform_x - mu_p_t*v->omega_in_platform_y;
+    const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
+        v->R_xz*mu_p_in_platform_z;
+    const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
+        v->R_yz*mu_p_in_platform_z;
+    const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
+        v->R_zz*mu_p_in_platform_z;
     s[9*w + k] = f_p_x;
     s[10*w + k] = f_p_y;
     s[11*w + k] = f_p_z;
     s[12*w + k] = mu_p_x;
     s[13*w + k] = mu_p_y;
     s[14*w + k] = mu_p_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void required_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3568,12 +3591,12 @@ INLINE void required_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, s
     stage_uhs_legs_required(m, i, &v);
     /* (uhs-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real uhs_c_x = v.axis_x_uhs_axes3_x*v.uhs_c_in_axes3_x +
-        v.axis_y_uhs_axes3_x*v.uhs_c_in_axes3_y + v.axis_z_uhs_axes3_x*v.uhs_c_in_axes3_z;
-    const real uhs_c_y = v.axis_x_uhs_axes3_y*v.uhs_c_in_axes3_x +
-        v.axis_y_uhs_axes3_y*v.uhs_c_in_axes3_y + v.axis_z_uhs_axes3_y*v.uhs_c_in_axes3_z;
-    const real uhs_c_z = v.axis_x_uhs_axes3_z*v.uhs_c_in_axes3_x +
-        v.axis_y_uhs_axes3_z*v.uhs_c_in_axes3_y + v.axis_z_uhs_axes3_z*v.uhs_c_in_axes3_z;
+    const real uhs_c_x = v.axis_z_uhs_axes3_x*v.uhs_c_in_axes3_z +
+        v.axis_x_uhs_axes3_x*v.uhs_c_in_axes3_x + v.axis_y_uhs_axes3_x*v.uhs_c_in_axes3_y;
+    const real uhs_c_y = v.axis_z_uhs_axes3_y*v.uhs_c_in_axes3_z +
+        v.axis_x_uhs_axes3_y*v.uhs_c_in_axes3_x + v.axis_y_uhs_axes3_y*v.uhs_c_in_axes3_y;
+    const real uhs_c_z = v.axis_z_uhs_axes3_z*v.uhs_c_in_axes3_z +
+        v.axis_x_uhs_axes3_z*v.uhs_c_in_axes3_x + v.axis_y_uhs_axes3_z*v.uhs_c_in_axes3_y;
     /* (R_a) moment that actuators and external wrench must give */
     const real uhs_R_a_t = uhs_c_y*v.uhs_q_z - uhs_c_z*v.uhs_q_y;
     const real uhs_R_a_t_2 = uhs_c_z*v.uhs_q_x - uhs_c_x*v.uhs_q_z;
@@ -3631,13 +3654,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[12*w + k];
-    const real R_a_x = R_a_x_of_legs + mu_p_x;
+    const real R_a_x = mu_p_x + R_a_x_of_legs;
     const real R_a_y_of_legs = sums[4*w + k];
     const real mu_p_y = s[13*w + k];
-    const real R_a_y = R_a_y_of_legs + mu_p_y;
+    const real R_a_y = mu_p_y + R_a_y_of_legs;
     const real R_a_z_of_legs = sums[5*w + k];
     const real mu_p_z = s[14*w + k];
-    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
     required[1*w + k] = R_t_y;
@@ -3648,12 +3671,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[5*w + k] = R_a_z;
 }
 
-APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_uhs[6*LEGS(LEGS_OF_uhs)] = {0}, o_uhs[7*LEGS(LEGS_OF_uhs)] = {0};
-    required_before(m, 1, 0, X, V, A, s, t);
+    values v;
+    required_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
         required_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), 0, s, X, V, A, terms_uhs, o_uhs);
     }
@@ -3663,6 +3687,7 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_uhs + n*LEGS(LEGS_OF_uhs), LEGS_OF_uhs);
     }
+    required_between(m, 1, 0, V, A, &v, s);
     required_after(1, 0, s, sums, required);
 }
 
@@ -3672,7 +3697,9 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real s[15*LANES], sums[6*LANES];
     real o_uhs[7*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        required_before(m, LANES, k, X, V, A, s, t);
+        values v;
+        required_before(m, LANES, k, X, &v, s, t);
+        required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_uhs; ++i) {
@@ -3689,21 +3716,20 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s, verdict *t)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
+    *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void inverse_kinematics_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k,
@@ -3742,7 +3768,8 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 {
     real s[9] = {0};
     real o_uhs[5*LEGS(LEGS_OF_uhs)] = {0};
-    inverse_kinematics_before(m, 1, 0, X, s, t);
+    values v;
+    inverse_kinematics_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
         inverse_kinematics_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), s, X, o_uhs);
     }
@@ -3757,7 +3784,8 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real s[9*LANES];
     real o_uhs[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        inverse_kinematics_before(m, LANES, k, X, s, t);
+        values v;
+        inverse_kinematics_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_uhs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3770,21 +3798,20 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_rates_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3815,9 +3842,8 @@ INLINE void joint_rates_legs_uhs(const prepared *m, size_t w, size_t i, size_t j
     const real uhs_qd_2_t = uhs_S_dot_x*m->uhs_base_frame_xz[i] +
         uhs_S_dot_y*m->uhs_base_frame_yz[i] + uhs_S_dot_z*m->uhs_base_frame_zz[i];
     const real uhs_qd_2_t_2 = v.uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*v.uhs_s_1;
-    const real uhs_qd_2 = (v.uhs_e_1_in_axes3_z*uhs_qd_2_t_2 +
-        uhs_qd_1*(v.uhs_s_3*uhs_v_1_in_axes3_x - v.uhs_c_3*v.uhs_v_1_t) -
-        v.uhs_c_2*uhs_qd_2_t)/v.uhs_root_2;
+    const real uhs_qd_2 = (v.uhs_e_1_in_axes3_z*uhs_qd_2_t_2 - v.uhs_c_2*uhs_qd_2_t +
+        uhs_qd_1*(v.uhs_s_3*uhs_v_1_in_axes3_x - v.uhs_c_3*v.uhs_v_1_t))/v.uhs_root_2;
     /* (uhs-qd_3) rate of joint 3 */
     const real uhs_qd_3 = m->inv_uhs_joint3_pitch[i]*(v.uhs_c_2*uhs_qd_2_t_2 +
         v.uhs_e_1_in_axes3_z*uhs_qd_2_t);
@@ -3848,7 +3874,8 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 {
     real s[9] = {0};
     real o_uhs[5*LEGS(LEGS_OF_uhs)] = {0};
-    joint_rates_before(m, 1, 0, X, s, t);
+    values v;
+    joint_rates_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
         joint_rates_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), s, X, V, o_uhs);
     }
@@ -3863,7 +3890,8 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real s[9*LANES];
     real o_uhs[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_rates_before(m, LANES, k, X, s, t);
+        values v;
+        joint_rates_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_uhs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3876,21 +3904,20 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
+    values *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_accelerations_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t
@@ -3905,33 +3932,33 @@ INLINE void joint_accelerations_legs_uhs(const prepared *m, size_t w, size_t i, 
     const real uhs_W_2_t = v.uhs_omega_2_in_axes3_x*v.uhs_omega_2_in_axes3_x +
         v.uhs_omega_2_in_axes3_y*v.uhs_omega_2_in_axes3_y;
     /* (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations */
-    const real uhs_beta_3_in_axes3_x = v.uhs_zeta_2_in_axes3_x +
-        v.uhs_omega_2_in_axes3_y*v.uhs_qd_3;
+    const real uhs_beta_3_in_axes3_x = v.uhs_omega_2_in_axes3_y*v.uhs_qd_3 +
+        v.uhs_zeta_2_in_axes3_x;
     const real uhs_beta_3_in_axes3_y = v.uhs_zeta_2_in_axes3_y -
         v.uhs_omega_2_in_axes3_x*v.uhs_qd_3;
     /* (uhs-bias) acceleration of the connection point at zero joint accelerations */
     const real uhs_bias_in_axes3_x = v.uhs_bias_t_2*v.uhs_omega_2_in_axes3_y +
-        m->uhs_joint3_offset_x[i]*(v.uhs_zeta_2_in_axes3_y +
-        v.uhs_omega_1_in_axes2_x*v.uhs_omega_2_in_axes3_x) +
-        v.uhs_x_3_in_axes2_x*(uhs_beta_3_in_axes3_y +
-        v.uhs_omega_2_in_axes3_x*v.uhs_omega_3_in_axes3_z);
+        m->uhs_joint3_offset_x[i]*(v.uhs_omega_1_in_axes2_x*v.uhs_omega_2_in_axes3_x +
+        v.uhs_zeta_2_in_axes3_y) +
+        v.uhs_x_3_in_axes2_x*(v.uhs_omega_2_in_axes3_x*v.uhs_omega_3_in_axes3_z +
+        uhs_beta_3_in_axes3_y);
     const real uhs_bias_in_axes3_y =
         m->uhs_joint3_offset_x[i]*(v.uhs_omega_1_in_axes2_x*v.uhs_omega_2_in_axes3_y -
-        v.uhs_zeta_2_in_axes3_x) +
+        v.uhs_zeta_2_in_axes3_x) - v.uhs_bias_t_2*v.uhs_omega_2_in_axes3_x +
         v.uhs_x_3_in_axes2_x*(v.uhs_omega_2_in_axes3_y*v.uhs_omega_3_in_axes3_z -
-        uhs_beta_3_in_axes3_x) - v.uhs_bias_t_2*v.uhs_omega_2_in_axes3_x;
+        uhs_beta_3_in_axes3_x);
     const real uhs_bias_in_axes3_z = -uhs_W_2_t*m->uhs_joint3_offset_x[i] -
         uhs_W_2_t*v.uhs_x_3_in_axes2_x;
     /* (uhs-rel) acceleration of the connection point left to the joint accelerations */
     const real uhs_rel_t = v.uhs_c_3*v.uhs_e_1_in_axes3_z;
     const real uhs_rel_t_2 = v.uhs_s_1*v.uhs_s_3 - v.uhs_c_1*uhs_rel_t;
     const real uhs_rel_t_3 = -v.uhs_c_1*v.uhs_s_3 - uhs_rel_t*v.uhs_s_1;
-    const real axis_y_uhs_axes3_x = m->uhs_base_frame_xx[i]*uhs_rel_t_2 +
-        m->uhs_base_frame_xy[i]*uhs_rel_t_3 + m->uhs_base_frame_xz[i]*v.uhs_e_1_in_axes3_y;
-    const real axis_y_uhs_axes3_y = m->uhs_base_frame_yx[i]*uhs_rel_t_2 +
-        m->uhs_base_frame_yy[i]*uhs_rel_t_3 + m->uhs_base_frame_yz[i]*v.uhs_e_1_in_axes3_y;
-    const real axis_y_uhs_axes3_z = m->uhs_base_frame_zx[i]*uhs_rel_t_2 +
-        m->uhs_base_frame_zy[i]*uhs_rel_t_3 + m->uhs_base_frame_zz[i]*v.uhs_e_1_in_axes3_y;
+    const real axis_y_uhs_axes3_x = m->uhs_base_frame_xz[i]*v.uhs_e_1_in_axes3_y +
+        m->uhs_base_frame_xx[i]*uhs_rel_t_2 + m->uhs_base_frame_xy[i]*uhs_rel_t_3;
+    const real axis_y_uhs_axes3_y = m->uhs_base_frame_yz[i]*v.uhs_e_1_in_axes3_y +
+        m->uhs_base_frame_yx[i]*uhs_rel_t_2 + m->uhs_base_frame_yy[i]*uhs_rel_t_3;
+    const real axis_y_uhs_axes3_z = m->uhs_base_frame_zz[i]*v.uhs_e_1_in_axes3_y +
+        m->uhs_base_frame_zx[i]*uhs_rel_t_2 + m->uhs_base_frame_zy[i]*uhs_rel_t_3;
     const real uhs_rel_in_axes3_x = v.uhs_S_ddot_x*(axis_y_uhs_axes3_y*v.axis_z_uhs_axes3_z -
         axis_y_uhs_axes3_z*v.axis_z_uhs_axes3_y) +
         v.uhs_S_ddot_y*(axis_y_uhs_axes3_z*v.axis_z_uhs_axes3_x -
@@ -3980,7 +4007,8 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 {
     real s[9] = {0};
     real o_uhs[5*LEGS(LEGS_OF_uhs)] = {0};
-    joint_accelerations_before(m, 1, 0, X, s, t);
+    values v;
+    joint_accelerations_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
         joint_accelerations_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), s, X, V, A, o_uhs);
     }
@@ -3995,7 +4023,8 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real s[9*LANES];
     real o_uhs[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_accelerations_before(m, LANES, k, X, s, t);
+        values v;
+        joint_accelerations_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_uhs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -4008,20 +4037,20 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void legs_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -4040,15 +4069,15 @@ INLINE void legs_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_
         v.uhs_acc_3_in_axes3_y*m->uhs_link3_mass[i];
     const real uhs_c_true_in_axes3_z = v.uhs_c_in_axes3_z -
         v.uhs_acc_3_in_axes3_z*m->uhs_link3_mass[i];
-    const real uhs_c_true_x = v.axis_x_uhs_axes3_x*uhs_c_true_in_axes3_x +
-        v.axis_y_uhs_axes3_x*uhs_c_true_in_axes3_y +
-        v.axis_z_uhs_axes3_x*uhs_c_true_in_axes3_z;
-    const real uhs_c_true_y = v.axis_x_uhs_axes3_y*uhs_c_true_in_axes3_x +
-        v.axis_y_uhs_axes3_y*uhs_c_true_in_axes3_y +
-        v.axis_z_uhs_axes3_y*uhs_c_true_in_axes3_z;
-    const real uhs_c_true_z = v.axis_x_uhs_axes3_z*uhs_c_true_in_axes3_x +
-        v.axis_y_uhs_axes3_z*uhs_c_true_in_axes3_y +
-        v.axis_z_uhs_axes3_z*uhs_c_true_in_axes3_z;
+    const real uhs_c_true_x = v.axis_z_uhs_axes3_x*uhs_c_true_in_axes3_z +
+        v.axis_x_uhs_axes3_x*uhs_c_true_in_axes3_x +
+        v.axis_y_uhs_axes3_x*uhs_c_true_in_axes3_y;
+    const real uhs_c_true_y = v.axis_z_uhs_axes3_y*uhs_c_true_in_axes3_z +
+        v.axis_x_uhs_axes3_y*uhs_c_true_in_axes3_x +
+        v.axis_y_uhs_axes3_y*uhs_c_true_in_axes3_y;
+    const real uhs_c_true_z = v.axis_z_uhs_axes3_z*uhs_c_true_in_axes3_z +
+        v.axis_x_uhs_axes3_z*uhs_c_true_in_axes3_x +
+        v.axis_y_uhs_axes3_z*uhs_c_true_in_axes3_y;
     /* (uhs-c_true) */
     o[0*count + k] = uhs_c_true_x;
     o[1*count + k] = uhs_c_true_y;
@@ -4080,7 +4109,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 {
     real s[9] = {0};
     real o_uhs[7*LEGS(LEGS_OF_uhs)] = {0};
-    legs_before(m, 1, 0, X, s, t);
+    values v;
+    legs_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
         legs_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), s, X, V, A, o_uhs);
     }
@@ -4090,32 +4120,36 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s)
+{
     /* (potential) potential energy */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
-    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x +
-        v.R_xy*m->h_star_in_platform_y + v.R_xz*m->h_star_in_platform_z + m->m_star*t_x) +
-        m->gravity_y*(v.R_yx*m->h_star_in_platform_x + v.R_yy*m->h_star_in_platform_y +
-        v.R_yz*m->h_star_in_platform_z + m->m_star*t_y) +
-        m->gravity_z*(v.R_zx*m->h_star_in_platform_x + v.R_zy*m->h_star_in_platform_y +
-        v.R_zz*m->h_star_in_platform_z + m->m_star*t_z);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+    const real potential_t = m->gravity_x*(m->m_star*t_x + v->R_xy*m->h_star_in_platform_y +
+        v->R_xz*m->h_star_in_platform_z + v->R_xx*m->h_star_in_platform_x) +
+        m->gravity_y*(m->m_star*t_y + v->R_yx*m->h_star_in_platform_x +
+        v->R_yz*m->h_star_in_platform_z + v->R_yy*m->h_star_in_platform_y) +
+        m->gravity_z*(m->m_star*t_z + v->R_zx*m->h_star_in_platform_x +
+        v->R_zy*m->h_star_in_platform_y + v->R_zz*m->h_star_in_platform_z);
     s[9*w + k] = potential_t;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void potential_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -4139,17 +4173,16 @@ INLINE void potential_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, 
     const real uhs_potential_t_5 = uhs_c_1*m->uhs_potential_t[i] +
         m->uhs_potential_t_2[i]*uhs_s_1;
     const real uhs_potential_t_6 = (uhs_e_1_in_axes3_z*uhs_potential_t_4 -
-        uhs_c_2*m->uhs_mu_2_t_3[i])*(m->uhs_h_2_in_spec2_z[i] +
-        uhs_c_3*m->uhs_h_3_in_spec3_z[i] + m->uhs_h_3_in_spec3_y[i]*uhs_s_3 -
+        uhs_c_2*m->uhs_mu_2_t_3[i])*(m->uhs_h_2_in_spec2_z[i] -
         m->uhs_link2_mass[i]*(uhs_e_1_in_axes3_z*uhs_potential_t_5 -
-        uhs_c_2*m->uhs_potential_t_3[i])) - (uhs_c_1*m->uhs_mu_2_t_2[i] -
-        m->uhs_mu_2_t[i]*uhs_s_1)*(m->uhs_h_2_in_spec2_y[i] + uhs_c_3*m->uhs_h_3_in_spec3_y[i]
-        + m->uhs_link2_mass[i]*(uhs_c_1*m->uhs_potential_t_2[i] -
-        m->uhs_potential_t[i]*uhs_s_1) - m->uhs_h_3_in_spec3_z[i]*uhs_s_3) -
-        (uhs_c_2*uhs_potential_t_4 +
+        uhs_c_2*m->uhs_potential_t_3[i]) + uhs_c_3*m->uhs_h_3_in_spec3_z[i] +
+        m->uhs_h_3_in_spec3_y[i]*uhs_s_3) - (uhs_c_2*uhs_potential_t_4 +
         uhs_e_1_in_axes3_z*m->uhs_mu_2_t_3[i])*(m->uhs_h_2_in_spec2_x[i] +
         m->uhs_h_3_in_spec3_x[i] + m->uhs_link2_mass[i]*(uhs_c_2*uhs_potential_t_5 +
-        uhs_e_1_in_axes3_z*m->uhs_potential_t_3[i]));
+        uhs_e_1_in_axes3_z*m->uhs_potential_t_3[i])) - (uhs_c_1*m->uhs_mu_2_t_2[i] -
+        m->uhs_mu_2_t[i]*uhs_s_1)*(m->uhs_h_2_in_spec2_y[i] +
+        m->uhs_link2_mass[i]*(uhs_c_1*m->uhs_potential_t_2[i] - m->uhs_potential_t[i]*uhs_s_1)
+        + uhs_c_3*m->uhs_h_3_in_spec3_y[i] - m->uhs_h_3_in_spec3_z[i]*uhs_s_3);
     /* (potential) */
     gather(&terms[0*count + k], add, uhs_potential_t_6);  /* potential_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.uhs_rho2_1) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
@@ -4175,7 +4208,8 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 {
     real s[10] = {0}, sums[1] = {0};
     real terms_uhs[LEGS(LEGS_OF_uhs)] = {0}, o_uhs[LEGS(LEGS_OF_uhs)] = {0};
-    potential_before(m, 1, 0, X, s, t);
+    values v;
+    potential_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
         potential_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), 0, s, X, terms_uhs, o_uhs);
     }
@@ -4185,28 +4219,28 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_uhs + n*LEGS(LEGS_OF_uhs), LEGS_OF_uhs);
     }
+    potential_between(m, 1, 0, X, &v, s);
     potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
-    *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, real *lengths, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void condition_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -4286,7 +4320,8 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     real s[9] = {0}, sums[1] = {0};
     real terms_uhs[LEGS(LEGS_OF_uhs)] = {0}, o_uhs[9*LEGS(LEGS_OF_uhs)] = {0};
     clear(reach, NL);
-    condition_before(m, 1, 0, X, s, lengths, t);
+    values v;
+    condition_before(m, 1, 0, X, &v, s, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
         condition_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), 0, s, X, terms_uhs, o_uhs);
     }
@@ -4310,11 +4345,7 @@ int hexapod_6uhs_M(const prepared *m, const real *X, real *M_out)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-    }
-    return code;
+    return settled(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -4341,11 +4372,7 @@ int hexapod_6uhs_Z(const prepared *m, const real *X, const real *V, real *Z_out)
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, Z_out);
-    }
-    return code;
+    return settled(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -4369,11 +4396,7 @@ int hexapod_6uhs_H(const prepared *m, const real *X, real *H_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -4396,11 +4419,7 @@ int hexapod_6uhs_inverse_kinematics(const prepared *m, const real *X, real *q_ou
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, q_out);
-    }
-    return code;
+    return settled(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -4427,11 +4446,7 @@ int hexapod_6uhs_joint_rates(const prepared *m, const real *X, const real *V, re
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qd_out);
-    }
-    return code;
+    return settled(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -4462,11 +4477,7 @@ int hexapod_6uhs_joint_accelerations(const prepared *m, const real *X, const rea
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qdd_out);
-    }
-    return code;
+    return settled(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4499,13 +4510,9 @@ int hexapod_6uhs_dynamics(const prepared *m, const real *X, const real *V, real 
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-        refuse(NV, Z_out);
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    settled(&why, NV*NV, M_out);
+    settled(&why, NV, Z_out);
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -4699,7 +4706,8 @@ static const real sizes_tau[] = {16.0, 16.0, 16.0, 4.0, 4.0, 4.0};
 int hexapod_6uhs_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out)
 {
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    static const real no_wrench[NW] = {0};
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
@@ -4709,7 +4717,7 @@ int hexapod_6uhs_inverse_dynamics(const prepared *m, const real *X, const real *
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -4723,11 +4731,7 @@ int hexapod_6uhs_inverse_dynamics(const prepared *m, const real *X, const real *
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, tau_out);
-    }
-    return code;
+    return settled(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -4756,8 +4760,9 @@ static const real sizes_A[] = {16.0, 16.0, 16.0, 1.0, 1.0, 1.0};
 int hexapod_6uhs_forward_dynamics(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out)
 {
-    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] =
-        {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    static const real no_wrench[NW] = {0};
+    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
+        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
@@ -4766,7 +4771,7 @@ int hexapod_6uhs_forward_dynamics(const prepared *m, const real *X, const real *
         check(NV, 1, V, why.invalid);
         check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     for (size_t i = 0; i < NV; ++i) {
@@ -4784,11 +4789,7 @@ int hexapod_6uhs_forward_dynamics(const prepared *m, const real *X, const real *
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, A_out);
-    }
-    return code;
+    return settled(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4829,18 +4830,15 @@ int hexapod_6uhs_complete_acceleration(const prepared *m, const real *X, const r
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, completed_out);
-    }
-    return code;
+    return settled(&why, NV, completed_out);
 }
 
 int hexapod_6uhs_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out)
 {
+    static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2, 3, 4, 5};
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
         unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[18] = {0}, forces[3*NL] = {0},
         work[NV*PADDED(NV)];
     verdict why;
@@ -4851,7 +4849,7 @@ int hexapod_6uhs_leg_reactions(const prepared *m, const real *X, const real *V, 
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -4869,11 +4867,7 @@ int hexapod_6uhs_leg_reactions(const prepared *m, const real *X, const real *V, 
     add_forces(NL, 3, 1, places_forces, solve_1, actuator, forces);
     check(3*NL, 1, forces, why.overflow);
     copy(3*NL, forces, forces_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(3*NL, forces_out);
-    }
-    return code;
+    return settled(&why, 3*NL, forces_out);
 }
 
 int hexapod_6uhs_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
@@ -4895,25 +4889,22 @@ int hexapod_6uhs_energy(const prepared *m, const real *X, const real *V, real *k
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, kinetic_out);
-        refuse(1, potential_out);
-    }
-    return code;
+    settled(&why, 1, kinetic_out);
+    return settled(&why, 1, potential_out);
 }
 
 int hexapod_6uhs_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
     const real *length = NULL;
+    static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real length_in[1], H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
+        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, length, 0, length_in, why.invalid);
+    length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
@@ -4931,12 +4922,8 @@ int hexapod_6uhs_condition(const prepared *m, const real *X, real *sigma_out, re
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, sigma_out);
-        refuse(NL, legs_out);
-    }
-    return code;
+    settled(&why, NV, sigma_out);
+    return settled(&why, NL, legs_out);
 }
 
 int hexapod_6uhs_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -4970,12 +4957,8 @@ int hexapod_6uhs_manipulability(const prepared *m, const real *X, real *measure_
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, measure_out);
-        refuse(1, isotropy_out);
-    }
-    return code;
+    settled(&why, 1, measure_out);
+    return settled(&why, 1, isotropy_out);
 }
 
 int hexapod_6uhs_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
@@ -5009,12 +4992,8 @@ int hexapod_6uhs_singularity_distance(const prepared *m, const real *X, real *ac
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, actuators_out);
-        refuse(1, legs_out);
-    }
-    return code;
+    settled(&why, 1, actuators_out);
+    return settled(&why, 1, legs_out);
 }
 
 static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
@@ -5034,11 +5013,7 @@ static int mismatch_one(const prepared *m, const real *X, const real *q_actuated
     }
     check(NU, 1, gap, why.overflow);
     copy(NU, gap, gap_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, gap_out);
-    }
-    return code;
+    return settled(&why, NU, gap_out);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
@@ -5050,11 +5025,7 @@ static int slope_one(const prepared *m, const real *X, real *slope_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, slope_out);
-    }
-    return code;
+    return settled(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -5116,11 +5087,7 @@ int hexapod_6uhs_forward_kinematics(const prepared *m, const real *q_actuated, c
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int hexapod_6uhs_dissipation(const prepared *m, const real *X, const real *V, real
@@ -5138,11 +5105,7 @@ int hexapod_6uhs_dissipation(const prepared *m, const real *X, const real *V, re
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, dissipation_out);
-    }
-    return code;
+    return settled(&why, 1, dissipation_out);
 }
 
 int hexapod_6uhs_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
@@ -5159,11 +5122,7 @@ int hexapod_6uhs_momentum(const prepared *m, const real *X, const real *V, real 
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, momentum_out);
-    }
-    return code;
+    return settled(&why, NV, momentum_out);
 }
 
 int hexapod_6uhs_joint_margins(const prepared *m, const real *X, real *margins_out)
@@ -5180,11 +5139,7 @@ int hexapod_6uhs_joint_margins(const prepared *m, const real *X, real *margins_o
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, margins_out);
-    }
-    return code;
+    return settled(&why, NJ, margins_out);
 }
 
 int hexapod_6uhs_within_limits(const prepared *m, const real *X, real *within_out)
@@ -5200,11 +5155,7 @@ int hexapod_6uhs_within_limits(const prepared *m, const real *X, real *within_ou
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, within_out);
-    }
-    return code;
+    return settled(&why, 1, within_out);
 }
 
 int hexapod_6uhs_actuator_positions(const prepared *m, const real *X, real *q_out)
@@ -5217,11 +5168,7 @@ int hexapod_6uhs_actuator_positions(const prepared *m, const real *X, real *q_ou
     take(NU, 1, hexapod_6uhs_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, q_out);
-    }
-    return code;
+    return settled(&why, NU, q_out);
 }
 
 int hexapod_6uhs_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
@@ -5238,11 +5185,7 @@ int hexapod_6uhs_actuator_rates(const prepared *m, const real *X, const real *V,
     take(NU, 1, hexapod_6uhs_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qd_out);
-    }
-    return code;
+    return settled(&why, NU, qd_out);
 }
 
 int hexapod_6uhs_actuator_accelerations(const prepared *m, const real *X, const real *V, const
@@ -5261,11 +5204,7 @@ int hexapod_6uhs_actuator_accelerations(const prepared *m, const real *X, const 
     take(NU, 1, hexapod_6uhs_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qdd_out);
-    }
-    return code;
+    return settled(&why, NU, qdd_out);
 }
 
 int hexapod_6uhs_power(const prepared *m, const real *X, const real *V, const real *tau, real
@@ -5285,11 +5224,7 @@ int hexapod_6uhs_power(const prepared *m, const real *X, const real *V, const re
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, power_out);
-    }
-    return code;
+    return settled(&why, 1, power_out);
 }
 
 int hexapod_6uhs_rotation(const real *X, real *R_out)
@@ -5302,11 +5237,7 @@ int hexapod_6uhs_rotation(const real *X, real *R_out)
     rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     copy(9, R, R_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(9, R_out);
-    }
-    return code;
+    return settled(&why, 9, R_out);
 }
 
 int hexapod_6uhs_pose(const real *t, const real *R, real *X_out)
@@ -5324,11 +5255,7 @@ int hexapod_6uhs_pose(const real *t, const real *R, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int hexapod_6uhs_X_dot(const real *X, const real *V, real *X_dot_out)
@@ -5348,11 +5275,7 @@ int hexapod_6uhs_X_dot(const real *X, const real *V, real *X_dot_out)
     beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_dot_out);
-    }
-    return code;
+    return settled(&why, NQ, X_dot_out);
 }
 
 int hexapod_6uhs_pose_from_rpy(const real *t, const real *rpy, real *X_out)
@@ -5370,11 +5293,7 @@ int hexapod_6uhs_pose_from_rpy(const real *t, const real *rpy, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int hexapod_6uhs_retract(const real *X, const real *step, real *X_moved_out)
@@ -5398,11 +5317,7 @@ int hexapod_6uhs_retract(const real *X, const real *step, real *X_moved_out)
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_moved_out);
-    }
-    return code;
+    return settled(&why, NQ, X_moved_out);
 }
 
 int hexapod_6uhs_difference(const real *X0, const real *X1, real *step_out)
@@ -5426,11 +5341,7 @@ int hexapod_6uhs_difference(const real *X0, const real *X1, real *step_out)
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, step_out);
-    }
-    return code;
+    return settled(&why, NV, step_out);
 }
 
 int hexapod_6uhs_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
@@ -5468,11 +5379,7 @@ int hexapod_6uhs_interpolate(const real *X0, const real *X1, const real *s, real
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 /* ---- one state, and batches ---- */

@@ -231,15 +231,12 @@ INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *t
 }
 
 /* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
-INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+INLINE const real *optional(size_t size, const real *x, const real *none, real *flags)
 {
-    for (size_t e = 0; e < size && !x; ++e) {
-        own[e] = none;
-    }
     if (x) {
         check(size, 1, x, flags);
     }
-    return x ? x : own;
+    return x ? x : none;
 }
 
 INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
@@ -296,6 +293,16 @@ APART void refuse(size_t size, real *out)
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
     }
+}
+
+/* The status of a state; an output is refused where it is impossible. */
+INLINE int settled(const verdict *t, size_t size, real *out)
+{
+    const int code = judge(t);
+    if (code != OK) {
+        refuse(size, out);
+    }
+    return code;
 }
 
 /* Outputs of a state where the user wants them, and of states side by side, state by state. */
@@ -434,10 +441,10 @@ INLINE int all_rotations(const real *x, size_t n)
 /* ---- parameters ---- */
 
 const hexapod_6x6r_params hexapod_6x6r_default_params = {
-    {R(0.0), R(0.0), R(-9.81)},  /* gravity */
+    {0, 0, R(-9.81)},  /* gravity */
     R(12.0),  /* platform_mass */
-    {R(0.0), R(0.0), R(0.04)},  /* platform_centre_of_mass */
-    {{R(0.35), R(0.0), R(0.0)}, {R(0.0), R(0.35), R(0.0)}, {R(0.0), R(0.0), R(0.6)}},  /* platform_inertia */
+    {0, 0, R(0.04)},  /* platform_centre_of_mass */
+    {{R(0.35), 0, 0}, {0, R(0.35), 0}, {0, 0, R(0.6)}},  /* platform_inertia */
     {  /* six_r_base_point */
         {R(0.020807551663432733), R(-0.07013231424259622), R(-0.15528011642847428)},
         {R(-0.07114014159199791), R(-0.01704628879020814), R(-0.15528011642847428)},
@@ -447,12 +454,12 @@ const hexapod_6x6r_params hexapod_6x6r_default_params = {
         {R(0.02080755166343279), R(0.0701323142425962), R(-0.15528011642847428)},
     },
     {  /* six_r_base_frame */
-        {{R(0.0), R(0.7666445685820955), R(-0.6420717292200091)}, {R(0.0), R(0.6420717292200091), R(0.7666445685820955)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(0.17272814426528374), R(-0.9849695366754605)}, {R(0.0), R(0.9849695366754605), R(0.17272814426528374)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.9393727128473789), R(-0.34289780745545156)}, {R(0.0), R(0.34289780745545156), R(-0.9393727128473789)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.9393727128473789), R(0.34289780745545134)}, {R(0.0), R(-0.34289780745545134), R(-0.9393727128473789)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(0.17272814426528307), R(0.9849695366754606)}, {R(0.0), R(-0.9849695366754606), R(0.17272814426528307)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(0.7666445685820946), R(0.6420717292200101)}, {R(0.0), R(-0.6420717292200101), R(0.7666445685820946)}, {R(1.0), R(0.0), R(0.0)}},
+        {{0, R(0.7666445685820955), R(-0.6420717292200091)}, {0, R(0.6420717292200091), R(0.7666445685820955)}, {1, 0, 0}},
+        {{0, R(0.17272814426528374), R(-0.9849695366754605)}, {0, R(0.9849695366754605), R(0.17272814426528374)}, {1, 0, 0}},
+        {{0, R(-0.9393727128473789), R(-0.34289780745545156)}, {0, R(0.34289780745545156), R(-0.9393727128473789)}, {1, 0, 0}},
+        {{0, R(-0.9393727128473789), R(0.34289780745545134)}, {0, R(-0.34289780745545134), R(-0.9393727128473789)}, {1, 0, 0}},
+        {{0, R(0.17272814426528307), R(0.9849695366754606)}, {0, R(-0.9849695366754606), R(0.17272814426528307)}, {1, 0, 0}},
+        {{0, R(0.7666445685820946), R(0.6420717292200101)}, {0, R(-0.6420717292200101), R(0.7666445685820946)}, {1, 0, 0}},
     },
     {  /* six_r_platform_point */
         {R(0.22999337057462865), R(0.19262151876600273), R(-0.02)},
@@ -463,44 +470,44 @@ const hexapod_6x6r_params hexapod_6x6r_default_params = {
         {R(0.22999337057462838), R(-0.19262151876600303), R(-0.02)},
     },
     {  /* six_r_joint2_offset */
-        {R(0.12), R(0.0), R(0.0)},
-        {R(0.12), R(0.0), R(0.0)},
-        {R(0.12), R(0.0), R(0.0)},
-        {R(0.12), R(0.0), R(0.0)},
-        {R(0.12), R(0.0), R(0.0)},
-        {R(0.12), R(0.0), R(0.0)},
+        {R(0.12), 0, 0},
+        {R(0.12), 0, 0},
+        {R(0.12), 0, 0},
+        {R(0.12), 0, 0},
+        {R(0.12), 0, 0},
+        {R(0.12), 0, 0},
     },
     {  /* six_r_joint3_offset */
-        {R(0.45), R(0.0), R(0.0)},
-        {R(0.45), R(0.0), R(0.0)},
-        {R(0.45), R(0.0), R(0.0)},
-        {R(0.45), R(0.0), R(0.0)},
-        {R(0.45), R(0.0), R(0.0)},
-        {R(0.45), R(0.0), R(0.0)},
+        {R(0.45), 0, 0},
+        {R(0.45), 0, 0},
+        {R(0.45), 0, 0},
+        {R(0.45), 0, 0},
+        {R(0.45), 0, 0},
+        {R(0.45), 0, 0},
     },
     {  /* six_r_joint4_offset */
-        {R(0.35), R(0.0), R(0.0)},
-        {R(0.35), R(0.0), R(0.0)},
-        {R(0.35), R(0.0), R(0.0)},
-        {R(0.35), R(0.0), R(0.0)},
-        {R(0.35), R(0.0), R(0.0)},
-        {R(0.35), R(0.0), R(0.0)},
+        {R(0.35), 0, 0},
+        {R(0.35), 0, 0},
+        {R(0.35), 0, 0},
+        {R(0.35), 0, 0},
+        {R(0.35), 0, 0},
+        {R(0.35), 0, 0},
     },
     {  /* six_r_joint5_offset */
-        {R(0.1), R(0.0), R(0.0)},
-        {R(0.1), R(0.0), R(0.0)},
-        {R(0.1), R(0.0), R(0.0)},
-        {R(0.1), R(0.0), R(0.0)},
-        {R(0.1), R(0.0), R(0.0)},
-        {R(0.1), R(0.0), R(0.0)},
+        {R(0.1), 0, 0},
+        {R(0.1), 0, 0},
+        {R(0.1), 0, 0},
+        {R(0.1), 0, 0},
+        {R(0.1), 0, 0},
+        {R(0.1), 0, 0},
     },
     {  /* six_r_platform_joint_offset */
-        {R(0.05), R(0.0), R(0.0)},
-        {R(0.05), R(0.0), R(0.0)},
-        {R(0.05), R(0.0), R(0.0)},
-        {R(0.05), R(0.0), R(0.0)},
-        {R(0.05), R(0.0), R(0.0)},
-        {R(0.05), R(0.0), R(0.0)},
+        {R(0.05), 0, 0},
+        {R(0.05), 0, 0},
+        {R(0.05), 0, 0},
+        {R(0.05), 0, 0},
+        {R(0.05), 0, 0},
+        {R(0.05), 0, 0},
     },
     {  /* six_r_platform_joint_axis_platform */
         {R(0.19988156437684884), R(0.7307446848136459), R(-0.6527323845488815)},
@@ -519,20 +526,20 @@ const hexapod_6x6r_params hexapod_6x6r_default_params = {
         R(3.0),
     },
     {  /* six_r_link1_centre_of_mass */
-        {R(0.06), R(0.0), R(0.0)},
-        {R(0.06), R(0.0), R(0.0)},
-        {R(0.06), R(0.0), R(0.0)},
-        {R(0.06), R(0.0), R(0.0)},
-        {R(0.06), R(0.0), R(0.0)},
-        {R(0.06), R(0.0), R(0.0)},
+        {R(0.06), 0, 0},
+        {R(0.06), 0, 0},
+        {R(0.06), 0, 0},
+        {R(0.06), 0, 0},
+        {R(0.06), 0, 0},
+        {R(0.06), 0, 0},
     },
     {  /* six_r_link1_inertia */
-        {{R(0.0006), R(0.0), R(0.0)}, {R(0.0), R(0.0038999999999999994), R(0.0)}, {R(0.0), R(0.0), R(0.0038999999999999994)}},
-        {{R(0.0006), R(0.0), R(0.0)}, {R(0.0), R(0.0038999999999999994), R(0.0)}, {R(0.0), R(0.0), R(0.0038999999999999994)}},
-        {{R(0.0006), R(0.0), R(0.0)}, {R(0.0), R(0.0038999999999999994), R(0.0)}, {R(0.0), R(0.0), R(0.0038999999999999994)}},
-        {{R(0.0006), R(0.0), R(0.0)}, {R(0.0), R(0.0038999999999999994), R(0.0)}, {R(0.0), R(0.0), R(0.0038999999999999994)}},
-        {{R(0.0006), R(0.0), R(0.0)}, {R(0.0), R(0.0038999999999999994), R(0.0)}, {R(0.0), R(0.0), R(0.0038999999999999994)}},
-        {{R(0.0006), R(0.0), R(0.0)}, {R(0.0), R(0.0038999999999999994), R(0.0)}, {R(0.0), R(0.0), R(0.0038999999999999994)}},
+        {{R(0.0006), 0, 0}, {0, R(0.0038999999999999994), 0}, {0, 0, R(0.0038999999999999994)}},
+        {{R(0.0006), 0, 0}, {0, R(0.0038999999999999994), 0}, {0, 0, R(0.0038999999999999994)}},
+        {{R(0.0006), 0, 0}, {0, R(0.0038999999999999994), 0}, {0, 0, R(0.0038999999999999994)}},
+        {{R(0.0006), 0, 0}, {0, R(0.0038999999999999994), 0}, {0, 0, R(0.0038999999999999994)}},
+        {{R(0.0006), 0, 0}, {0, R(0.0038999999999999994), 0}, {0, 0, R(0.0038999999999999994)}},
+        {{R(0.0006), 0, 0}, {0, R(0.0038999999999999994), 0}, {0, 0, R(0.0038999999999999994)}},
     },
     {  /* six_r_link2_mass */
         R(2.0),
@@ -543,20 +550,20 @@ const hexapod_6x6r_params hexapod_6x6r_default_params = {
         R(2.0),
     },
     {  /* six_r_link2_centre_of_mass */
-        {R(0.225), R(0.0), R(0.0)},
-        {R(0.225), R(0.0), R(0.0)},
-        {R(0.225), R(0.0), R(0.0)},
-        {R(0.225), R(0.0), R(0.0)},
-        {R(0.225), R(0.0), R(0.0)},
-        {R(0.225), R(0.0), R(0.0)},
+        {R(0.225), 0, 0},
+        {R(0.225), 0, 0},
+        {R(0.225), 0, 0},
+        {R(0.225), 0, 0},
+        {R(0.225), 0, 0},
+        {R(0.225), 0, 0},
     },
     {  /* six_r_link2_inertia */
-        {{R(0.0004), R(0.0), R(0.0)}, {R(0.0), R(0.03395), R(0.0)}, {R(0.0), R(0.0), R(0.03395)}},
-        {{R(0.0004), R(0.0), R(0.0)}, {R(0.0), R(0.03395), R(0.0)}, {R(0.0), R(0.0), R(0.03395)}},
-        {{R(0.0004), R(0.0), R(0.0)}, {R(0.0), R(0.03395), R(0.0)}, {R(0.0), R(0.0), R(0.03395)}},
-        {{R(0.0004), R(0.0), R(0.0)}, {R(0.0), R(0.03395), R(0.0)}, {R(0.0), R(0.0), R(0.03395)}},
-        {{R(0.0004), R(0.0), R(0.0)}, {R(0.0), R(0.03395), R(0.0)}, {R(0.0), R(0.0), R(0.03395)}},
-        {{R(0.0004), R(0.0), R(0.0)}, {R(0.0), R(0.03395), R(0.0)}, {R(0.0), R(0.0), R(0.03395)}},
+        {{R(0.0004), 0, 0}, {0, R(0.03395), 0}, {0, 0, R(0.03395)}},
+        {{R(0.0004), 0, 0}, {0, R(0.03395), 0}, {0, 0, R(0.03395)}},
+        {{R(0.0004), 0, 0}, {0, R(0.03395), 0}, {0, 0, R(0.03395)}},
+        {{R(0.0004), 0, 0}, {0, R(0.03395), 0}, {0, 0, R(0.03395)}},
+        {{R(0.0004), 0, 0}, {0, R(0.03395), 0}, {0, 0, R(0.03395)}},
+        {{R(0.0004), 0, 0}, {0, R(0.03395), 0}, {0, 0, R(0.03395)}},
     },
     {  /* six_r_link3_mass */
         R(1.2),
@@ -567,20 +574,20 @@ const hexapod_6x6r_params hexapod_6x6r_default_params = {
         R(1.2),
     },
     {  /* six_r_link3_centre_of_mass */
-        {R(0.225), R(0.0), R(0.0)},
-        {R(0.225), R(0.0), R(0.0)},
-        {R(0.225), R(0.0), R(0.0)},
-        {R(0.225), R(0.0), R(0.0)},
-        {R(0.225), R(0.0), R(0.0)},
-        {R(0.225), R(0.0), R(0.0)},
+        {R(0.225), 0, 0},
+        {R(0.225), 0, 0},
+        {R(0.225), 0, 0},
+        {R(0.225), 0, 0},
+        {R(0.225), 0, 0},
+        {R(0.225), 0, 0},
     },
     {  /* six_r_link3_inertia */
-        {{R(0.00024), R(0.0), R(0.0)}, {R(0.0), R(0.020370000000000003), R(0.0)}, {R(0.0), R(0.0), R(0.020370000000000003)}},
-        {{R(0.00024), R(0.0), R(0.0)}, {R(0.0), R(0.020370000000000003), R(0.0)}, {R(0.0), R(0.0), R(0.020370000000000003)}},
-        {{R(0.00024), R(0.0), R(0.0)}, {R(0.0), R(0.020370000000000003), R(0.0)}, {R(0.0), R(0.0), R(0.020370000000000003)}},
-        {{R(0.00024), R(0.0), R(0.0)}, {R(0.0), R(0.020370000000000003), R(0.0)}, {R(0.0), R(0.0), R(0.020370000000000003)}},
-        {{R(0.00024), R(0.0), R(0.0)}, {R(0.0), R(0.020370000000000003), R(0.0)}, {R(0.0), R(0.0), R(0.020370000000000003)}},
-        {{R(0.00024), R(0.0), R(0.0)}, {R(0.0), R(0.020370000000000003), R(0.0)}, {R(0.0), R(0.0), R(0.020370000000000003)}},
+        {{R(0.00024), 0, 0}, {0, R(0.020370000000000003), 0}, {0, 0, R(0.020370000000000003)}},
+        {{R(0.00024), 0, 0}, {0, R(0.020370000000000003), 0}, {0, 0, R(0.020370000000000003)}},
+        {{R(0.00024), 0, 0}, {0, R(0.020370000000000003), 0}, {0, 0, R(0.020370000000000003)}},
+        {{R(0.00024), 0, 0}, {0, R(0.020370000000000003), 0}, {0, 0, R(0.020370000000000003)}},
+        {{R(0.00024), 0, 0}, {0, R(0.020370000000000003), 0}, {0, 0, R(0.020370000000000003)}},
+        {{R(0.00024), 0, 0}, {0, R(0.020370000000000003), 0}, {0, 0, R(0.020370000000000003)}},
     },
     {  /* six_r_link4_mass */
         R(0.4),
@@ -591,20 +598,20 @@ const hexapod_6x6r_params hexapod_6x6r_default_params = {
         R(0.4),
     },
     {  /* six_r_link4_centre_of_mass */
-        {R(0.0), R(0.0), R(0.0)},
-        {R(0.0), R(0.0), R(0.0)},
-        {R(0.0), R(0.0), R(0.0)},
-        {R(0.0), R(0.0), R(0.0)},
-        {R(0.0), R(0.0), R(0.0)},
-        {R(0.0), R(0.0), R(0.0)},
+        {0, 0, 0},
+        {0, 0, 0},
+        {0, 0, 0},
+        {0, 0, 0},
+        {0, 0, 0},
+        {0, 0, 0},
     },
     {  /* six_r_link4_inertia */
-        {{R(0.0008), R(0.0), R(0.0)}, {R(0.0), R(0.0008), R(0.0)}, {R(0.0), R(0.0), R(0.0008)}},
-        {{R(0.0008), R(0.0), R(0.0)}, {R(0.0), R(0.0008), R(0.0)}, {R(0.0), R(0.0), R(0.0008)}},
-        {{R(0.0008), R(0.0), R(0.0)}, {R(0.0), R(0.0008), R(0.0)}, {R(0.0), R(0.0), R(0.0008)}},
-        {{R(0.0008), R(0.0), R(0.0)}, {R(0.0), R(0.0008), R(0.0)}, {R(0.0), R(0.0), R(0.0008)}},
-        {{R(0.0008), R(0.0), R(0.0)}, {R(0.0), R(0.0008), R(0.0)}, {R(0.0), R(0.0), R(0.0008)}},
-        {{R(0.0008), R(0.0), R(0.0)}, {R(0.0), R(0.0008), R(0.0)}, {R(0.0), R(0.0), R(0.0008)}},
+        {{R(0.0008), 0, 0}, {0, R(0.0008), 0}, {0, 0, R(0.0008)}},
+        {{R(0.0008), 0, 0}, {0, R(0.0008), 0}, {0, 0, R(0.0008)}},
+        {{R(0.0008), 0, 0}, {0, R(0.0008), 0}, {0, 0, R(0.0008)}},
+        {{R(0.0008), 0, 0}, {0, R(0.0008), 0}, {0, 0, R(0.0008)}},
+        {{R(0.0008), 0, 0}, {0, R(0.0008), 0}, {0, 0, R(0.0008)}},
+        {{R(0.0008), 0, 0}, {0, R(0.0008), 0}, {0, 0, R(0.0008)}},
     },
     {  /* six_r_link5_mass */
         R(0.3),
@@ -615,24 +622,24 @@ const hexapod_6x6r_params hexapod_6x6r_default_params = {
         R(0.3),
     },
     {  /* six_r_link5_centre_of_mass */
-        {R(0.0), R(0.0), R(0.0)},
-        {R(0.0), R(0.0), R(0.0)},
-        {R(0.0), R(0.0), R(0.0)},
-        {R(0.0), R(0.0), R(0.0)},
-        {R(0.0), R(0.0), R(0.0)},
-        {R(0.0), R(0.0), R(0.0)},
+        {0, 0, 0},
+        {0, 0, 0},
+        {0, 0, 0},
+        {0, 0, 0},
+        {0, 0, 0},
+        {0, 0, 0},
     },
     {  /* six_r_link5_inertia */
-        {{R(0.0006), R(0.0), R(0.0)}, {R(0.0), R(0.0006), R(0.0)}, {R(0.0), R(0.0), R(0.0006)}},
-        {{R(0.0006), R(0.0), R(0.0)}, {R(0.0), R(0.0006), R(0.0)}, {R(0.0), R(0.0), R(0.0006)}},
-        {{R(0.0006), R(0.0), R(0.0)}, {R(0.0), R(0.0006), R(0.0)}, {R(0.0), R(0.0), R(0.0006)}},
-        {{R(0.0006), R(0.0), R(0.0)}, {R(0.0), R(0.0006), R(0.0)}, {R(0.0), R(0.0), R(0.0006)}},
-        {{R(0.0006), R(0.0), R(0.0)}, {R(0.0), R(0.0006), R(0.0)}, {R(0.0), R(0.0), R(0.0006)}},
-        {{R(0.0006), R(0.0), R(0.0)}, {R(0.0), R(0.0006), R(0.0)}, {R(0.0), R(0.0), R(0.0006)}},
+        {{R(0.0006), 0, 0}, {0, R(0.0006), 0}, {0, 0, R(0.0006)}},
+        {{R(0.0006), 0, 0}, {0, R(0.0006), 0}, {0, 0, R(0.0006)}},
+        {{R(0.0006), 0, 0}, {0, R(0.0006), 0}, {0, 0, R(0.0006)}},
+        {{R(0.0006), 0, 0}, {0, R(0.0006), 0}, {0, 0, R(0.0006)}},
+        {{R(0.0006), 0, 0}, {0, R(0.0006), 0}, {0, 0, R(0.0006)}},
+        {{R(0.0006), 0, 0}, {0, R(0.0006), 0}, {0, 0, R(0.0006)}},
     },
 };
 
-const hexapod_6x6r_real hexapod_6x6r_HOME_X[HEXAPOD_6X6R_NQ] = {R(0.0), R(0.0), R(0.75), R(0.0), R(0.0), R(0.0), R(1.0)};
+const hexapod_6x6r_real hexapod_6x6r_HOME_X[HEXAPOD_6X6R_NQ] = {0, 0, R(0.75), 0, 0, 0, 1};
 const hexapod_6x6r_real hexapod_6x6r_HOME_Q[HEXAPOD_6X6R_NJ] = {R(0.15), R(0.9), R(-1.0), R(0.5), R(0.8), R(-0.15), R(0.9), R(-1.0), R(-0.5), R(0.8), R(0.15), R(0.9), R(-1.0), R(0.5), R(0.8), R(-0.15), R(0.9), R(-1.0), R(-0.5), R(0.8), R(0.15), R(0.9), R(-1.0), R(0.5), R(0.8), R(-0.15), R(0.9), R(-1.0), R(-0.5), R(0.8)};
 const size_t hexapod_6x6r_ACTUATED[HEXAPOD_6X6R_NU] = {1, 6, 11, 16, 21, 26};
 const char *const hexapod_6x6r_ACTUATOR_NAMES[HEXAPOD_6X6R_NU] = {
@@ -702,6 +709,9 @@ static int acceptable(const hexapod_6x6r_params *p)
     return ok;
 }
 
+#define KEEP(name) model->name = name
+#define KEEP_OF_LEG(name) model->name[leg] = name
+
 int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *model)
 {
     if (!acceptable(params)) {
@@ -752,10 +762,10 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
     const real J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4);
     /* (spread) rms distance of the platform points from their centroid */
     const real spread_t = R(0.16666666666666666)*root(6);
-    model->gravity_x = gravity_x;
-    model->gravity_y = gravity_y;
-    model->gravity_z = gravity_z;
-    model->spread_t = spread_t;
+    KEEP(gravity_x);
+    KEEP(gravity_y);
+    KEEP(gravity_z);
+    KEEP(spread_t);
     for (size_t leg = 0; leg < FILLED(LEGS_OF_six_r); ++leg) {
         const size_t own = leg < LEGS_OF_six_r ? leg : 0;
         const real six_r_base_point_x = params->six_r_base_point[own][0];
@@ -1008,99 +1018,99 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
             six_r_base_frame_yz*six_r_base_point_y + six_r_base_frame_zz*six_r_base_point_z;
         const real six_r_potential_t_3 = six_r_base_frame_xx*six_r_base_point_x +
             six_r_base_frame_yx*six_r_base_point_y + six_r_base_frame_zx*six_r_base_point_z;
-        model->inv_six_r_size[leg] = inv_six_r_size;
-        model->six_r_J_1_in_spec1_xx[leg] = six_r_J_1_in_spec1_xx;
-        model->six_r_J_2_in_spec2_xx[leg] = six_r_J_2_in_spec2_xx;
-        model->six_r_J_2_in_spec2_xy[leg] = six_r_J_2_in_spec2_xy;
-        model->six_r_J_2_in_spec2_xz[leg] = six_r_J_2_in_spec2_xz;
-        model->six_r_J_2_in_spec2_yy[leg] = six_r_J_2_in_spec2_yy;
-        model->six_r_J_2_in_spec2_yz[leg] = six_r_J_2_in_spec2_yz;
-        model->six_r_J_2_in_spec2_zz[leg] = six_r_J_2_in_spec2_zz;
-        model->six_r_J_3_in_spec3_xx[leg] = six_r_J_3_in_spec3_xx;
-        model->six_r_J_3_in_spec3_xy[leg] = six_r_J_3_in_spec3_xy;
-        model->six_r_J_3_in_spec3_xz[leg] = six_r_J_3_in_spec3_xz;
-        model->six_r_J_3_in_spec3_yy[leg] = six_r_J_3_in_spec3_yy;
-        model->six_r_J_3_in_spec3_yz[leg] = six_r_J_3_in_spec3_yz;
-        model->six_r_J_3_in_spec3_zz[leg] = six_r_J_3_in_spec3_zz;
-        model->six_r_J_4_in_spec4_xx[leg] = six_r_J_4_in_spec4_xx;
-        model->six_r_J_4_in_spec4_xy[leg] = six_r_J_4_in_spec4_xy;
-        model->six_r_J_4_in_spec4_xz[leg] = six_r_J_4_in_spec4_xz;
-        model->six_r_J_4_in_spec4_yy[leg] = six_r_J_4_in_spec4_yy;
-        model->six_r_J_4_in_spec4_yz[leg] = six_r_J_4_in_spec4_yz;
-        model->six_r_J_5_in_spec5_xx[leg] = six_r_J_5_in_spec5_xx;
-        model->six_r_J_5_in_spec5_xy[leg] = six_r_J_5_in_spec5_xy;
-        model->six_r_J_5_in_spec5_xz[leg] = six_r_J_5_in_spec5_xz;
-        model->six_r_J_5_in_spec5_yy[leg] = six_r_J_5_in_spec5_yy;
-        model->six_r_J_5_in_spec5_yz[leg] = six_r_J_5_in_spec5_yz;
-        model->six_r_J_5_in_spec5_zz[leg] = six_r_J_5_in_spec5_zz;
-        model->six_r_Jc_2_t[leg] = six_r_Jc_2_t;
-        model->six_r_Jc_3_t_2[leg] = six_r_Jc_3_t_2;
-        model->six_r_Jc_3_t_3[leg] = six_r_Jc_3_t_3;
-        model->six_r_Jc_4_in_axes4_yy[leg] = six_r_Jc_4_in_axes4_yy;
-        model->six_r_Sigma_2_in_axes2_xx[leg] = six_r_Sigma_2_in_axes2_xx;
-        model->six_r_Sigma_2_in_axes2_yy[leg] = six_r_Sigma_2_in_axes2_yy;
-        model->six_r_Sigma_2_in_axes2_zz[leg] = six_r_Sigma_2_in_axes2_zz;
-        model->six_r_Sigma_3_in_axes3_xx[leg] = six_r_Sigma_3_in_axes3_xx;
-        model->six_r_Sigma_3_in_axes3_yy[leg] = six_r_Sigma_3_in_axes3_yy;
-        model->six_r_Sigma_3_in_axes3_zz[leg] = six_r_Sigma_3_in_axes3_zz;
-        model->six_r_Sigma_4_in_axes4_xx[leg] = six_r_Sigma_4_in_axes4_xx;
-        model->six_r_Sigma_4_in_axes4_yy[leg] = six_r_Sigma_4_in_axes4_yy;
-        model->six_r_Sigma_4_in_axes4_zz[leg] = six_r_Sigma_4_in_axes4_zz;
-        model->six_r_Sigma_5_in_axes5_xx[leg] = six_r_Sigma_5_in_axes5_xx;
-        model->six_r_Sigma_5_in_axes5_yy[leg] = six_r_Sigma_5_in_axes5_yy;
-        model->six_r_Sigma_5_in_axes5_zz[leg] = six_r_Sigma_5_in_axes5_zz;
-        model->six_r_acc_3_t[leg] = six_r_acc_3_t;
-        model->six_r_acc_3_t_2[leg] = six_r_acc_3_t_2;
-        model->six_r_base_frame_xx[leg] = six_r_base_frame_xx;
-        model->six_r_base_frame_xy[leg] = six_r_base_frame_xy;
-        model->six_r_base_frame_xz[leg] = six_r_base_frame_xz;
-        model->six_r_base_frame_yx[leg] = six_r_base_frame_yx;
-        model->six_r_base_frame_yy[leg] = six_r_base_frame_yy;
-        model->six_r_base_frame_yz[leg] = six_r_base_frame_yz;
-        model->six_r_base_frame_zx[leg] = six_r_base_frame_zx;
-        model->six_r_base_frame_zy[leg] = six_r_base_frame_zy;
-        model->six_r_base_frame_zz[leg] = six_r_base_frame_zz;
-        model->six_r_base_point_x[leg] = six_r_base_point_x;
-        model->six_r_base_point_y[leg] = six_r_base_point_y;
-        model->six_r_base_point_z[leg] = six_r_base_point_z;
-        model->six_r_g_in_axes1_z[leg] = six_r_g_in_axes1_z;
-        model->six_r_h_1_in_spec1_x[leg] = six_r_h_1_in_spec1_x;
-        model->six_r_h_1_in_spec1_y[leg] = six_r_h_1_in_spec1_y;
-        model->six_r_h_1_in_spec1_z[leg] = six_r_h_1_in_spec1_z;
-        model->six_r_h_2_in_spec2_x[leg] = six_r_h_2_in_spec2_x;
-        model->six_r_h_2_in_spec2_y[leg] = six_r_h_2_in_spec2_y;
-        model->six_r_h_2_in_spec2_z[leg] = six_r_h_2_in_spec2_z;
-        model->six_r_h_3_in_spec3_x[leg] = six_r_h_3_in_spec3_x;
-        model->six_r_h_3_in_spec3_y[leg] = six_r_h_3_in_spec3_y;
-        model->six_r_h_3_in_spec3_z[leg] = six_r_h_3_in_spec3_z;
-        model->six_r_h_4_in_spec4_x[leg] = six_r_h_4_in_spec4_x;
-        model->six_r_h_4_in_spec4_y[leg] = six_r_h_4_in_spec4_y;
-        model->six_r_h_4_in_spec4_z[leg] = six_r_h_4_in_spec4_z;
-        model->six_r_h_5_in_spec5_x[leg] = six_r_h_5_in_spec5_x;
-        model->six_r_h_5_in_spec5_y[leg] = six_r_h_5_in_spec5_y;
-        model->six_r_h_5_in_spec5_z[leg] = six_r_h_5_in_spec5_z;
-        model->six_r_hc_3_in_axes3_y[leg] = six_r_hc_3_in_axes3_y;
-        model->six_r_joint2_offset_x[leg] = six_r_joint2_offset_x;
-        model->six_r_joint3_offset_x[leg] = six_r_joint3_offset_x;
-        model->six_r_joint4_offset_x[leg] = six_r_joint4_offset_x;
-        model->six_r_joint5_offset_x[leg] = six_r_joint5_offset_x;
-        model->six_r_link1_mass[leg] = six_r_link1_mass;
-        model->six_r_link2_mass[leg] = six_r_link2_mass;
-        model->six_r_link3_mass[leg] = six_r_link3_mass;
-        model->six_r_link4_mass[leg] = six_r_link4_mass;
-        model->six_r_link5_mass[leg] = six_r_link5_mass;
-        model->six_r_platform_joint_axis_platform_x[leg] = six_r_platform_joint_axis_platform_x;
-        model->six_r_platform_joint_axis_platform_y[leg] = six_r_platform_joint_axis_platform_y;
-        model->six_r_platform_joint_axis_platform_z[leg] = six_r_platform_joint_axis_platform_z;
-        model->six_r_platform_joint_offset_x[leg] = six_r_platform_joint_offset_x;
-        model->six_r_platform_point_x[leg] = six_r_platform_point_x;
-        model->six_r_platform_point_y[leg] = six_r_platform_point_y;
-        model->six_r_platform_point_z[leg] = six_r_platform_point_z;
-        model->six_r_potential_t[leg] = six_r_potential_t;
-        model->six_r_potential_t_2[leg] = six_r_potential_t_2;
-        model->six_r_potential_t_3[leg] = six_r_potential_t_3;
-        model->six_r_size[leg] = six_r_size;
-        model->six_r_size_t[leg] = six_r_size_t;
+        KEEP_OF_LEG(inv_six_r_size);
+        KEEP_OF_LEG(six_r_J_1_in_spec1_xx);
+        KEEP_OF_LEG(six_r_J_2_in_spec2_xx);
+        KEEP_OF_LEG(six_r_J_2_in_spec2_xy);
+        KEEP_OF_LEG(six_r_J_2_in_spec2_xz);
+        KEEP_OF_LEG(six_r_J_2_in_spec2_yy);
+        KEEP_OF_LEG(six_r_J_2_in_spec2_yz);
+        KEEP_OF_LEG(six_r_J_2_in_spec2_zz);
+        KEEP_OF_LEG(six_r_J_3_in_spec3_xx);
+        KEEP_OF_LEG(six_r_J_3_in_spec3_xy);
+        KEEP_OF_LEG(six_r_J_3_in_spec3_xz);
+        KEEP_OF_LEG(six_r_J_3_in_spec3_yy);
+        KEEP_OF_LEG(six_r_J_3_in_spec3_yz);
+        KEEP_OF_LEG(six_r_J_3_in_spec3_zz);
+        KEEP_OF_LEG(six_r_J_4_in_spec4_xx);
+        KEEP_OF_LEG(six_r_J_4_in_spec4_xy);
+        KEEP_OF_LEG(six_r_J_4_in_spec4_xz);
+        KEEP_OF_LEG(six_r_J_4_in_spec4_yy);
+        KEEP_OF_LEG(six_r_J_4_in_spec4_yz);
+        KEEP_OF_LEG(six_r_J_5_in_spec5_xx);
+        KEEP_OF_LEG(six_r_J_5_in_spec5_xy);
+        KEEP_OF_LEG(six_r_J_5_in_spec5_xz);
+        KEEP_OF_LEG(six_r_J_5_in_spec5_yy);
+        KEEP_OF_LEG(six_r_J_5_in_spec5_yz);
+        KEEP_OF_LEG(six_r_J_5_in_spec5_zz);
+        KEEP_OF_LEG(six_r_Jc_2_t);
+        KEEP_OF_LEG(six_r_Jc_3_t_2);
+        KEEP_OF_LEG(six_r_Jc_3_t_3);
+        KEEP_OF_LEG(six_r_Jc_4_in_axes4_yy);
+        KEEP_OF_LEG(six_r_Sigma_2_in_axes2_xx);
+        KEEP_OF_LEG(six_r_Sigma_2_in_axes2_yy);
+        KEEP_OF_LEG(six_r_Sigma_2_in_axes2_zz);
+        KEEP_OF_LEG(six_r_Sigma_3_in_axes3_xx);
+        KEEP_OF_LEG(six_r_Sigma_3_in_axes3_yy);
+        KEEP_OF_LEG(six_r_Sigma_3_in_axes3_zz);
+        KEEP_OF_LEG(six_r_Sigma_4_in_axes4_xx);
+        KEEP_OF_LEG(six_r_Sigma_4_in_axes4_yy);
+        KEEP_OF_LEG(six_r_Sigma_4_in_axes4_zz);
+        KEEP_OF_LEG(six_r_Sigma_5_in_axes5_xx);
+        KEEP_OF_LEG(six_r_Sigma_5_in_axes5_yy);
+        KEEP_OF_LEG(six_r_Sigma_5_in_axes5_zz);
+        KEEP_OF_LEG(six_r_acc_3_t);
+        KEEP_OF_LEG(six_r_acc_3_t_2);
+        KEEP_OF_LEG(six_r_base_frame_xx);
+        KEEP_OF_LEG(six_r_base_frame_xy);
+        KEEP_OF_LEG(six_r_base_frame_xz);
+        KEEP_OF_LEG(six_r_base_frame_yx);
+        KEEP_OF_LEG(six_r_base_frame_yy);
+        KEEP_OF_LEG(six_r_base_frame_yz);
+        KEEP_OF_LEG(six_r_base_frame_zx);
+        KEEP_OF_LEG(six_r_base_frame_zy);
+        KEEP_OF_LEG(six_r_base_frame_zz);
+        KEEP_OF_LEG(six_r_base_point_x);
+        KEEP_OF_LEG(six_r_base_point_y);
+        KEEP_OF_LEG(six_r_base_point_z);
+        KEEP_OF_LEG(six_r_g_in_axes1_z);
+        KEEP_OF_LEG(six_r_h_1_in_spec1_x);
+        KEEP_OF_LEG(six_r_h_1_in_spec1_y);
+        KEEP_OF_LEG(six_r_h_1_in_spec1_z);
+        KEEP_OF_LEG(six_r_h_2_in_spec2_x);
+        KEEP_OF_LEG(six_r_h_2_in_spec2_y);
+        KEEP_OF_LEG(six_r_h_2_in_spec2_z);
+        KEEP_OF_LEG(six_r_h_3_in_spec3_x);
+        KEEP_OF_LEG(six_r_h_3_in_spec3_y);
+        KEEP_OF_LEG(six_r_h_3_in_spec3_z);
+        KEEP_OF_LEG(six_r_h_4_in_spec4_x);
+        KEEP_OF_LEG(six_r_h_4_in_spec4_y);
+        KEEP_OF_LEG(six_r_h_4_in_spec4_z);
+        KEEP_OF_LEG(six_r_h_5_in_spec5_x);
+        KEEP_OF_LEG(six_r_h_5_in_spec5_y);
+        KEEP_OF_LEG(six_r_h_5_in_spec5_z);
+        KEEP_OF_LEG(six_r_hc_3_in_axes3_y);
+        KEEP_OF_LEG(six_r_joint2_offset_x);
+        KEEP_OF_LEG(six_r_joint3_offset_x);
+        KEEP_OF_LEG(six_r_joint4_offset_x);
+        KEEP_OF_LEG(six_r_joint5_offset_x);
+        KEEP_OF_LEG(six_r_link1_mass);
+        KEEP_OF_LEG(six_r_link2_mass);
+        KEEP_OF_LEG(six_r_link3_mass);
+        KEEP_OF_LEG(six_r_link4_mass);
+        KEEP_OF_LEG(six_r_link5_mass);
+        KEEP_OF_LEG(six_r_platform_joint_axis_platform_x);
+        KEEP_OF_LEG(six_r_platform_joint_axis_platform_y);
+        KEEP_OF_LEG(six_r_platform_joint_axis_platform_z);
+        KEEP_OF_LEG(six_r_platform_joint_offset_x);
+        KEEP_OF_LEG(six_r_platform_point_x);
+        KEEP_OF_LEG(six_r_platform_point_y);
+        KEEP_OF_LEG(six_r_platform_point_z);
+        KEEP_OF_LEG(six_r_potential_t);
+        KEEP_OF_LEG(six_r_potential_t_2);
+        KEEP_OF_LEG(six_r_potential_t_3);
+        KEEP_OF_LEG(six_r_size);
+        KEEP_OF_LEG(six_r_size_t);
         m_star_of_legs += leg < LEGS_OF_six_r ? six_r_link5_mass : 0;
         h_star_in_platform_x_of_legs += leg < LEGS_OF_six_r ? six_r_h_star_t : 0;
         h_star_in_platform_y_of_legs += leg < LEGS_OF_six_r ? six_r_h_star_t_2 : 0;
@@ -1149,25 +1159,25 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
     const real b_c_in_platform_z = R(0.16666666666666666)*b_c_six_r_in_platform_z;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = root(legs_size_six_r)*spread_t;
-    model->J_star_in_platform_xx = J_star_in_platform_xx;
-    model->J_star_in_platform_xy = J_star_in_platform_xy;
-    model->J_star_in_platform_xz = J_star_in_platform_xz;
-    model->J_star_in_platform_yy = J_star_in_platform_yy;
-    model->J_star_in_platform_yz = J_star_in_platform_yz;
-    model->J_star_in_platform_zz = J_star_in_platform_zz;
-    model->J_star_t_12 = J_star_t_12;
-    model->J_star_t_14 = J_star_t_14;
-    model->Z_p_t = Z_p_t;
-    model->Z_p_t_2 = Z_p_t_2;
-    model->Z_p_t_3 = Z_p_t_3;
-    model->b_c_in_platform_x = b_c_in_platform_x;
-    model->b_c_in_platform_y = b_c_in_platform_y;
-    model->b_c_in_platform_z = b_c_in_platform_z;
-    model->h_star_in_platform_x = h_star_in_platform_x;
-    model->h_star_in_platform_y = h_star_in_platform_y;
-    model->h_star_in_platform_z = h_star_in_platform_z;
-    model->legs_size = legs_size;
-    model->m_star = m_star;
+    KEEP(J_star_in_platform_xx);
+    KEEP(J_star_in_platform_xy);
+    KEEP(J_star_in_platform_xz);
+    KEEP(J_star_in_platform_yy);
+    KEEP(J_star_in_platform_yz);
+    KEEP(J_star_in_platform_zz);
+    KEEP(J_star_t_12);
+    KEEP(J_star_t_14);
+    KEEP(Z_p_t);
+    KEEP(Z_p_t_2);
+    KEEP(Z_p_t_3);
+    KEEP(b_c_in_platform_x);
+    KEEP(b_c_in_platform_y);
+    KEEP(b_c_in_platform_z);
+    KEEP(h_star_in_platform_x);
+    KEEP(h_star_in_platform_y);
+    KEEP(h_star_in_platform_z);
+    KEEP(legs_size);
+    KEEP(m_star);
     return OK;
 }
 
@@ -1814,10 +1824,10 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real R_zy = quaternion_wx + quaternion_yz;
     const real R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = R_xx*m->h_star_in_platform_x + R_xy*m->h_star_in_platform_y +
-        R_xz*m->h_star_in_platform_z;
-    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yy*m->h_star_in_platform_y +
-        R_yz*m->h_star_in_platform_z;
+    const real h_star_x = R_xy*m->h_star_in_platform_y + R_xz*m->h_star_in_platform_z +
+        R_xx*m->h_star_in_platform_x;
+    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yz*m->h_star_in_platform_z +
+        R_yy*m->h_star_in_platform_y;
     const real h_star_z = R_zx*m->h_star_in_platform_x + R_zy*m->h_star_in_platform_y +
         R_zz*m->h_star_in_platform_z;
     v->quaternion_scale = quaternion_scale;
@@ -1841,8 +1851,8 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
     const real omega_x = V[3*w + k];
     const real omega_y = V[4*w + k];
     const real omega_z = V[5*w + k];
-    const real omega_in_platform_x = v->R_xx*omega_x + v->R_yx*omega_y + v->R_zx*omega_z;
-    const real omega_in_platform_y = v->R_xy*omega_x + v->R_yy*omega_y + v->R_zy*omega_z;
+    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
     const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
     v->omega_in_platform_x = omega_in_platform_x;
     v->omega_in_platform_y = omega_in_platform_y;
@@ -1852,24 +1862,24 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
 INLINE void stage_M_dynamics(const prepared *m, values *v)
 {
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_t = m->J_star_in_platform_xy*v->R_xx + m->J_star_in_platform_yz*v->R_xz
-        - m->J_star_t_12*v->R_xy;
+    const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
+        m->J_star_in_platform_xy*v->R_xx;
     const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
         m->J_star_in_platform_yz*v->R_yz - m->J_star_t_12*v->R_yy;
-    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx +
-        m->J_star_in_platform_yz*v->R_zz - m->J_star_t_12*v->R_zy;
+    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx - m->J_star_t_12*v->R_zy +
+        m->J_star_in_platform_yz*v->R_zz;
     const real J_star_t_4 = m->J_star_t_14*v->R_xz - m->J_star_in_platform_xz*v->R_xx;
     const real J_star_t_5 = m->J_star_t_14*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
     const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
-    const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
-        J_star_t_5*v->R_xz;
+    const real J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
+        J_star_t_4*v->R_yz;
     const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
     const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
     const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
-    const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
+    const real J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
     const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
     const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
@@ -1894,10 +1904,10 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
     const real Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real g_in_platform_x = v->R_xx*m->gravity_x + v->R_yx*m->gravity_y +
-        v->R_zx*m->gravity_z;
-    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_yy*m->gravity_y +
-        v->R_zy*m->gravity_z;
+    const real g_in_platform_x = v->R_yx*m->gravity_y + v->R_zx*m->gravity_z +
+        v->R_xx*m->gravity_x;
+    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_zy*m->gravity_z +
+        v->R_yy*m->gravity_y;
     const real g_in_platform_z = v->R_xz*m->gravity_x + v->R_yz*m->gravity_y +
         v->R_zz*m->gravity_z;
     const real Z_q_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
@@ -1909,15 +1919,15 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
         m->J_star_in_platform_yz*v->omega_in_platform_y +
         m->J_star_in_platform_zz*v->omega_in_platform_z;
-    const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
-        g_in_platform_y*m->h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
-        g_in_platform_z*m->h_star_in_platform_y;
-    const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
-        g_in_platform_z*m->h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
-        g_in_platform_x*m->h_star_in_platform_z;
-    const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
-        g_in_platform_x*m->h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
-        g_in_platform_y*m->h_star_in_platform_x;
+    const real Z_q_in_platform_x = g_in_platform_y*m->h_star_in_platform_z -
+        g_in_platform_z*m->h_star_in_platform_y + Z_q_t_3*v->omega_in_platform_y -
+        Z_q_t_2*v->omega_in_platform_z;
+    const real Z_q_in_platform_y = g_in_platform_z*m->h_star_in_platform_x -
+        g_in_platform_x*m->h_star_in_platform_z + Z_q_t*v->omega_in_platform_z -
+        Z_q_t_3*v->omega_in_platform_x;
+    const real Z_q_in_platform_z = g_in_platform_x*m->h_star_in_platform_y -
+        g_in_platform_y*m->h_star_in_platform_x + Z_q_t_2*v->omega_in_platform_x -
+        Z_q_t*v->omega_in_platform_y;
     const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
         v->R_xz*Z_q_in_platform_z;
     const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
@@ -1982,13 +1992,13 @@ INLINE void stage_six_r_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real six_r_q_x = R_xx*m->six_r_platform_point_x[i] +
-        R_xy*m->six_r_platform_point_y[i] + R_xz*m->six_r_platform_point_z[i];
+    const real six_r_q_x = R_xy*m->six_r_platform_point_y[i] +
+        R_xz*m->six_r_platform_point_z[i] + R_xx*m->six_r_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real six_r_q_y = R_yx*m->six_r_platform_point_x[i] +
-        R_yy*m->six_r_platform_point_y[i] + R_yz*m->six_r_platform_point_z[i];
+        R_yz*m->six_r_platform_point_z[i] + R_yy*m->six_r_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
@@ -1996,24 +2006,24 @@ INLINE void stage_six_r_X(const prepared *m, size_t w, size_t i, size_t j, const
         R_zy*m->six_r_platform_point_y[i] + R_zz*m->six_r_platform_point_z[i];
     /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
     const real six_r_n_m1_t =
-        m->six_r_platform_joint_axis_platform_x[i]*(R_xx*m->six_r_base_frame_xy[i] +
-        R_yx*m->six_r_base_frame_yy[i] + R_zx*m->six_r_base_frame_zy[i]) +
+        m->six_r_platform_joint_axis_platform_x[i]*(R_yx*m->six_r_base_frame_yy[i] +
+        R_zx*m->six_r_base_frame_zy[i] + R_xx*m->six_r_base_frame_xy[i]) +
         m->six_r_platform_joint_axis_platform_y[i]*(R_xy*m->six_r_base_frame_xy[i] +
-        R_yy*m->six_r_base_frame_yy[i] + R_zy*m->six_r_base_frame_zy[i]) +
+        R_zy*m->six_r_base_frame_zy[i] + R_yy*m->six_r_base_frame_yy[i]) +
         m->six_r_platform_joint_axis_platform_z[i]*(R_xz*m->six_r_base_frame_xy[i] +
         R_yz*m->six_r_base_frame_yy[i] + R_zz*m->six_r_base_frame_zy[i]);
     const real six_r_n_m1_t_2 =
-        m->six_r_platform_joint_axis_platform_x[i]*(R_xx*m->six_r_base_frame_xz[i] +
-        R_yx*m->six_r_base_frame_yz[i] + R_zx*m->six_r_base_frame_zz[i]) +
+        m->six_r_platform_joint_axis_platform_x[i]*(R_yx*m->six_r_base_frame_yz[i] +
+        R_zx*m->six_r_base_frame_zz[i] + R_xx*m->six_r_base_frame_xz[i]) +
         m->six_r_platform_joint_axis_platform_y[i]*(R_xy*m->six_r_base_frame_xz[i] +
-        R_yy*m->six_r_base_frame_yz[i] + R_zy*m->six_r_base_frame_zz[i]) +
+        R_zy*m->six_r_base_frame_zz[i] + R_yy*m->six_r_base_frame_yz[i]) +
         m->six_r_platform_joint_axis_platform_z[i]*(R_xz*m->six_r_base_frame_xz[i] +
         R_yz*m->six_r_base_frame_yz[i] + R_zz*m->six_r_base_frame_zz[i]);
     const real six_r_n_m1_t_3 =
-        m->six_r_platform_joint_axis_platform_x[i]*(R_xx*m->six_r_base_frame_xx[i] +
-        R_yx*m->six_r_base_frame_yx[i] + R_zx*m->six_r_base_frame_zx[i]) +
+        m->six_r_platform_joint_axis_platform_x[i]*(R_yx*m->six_r_base_frame_yx[i] +
+        R_zx*m->six_r_base_frame_zx[i] + R_xx*m->six_r_base_frame_xx[i]) +
         m->six_r_platform_joint_axis_platform_y[i]*(R_xy*m->six_r_base_frame_xx[i] +
-        R_yy*m->six_r_base_frame_yx[i] + R_zy*m->six_r_base_frame_zx[i]) +
+        R_zy*m->six_r_base_frame_zx[i] + R_yy*m->six_r_base_frame_yx[i]) +
         m->six_r_platform_joint_axis_platform_z[i]*(R_xz*m->six_r_base_frame_xx[i] +
         R_yz*m->six_r_base_frame_yx[i] + R_zz*m->six_r_base_frame_zx[i]);
     v->six_r_q_x = six_r_q_x;
@@ -2087,7 +2097,7 @@ INLINE void stage_six_r_q(const prepared *m, size_t w, size_t i, size_t j, const
     const real six_r_S_dot_t_3 = six_r_S_dot_t*six_r_s_2 + six_r_S_dot_t_2*six_r_c_2;
     const real six_r_S_dot_t_4 = six_r_S_dot_t_2*six_r_s_2 - six_r_S_dot_t*six_r_c_2;
     const real six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_c_4*six_r_s_1;
-    const real six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_c_4;
+    const real six_r_S_dot_t_6 = six_r_c_1*six_r_c_4 + six_r_S_dot_t_4*six_r_s_1;
     const real axis_z_six_r_axes5_x = six_r_S_dot_t_3*m->six_r_base_frame_xx[i] +
         six_r_S_dot_t_5*m->six_r_base_frame_xy[i] + six_r_S_dot_t_6*m->six_r_base_frame_xz[i];
     const real axis_z_six_r_axes5_y = six_r_S_dot_t_3*m->six_r_base_frame_yx[i] +
@@ -2096,11 +2106,11 @@ INLINE void stage_six_r_q(const prepared *m, size_t w, size_t i, size_t j, const
         six_r_S_dot_t_5*m->six_r_base_frame_zy[i] + six_r_S_dot_t_6*m->six_r_base_frame_zz[i];
     const real six_r_S_dot_t_7 = six_r_c_4*six_r_c_5;
     const real six_r_S_dot_t_8 = six_r_s_3*six_r_s_5 - six_r_S_dot_t_7*six_r_c_3;
-    const real six_r_S_dot_t_9 = -six_r_S_dot_t_7*six_r_s_3 - six_r_c_3*six_r_s_5;
+    const real six_r_S_dot_t_9 = -six_r_c_3*six_r_s_5 - six_r_S_dot_t_7*six_r_s_3;
     const real six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2;
     const real six_r_S_dot_t_11 = six_r_S_dot_t_9*six_r_s_2 - six_r_S_dot_t_8*six_r_c_2;
     const real six_r_S_dot_t_12 = six_r_S_dot_t_11*six_r_c_1 - six_r_e_2_in_axes5_y*six_r_s_1;
-    const real six_r_S_dot_t_13 = six_r_S_dot_t_11*six_r_s_1 + six_r_c_1*six_r_e_2_in_axes5_y;
+    const real six_r_S_dot_t_13 = six_r_c_1*six_r_e_2_in_axes5_y + six_r_S_dot_t_11*six_r_s_1;
     const real axis_y_six_r_axes5_x = six_r_S_dot_t_10*m->six_r_base_frame_xx[i] +
         six_r_S_dot_t_12*m->six_r_base_frame_xy[i] +
         six_r_S_dot_t_13*m->six_r_base_frame_xz[i];
@@ -2129,7 +2139,7 @@ INLINE void stage_six_r_q(const prepared *m, size_t w, size_t i, size_t j, const
     const real six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4;
     const real six_r_r_3_t_2 = six_r_c_4*six_r_r_4_in_axes3_z;
     const real six_r_r_3_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_4_in_axes3_x;
-    const real six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_r_4_in_axes3_x*six_r_s_4;
+    const real six_r_r_3_in_axes5_z = six_r_r_4_in_axes3_x*six_r_s_4 + six_r_r_3_t_2;
     const real six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_in_axes3_y +
         six_r_r_3_t_3*six_r_s_5;
     const real six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_t_3 -
@@ -2140,15 +2150,15 @@ INLINE void stage_six_r_q(const prepared *m, size_t w, size_t i, size_t j, const
     const real six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y +
         six_r_r_2_in_axes2_x*six_r_s_2;
     const real six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y;
-    const real six_r_r_2_t_2 = six_r_c_3*six_r_r_2_in_axes2_x +
-        six_r_r_3_in_axes2_y*six_r_s_3;
+    const real six_r_r_2_t_2 = six_r_r_3_in_axes2_y*six_r_s_3 +
+        six_r_c_3*six_r_r_2_in_axes2_x;
     const real six_r_r_2_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_2_t;
     const real six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_r_2_t*six_r_s_4;
     const real six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_2 + six_r_r_2_t_3*six_r_s_5;
     const real six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t_3 - six_r_r_2_t_2*six_r_s_5;
     /* (six_r-r_1) from joint 1 to the connection point, along the links */
-    const real six_r_r_1_in_axes1_z = m->six_r_joint2_offset_x[i] +
-        six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2;
+    const real six_r_r_1_in_axes1_z = m->six_r_joint2_offset_x[i] -
+        six_r_r_3_in_axes2_y*six_r_s_2 + six_r_c_2*six_r_r_2_in_axes2_x;
     const real six_r_r_1_t = six_r_c_2*six_r_r_1_in_axes1_z + six_r_r_2_in_axes1_x*six_r_s_2;
     const real six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x -
         six_r_r_1_in_axes1_z*six_r_s_2;
@@ -2162,7 +2172,7 @@ INLINE void stage_six_r_q(const prepared *m, size_t w, size_t i, size_t j, const
     const real six_r_v_1_t_3 = six_r_c_4*six_r_v_1_t;
     const real six_r_e_1_in_axes5_z = six_r_s_4*six_r_v_1_t;
     const real six_r_e_1_in_axes5_x = six_r_c_5*six_r_v_1_t_2 - six_r_s_5*six_r_v_1_t_3;
-    const real six_r_e_1_in_axes5_y = -six_r_c_5*six_r_v_1_t_3 - six_r_s_5*six_r_v_1_t_2;
+    const real six_r_e_1_in_axes5_y = -six_r_s_5*six_r_v_1_t_2 - six_r_c_5*six_r_v_1_t_3;
     const real six_r_v_1_in_axes5_x = six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z -
         six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y;
     const real six_r_v_1_in_axes5_y = six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_x -
@@ -2305,11 +2315,11 @@ INLINE void stage_six_r_V_X(size_t w, size_t j, const real *V, values_six_r *v)
     const real six_r_S_dot_t_15 = omega_z*v->six_r_q_x - omega_x*v->six_r_q_z;
     const real six_r_S_dot_t_16 = omega_x*v->six_r_q_y - omega_y*v->six_r_q_x;
     const real t_dot_x = V[0*w + j];
-    const real six_r_S_dot_x = six_r_S_dot_t_14 + t_dot_x;
+    const real six_r_S_dot_x = t_dot_x + six_r_S_dot_t_14;
     const real t_dot_y = V[1*w + j];
-    const real six_r_S_dot_y = six_r_S_dot_t_15 + t_dot_y;
+    const real six_r_S_dot_y = t_dot_y + six_r_S_dot_t_15;
     const real t_dot_z = V[2*w + j];
-    const real six_r_S_dot_z = six_r_S_dot_t_16 + t_dot_z;
+    const real six_r_S_dot_z = t_dot_z + six_r_S_dot_t_16;
     v->six_r_S_dot_t_14 = six_r_S_dot_t_14;
     v->six_r_S_dot_t_15 = six_r_S_dot_t_15;
     v->six_r_S_dot_t_16 = six_r_S_dot_t_16;
@@ -2388,8 +2398,8 @@ INLINE void stage_six_r_X_q(const prepared *m, size_t i, values_six_r *v)
     const real six_r_w_1_t_26 = v->six_r_v_3_in_axes5_y + six_r_w_1_t_13*six_r_w_1_t_25;
     const real six_r_w_1_t_27 = six_r_w_1_t_8 - six_r_w_1_t_14*six_r_w_1_t_25;
     const real six_r_w_1_t_28 = root(v->six_r_v_4_in_axes5_z*v->six_r_v_4_in_axes5_z +
-        six_r_w_1_t_16*six_r_w_1_t_16 + six_r_w_1_t_17*six_r_w_1_t_17 +
-        six_r_w_1_t_9*six_r_w_1_t_9);
+        six_r_w_1_t_9*six_r_w_1_t_9 + six_r_w_1_t_16*six_r_w_1_t_16 +
+        six_r_w_1_t_17*six_r_w_1_t_17);
     const real inv_six_r_w_1_t_28 = 1/six_r_w_1_t_28;
     const real six_r_w_1_t_29 = inv_six_r_w_1_t_28*six_r_w_1_t_16;
     const real six_r_w_1_t_30 = inv_six_r_w_1_t_28*v->six_r_v_4_in_axes5_z;
@@ -2402,14 +2412,14 @@ INLINE void stage_six_r_X_q(const prepared *m, size_t i, values_six_r *v)
     const real six_r_w_1_t_36 = six_r_w_1_t_31*six_r_w_1_t_33 - six_r_w_1_t_5;
     const real six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_33 - six_r_w_1_t_20;
     const real six_r_w_1_t_38 = six_r_w_1_t_31*six_r_w_1_t_7;
-    const real six_r_w_1_t_39 = six_r_w_1_t_38 + six_r_w_1_t_23*six_r_w_1_t_29 +
-        six_r_w_1_t_24*six_r_w_1_t_32 - v->six_r_v_2_in_axes5_z*six_r_w_1_t_30;
+    const real six_r_w_1_t_39 = six_r_w_1_t_23*six_r_w_1_t_29 + six_r_w_1_t_24*six_r_w_1_t_32
+        - v->six_r_v_2_in_axes5_z*six_r_w_1_t_30 + six_r_w_1_t_38;
     const real six_r_w_1_t_40 = six_r_w_1_t_29*six_r_w_1_t_39 - six_r_w_1_t_23;
     const real six_r_w_1_t_41 = v->six_r_v_2_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_39;
     const real six_r_w_1_t_42 = six_r_w_1_t_31*six_r_w_1_t_39 - six_r_w_1_t_7;
     const real six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_39 - six_r_w_1_t_24;
-    const real six_r_w_1_t_44 = six_r_w_1_t_38 + six_r_w_1_t_26*six_r_w_1_t_29 +
-        six_r_w_1_t_27*six_r_w_1_t_32 - v->six_r_v_3_in_axes5_z*six_r_w_1_t_30;
+    const real six_r_w_1_t_44 = six_r_w_1_t_26*six_r_w_1_t_29 + six_r_w_1_t_27*six_r_w_1_t_32
+        - v->six_r_v_3_in_axes5_z*six_r_w_1_t_30 + six_r_w_1_t_38;
     const real six_r_w_1_t_45 = six_r_w_1_t_29*six_r_w_1_t_44 - six_r_w_1_t_26;
     const real six_r_w_1_t_46 = v->six_r_v_3_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_44;
     const real six_r_w_1_t_47 = six_r_w_1_t_31*six_r_w_1_t_44 - six_r_w_1_t_7;
@@ -2516,13 +2526,13 @@ INLINE void stage_six_r_A_V_X(size_t w, size_t j, const real *V, values_six_r *v
     /* (six_r-S_ddot) acceleration of the connection point */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
-    const real six_r_S_ddot_x = v->six_r_a_p_x + omega_y*v->six_r_S_dot_t_16 -
-        omega_z*v->six_r_S_dot_t_15;
+    const real six_r_S_ddot_x = omega_y*v->six_r_S_dot_t_16 - omega_z*v->six_r_S_dot_t_15 +
+        v->six_r_a_p_x;
     const real omega_x = V[3*w + j];
-    const real six_r_S_ddot_y = v->six_r_a_p_y + omega_z*v->six_r_S_dot_t_14 -
-        omega_x*v->six_r_S_dot_t_16;
-    const real six_r_S_ddot_z = v->six_r_a_p_z + omega_x*v->six_r_S_dot_t_15 -
-        omega_y*v->six_r_S_dot_t_14;
+    const real six_r_S_ddot_y = omega_z*v->six_r_S_dot_t_14 - omega_x*v->six_r_S_dot_t_16 +
+        v->six_r_a_p_y;
+    const real six_r_S_ddot_z = omega_x*v->six_r_S_dot_t_15 - omega_y*v->six_r_S_dot_t_14 +
+        v->six_r_a_p_z;
     v->six_r_S_ddot_x = six_r_S_ddot_x;
     v->six_r_S_ddot_y = six_r_S_ddot_y;
     v->six_r_S_ddot_z = six_r_S_ddot_z;
@@ -2682,9 +2692,9 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t w, size_t i, size_t
     const real six_r_r_3_t = v->six_r_h_4_t*six_r_r_4_in_axes3_z;
     const real six_r_r_3_t_2 = v->six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_z;
     const real six_r_r_3_t_3 = six_r_r_3_t - v->six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_x;
-    const real six_r_r_3_in_axes5_z = six_r_r_3_t_2 + v->six_r_h_4_t*six_r_r_4_in_axes3_x;
-    const real six_r_r_3_in_axes5_x = six_r_J_5_t*six_r_r_3_t_3 +
-        six_r_e_4_in_axes5_x*six_r_r_3_in_axes3_y;
+    const real six_r_r_3_in_axes5_z = v->six_r_h_4_t*six_r_r_4_in_axes3_x + six_r_r_3_t_2;
+    const real six_r_r_3_in_axes5_x = six_r_e_4_in_axes5_x*six_r_r_3_in_axes3_y +
+        six_r_J_5_t*six_r_r_3_t_3;
     const real six_r_r_3_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_3_t_3 -
         six_r_J_5_t*six_r_r_3_in_axes3_y;
     /* (six_r-r_2) from joint 2 to the connection point, along the links */
@@ -2694,17 +2704,17 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t w, size_t i, size_t
         six_r_r_2_in_axes2_x*v->six_r_s_2;
     const real six_r_r_2_t = six_r_r_2_in_axes2_x*v->six_r_s_3 -
         v->six_r_c_3*six_r_r_3_in_axes2_y;
-    const real six_r_r_2_t_2 = v->six_r_c_3*six_r_r_2_in_axes2_x +
-        six_r_r_3_in_axes2_y*v->six_r_s_3;
+    const real six_r_r_2_t_2 = six_r_r_3_in_axes2_y*v->six_r_s_3 +
+        v->six_r_c_3*six_r_r_2_in_axes2_x;
     const real six_r_r_2_t_3 = six_r_r_3_t - v->six_r_e_2_in_axes5_z*six_r_r_2_t;
     const real six_r_r_2_in_axes5_z = six_r_r_3_t_2 + v->six_r_h_4_t*six_r_r_2_t;
-    const real six_r_r_2_in_axes5_x = six_r_J_5_t*six_r_r_2_t_3 +
-        six_r_e_4_in_axes5_x*six_r_r_2_t_2;
+    const real six_r_r_2_in_axes5_x = six_r_e_4_in_axes5_x*six_r_r_2_t_2 +
+        six_r_J_5_t*six_r_r_2_t_3;
     const real six_r_r_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_2_t_3 -
         six_r_J_5_t*six_r_r_2_t_2;
     /* (six_r-r_1) from joint 1 to the connection point, along the links */
-    const real six_r_r_1_in_axes1_z = m->six_r_joint2_offset_x[i] +
-        v->six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*v->six_r_s_2;
+    const real six_r_r_1_in_axes1_z = m->six_r_joint2_offset_x[i] -
+        six_r_r_3_in_axes2_y*v->six_r_s_2 + v->six_r_c_2*six_r_r_2_in_axes2_x;
     const real six_r_r_1_t = v->six_r_c_2*six_r_r_1_in_axes1_z +
         six_r_r_2_in_axes1_x*v->six_r_s_2;
     const real six_r_r_1_t_2 = v->six_r_c_2*six_r_r_2_in_axes1_x -
@@ -2713,8 +2723,8 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t w, size_t i, size_t
     const real six_r_r_1_t_4 = v->six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*v->six_r_s_3;
     const real six_r_r_1_t_5 = six_r_r_3_t - v->six_r_e_2_in_axes5_z*six_r_r_1_t_3;
     const real six_r_r_1_in_axes5_z = six_r_r_3_t_2 + v->six_r_h_4_t*six_r_r_1_t_3;
-    const real six_r_r_1_in_axes5_x = six_r_J_5_t*six_r_r_1_t_5 +
-        six_r_e_4_in_axes5_x*six_r_r_1_t_4;
+    const real six_r_r_1_in_axes5_x = six_r_e_4_in_axes5_x*six_r_r_1_t_4 +
+        six_r_J_5_t*six_r_r_1_t_5;
     const real six_r_r_1_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_1_t_5 -
         six_r_J_5_t*six_r_r_1_t_4;
     /* (six_r-v_1) velocity of the connection point per rate of joint 1 */
@@ -2751,20 +2761,20 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t w, size_t i, size_t
         six_r_e_4_in_axes5_x*(six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_x -
         six_r_J_5_t*six_r_r_4_in_axes4_z);
     /* (six_r-D_3_5) inertia of joint 5 along joint 3 */
-    const real six_r_D_3_5 = m->six_r_J_5_in_spec5_xz[i]*six_r_e_2_in_axes5_x +
-        m->six_r_J_5_in_spec5_yz[i]*six_r_e_2_in_axes5_y +
-        m->six_r_J_5_in_spec5_zz[i]*v->six_r_e_2_in_axes5_z;
+    const real six_r_D_3_5 = m->six_r_J_5_in_spec5_zz[i]*v->six_r_e_2_in_axes5_z +
+        m->six_r_J_5_in_spec5_xz[i]*six_r_e_2_in_axes5_x +
+        m->six_r_J_5_in_spec5_yz[i]*six_r_e_2_in_axes5_y;
     /* (six_r-D_1_5) inertia of joint 5 along joint 1 */
-    const real six_r_D_1_5 = m->six_r_J_5_in_spec5_xz[i]*six_r_e_1_in_axes5_x +
-        m->six_r_J_5_in_spec5_yz[i]*six_r_e_1_in_axes5_y +
-        m->six_r_J_5_in_spec5_zz[i]*six_r_e_1_in_axes5_z;
+    const real six_r_D_1_5 = m->six_r_J_5_in_spec5_zz[i]*six_r_e_1_in_axes5_z +
+        m->six_r_J_5_in_spec5_xz[i]*six_r_e_1_in_axes5_x +
+        m->six_r_J_5_in_spec5_yz[i]*six_r_e_1_in_axes5_y;
     /* (six_r-Jc_4) inertia tensor of the links from 4 outwards about joint 4, that of the last link
        about the connection point */
     const real six_r_Jc_4_t = m->six_r_J_5_in_spec5_xy[i]*six_r_J_5_t;
     const real six_r_Jc_4_t_2 = m->six_r_J_5_in_spec5_xy[i]*six_r_e_4_in_axes5_x;
-    const real six_r_Jc_4_t_3 = six_r_Jc_4_t_2 + m->six_r_J_5_in_spec5_xx[i]*six_r_J_5_t;
-    const real six_r_Jc_4_t_4 = six_r_Jc_4_t +
-        m->six_r_J_5_in_spec5_yy[i]*six_r_e_4_in_axes5_x;
+    const real six_r_Jc_4_t_3 = m->six_r_J_5_in_spec5_xx[i]*six_r_J_5_t + six_r_Jc_4_t_2;
+    const real six_r_Jc_4_t_4 = m->six_r_J_5_in_spec5_yy[i]*six_r_e_4_in_axes5_x +
+        six_r_Jc_4_t;
     const real six_r_Jc_4_in_axes4_xx = m->six_r_J_4_in_spec4_yy[i] +
         six_r_J_5_t*six_r_Jc_4_t_3 + six_r_Jc_4_t_4*six_r_e_4_in_axes5_x;
     const real six_r_Jc_4_in_axes4_xy = m->six_r_J_4_in_spec4_yz[i] +
@@ -2778,17 +2788,17 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t w, size_t i, size_t
         - six_r_J_5_t*(six_r_Jc_4_t_2 - m->six_r_J_5_in_spec5_yy[i]*six_r_J_5_t);
     const real six_r_Jc_4_in_axes3_xy = six_r_Jc_4_in_axes4_yz*v->six_r_h_4_t -
         six_r_Jc_4_in_axes4_xz*v->six_r_e_2_in_axes5_z;
-    const real six_r_Jc_4_in_axes3_yz = six_r_Jc_4_in_axes4_xz*v->six_r_h_4_t +
-        six_r_Jc_4_in_axes4_yz*v->six_r_e_2_in_axes5_z;
+    const real six_r_Jc_4_in_axes3_yz = six_r_Jc_4_in_axes4_yz*v->six_r_e_2_in_axes5_z +
+        six_r_Jc_4_in_axes4_xz*v->six_r_h_4_t;
     /* (six_r-L_c_4_3) moment about joint 3 that accelerates joint 4, per unit */
     const real six_r_L_c_4_3_t = v->six_r_h_4_in_spec3_y*m->six_r_joint4_offset_x[i];
     const real six_r_L_c_4_3_t_2 = -six_r_h_4_in_spec2_z*m->six_r_joint4_offset_x[i];
-    const real six_r_L_c_4_3_in_axes3_x = six_r_Jc_4_in_axes3_xy + six_r_L_c_4_3_t;
-    const real six_r_L_c_4_3_in_axes3_z = six_r_Jc_4_in_axes3_yz + six_r_L_c_4_3_t_2;
+    const real six_r_L_c_4_3_in_axes3_x = six_r_L_c_4_3_t + six_r_Jc_4_in_axes3_xy;
+    const real six_r_L_c_4_3_in_axes3_z = six_r_L_c_4_3_t_2 + six_r_Jc_4_in_axes3_yz;
     /* (six_r-L_c_4_2) moment about joint 2 that accelerates joint 4, per unit */
     const real six_r_L_c_4_2_in_axes2_y = six_r_Jc_4_in_axes4_zz*v->six_r_s_3 -
-        six_r_L_c_4_3_in_axes3_x*v->six_r_c_3 -
-        v->six_r_h_4_in_spec3_y*m->six_r_joint3_offset_x[i];
+        v->six_r_h_4_in_spec3_y*m->six_r_joint3_offset_x[i] -
+        six_r_L_c_4_3_in_axes3_x*v->six_r_c_3;
     const real six_r_L_c_4_2_in_axes2_z = six_r_L_c_4_3_in_axes3_z -
         v->six_r_c_3*six_r_h_4_in_spec2_z*m->six_r_joint3_offset_x[i];
     const real six_r_L_c_4_2_in_axes1_z = v->six_r_c_2*(six_r_Jc_4_in_axes4_zz*v->six_r_c_3 +
@@ -2804,20 +2814,20 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t w, size_t i, size_t
     const real six_r_Jc_3_t_4 = six_r_Jc_4_in_axes4_xx*v->six_r_e_2_in_axes5_z - six_r_Jc_3_t;
     const real six_r_Jc_3_t_5 = six_r_Jc_4_in_axes4_xy*v->six_r_e_2_in_axes5_z;
     const real six_r_Jc_3_t_6 = six_r_Jc_3_t_5 - m->six_r_Jc_4_in_axes4_yy[i]*v->six_r_h_4_t;
-    const real six_r_Jc_3_in_axes3_xx = m->six_r_J_3_in_spec3_yy[i] + m->six_r_Jc_3_t_3[i] +
-        six_r_Jc_3_t_4*v->six_r_e_2_in_axes5_z - six_r_Jc_3_t_6*v->six_r_h_4_t;
-    const real six_r_Jc_3_in_axes3_xy = six_r_Jc_4_in_axes3_xy + six_r_L_c_4_3_t -
-        m->six_r_J_3_in_spec3_xy[i];
+    const real six_r_Jc_3_in_axes3_xx = m->six_r_J_3_in_spec3_yy[i] + m->six_r_Jc_3_t_3[i] -
+        six_r_Jc_3_t_6*v->six_r_h_4_t + six_r_Jc_3_t_4*v->six_r_e_2_in_axes5_z;
+    const real six_r_Jc_3_in_axes3_xy = six_r_L_c_4_3_t - m->six_r_J_3_in_spec3_xy[i] +
+        six_r_Jc_4_in_axes3_xy;
     const real six_r_Jc_3_in_axes3_xz = -m->six_r_J_3_in_spec3_yz[i] -
-        six_r_Jc_3_t_4*v->six_r_h_4_t - six_r_Jc_3_t_6*v->six_r_e_2_in_axes5_z;
-    const real six_r_Jc_3_in_axes3_yy = m->six_r_J_3_in_spec3_xx[i] + m->six_r_Jc_3_t_3[i] +
-        six_r_Jc_4_in_axes4_zz - 2*m->six_r_Jc_3_t_2[i];
-    const real six_r_Jc_3_in_axes3_yz = m->six_r_J_3_in_spec3_xz[i] + six_r_Jc_4_in_axes3_yz +
-        six_r_L_c_4_3_t_2;
+        six_r_Jc_3_t_6*v->six_r_e_2_in_axes5_z - six_r_Jc_3_t_4*v->six_r_h_4_t;
+    const real six_r_Jc_3_in_axes3_yy = m->six_r_J_3_in_spec3_xx[i] + m->six_r_Jc_3_t_3[i] -
+        2*m->six_r_Jc_3_t_2[i] + six_r_Jc_4_in_axes4_zz;
+    const real six_r_Jc_3_in_axes3_yz = m->six_r_J_3_in_spec3_xz[i] + six_r_L_c_4_3_t_2 +
+        six_r_Jc_4_in_axes3_yz;
     const real six_r_Jc_3_in_axes3_zz = m->six_r_J_3_in_spec3_zz[i] + m->six_r_Jc_3_t_3[i] +
-        v->six_r_e_2_in_axes5_z*(six_r_Jc_3_t +
-        m->six_r_Jc_4_in_axes4_yy[i]*v->six_r_e_2_in_axes5_z) + v->six_r_h_4_t*(six_r_Jc_3_t_5
-        + six_r_Jc_4_in_axes4_xx*v->six_r_h_4_t);
+        v->six_r_e_2_in_axes5_z*(m->six_r_Jc_4_in_axes4_yy[i]*v->six_r_e_2_in_axes5_z +
+        six_r_Jc_3_t) + v->six_r_h_4_t*(six_r_Jc_3_t_5 +
+        six_r_Jc_4_in_axes4_xx*v->six_r_h_4_t);
     const real six_r_Jc_3_in_axes2_yz = six_r_Jc_3_in_axes3_yz*v->six_r_s_3 -
         six_r_Jc_3_in_axes3_xz*v->six_r_c_3;
     const real six_r_Jc_3_in_axes2_xz = six_r_Jc_3_in_axes3_xz*v->six_r_s_3 +
@@ -2826,30 +2836,30 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t w, size_t i, size_t
     const real six_r_P_c_3_in_axes2_x = v->six_r_c_3*six_r_hc_3_in_axes3_x -
         m->six_r_hc_3_in_axes3_y[i]*v->six_r_s_3;
     /* (six_r-L_c_3_2) moment about joint 2 that accelerates joint 3, per unit */
-    const real six_r_L_c_3_2_in_axes2_z = six_r_Jc_3_in_axes3_zz +
-        six_r_hc_3_in_axes2_x*m->six_r_joint3_offset_x[i];
+    const real six_r_L_c_3_2_in_axes2_z = six_r_hc_3_in_axes2_x*m->six_r_joint3_offset_x[i] +
+        six_r_Jc_3_in_axes3_zz;
     const real six_r_L_c_3_2_in_axes1_z = six_r_Jc_3_in_axes2_xz*v->six_r_c_2 -
         six_r_Jc_3_in_axes2_yz*v->six_r_s_2;
     /* (six_r-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
        about the connection point */
     const real six_r_Jc_2_t_2 = six_r_Jc_3_in_axes3_xy*v->six_r_s_3;
     const real six_r_Jc_2_t_3 = six_r_Jc_3_in_axes3_xy*v->six_r_c_3;
-    const real six_r_Jc_2_t_4 = six_r_Jc_2_t_3 + six_r_Jc_3_in_axes3_xx*v->six_r_s_3;
-    const real six_r_Jc_2_t_5 = six_r_Jc_2_t_2 + six_r_Jc_3_in_axes3_yy*v->six_r_c_3;
+    const real six_r_Jc_2_t_4 = six_r_Jc_3_in_axes3_xx*v->six_r_s_3 + six_r_Jc_2_t_3;
+    const real six_r_Jc_2_t_5 = six_r_Jc_3_in_axes3_yy*v->six_r_c_3 + six_r_Jc_2_t_2;
     const real six_r_Jc_2_t_6 = m->six_r_joint3_offset_x[i]*(m->six_r_Jc_2_t[i] +
         six_r_hc_3_in_axes2_x);
     const real six_r_Jc_2_t_7 = 2*six_r_Jc_2_t_6;
     const real six_r_Jc_2_in_axes2_xy = m->six_r_J_2_in_spec2_xy[i] +
-        six_r_Jc_2_t_5*v->six_r_s_3 + six_r_P_c_3_in_axes2_x*m->six_r_joint3_offset_x[i] -
+        six_r_P_c_3_in_axes2_x*m->six_r_joint3_offset_x[i] + six_r_Jc_2_t_5*v->six_r_s_3 -
         six_r_Jc_2_t_4*v->six_r_c_3;
     const real six_r_Jc_2_in_axes2_zz = m->six_r_J_2_in_spec2_zz[i] + six_r_Jc_2_t_7 +
         six_r_Jc_3_in_axes3_zz;
-    const real six_r_Jc_2_in_axes1_yz = v->six_r_c_2*(m->six_r_J_2_in_spec2_xz[i] +
-        six_r_Jc_3_in_axes2_xz - six_r_hc_3_in_axes3_z*m->six_r_joint3_offset_x[i]) -
+    const real six_r_Jc_2_in_axes1_yz = v->six_r_c_2*(m->six_r_J_2_in_spec2_xz[i] -
+        six_r_hc_3_in_axes3_z*m->six_r_joint3_offset_x[i] + six_r_Jc_3_in_axes2_xz) -
         v->six_r_s_2*(m->six_r_J_2_in_spec2_yz[i] + six_r_Jc_3_in_axes2_yz);
     const real six_r_Jc_2_in_axes1_zz =
-        v->six_r_c_2*(v->six_r_c_2*(m->six_r_J_2_in_spec2_xx[i] + six_r_Jc_2_t_7 +
-        six_r_Jc_2_t_4*v->six_r_s_3 + six_r_Jc_2_t_5*v->six_r_c_3 - 2*six_r_Jc_2_t_6) -
+        v->six_r_c_2*(v->six_r_c_2*(m->six_r_J_2_in_spec2_xx[i] + six_r_Jc_2_t_7 -
+        2*six_r_Jc_2_t_6 + six_r_Jc_2_t_4*v->six_r_s_3 + six_r_Jc_2_t_5*v->six_r_c_3) -
         six_r_Jc_2_in_axes2_xy*v->six_r_s_2) -
         v->six_r_s_2*(six_r_Jc_2_in_axes2_xy*v->six_r_c_2 -
         v->six_r_s_2*(m->six_r_J_2_in_spec2_yy[i] + six_r_Jc_2_t_7 +
@@ -2990,19 +3000,19 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
         v->six_r_S_dot_in_axes5_z*v->six_r_w_1_t_70 - six_r_qd_1_t*v->six_r_w_1_t_71 -
         six_r_qd_1_t_3*v->six_r_w_1_t_73);
     const real six_r_qd_1 = v->inv_six_r_w_1_t_49*(v->six_r_S_dot_in_axes5_x*v->six_r_w_1_t_50
-        + v->six_r_S_dot_in_axes5_z*v->six_r_w_1_t_52 + six_r_qd_1_t*v->six_r_w_1_t_53 +
-        six_r_qd_1_t_3*v->six_r_w_1_t_61 - v->six_r_S_dot_in_axes5_y*v->six_r_w_1_t_51 -
-        six_r_qd_1_t_2*v->six_r_w_1_t_54 - six_r_qd_1_t_4*v->six_r_w_1_t_55);
+        + v->six_r_S_dot_in_axes5_z*v->six_r_w_1_t_52 + six_r_qd_1_t*v->six_r_w_1_t_53 -
+        v->six_r_S_dot_in_axes5_y*v->six_r_w_1_t_51 - six_r_qd_1_t_2*v->six_r_w_1_t_54 +
+        six_r_qd_1_t_3*v->six_r_w_1_t_61 - six_r_qd_1_t_4*v->six_r_w_1_t_55);
     /* (six_r-qd_4) rate of joint 4 */
     const real six_r_qd_4_t =
         v->inv_six_r_w_1_t_28*(v->six_r_S_dot_in_axes5_y*v->six_r_w_1_t_29 +
-        six_r_qd_1_t_2*v->six_r_w_1_t_32 + six_r_qd_1_t_3*v->six_r_w_1_t_44 -
-        v->six_r_S_dot_in_axes5_z*v->six_r_w_1_t_30 - six_r_qd_1*v->six_r_w_1_t_33 -
-        six_r_qd_1_t*v->six_r_w_1_t_31 - six_r_qd_1_t_4*v->six_r_w_1_t_39);
+        six_r_qd_1_t_2*v->six_r_w_1_t_32 - v->six_r_S_dot_in_axes5_z*v->six_r_w_1_t_30 -
+        six_r_qd_1_t*v->six_r_w_1_t_31 + six_r_qd_1_t_3*v->six_r_w_1_t_44 -
+        six_r_qd_1_t_4*v->six_r_w_1_t_39 - six_r_qd_1*v->six_r_w_1_t_33);
     /* (six_r-qd_5) rate of joint 5 */
-    const real six_r_qd_5_t = v->inv_six_r_w_1_t_12*(six_r_qd_1*v->six_r_w_1_t_18 +
-        six_r_qd_1_t_2*v->six_r_w_1_t_14 + six_r_qd_1_t_3*v->six_r_w_1_t_25 +
-        six_r_qd_1_t_4*v->six_r_w_1_t_22 - v->six_r_S_dot_in_axes5_y*v->six_r_w_1_t_13 -
+    const real six_r_qd_5_t = v->inv_six_r_w_1_t_12*(six_r_qd_1_t_2*v->six_r_w_1_t_14 -
+        v->six_r_S_dot_in_axes5_y*v->six_r_w_1_t_13 + six_r_qd_1_t_3*v->six_r_w_1_t_25 +
+        six_r_qd_1_t_4*v->six_r_w_1_t_22 + six_r_qd_1*v->six_r_w_1_t_18 -
         six_r_qd_4_t*v->six_r_w_1_t_15);
     /* (six_r-omega_1) angular velocity of link 1 */
     const real six_r_omega_1_in_axes2_x = v->six_r_c_2*six_r_qd_1;
@@ -3019,12 +3029,12 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
         v->six_r_c_3*six_r_omega_1_in_axes2_y;
     const real six_r_omega_2_in_axes3_y = v->six_r_c_3*six_r_omega_1_in_axes2_x +
         six_r_omega_1_in_axes2_y*v->six_r_s_3;
-    const real six_r_omega_2_in_axes5_x = six_r_omega_1_in_axes5_x +
-        v->six_r_e_2_in_axes5_x*six_r_qd_1_t_4;
-    const real six_r_omega_2_in_axes5_y = six_r_omega_1_in_axes5_y +
-        v->six_r_e_2_in_axes5_y*six_r_qd_1_t_4;
-    const real six_r_omega_2_in_axes5_z = six_r_omega_1_in_axes5_z +
-        v->six_r_c_4*six_r_qd_1_t_4;
+    const real six_r_omega_2_in_axes5_x = v->six_r_e_2_in_axes5_x*six_r_qd_1_t_4 +
+        six_r_omega_1_in_axes5_x;
+    const real six_r_omega_2_in_axes5_y = v->six_r_e_2_in_axes5_y*six_r_qd_1_t_4 +
+        six_r_omega_1_in_axes5_y;
+    const real six_r_omega_2_in_axes5_z = v->six_r_c_4*six_r_qd_1_t_4 +
+        six_r_omega_1_in_axes5_z;
     /* (six_r-W_2) centripetal tensor of link 2 */
     const real six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_4;
     const real six_r_W_2_in_axes2_xy = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_y;
@@ -3039,8 +3049,8 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
         six_r_omega_2_in_axes3_x*v->six_r_s_4;
     const real six_r_omega_3_t = six_r_omega_3_in_axes4_x*v->six_r_s_5;
     const real six_r_omega_3_t_2 = v->six_r_c_5*six_r_omega_3_in_axes4_x;
-    const real six_r_omega_3_in_axes5_x = six_r_omega_3_t +
-        v->six_r_c_5*six_r_omega_2_in_axes3_y;
+    const real six_r_omega_3_in_axes5_x = v->six_r_c_5*six_r_omega_2_in_axes3_y +
+        six_r_omega_3_t;
     const real six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 -
         six_r_omega_2_in_axes3_y*v->six_r_s_5;
     /* (six_r-W_3) centripetal tensor of link 3 */
@@ -3048,13 +3058,13 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     const real six_r_W_3_t_2 = six_r_omega_3_in_axes3_z*six_r_omega_3_in_axes3_z;
     const real six_r_W_3_in_axes3_xy = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_y;
     const real six_r_W_3_in_axes3_xz = six_r_omega_2_in_axes3_x*six_r_omega_3_in_axes3_z;
-    const real six_r_W_3_t_3 = six_r_W_3_t + six_r_W_3_t_2;
+    const real six_r_W_3_t_3 = six_r_W_3_t_2 + six_r_W_3_t;
     const real six_r_W_3_in_axes3_yz = six_r_omega_2_in_axes3_y*six_r_omega_3_in_axes3_z;
     const real six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y;
     /* (six_r-omega_4) angular velocity of link 4 */
     const real six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y - six_r_qd_4_t;
-    const real six_r_omega_4_in_axes5_x = six_r_omega_3_t +
-        v->six_r_c_5*six_r_omega_4_in_axes4_z;
+    const real six_r_omega_4_in_axes5_x = v->six_r_c_5*six_r_omega_4_in_axes4_z +
+        six_r_omega_3_t;
     const real six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 -
         six_r_omega_4_in_axes4_z*v->six_r_s_5;
     /* (six_r-W_4) centripetal tensor of link 4 */
@@ -3087,8 +3097,8 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     const real six_r_zeta_2_in_axes5_z = v->six_r_s_4*six_r_zeta_2_in_axes3_x;
     const real six_r_zeta_2_in_axes5_x = v->six_r_c_5*six_r_zeta_2_in_axes3_y -
         v->six_r_s_5*six_r_zeta_2_t;
-    const real six_r_zeta_2_in_axes5_y = -v->six_r_c_5*six_r_zeta_2_t -
-        v->six_r_s_5*six_r_zeta_2_in_axes3_y;
+    const real six_r_zeta_2_in_axes5_y = -v->six_r_s_5*six_r_zeta_2_in_axes3_y -
+        v->six_r_c_5*six_r_zeta_2_t;
     /* (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
     const real six_r_zeta_3_t = six_r_omega_2_in_axes3_y*six_r_qd_1_t_3;
     const real six_r_zeta_3_in_axes3_y = six_r_omega_2_in_axes3_x*six_r_qd_1_t_3;
@@ -3102,7 +3112,7 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     const real six_r_zeta_4_in_axes4_y = six_r_omega_3_in_axes4_x*six_r_qd_4_t;
     /* (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations */
     const real six_r_beta_4_in_axes4_x = six_r_zeta_4_in_axes4_x - six_r_beta_3_t;
-    const real six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y + six_r_zeta_4_in_axes4_y;
+    const real six_r_beta_4_in_axes4_y = six_r_zeta_4_in_axes4_y + six_r_beta_3_in_axes4_y;
     const real six_r_beta_4_t = six_r_beta_3_in_axes3_y*v->six_r_c_5;
     const real six_r_beta_4_in_axes5_x = six_r_beta_4_t +
         six_r_beta_4_in_axes4_x*v->six_r_s_5;
@@ -3114,7 +3124,7 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     const real six_r_zeta_5_in_axes5_y = six_r_omega_4_in_axes5_x*six_r_qd_5_t;
     /* (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations */
     const real six_r_beta_5_in_axes5_x = six_r_beta_4_in_axes5_x - six_r_zeta_5_t;
-    const real six_r_beta_5_in_axes5_y = six_r_beta_4_in_axes5_y + six_r_zeta_5_in_axes5_y;
+    const real six_r_beta_5_in_axes5_y = six_r_zeta_5_in_axes5_y + six_r_beta_4_in_axes5_y;
     /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
     const real six_r_bias_t_10 = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y;
     const real six_r_bias_t_11 = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x;
@@ -3126,43 +3136,43 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     const real six_r_bias_t_17 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z;
     const real six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y;
     const real six_r_bias_in_axes5_x = six_r_W_1_in_axes5_xy*v->six_r_d_2_in_axes5_y +
-        six_r_W_1_in_axes5_xz*v->six_r_d_2_in_axes5_z +
+        six_r_W_1_in_axes5_xz*v->six_r_d_2_in_axes5_z -
+        v->six_r_d_2_in_axes5_x*(six_r_bias_t_13 + six_r_bias_t_14) -
+        v->six_r_d_3_in_axes5_x*(six_r_bias_t_16 + six_r_bias_t_17) +
         v->six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
         v->six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) -
         six_r_W_5_t_3*m->six_r_platform_joint_offset_x[i] -
         v->six_r_bias_t_8*(six_r_W_3_in_axes5_xy - six_r_beta_3_in_axes4_y) -
         v->six_r_bias_t_9*(six_r_W_4_in_axes5_xy - six_r_beta_4_in_axes4_y) -
-        v->six_r_d_2_in_axes5_x*(six_r_bias_t_13 + six_r_bias_t_14) -
-        v->six_r_d_3_in_axes5_x*(six_r_bias_t_16 + six_r_bias_t_17) -
         v->six_r_d_4_in_axes5_x*(six_r_bias_t_10 +
         six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) -
-        v->six_r_d_5_in_axes5_x*(six_r_W_5_t + six_r_bias_t_10);
+        v->six_r_d_5_in_axes5_x*(six_r_bias_t_10 + six_r_W_5_t);
     const real six_r_bias_in_axes5_y = six_r_W_1_in_axes5_xy*v->six_r_d_2_in_axes5_x +
-        six_r_W_1_in_axes5_yz*v->six_r_d_2_in_axes5_z +
+        six_r_W_1_in_axes5_yz*v->six_r_d_2_in_axes5_z -
+        v->six_r_d_2_in_axes5_y*(six_r_bias_t_12 + six_r_bias_t_14) -
+        v->six_r_d_3_in_axes5_y*(six_r_bias_t_15 + six_r_bias_t_17) +
+        v->six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
+        v->six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
         six_r_bias_t_18*v->six_r_d_5_in_axes5_x +
         six_r_bias_t_18*m->six_r_platform_joint_offset_x[i] +
         v->six_r_bias_t_8*(six_r_bias_t_10 +
         six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) +
         v->six_r_bias_t_9*(six_r_bias_t_10 + six_r_bias_t_11) +
-        v->six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
-        v->six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
-        v->six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_y) -
-        v->six_r_d_2_in_axes5_y*(six_r_bias_t_12 + six_r_bias_t_14) -
-        v->six_r_d_3_in_axes5_y*(six_r_bias_t_15 + six_r_bias_t_17);
+        v->six_r_d_4_in_axes5_x*(six_r_beta_3_in_axes4_y + six_r_W_3_in_axes5_xy);
     const real six_r_bias_in_axes5_z = six_r_W_1_in_axes5_xz*v->six_r_d_2_in_axes5_x +
-        six_r_W_1_in_axes5_yz*v->six_r_d_2_in_axes5_y +
+        six_r_W_1_in_axes5_yz*v->six_r_d_2_in_axes5_y -
+        v->six_r_d_2_in_axes5_z*(six_r_bias_t_12 + six_r_bias_t_13) -
+        v->six_r_d_3_in_axes5_z*(six_r_bias_t_15 + six_r_bias_t_16) +
         v->six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
         v->six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
         v->six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*v->six_r_c_5 +
-        six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) +
+        six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) - v->six_r_bias_t_8*(six_r_beta_4_t
+        + six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - six_r_beta_3_t*v->six_r_s_5) +
         v->six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
-        six_r_beta_4_in_axes5_y) + m->six_r_platform_joint_offset_x[i]*(six_r_W_5_in_axes5_xz
-        - six_r_beta_5_in_axes5_y) - v->six_r_bias_t_8*(six_r_beta_4_t +
-        six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - six_r_beta_3_t*v->six_r_s_5) -
-        v->six_r_bias_t_9*(six_r_beta_4_in_axes5_x +
-        six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y) -
-        v->six_r_d_2_in_axes5_z*(six_r_bias_t_12 + six_r_bias_t_13) -
-        v->six_r_d_3_in_axes5_z*(six_r_bias_t_15 + six_r_bias_t_16);
+        six_r_beta_4_in_axes5_y) -
+        v->six_r_bias_t_9*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y +
+        six_r_beta_4_in_axes5_x) + m->six_r_platform_joint_offset_x[i]*(six_r_W_5_in_axes5_xz
+        - six_r_beta_5_in_axes5_y);
     /* (six_r-rel) acceleration of the connection point left to the joint accelerations */
     const real six_r_rel_in_axes5_x = six_r_S_ddot_in_axes5_x - six_r_bias_in_axes5_x;
     const real six_r_rel_in_axes5_y = six_r_S_ddot_in_axes5_y - six_r_bias_in_axes5_y;
@@ -3180,8 +3190,8 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     const real six_r_nu_1_t_4 = six_r_omega_4_in_axes5_y - v->six_r_omega_in_axes5_y;
     const real six_r_nu_1_t_5 = six_r_omega_5_in_axes5_z - v->six_r_omega_in_axes5_z;
     const real six_r_nu_1_t_6 = six_r_nd_m1_in_axes5_x*six_r_nu_1_t_3 +
-        six_r_nd_m1_in_axes5_y*six_r_nu_1_t_4 + six_r_nu_1_t_5*(six_r_nu_1_t +
-        v->six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x);
+        six_r_nd_m1_in_axes5_y*six_r_nu_1_t_4 +
+        six_r_nu_1_t_5*(v->six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x + six_r_nu_1_t);
     const real six_r_nu_1 = six_r_nu_1_t_2 - six_r_nu_1_t_6;
     /* (six_r-nd_m2) rate of moment direction 2 */
     const real six_r_nd_m2_in_axes5_y = v->six_r_eta_1 -
@@ -3192,8 +3202,8 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     const real six_r_nu_2_t = six_r_beta_5_in_axes5_y*v->six_r_end_p1_in_axes5_z -
         six_r_beta_4_in_axes4_y*v->six_r_n_m2_in_axes5_z;
     const real six_r_nu_2_t_2 = six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 +
-        six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 + six_r_nu_1_t_3*(six_r_nu_1_t +
-        v->six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z);
+        six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 +
+        six_r_nu_1_t_3*(v->six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z + six_r_nu_1_t);
     const real six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2;
     /* (six_r-etad_1) acceleration with which the joints turn along moment direction 1 */
     const real six_r_etad_1 = six_r_nu_1 - v->six_r_etad_1_t;
@@ -3203,31 +3213,31 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     const real six_r_qdd_1_t = six_r_etad_1*m->six_r_size[i];
     const real six_r_qdd_1_t_2 = six_r_etad_2*m->six_r_size[i];
     const real six_r_qdd_1_t_3 = v->inv_six_r_w_1_t_79*(six_r_m1_w_2_t*six_r_qdd_1_t +
-        six_r_m2_w_2_t*six_r_qdd_1_t_2 + six_r_rel_in_axes5_x*six_r_w_2_t +
-        six_r_rel_in_axes5_z*six_r_w_2_t_3 - six_r_rel_in_axes5_y*six_r_w_2_t_2);
+        six_r_m2_w_2_t*six_r_qdd_1_t_2 + six_r_rel_in_axes5_x*six_r_w_2_t -
+        six_r_rel_in_axes5_y*six_r_w_2_t_2 + six_r_rel_in_axes5_z*six_r_w_2_t_3);
     const real six_r_qdd_1_t_4 = v->inv_six_r_w_1_t_67*(six_r_qdd_1_t*v->six_r_w_1_t_71 +
-        six_r_qdd_1_t_2*v->six_r_w_1_t_72 + six_r_rel_in_axes5_x*v->six_r_w_1_t_68 +
-        six_r_rel_in_axes5_z*v->six_r_w_1_t_70 - six_r_qdd_1_t_3*v->six_r_w_1_t_73 -
-        six_r_rel_in_axes5_y*v->six_r_w_1_t_69);
-    const real six_r_qdd_1_t_5 = v->inv_six_r_w_1_t_49*(six_r_qdd_1_t_3*v->six_r_w_1_t_61 +
-        six_r_qdd_1_t_4*v->six_r_w_1_t_55 + six_r_rel_in_axes5_y*v->six_r_w_1_t_51 -
-        six_r_qdd_1_t*v->six_r_w_1_t_53 - six_r_qdd_1_t_2*v->six_r_w_1_t_54 -
-        six_r_rel_in_axes5_x*v->six_r_w_1_t_50 - six_r_rel_in_axes5_z*v->six_r_w_1_t_52);
+        six_r_qdd_1_t_2*v->six_r_w_1_t_72 + six_r_rel_in_axes5_x*v->six_r_w_1_t_68 -
+        six_r_rel_in_axes5_y*v->six_r_w_1_t_69 + six_r_rel_in_axes5_z*v->six_r_w_1_t_70 -
+        six_r_qdd_1_t_3*v->six_r_w_1_t_73);
+    const real six_r_qdd_1_t_5 = v->inv_six_r_w_1_t_49*(six_r_rel_in_axes5_y*v->six_r_w_1_t_51
+        - six_r_qdd_1_t*v->six_r_w_1_t_53 - six_r_qdd_1_t_2*v->six_r_w_1_t_54 -
+        six_r_rel_in_axes5_x*v->six_r_w_1_t_50 - six_r_rel_in_axes5_z*v->six_r_w_1_t_52 +
+        six_r_qdd_1_t_3*v->six_r_w_1_t_61 + six_r_qdd_1_t_4*v->six_r_w_1_t_55);
     /* (six_r-qdd_4) acceleration of joint 4 */
     const real six_r_qdd_4 = v->inv_six_r_w_1_t_28*(six_r_qdd_1_t*v->six_r_w_1_t_31 +
-        six_r_qdd_1_t_2*v->six_r_w_1_t_32 + six_r_qdd_1_t_3*v->six_r_w_1_t_44 +
-        six_r_qdd_1_t_4*v->six_r_w_1_t_39 + six_r_rel_in_axes5_z*v->six_r_w_1_t_30 -
-        six_r_qdd_1_t_5*v->six_r_w_1_t_33 - six_r_rel_in_axes5_y*v->six_r_w_1_t_29);
+        six_r_qdd_1_t_2*v->six_r_w_1_t_32 - six_r_rel_in_axes5_y*v->six_r_w_1_t_29 +
+        six_r_rel_in_axes5_z*v->six_r_w_1_t_30 + six_r_qdd_1_t_3*v->six_r_w_1_t_44 +
+        six_r_qdd_1_t_4*v->six_r_w_1_t_39 - six_r_qdd_1_t_5*v->six_r_w_1_t_33);
     /* (six_r-alpha_1) angular acceleration of link 1 */
     const real six_r_alpha_1_t = v->six_r_c_2*six_r_qdd_1_t_5;
     const real six_r_alpha_1_in_axes2_y = six_r_qdd_1_t_5*v->six_r_s_2;
     /* (six_r-alpha_2) angular acceleration of link 2 */
     const real six_r_alpha_2_in_axes2_x = six_r_W_2_in_axes2_yz - six_r_alpha_1_t;
-    const real six_r_alpha_2_in_axes2_y = six_r_alpha_1_in_axes2_y + six_r_zeta_2_in_axes2_y;
+    const real six_r_alpha_2_in_axes2_y = six_r_zeta_2_in_axes2_y + six_r_alpha_1_in_axes2_y;
     /* (six_r-B_2) acceleration tensor of link 2 */
     const real six_r_B_2_in_axes2_xy = six_r_W_2_in_axes2_xy - six_r_qdd_1_t_4;
     const real six_r_B_2_in_axes2_yx = six_r_W_2_in_axes2_xy + six_r_qdd_1_t_4;
-    const real six_r_B_2_in_axes2_zx = -six_r_alpha_2_in_axes2_y - six_r_zeta_2_in_axes2_y;
+    const real six_r_B_2_in_axes2_zx = -six_r_zeta_2_in_axes2_y - six_r_alpha_2_in_axes2_y;
     const real six_r_B_2_in_axes2_zy = six_r_W_2_in_axes2_yz + six_r_alpha_2_in_axes2_x;
     /* (six_r-alpha_3) angular acceleration of link 3 */
     const real six_r_alpha_3_in_axes3_x = six_r_alpha_2_in_axes2_x*v->six_r_s_3 -
@@ -3246,8 +3256,8 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     const real six_r_alpha_4_in_axes4_x = six_r_zeta_4_in_axes4_x +
         six_r_alpha_3_in_axes3_z*v->six_r_s_4 - six_r_alpha_3_in_axes3_x*v->six_r_c_4;
     const real six_r_alpha_4_in_axes4_y = six_r_zeta_4_in_axes4_y +
-        six_r_alpha_3_in_axes3_x*v->six_r_s_4 + six_r_alpha_3_in_axes3_z*v->six_r_c_4;
-    const real six_r_alpha_4_in_axes4_z = six_r_alpha_3_in_axes3_y + six_r_qdd_4;
+        six_r_alpha_3_in_axes3_z*v->six_r_c_4 + six_r_alpha_3_in_axes3_x*v->six_r_s_4;
+    const real six_r_alpha_4_in_axes4_z = six_r_qdd_4 + six_r_alpha_3_in_axes3_y;
     /* (six_r-B_4) acceleration tensor of link 4 */
     const real six_r_B_4_in_axes4_xy = six_r_W_4_in_axes4_xy - six_r_alpha_4_in_axes4_z;
     const real six_r_B_4_in_axes4_xz = six_r_W_4_in_axes4_xz + six_r_alpha_4_in_axes4_y;
@@ -3256,15 +3266,15 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     const real six_r_B_4_in_axes4_zx = six_r_W_4_in_axes4_xz - six_r_alpha_4_in_axes4_y;
     const real six_r_B_4_in_axes4_zy = six_r_W_4_in_axes4_yz + six_r_alpha_4_in_axes4_x;
     /* (six_r-alpha_5) angular acceleration of link 5 */
-    const real six_r_alpha_5_in_axes5_x = six_r_alpha_4_in_axes4_x*v->six_r_s_5 +
-        six_r_alpha_4_in_axes4_z*v->six_r_c_5 - six_r_zeta_5_t;
+    const real six_r_alpha_5_in_axes5_x = six_r_alpha_4_in_axes4_x*v->six_r_s_5 -
+        six_r_zeta_5_t + six_r_alpha_4_in_axes4_z*v->six_r_c_5;
     const real six_r_alpha_5_in_axes5_y = six_r_zeta_5_in_axes5_y +
         six_r_alpha_4_in_axes4_x*v->six_r_c_5 - six_r_alpha_4_in_axes4_z*v->six_r_s_5;
-    const real six_r_alpha_5_in_axes5_z = six_r_alpha_4_in_axes4_y +
+    const real six_r_alpha_5_in_axes5_z =
         v->inv_six_r_w_1_t_12*(six_r_qdd_1_t_2*v->six_r_w_1_t_14 +
-        six_r_qdd_1_t_3*v->six_r_w_1_t_25 + six_r_qdd_1_t_5*v->six_r_w_1_t_18 +
-        six_r_rel_in_axes5_y*v->six_r_w_1_t_13 - six_r_qdd_1_t_4*v->six_r_w_1_t_22 -
-        six_r_qdd_4*v->six_r_w_1_t_15);
+        six_r_rel_in_axes5_y*v->six_r_w_1_t_13 + six_r_qdd_1_t_3*v->six_r_w_1_t_25 -
+        six_r_qdd_1_t_4*v->six_r_w_1_t_22 + six_r_qdd_1_t_5*v->six_r_w_1_t_18 -
+        six_r_qdd_4*v->six_r_w_1_t_15) + six_r_alpha_4_in_axes4_y;
     /* (six_r-B_5) acceleration tensor of link 5 */
     const real six_r_B_5_in_axes5_xy = six_r_W_4_in_axes5_xy - six_r_alpha_5_in_axes5_z;
     const real six_r_B_5_in_axes5_xz = six_r_W_5_in_axes5_xz + six_r_alpha_5_in_axes5_y;
@@ -3275,8 +3285,8 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     /* (six_r-a_o_3) acceleration of the origin of joint 3 */
     const real six_r_a_o_3_t = six_r_omega_1_in_axes2_y*six_r_omega_1_in_axes2_y;
     const real six_r_a_o_3_t_2 = six_r_qd_1_t_4*six_r_qd_1_t_4;
-    const real six_r_a_o_3_in_axes2_x = -m->six_r_joint3_offset_x[i]*(six_r_a_o_3_t +
-        six_r_a_o_3_t_2);
+    const real six_r_a_o_3_in_axes2_x = -m->six_r_joint3_offset_x[i]*(six_r_a_o_3_t_2 +
+        six_r_a_o_3_t);
     const real six_r_a_o_3_in_axes2_y = six_r_B_2_in_axes2_yx*m->six_r_joint3_offset_x[i];
     const real six_r_a_o_3_in_axes2_z = six_r_B_2_in_axes2_zx*m->six_r_joint3_offset_x[i];
     const real six_r_a_o_3_in_axes3_x = six_r_a_o_3_in_axes2_x*v->six_r_s_3 -
@@ -3284,8 +3294,8 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     const real six_r_a_o_3_in_axes3_y = six_r_a_o_3_in_axes2_x*v->six_r_c_3 +
         six_r_a_o_3_in_axes2_y*v->six_r_s_3;
     /* (six_r-a_o_4) acceleration of the origin of joint 4 */
-    const real six_r_a_o_4_in_axes3_x = six_r_a_o_3_in_axes3_x +
-        six_r_B_3_in_axes3_xy*m->six_r_joint4_offset_x[i];
+    const real six_r_a_o_4_in_axes3_x = six_r_B_3_in_axes3_xy*m->six_r_joint4_offset_x[i] +
+        six_r_a_o_3_in_axes3_x;
     const real six_r_a_o_4_in_axes3_y = six_r_a_o_3_in_axes3_y -
         six_r_W_3_t_3*m->six_r_joint4_offset_x[i];
     const real six_r_a_o_4_in_axes3_z = six_r_a_o_3_in_axes2_z +
@@ -3296,41 +3306,41 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     const real six_r_acc_3_in_axes3_z = six_r_a_o_3_in_axes2_z - v->six_r_g_in_axes1_y;
     /* (six_r-f_3) inertia force of link 3 less its weight */
     const real six_r_f_3_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y;
-    const real six_r_f_3_in_axes3_x = six_r_B_3_in_axes3_xy*m->six_r_h_3_in_spec3_x[i] +
-        six_r_B_3_in_axes3_xz*m->six_r_h_3_in_spec3_z[i] +
+    const real six_r_f_3_in_axes3_x = m->six_r_h_3_in_spec3_y[i]*(six_r_W_3_t_2 + six_r_f_3_t)
+        + six_r_B_3_in_axes3_xy*m->six_r_h_3_in_spec3_x[i] +
         six_r_acc_3_in_axes3_x*m->six_r_link3_mass[i] +
-        m->six_r_h_3_in_spec3_y[i]*(six_r_W_3_t_2 + six_r_f_3_t);
-    const real six_r_f_3_in_axes3_y = six_r_B_3_in_axes3_yz*m->six_r_h_3_in_spec3_z[i] +
-        six_r_acc_3_in_axes3_y*m->six_r_link3_mass[i] -
-        six_r_B_3_in_axes3_yx*m->six_r_h_3_in_spec3_y[i] -
-        six_r_W_3_t_3*m->six_r_h_3_in_spec3_x[i];
-    const real six_r_f_3_in_axes3_z = six_r_B_3_in_axes3_zy*m->six_r_h_3_in_spec3_x[i] +
+        six_r_B_3_in_axes3_xz*m->six_r_h_3_in_spec3_z[i];
+    const real six_r_f_3_in_axes3_y = six_r_acc_3_in_axes3_y*m->six_r_link3_mass[i] -
+        six_r_W_3_t_3*m->six_r_h_3_in_spec3_x[i] -
+        six_r_B_3_in_axes3_yx*m->six_r_h_3_in_spec3_y[i] +
+        six_r_B_3_in_axes3_yz*m->six_r_h_3_in_spec3_z[i];
+    const real six_r_f_3_in_axes3_z = six_r_B_3_in_axes3_zy*m->six_r_h_3_in_spec3_x[i] -
+        m->six_r_h_3_in_spec3_z[i]*(six_r_W_3_t + six_r_f_3_t) +
         six_r_acc_3_in_axes3_z*m->six_r_link3_mass[i] -
-        six_r_B_3_in_axes3_zx*m->six_r_h_3_in_spec3_y[i] -
-        m->six_r_h_3_in_spec3_z[i]*(six_r_W_3_t + six_r_f_3_t);
+        six_r_B_3_in_axes3_zx*m->six_r_h_3_in_spec3_y[i];
     /* (six_r-acc_4) acceleration of the reference point of link 4, less gravity */
-    const real six_r_acc_4_in_axes4_x = six_r_a_o_4_in_axes3_z*v->six_r_s_4 +
-        v->six_r_c_4*v->six_r_g_in_axes3_x - six_r_a_o_4_in_axes3_x*v->six_r_c_4 -
-        v->six_r_g_in_axes1_y*v->six_r_s_4;
-    const real six_r_acc_4_in_axes4_y = six_r_a_o_4_in_axes3_x*v->six_r_s_4 +
-        six_r_a_o_4_in_axes3_z*v->six_r_c_4 - v->six_r_c_4*v->six_r_g_in_axes1_y -
-        v->six_r_g_in_axes3_x*v->six_r_s_4;
+    const real six_r_acc_4_in_axes4_x = v->six_r_c_4*v->six_r_g_in_axes3_x -
+        v->six_r_g_in_axes1_y*v->six_r_s_4 - six_r_a_o_4_in_axes3_x*v->six_r_c_4 +
+        six_r_a_o_4_in_axes3_z*v->six_r_s_4;
+    const real six_r_acc_4_in_axes4_y = six_r_a_o_4_in_axes3_x*v->six_r_s_4 -
+        v->six_r_c_4*v->six_r_g_in_axes1_y - v->six_r_g_in_axes3_x*v->six_r_s_4 +
+        six_r_a_o_4_in_axes3_z*v->six_r_c_4;
     const real six_r_acc_4_in_axes4_z = six_r_a_o_4_in_axes3_y - v->six_r_g_in_axes3_y;
     /* (six_r-f_4) inertia force of link 4 less its weight */
     const real six_r_f_4_t = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x;
     const real six_r_f_4_t_2 = six_r_omega_4_in_axes4_z*six_r_omega_4_in_axes4_z;
-    const real six_r_f_4_in_axes4_x = six_r_B_4_in_axes4_xy*m->six_r_h_4_in_spec4_z[i] +
+    const real six_r_f_4_in_axes4_x = six_r_B_4_in_axes4_xy*m->six_r_h_4_in_spec4_z[i] -
+        m->six_r_h_4_in_spec4_y[i]*(six_r_bias_t_10 + six_r_f_4_t_2) +
         six_r_B_4_in_axes4_xz*m->six_r_h_4_in_spec4_x[i] +
-        six_r_acc_4_in_axes4_x*m->six_r_link4_mass[i] -
-        m->six_r_h_4_in_spec4_y[i]*(six_r_bias_t_10 + six_r_f_4_t_2);
-    const real six_r_f_4_in_axes4_y = six_r_B_4_in_axes4_yx*m->six_r_h_4_in_spec4_y[i] +
+        six_r_acc_4_in_axes4_x*m->six_r_link4_mass[i];
+    const real six_r_f_4_in_axes4_y = six_r_B_4_in_axes4_yx*m->six_r_h_4_in_spec4_y[i] -
+        m->six_r_h_4_in_spec4_z[i]*(six_r_f_4_t + six_r_f_4_t_2) +
         six_r_B_4_in_axes4_yz*m->six_r_h_4_in_spec4_x[i] +
-        six_r_acc_4_in_axes4_y*m->six_r_link4_mass[i] -
-        m->six_r_h_4_in_spec4_z[i]*(six_r_f_4_t + six_r_f_4_t_2);
-    const real six_r_f_4_in_axes4_z = six_r_B_4_in_axes4_zx*m->six_r_h_4_in_spec4_y[i] +
-        six_r_B_4_in_axes4_zy*m->six_r_h_4_in_spec4_z[i] +
-        six_r_acc_4_in_axes4_z*m->six_r_link4_mass[i] -
-        m->six_r_h_4_in_spec4_x[i]*(six_r_bias_t_10 + six_r_f_4_t);
+        six_r_acc_4_in_axes4_y*m->six_r_link4_mass[i];
+    const real six_r_f_4_in_axes4_z = six_r_acc_4_in_axes4_z*m->six_r_link4_mass[i] -
+        m->six_r_h_4_in_spec4_x[i]*(six_r_bias_t_10 + six_r_f_4_t) +
+        six_r_B_4_in_axes4_zx*m->six_r_h_4_in_spec4_y[i] +
+        six_r_B_4_in_axes4_zy*m->six_r_h_4_in_spec4_z[i];
     const real six_r_f_4_in_axes3_x = six_r_f_4_in_axes4_y*v->six_r_s_4 -
         v->six_r_c_4*six_r_f_4_in_axes4_x;
     const real six_r_f_4_in_axes3_z = v->six_r_c_4*six_r_f_4_in_axes4_y +
@@ -3346,128 +3356,128 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
         v->axis_z_six_r_axes5_x*m->gravity_x - v->axis_z_six_r_axes5_y*m->gravity_y -
         v->axis_z_six_r_axes5_z*m->gravity_z;
     /* (six_r-mu_5) inertia moment of the links that turn with link 5, about their reference points */
-    const real six_r_mu_5_in_axes5_x = six_r_B_5_in_axes5_yx*m->six_r_J_5_in_spec5_xz[i] +
-        six_r_B_5_in_axes5_zy*m->six_r_Sigma_5_in_axes5_yy[i] +
+    const real six_r_mu_5_in_axes5_x = six_r_acc_5_in_axes5_z*m->six_r_h_5_in_spec5_y[i] -
+        six_r_acc_5_in_axes5_y*m->six_r_h_5_in_spec5_z[i] +
         m->six_r_J_5_in_spec5_yz[i]*(six_r_W_5_t - six_r_W_5_t_2) +
-        six_r_acc_5_in_axes5_z*m->six_r_h_5_in_spec5_y[i] -
+        six_r_B_5_in_axes5_yx*m->six_r_J_5_in_spec5_xz[i] +
+        six_r_B_5_in_axes5_zy*m->six_r_Sigma_5_in_axes5_yy[i] -
         six_r_B_5_in_axes5_yz*m->six_r_Sigma_5_in_axes5_zz[i] -
-        six_r_B_5_in_axes5_zx*m->six_r_J_5_in_spec5_xy[i] -
-        six_r_acc_5_in_axes5_y*m->six_r_h_5_in_spec5_z[i];
-    const real six_r_mu_5_in_axes5_y = six_r_B_5_in_axes5_xz*m->six_r_Sigma_5_in_axes5_zz[i] +
-        six_r_B_5_in_axes5_zy*m->six_r_J_5_in_spec5_xy[i] +
-        six_r_acc_5_in_axes5_x*m->six_r_h_5_in_spec5_z[i] -
-        six_r_B_5_in_axes5_xy*m->six_r_J_5_in_spec5_yz[i] -
-        six_r_B_5_in_axes5_zx*m->six_r_Sigma_5_in_axes5_xx[i] -
+        six_r_B_5_in_axes5_zx*m->six_r_J_5_in_spec5_xy[i];
+    const real six_r_mu_5_in_axes5_y = six_r_acc_5_in_axes5_x*m->six_r_h_5_in_spec5_z[i] -
+        six_r_acc_5_in_axes5_z*m->six_r_h_5_in_spec5_x[i] -
         m->six_r_J_5_in_spec5_xz[i]*(six_r_bias_t_11 - six_r_W_5_t_2) -
-        six_r_acc_5_in_axes5_z*m->six_r_h_5_in_spec5_x[i];
-    const real six_r_mu_5_in_axes5_z = six_r_B_5_in_axes5_xz*m->six_r_J_5_in_spec5_yz[i] +
-        six_r_B_5_in_axes5_yx*m->six_r_Sigma_5_in_axes5_xx[i] +
+        six_r_B_5_in_axes5_xy*m->six_r_J_5_in_spec5_yz[i] +
+        six_r_B_5_in_axes5_xz*m->six_r_Sigma_5_in_axes5_zz[i] +
+        six_r_B_5_in_axes5_zy*m->six_r_J_5_in_spec5_xy[i] -
+        six_r_B_5_in_axes5_zx*m->six_r_Sigma_5_in_axes5_xx[i];
+    const real six_r_mu_5_in_axes5_z = six_r_acc_5_in_axes5_y*m->six_r_h_5_in_spec5_x[i] -
+        six_r_acc_5_in_axes5_x*m->six_r_h_5_in_spec5_y[i] +
         m->six_r_J_5_in_spec5_xy[i]*(six_r_bias_t_11 - six_r_W_5_t) +
-        six_r_acc_5_in_axes5_y*m->six_r_h_5_in_spec5_x[i] -
-        six_r_B_5_in_axes5_xy*m->six_r_Sigma_5_in_axes5_yy[i] -
-        six_r_B_5_in_axes5_yz*m->six_r_J_5_in_spec5_xz[i] -
-        six_r_acc_5_in_axes5_x*m->six_r_h_5_in_spec5_y[i];
+        six_r_B_5_in_axes5_yx*m->six_r_Sigma_5_in_axes5_xx[i] -
+        six_r_B_5_in_axes5_xy*m->six_r_Sigma_5_in_axes5_yy[i] +
+        six_r_B_5_in_axes5_xz*m->six_r_J_5_in_spec5_yz[i] -
+        six_r_B_5_in_axes5_yz*m->six_r_J_5_in_spec5_xz[i];
     /* (six_r-mu_4) inertia moment of the links that turn with link 4, about their reference points */
-    const real six_r_mu_4_in_axes4_x = six_r_B_4_in_axes4_yx*m->six_r_J_4_in_spec4_xy[i] +
-        six_r_B_4_in_axes4_zy*m->six_r_Sigma_4_in_axes4_yy[i] +
-        m->six_r_J_4_in_spec4_xz[i]*(six_r_bias_t_10 - six_r_f_4_t_2) +
-        six_r_acc_4_in_axes4_z*m->six_r_h_4_in_spec4_z[i] -
+    const real six_r_mu_4_in_axes4_x = m->six_r_J_4_in_spec4_xz[i]*(six_r_bias_t_10 -
+        six_r_f_4_t_2) + six_r_acc_4_in_axes4_z*m->six_r_h_4_in_spec4_z[i] +
+        six_r_B_4_in_axes4_yx*m->six_r_J_4_in_spec4_xy[i] +
+        six_r_B_4_in_axes4_zy*m->six_r_Sigma_4_in_axes4_yy[i] -
         six_r_B_4_in_axes4_yz*m->six_r_Sigma_4_in_axes4_zz[i] -
         six_r_B_4_in_axes4_zx*m->six_r_J_4_in_spec4_yz[i] -
         six_r_acc_4_in_axes4_y*m->six_r_h_4_in_spec4_x[i];
-    const real six_r_mu_4_in_axes4_y = six_r_B_4_in_axes4_xz*m->six_r_Sigma_4_in_axes4_zz[i] +
-        six_r_B_4_in_axes4_zy*m->six_r_J_4_in_spec4_yz[i] +
-        six_r_acc_4_in_axes4_x*m->six_r_h_4_in_spec4_x[i] -
-        six_r_B_4_in_axes4_xy*m->six_r_J_4_in_spec4_xz[i] -
-        six_r_B_4_in_axes4_zx*m->six_r_Sigma_4_in_axes4_xx[i] -
+    const real six_r_mu_4_in_axes4_y = six_r_B_4_in_axes4_xz*m->six_r_Sigma_4_in_axes4_zz[i] -
         m->six_r_J_4_in_spec4_xy[i]*(six_r_f_4_t - six_r_f_4_t_2) -
-        six_r_acc_4_in_axes4_z*m->six_r_h_4_in_spec4_y[i];
-    const real six_r_mu_4_in_axes4_z = six_r_B_4_in_axes4_xz*m->six_r_J_4_in_spec4_xz[i] +
-        six_r_B_4_in_axes4_yx*m->six_r_Sigma_4_in_axes4_xx[i] +
-        m->six_r_J_4_in_spec4_yz[i]*(six_r_f_4_t - six_r_bias_t_10) +
-        six_r_acc_4_in_axes4_y*m->six_r_h_4_in_spec4_y[i] -
+        six_r_acc_4_in_axes4_z*m->six_r_h_4_in_spec4_y[i] +
+        six_r_B_4_in_axes4_zy*m->six_r_J_4_in_spec4_yz[i] -
+        six_r_B_4_in_axes4_xy*m->six_r_J_4_in_spec4_xz[i] -
+        six_r_B_4_in_axes4_zx*m->six_r_Sigma_4_in_axes4_xx[i] +
+        six_r_acc_4_in_axes4_x*m->six_r_h_4_in_spec4_x[i];
+    const real six_r_mu_4_in_axes4_z = m->six_r_J_4_in_spec4_yz[i]*(six_r_f_4_t -
+        six_r_bias_t_10) + six_r_B_4_in_axes4_xz*m->six_r_J_4_in_spec4_xz[i] +
+        six_r_B_4_in_axes4_yx*m->six_r_Sigma_4_in_axes4_xx[i] -
         six_r_B_4_in_axes4_xy*m->six_r_Sigma_4_in_axes4_yy[i] -
-        six_r_B_4_in_axes4_yz*m->six_r_J_4_in_spec4_xy[i] -
+        six_r_B_4_in_axes4_yz*m->six_r_J_4_in_spec4_xy[i] +
+        six_r_acc_4_in_axes4_y*m->six_r_h_4_in_spec4_y[i] -
         six_r_acc_4_in_axes4_x*m->six_r_h_4_in_spec4_z[i];
     /* (six_r-N_4) moment about joint 4 of the links from 4 outwards, the force at the connection
        point left out */
     const real six_r_N_4_in_axes4_x = six_r_mu_4_in_axes4_x +
         v->six_r_c_5*six_r_mu_5_in_axes5_y + six_r_mu_5_in_axes5_x*v->six_r_s_5;
     const real six_r_N_4_in_axes4_y = six_r_mu_4_in_axes4_y + six_r_mu_5_in_axes5_z;
-    const real six_r_N_4_in_axes4_z = six_r_mu_4_in_axes4_z +
-        v->six_r_c_5*six_r_mu_5_in_axes5_x - six_r_mu_5_in_axes5_y*v->six_r_s_5;
+    const real six_r_N_4_in_axes4_z = v->six_r_c_5*six_r_mu_5_in_axes5_x -
+        six_r_mu_5_in_axes5_y*v->six_r_s_5 + six_r_mu_4_in_axes4_z;
     /* (six_r-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-    const real six_r_mu_3_in_axes3_x = six_r_B_3_in_axes3_zx*m->six_r_J_3_in_spec3_xy[i] +
+    const real six_r_mu_3_in_axes3_x = m->six_r_J_3_in_spec3_xz[i]*(six_r_f_3_t -
+        six_r_W_3_t_2) - six_r_B_3_in_axes3_yx*m->six_r_J_3_in_spec3_yz[i] -
+        six_r_acc_3_in_axes3_y*m->six_r_h_3_in_spec3_z[i] +
+        six_r_B_3_in_axes3_zx*m->six_r_J_3_in_spec3_xy[i] +
         six_r_B_3_in_axes3_zy*m->six_r_Sigma_3_in_axes3_yy[i] +
-        m->six_r_J_3_in_spec3_xz[i]*(six_r_f_3_t - six_r_W_3_t_2) +
         six_r_acc_3_in_axes3_z*m->six_r_h_3_in_spec3_x[i] -
-        six_r_B_3_in_axes3_yx*m->six_r_J_3_in_spec3_yz[i] -
-        six_r_B_3_in_axes3_yz*m->six_r_Sigma_3_in_axes3_zz[i] -
-        six_r_acc_3_in_axes3_y*m->six_r_h_3_in_spec3_z[i];
-    const real six_r_mu_3_in_axes3_y = six_r_B_3_in_axes3_xz*m->six_r_Sigma_3_in_axes3_zz[i] +
-        m->six_r_J_3_in_spec3_yz[i]*(six_r_W_3_t - six_r_W_3_t_2) +
+        six_r_B_3_in_axes3_yz*m->six_r_Sigma_3_in_axes3_zz[i];
+    const real six_r_mu_3_in_axes3_y = m->six_r_J_3_in_spec3_yz[i]*(six_r_W_3_t -
+        six_r_W_3_t_2) - six_r_B_3_in_axes3_xy*m->six_r_J_3_in_spec3_xz[i] +
         six_r_acc_3_in_axes3_x*m->six_r_h_3_in_spec3_z[i] +
+        six_r_B_3_in_axes3_xz*m->six_r_Sigma_3_in_axes3_zz[i] +
         six_r_acc_3_in_axes3_z*m->six_r_h_3_in_spec3_y[i] -
-        six_r_B_3_in_axes3_xy*m->six_r_J_3_in_spec3_xz[i] -
         six_r_B_3_in_axes3_zx*m->six_r_Sigma_3_in_axes3_xx[i] -
         six_r_B_3_in_axes3_zy*m->six_r_J_3_in_spec3_xy[i];
-    const real six_r_mu_3_in_axes3_z = six_r_B_3_in_axes3_xz*m->six_r_J_3_in_spec3_xz[i] +
-        six_r_B_3_in_axes3_yx*m->six_r_Sigma_3_in_axes3_xx[i] +
-        six_r_B_3_in_axes3_yz*m->six_r_J_3_in_spec3_yz[i] -
-        six_r_B_3_in_axes3_xy*m->six_r_Sigma_3_in_axes3_yy[i] -
+    const real six_r_mu_3_in_axes3_z = six_r_B_3_in_axes3_yx*m->six_r_Sigma_3_in_axes3_xx[i] -
         m->six_r_J_3_in_spec3_xy[i]*(six_r_W_3_t - six_r_f_3_t) -
+        six_r_B_3_in_axes3_xy*m->six_r_Sigma_3_in_axes3_yy[i] -
         six_r_acc_3_in_axes3_x*m->six_r_h_3_in_spec3_x[i] -
-        six_r_acc_3_in_axes3_y*m->six_r_h_3_in_spec3_y[i];
+        six_r_acc_3_in_axes3_y*m->six_r_h_3_in_spec3_y[i] +
+        six_r_B_3_in_axes3_xz*m->six_r_J_3_in_spec3_xz[i] +
+        six_r_B_3_in_axes3_yz*m->six_r_J_3_in_spec3_yz[i];
     /* (six_r-N_3) moment about joint 3 of the links from 3 outwards, the force at the connection
        point left out */
     const real six_r_N_3_in_axes3_x = six_r_mu_3_in_axes3_x +
-        six_r_N_4_in_axes4_y*v->six_r_s_4 + six_r_f_4_in_axes3_z*m->six_r_joint4_offset_x[i] -
+        six_r_f_4_in_axes3_z*m->six_r_joint4_offset_x[i] + six_r_N_4_in_axes4_y*v->six_r_s_4 -
         six_r_N_4_in_axes4_x*v->six_r_c_4;
-    const real six_r_N_3_in_axes3_y = six_r_N_4_in_axes4_z + six_r_mu_3_in_axes3_y;
-    const real six_r_N_3_in_axes3_z = six_r_mu_3_in_axes3_z +
-        six_r_N_4_in_axes4_x*v->six_r_s_4 + six_r_N_4_in_axes4_y*v->six_r_c_4 -
-        six_r_f_4_in_axes3_x*m->six_r_joint4_offset_x[i];
+    const real six_r_N_3_in_axes3_y = six_r_mu_3_in_axes3_y + six_r_N_4_in_axes4_z;
+    const real six_r_N_3_in_axes3_z = six_r_mu_3_in_axes3_z -
+        six_r_f_4_in_axes3_x*m->six_r_joint4_offset_x[i] + six_r_N_4_in_axes4_y*v->six_r_c_4 +
+        six_r_N_4_in_axes4_x*v->six_r_s_4;
     /* (six_r-T_3) inertia force of the links from 3 outwards, the last link left out */
     const real six_r_T_3_in_axes3_x = six_r_f_3_in_axes3_x + six_r_f_4_in_axes3_x;
     const real six_r_T_3_in_axes3_y = six_r_f_3_in_axes3_y + six_r_f_4_in_axes4_z;
     const real six_r_T_3_in_axes3_z = six_r_f_3_in_axes3_z + six_r_f_4_in_axes3_z;
     /* (six_r-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real six_r_mu_2_t = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_x;
-    const real six_r_mu_2_in_axes2_x = six_r_B_2_in_axes2_yx*m->six_r_J_2_in_spec2_xz[i] +
-        six_r_B_2_in_axes2_zy*m->six_r_Sigma_2_in_axes2_yy[i] +
+    const real six_r_mu_2_in_axes2_x = v->six_r_g_in_axes2_y*m->six_r_h_2_in_spec2_z[i] -
+        v->six_r_g_in_axes1_y*m->six_r_h_2_in_spec2_y[i] +
         m->six_r_J_2_in_spec2_yz[i]*(six_r_a_o_3_t - six_r_a_o_3_t_2) +
-        v->six_r_g_in_axes2_y*m->six_r_h_2_in_spec2_z[i] -
-        six_r_B_2_in_axes2_zx*m->six_r_J_2_in_spec2_xy[i] -
-        m->six_r_Sigma_2_in_axes2_zz[i]*six_r_alpha_1_t -
-        v->six_r_g_in_axes1_y*m->six_r_h_2_in_spec2_y[i];
-    const real six_r_mu_2_in_axes2_y = six_r_B_2_in_axes2_zy*m->six_r_J_2_in_spec2_xy[i] +
-        m->six_r_Sigma_2_in_axes2_zz[i]*six_r_alpha_1_in_axes2_y +
-        v->six_r_g_in_axes1_y*m->six_r_h_2_in_spec2_x[i] -
-        six_r_B_2_in_axes2_xy*m->six_r_J_2_in_spec2_yz[i] -
-        six_r_B_2_in_axes2_zx*m->six_r_Sigma_2_in_axes2_xx[i] -
+        six_r_B_2_in_axes2_yx*m->six_r_J_2_in_spec2_xz[i] -
+        m->six_r_Sigma_2_in_axes2_zz[i]*six_r_alpha_1_t +
+        six_r_B_2_in_axes2_zy*m->six_r_Sigma_2_in_axes2_yy[i] -
+        six_r_B_2_in_axes2_zx*m->six_r_J_2_in_spec2_xy[i];
+    const real six_r_mu_2_in_axes2_y = v->six_r_g_in_axes1_y*m->six_r_h_2_in_spec2_x[i] -
+        v->six_r_g_in_axes2_x*m->six_r_h_2_in_spec2_z[i] -
         m->six_r_J_2_in_spec2_xz[i]*(six_r_mu_2_t - six_r_a_o_3_t_2) -
-        v->six_r_g_in_axes2_x*m->six_r_h_2_in_spec2_z[i];
-    const real six_r_mu_2_in_axes2_z = six_r_B_2_in_axes2_yx*m->six_r_Sigma_2_in_axes2_xx[i] +
+        six_r_B_2_in_axes2_xy*m->six_r_J_2_in_spec2_yz[i] +
+        m->six_r_Sigma_2_in_axes2_zz[i]*six_r_alpha_1_in_axes2_y +
+        six_r_B_2_in_axes2_zy*m->six_r_J_2_in_spec2_xy[i] -
+        six_r_B_2_in_axes2_zx*m->six_r_Sigma_2_in_axes2_xx[i];
+    const real six_r_mu_2_in_axes2_z = v->six_r_g_in_axes2_x*m->six_r_h_2_in_spec2_y[i] -
+        v->six_r_g_in_axes2_y*m->six_r_h_2_in_spec2_x[i] +
         m->six_r_J_2_in_spec2_xy[i]*(six_r_mu_2_t - six_r_a_o_3_t) +
-        m->six_r_J_2_in_spec2_yz[i]*six_r_alpha_1_in_axes2_y +
-        v->six_r_g_in_axes2_x*m->six_r_h_2_in_spec2_y[i] -
-        six_r_B_2_in_axes2_xy*m->six_r_Sigma_2_in_axes2_yy[i] -
-        m->six_r_J_2_in_spec2_xz[i]*six_r_alpha_1_t -
-        v->six_r_g_in_axes2_y*m->six_r_h_2_in_spec2_x[i];
+        six_r_B_2_in_axes2_yx*m->six_r_Sigma_2_in_axes2_xx[i] -
+        six_r_B_2_in_axes2_xy*m->six_r_Sigma_2_in_axes2_yy[i] +
+        m->six_r_J_2_in_spec2_yz[i]*six_r_alpha_1_in_axes2_y -
+        m->six_r_J_2_in_spec2_xz[i]*six_r_alpha_1_t;
     /* (six_r-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection
        point left out */
     const real six_r_N_2_in_axes2_x = six_r_mu_2_in_axes2_x +
         six_r_N_3_in_axes3_x*v->six_r_s_3 + six_r_N_3_in_axes3_y*v->six_r_c_3;
-    const real six_r_N_2_in_axes2_y = six_r_mu_2_in_axes2_y +
-        six_r_N_3_in_axes3_y*v->six_r_s_3 - six_r_N_3_in_axes3_x*v->six_r_c_3 -
-        six_r_T_3_in_axes3_z*m->six_r_joint3_offset_x[i];
-    const real six_r_N_2_in_axes2_z = six_r_N_3_in_axes3_z + six_r_mu_2_in_axes2_z -
+    const real six_r_N_2_in_axes2_y = six_r_mu_2_in_axes2_y -
+        six_r_T_3_in_axes3_z*m->six_r_joint3_offset_x[i] + six_r_N_3_in_axes3_y*v->six_r_s_3 -
+        six_r_N_3_in_axes3_x*v->six_r_c_3;
+    const real six_r_N_2_in_axes2_z = six_r_mu_2_in_axes2_z -
         m->six_r_joint3_offset_x[i]*(six_r_T_3_in_axes3_x*v->six_r_c_3 -
-        six_r_T_3_in_axes3_y*v->six_r_s_3);
+        six_r_T_3_in_axes3_y*v->six_r_s_3) + six_r_N_3_in_axes3_z;
     /* (six_r-mu_1) inertia moment of the links that turn with link 1, about their reference points */
     const real six_r_mu_1_in_axes1_z = v->six_r_g_in_axes1_x*m->six_r_h_1_in_spec1_z[i] -
-        m->six_r_J_1_in_spec1_xx[i]*six_r_qdd_1_t_5 -
-        v->six_r_g_in_axes1_y*m->six_r_h_1_in_spec1_y[i];
+        v->six_r_g_in_axes1_y*m->six_r_h_1_in_spec1_y[i] -
+        m->six_r_J_1_in_spec1_xx[i]*six_r_qdd_1_t_5;
     /* (six_r-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection
        point left out */
     const real six_r_N_1_in_axes1_z = six_r_mu_1_in_axes1_z +
@@ -3482,17 +3492,17 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     const real six_r_G_m1_t_4 = v->inv_six_r_w_1_t_67*(six_r_G_m1_t*v->six_r_w_1_t_22 +
         six_r_G_m1_t_2*v->six_r_w_1_t_39 - six_r_N_2_in_axes2_z -
         six_r_G_m1_t_3*v->six_r_w_1_t_55);
-    const real six_r_G_m1_t_5 = v->inv_six_r_w_1_t_79*(six_r_N_3_in_axes3_z +
-        six_r_G_m1_t*v->six_r_w_1_t_25 + six_r_G_m1_t_3*v->six_r_w_1_t_61 +
-        six_r_G_m1_t_4*v->six_r_w_1_t_73 - six_r_G_m1_t_2*v->six_r_w_1_t_44);
+    const real six_r_G_m1_t_5 = v->inv_six_r_w_1_t_79*(six_r_G_m1_t*v->six_r_w_1_t_25 +
+        six_r_N_3_in_axes3_z - six_r_G_m1_t_2*v->six_r_w_1_t_44 +
+        six_r_G_m1_t_3*v->six_r_w_1_t_61 + six_r_G_m1_t_4*v->six_r_w_1_t_73);
     const real six_r_G_m1_t_6 = m->six_r_size[i]*(six_r_G_m1_t_2*v->six_r_w_1_t_31 +
         six_r_G_m1_t_3*v->six_r_w_1_t_53 + six_r_G_m1_t_4*v->six_r_w_1_t_71 -
         six_r_G_m1_t_5*six_r_m1_w_2_t);
     /* (six_r-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along
        all degrees of freedom */
-    const real six_r_G_m2_t = m->six_r_size[i]*(six_r_G_m1_t_2*v->six_r_w_1_t_32 +
-        six_r_G_m1_t_3*v->six_r_w_1_t_54 + six_r_G_m1_t_4*v->six_r_w_1_t_72 -
-        six_r_G_m1_t*v->six_r_w_1_t_14 - six_r_G_m1_t_5*six_r_m2_w_2_t);
+    const real six_r_G_m2_t = m->six_r_size[i]*(six_r_G_m1_t_2*v->six_r_w_1_t_32 -
+        six_r_G_m1_t*v->six_r_w_1_t_14 + six_r_G_m1_t_3*v->six_r_w_1_t_54 +
+        six_r_G_m1_t_4*v->six_r_w_1_t_72 - six_r_G_m1_t_5*six_r_m2_w_2_t);
     /* (six_r-G_m) moment at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
     const real six_r_G_m_in_axes5_x = six_r_G_m1_t_6*v->six_r_n_m2_in_axes5_z;
@@ -3500,21 +3510,20 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
         six_r_G_m1_t_6*v->six_r_n_m1_in_axes5_y;
     /* (six_r-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real six_r_c_in_axes5_x = six_r_G_m1_t_3*v->six_r_w_1_t_50 +
-        six_r_G_m1_t_4*v->six_r_w_1_t_68 + six_r_W_5_t_3*m->six_r_h_5_in_spec5_x[i] -
+    const real six_r_c_in_axes5_x = six_r_W_5_t_3*m->six_r_h_5_in_spec5_x[i] -
         six_r_B_5_in_axes5_xy*m->six_r_h_5_in_spec5_y[i] -
-        six_r_B_5_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] - six_r_G_m1_t_5*six_r_w_2_t;
-    const real six_r_c_in_axes5_y = six_r_G_m1_t_5*six_r_w_2_t_2 +
-        m->six_r_h_5_in_spec5_y[i]*(six_r_W_5_t_2 + six_r_bias_t_11) -
-        six_r_B_5_in_axes5_yx*m->six_r_h_5_in_spec5_x[i] -
+        six_r_B_5_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] + six_r_G_m1_t_3*v->six_r_w_1_t_50 +
+        six_r_G_m1_t_4*v->six_r_w_1_t_68 - six_r_G_m1_t_5*six_r_w_2_t;
+    const real six_r_c_in_axes5_y = m->six_r_h_5_in_spec5_y[i]*(six_r_W_5_t_2 +
+        six_r_bias_t_11) - six_r_B_5_in_axes5_yx*m->six_r_h_5_in_spec5_x[i] -
         six_r_B_5_in_axes5_yz*m->six_r_h_5_in_spec5_z[i] - six_r_G_m1_t*v->six_r_w_1_t_13 -
         six_r_G_m1_t_2*v->six_r_w_1_t_29 - six_r_G_m1_t_3*v->six_r_w_1_t_51 -
-        six_r_G_m1_t_4*v->six_r_w_1_t_69;
-    const real six_r_c_in_axes5_z = six_r_G_m1_t_2*v->six_r_w_1_t_30 +
-        six_r_G_m1_t_3*v->six_r_w_1_t_52 + six_r_G_m1_t_4*v->six_r_w_1_t_70 +
-        m->six_r_h_5_in_spec5_z[i]*(six_r_W_5_t + six_r_bias_t_11) -
-        six_r_B_5_in_axes5_zx*m->six_r_h_5_in_spec5_x[i] -
-        six_r_B_5_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] - six_r_G_m1_t_5*six_r_w_2_t_3;
+        six_r_G_m1_t_4*v->six_r_w_1_t_69 + six_r_G_m1_t_5*six_r_w_2_t_2;
+    const real six_r_c_in_axes5_z = m->six_r_h_5_in_spec5_z[i]*(six_r_W_5_t + six_r_bias_t_11)
+        - six_r_B_5_in_axes5_zx*m->six_r_h_5_in_spec5_x[i] -
+        six_r_B_5_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] + six_r_G_m1_t_2*v->six_r_w_1_t_30 +
+        six_r_G_m1_t_3*v->six_r_w_1_t_52 + six_r_G_m1_t_4*v->six_r_w_1_t_70 -
+        six_r_G_m1_t_5*six_r_w_2_t_3;
     /* (six_r-c_m) moment of the leg on the platform without actuation */
     const real six_r_c_m_in_axes5_z = six_r_G_m2_t*v->six_r_n_m2_in_axes5_z;
     v->six_r_w_2_x = six_r_w_2_x;
@@ -3535,21 +3544,20 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
 }
 
 /* ---- closure_six_r ---- */
-INLINE void closure_six_r_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void closure_six_r_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void closure_six_r_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k,
@@ -3564,23 +3572,20 @@ INLINE void closure_six_r_legs_six_r(const prepared *m, size_t w, size_t i, size
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
     const real t_x = X[0*w + j];
-    const real six_r_S_x = t_x + R_xx*m->six_r_platform_point_x[i] +
-        R_xy*m->six_r_platform_point_y[i] + R_xz*m->six_r_platform_point_z[i] -
-        m->six_r_base_point_x[i];
+    const real six_r_S_x = t_x - m->six_r_base_point_x[i] + R_xy*m->six_r_platform_point_y[i]
+        + R_xz*m->six_r_platform_point_z[i] + R_xx*m->six_r_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real t_y = X[1*w + j];
-    const real six_r_S_y = t_y + R_yx*m->six_r_platform_point_x[i] +
-        R_yy*m->six_r_platform_point_y[i] + R_yz*m->six_r_platform_point_z[i] -
-        m->six_r_base_point_y[i];
+    const real six_r_S_y = t_y - m->six_r_base_point_y[i] + R_yx*m->six_r_platform_point_x[i]
+        + R_yz*m->six_r_platform_point_z[i] + R_yy*m->six_r_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real t_z = X[2*w + j];
-    const real six_r_S_z = t_z + R_zx*m->six_r_platform_point_x[i] +
-        R_zy*m->six_r_platform_point_y[i] + R_zz*m->six_r_platform_point_z[i] -
-        m->six_r_base_point_z[i];
+    const real six_r_S_z = t_z - m->six_r_base_point_z[i] + R_zx*m->six_r_platform_point_x[i]
+        + R_zy*m->six_r_platform_point_y[i] + R_zz*m->six_r_platform_point_z[i];
     /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
     const real six_r_end_p1_in_axes5_y = v.six_r_c_5*v.six_r_n_m1_t_10 -
         v.six_r_n_m1_t_9*v.six_r_s_5;
@@ -3612,8 +3617,8 @@ INLINE void closure_six_r_legs_six_r(const prepared *m, size_t w, size_t i, size
     const real six_r_gap_t_10 = six_r_gap_t_5*v.six_r_s_4 - v.six_r_c_4*six_r_gap_t_8;
     const real six_r_gap_in_axes5_x = v.six_r_c_5*six_r_gap_t_9 + six_r_gap_t_10*v.six_r_s_5 -
         v.six_r_r_1_in_axes5_x;
-    const real six_r_gap_in_axes5_y = v.six_r_c_5*six_r_gap_t_10 - v.six_r_r_1_in_axes5_y -
-        six_r_gap_t_9*v.six_r_s_5;
+    const real six_r_gap_in_axes5_y = v.six_r_c_5*six_r_gap_t_10 - six_r_gap_t_9*v.six_r_s_5 -
+        v.six_r_r_1_in_axes5_y;
     const real six_r_gap_in_axes5_z = v.six_r_c_4*six_r_gap_t_5 + six_r_gap_t_8*v.six_r_s_4 -
         v.six_r_r_1_in_axes5_z;
     /* (six_r-gap) */
@@ -3689,7 +3694,8 @@ INLINE void closure_six_r_run(const prepared *m, const real *X, const real *join
     real s[9] = {0};
     real o_six_r[25*LEGS(LEGS_OF_six_r)] = {0};
     clear(jacobian_six_r, 150);
-    closure_six_r_before(m, 1, 0, X, s, t);
+    values v;
+    closure_six_r_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
         closure_six_r_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), s, X, joints, o_six_r);
     }
@@ -3757,39 +3763,43 @@ static void close_loops(const prepared *m, size_t w, const real *X, const real *
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    real *s, verdict *t)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_M_dynamics(m, &v);
-    stage_Z_dynamics(m, w, k, V, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.h_star_x;
-    s[10*w + k] = v.h_star_y;
-    s[11*w + k] = v.h_star_z;
-    s[12*w + k] = v.J_star_xx;
-    s[13*w + k] = v.J_star_xy;
-    s[14*w + k] = v.J_star_xz;
-    s[15*w + k] = v.J_star_yy;
-    s[16*w + k] = v.J_star_yz;
-    s[17*w + k] = v.J_star_zz;
-    s[18*w + k] = v.Z_p_x;
-    s[19*w + k] = v.Z_p_y;
-    s[20*w + k] = v.Z_p_z;
-    s[21*w + k] = v.Z_q_x;
-    s[22*w + k] = v.Z_q_y;
-    s[23*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->h_star_x;
+    s[10*w + k] = v->h_star_y;
+    s[11*w + k] = v->h_star_z;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
+    *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_M_dynamics(m, v);
+    stage_Z_dynamics(m, w, k, V, v);
+    s[12*w + k] = v->J_star_xx;
+    s[13*w + k] = v->J_star_xy;
+    s[14*w + k] = v->J_star_xz;
+    s[15*w + k] = v->J_star_yy;
+    s[16*w + k] = v->J_star_yz;
+    s[17*w + k] = v->J_star_zz;
+    s[18*w + k] = v->Z_p_x;
+    s[19*w + k] = v->Z_p_y;
+    s[20*w + k] = v->Z_p_z;
+    s[21*w + k] = v->Z_q_x;
+    s[22*w + k] = v->Z_q_y;
+    s[23*w + k] = v->Z_q_z;
 }
 
 INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3809,8 +3819,8 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     const real six_r_S_dot_t_4 = six_r_S_dot_t_2*v.six_r_s_2 - six_r_S_dot_t*v.six_r_c_2;
     const real six_r_S_dot_t_5 = six_r_S_dot_t_4*v.six_r_c_1 -
         v.six_r_e_2_in_axes5_z*v.six_r_s_1;
-    const real six_r_S_dot_t_6 = six_r_S_dot_t_4*v.six_r_s_1 +
-        v.six_r_c_1*v.six_r_e_2_in_axes5_z;
+    const real six_r_S_dot_t_6 = v.six_r_c_1*v.six_r_e_2_in_axes5_z +
+        six_r_S_dot_t_4*v.six_r_s_1;
     const real axis_z_six_r_axes5_x = six_r_S_dot_t_3*m->six_r_base_frame_xx[i] +
         six_r_S_dot_t_5*m->six_r_base_frame_xy[i] + six_r_S_dot_t_6*m->six_r_base_frame_xz[i];
     const real axis_z_six_r_axes5_y = six_r_S_dot_t_3*m->six_r_base_frame_yx[i] +
@@ -3824,8 +3834,8 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     const real six_r_S_dot_t_11 = six_r_S_dot_t_9*v.six_r_s_2 - six_r_S_dot_t_8*v.six_r_c_2;
     const real six_r_S_dot_t_12 = six_r_S_dot_t_11*v.six_r_c_1 -
         v.six_r_e_2_in_axes5_y*v.six_r_s_1;
-    const real six_r_S_dot_t_13 = six_r_S_dot_t_11*v.six_r_s_1 +
-        v.six_r_c_1*v.six_r_e_2_in_axes5_y;
+    const real six_r_S_dot_t_13 = v.six_r_c_1*v.six_r_e_2_in_axes5_y +
+        six_r_S_dot_t_11*v.six_r_s_1;
     const real axis_y_six_r_axes5_x = six_r_S_dot_t_10*m->six_r_base_frame_xx[i] +
         six_r_S_dot_t_12*m->six_r_base_frame_xy[i] +
         six_r_S_dot_t_13*m->six_r_base_frame_xz[i];
@@ -3850,8 +3860,8 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
     const real six_r_n_m1_t_10 = v.six_r_h_4_t*v.six_r_n_m1_t_5 -
         v.six_r_e_2_in_axes5_z*v.six_r_n_m1_t_8;
-    const real six_r_n_m1_in_axes5_y = v.six_r_J_5_t*six_r_n_m1_t_10 +
-        v.six_r_e_4_in_axes5_x*v.six_r_n_m1_t_9;
+    const real six_r_n_m1_in_axes5_y = v.six_r_e_4_in_axes5_x*v.six_r_n_m1_t_9 +
+        v.six_r_J_5_t*six_r_n_m1_t_10;
     const real six_r_end_p1_in_axes5_y = v.six_r_e_4_in_axes5_x*six_r_n_m1_t_10 -
         v.six_r_J_5_t*v.six_r_n_m1_t_9;
     const real six_r_n_m1_x = axis_y_six_r_axes5_x*six_r_n_m1_in_axes5_y -
@@ -3905,8 +3915,8 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     const real six_r_w_1_t_26 = v.six_r_v_3_in_axes5_y + six_r_w_1_t_13*six_r_w_1_t_25;
     const real six_r_w_1_t_27 = six_r_w_1_t_8 - six_r_w_1_t_14*six_r_w_1_t_25;
     const real six_r_w_1_t_28 = root(v.six_r_v_4_in_axes5_z*v.six_r_v_4_in_axes5_z +
-        six_r_w_1_t_16*six_r_w_1_t_16 + six_r_w_1_t_17*six_r_w_1_t_17 +
-        six_r_w_1_t_9*six_r_w_1_t_9);
+        six_r_w_1_t_9*six_r_w_1_t_9 + six_r_w_1_t_16*six_r_w_1_t_16 +
+        six_r_w_1_t_17*six_r_w_1_t_17);
     const real inv_six_r_w_1_t_28 = 1/six_r_w_1_t_28;
     const real six_r_w_1_t_29 = inv_six_r_w_1_t_28*six_r_w_1_t_16;
     const real six_r_w_1_t_30 = inv_six_r_w_1_t_28*v.six_r_v_4_in_axes5_z;
@@ -3919,14 +3929,14 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     const real six_r_w_1_t_36 = six_r_w_1_t_31*six_r_w_1_t_33 - six_r_w_1_t_5;
     const real six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_33 - six_r_w_1_t_20;
     const real six_r_w_1_t_38 = six_r_w_1_t_31*six_r_w_1_t_7;
-    const real six_r_w_1_t_39 = six_r_w_1_t_38 + six_r_w_1_t_23*six_r_w_1_t_29 +
-        six_r_w_1_t_24*six_r_w_1_t_32 - v.six_r_v_2_in_axes5_z*six_r_w_1_t_30;
+    const real six_r_w_1_t_39 = six_r_w_1_t_23*six_r_w_1_t_29 + six_r_w_1_t_24*six_r_w_1_t_32
+        - v.six_r_v_2_in_axes5_z*six_r_w_1_t_30 + six_r_w_1_t_38;
     const real six_r_w_1_t_40 = six_r_w_1_t_29*six_r_w_1_t_39 - six_r_w_1_t_23;
     const real six_r_w_1_t_41 = v.six_r_v_2_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_39;
     const real six_r_w_1_t_42 = six_r_w_1_t_31*six_r_w_1_t_39 - six_r_w_1_t_7;
     const real six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_39 - six_r_w_1_t_24;
-    const real six_r_w_1_t_44 = six_r_w_1_t_38 + six_r_w_1_t_26*six_r_w_1_t_29 +
-        six_r_w_1_t_27*six_r_w_1_t_32 - v.six_r_v_3_in_axes5_z*six_r_w_1_t_30;
+    const real six_r_w_1_t_44 = six_r_w_1_t_26*six_r_w_1_t_29 + six_r_w_1_t_27*six_r_w_1_t_32
+        - v.six_r_v_3_in_axes5_z*six_r_w_1_t_30 + six_r_w_1_t_38;
     const real six_r_w_1_t_45 = six_r_w_1_t_29*six_r_w_1_t_44 - six_r_w_1_t_26;
     const real six_r_w_1_t_46 = v.six_r_v_3_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_44;
     const real six_r_w_1_t_47 = six_r_w_1_t_31*six_r_w_1_t_44 - six_r_w_1_t_7;
@@ -3985,18 +3995,18 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
         six_r_w_1_t_73*six_r_w_1_t_83);
     const real six_r_w_1_in_axes5_x = inv_six_r_w_1_t_49*six_r_w_1_t_50 -
         six_r_w_1_t_68*six_r_w_1_t_83 - six_r_w_1_t_80*six_r_w_1_t_84;
-    const real six_r_w_1_in_axes5_y = six_r_w_1_t_69*six_r_w_1_t_83 +
-        six_r_w_1_t_81*six_r_w_1_t_84 - inv_six_r_w_1_t_49*six_r_w_1_t_51;
+    const real six_r_w_1_in_axes5_y = six_r_w_1_t_69*six_r_w_1_t_83 -
+        inv_six_r_w_1_t_49*six_r_w_1_t_51 + six_r_w_1_t_81*six_r_w_1_t_84;
     const real six_r_w_1_in_axes5_z = inv_six_r_w_1_t_49*six_r_w_1_t_52 -
         six_r_w_1_t_70*six_r_w_1_t_83 - six_r_w_1_t_82*six_r_w_1_t_84;
     /* (six_r-m1_w_1) moment part 1 of reciprocal wrench 1 */
     const real six_r_m1_w_1_t = inv_six_r_w_1_t_79*six_r_w_1_t_77;
-    const real six_r_m1_w_1_t_2 = m->six_r_size[i]*(six_r_m1_w_1_t*six_r_w_1_t_84 +
-        six_r_w_1_t_71*six_r_w_1_t_83 - inv_six_r_w_1_t_49*six_r_w_1_t_53);
+    const real six_r_m1_w_1_t_2 = m->six_r_size[i]*(six_r_w_1_t_71*six_r_w_1_t_83 -
+        inv_six_r_w_1_t_49*six_r_w_1_t_53 + six_r_m1_w_1_t*six_r_w_1_t_84);
     /* (six_r-m2_w_1) moment part 2 of reciprocal wrench 1 */
     const real six_r_m2_w_1_t = inv_six_r_w_1_t_79*six_r_w_1_t_78;
-    const real six_r_m2_w_1_t_2 = m->six_r_size[i]*(six_r_m2_w_1_t*six_r_w_1_t_84 +
-        six_r_w_1_t_72*six_r_w_1_t_83 - inv_six_r_w_1_t_49*six_r_w_1_t_54);
+    const real six_r_m2_w_1_t_2 = m->six_r_size[i]*(six_r_w_1_t_72*six_r_w_1_t_83 -
+        inv_six_r_w_1_t_49*six_r_w_1_t_54 + six_r_m2_w_1_t*six_r_w_1_t_84);
     /* (six_r-w_2) force part of reciprocal wrench 2 */
     const real six_r_w_2_t = inv_six_r_w_1_t_67*inv_six_r_w_1_t_79*six_r_w_1_t_73;
     const real six_r_w_2_in_axes5_x = inv_six_r_w_1_t_67*six_r_w_1_t_68 -
@@ -4029,8 +4039,8 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     const real six_r_w_4_t = inv_six_r_w_1_t_28*inv_six_r_w_1_t_49*six_r_w_1_t_33;
     const real six_r_w_4_t_2 = inv_six_r_w_1_t_67*(inv_six_r_w_1_t_28*six_r_w_1_t_39 -
         six_r_w_1_t_55*six_r_w_4_t);
-    const real six_r_w_4_t_3 = inv_six_r_w_1_t_79*(six_r_w_1_t_61*six_r_w_4_t +
-        six_r_w_1_t_73*six_r_w_4_t_2 - inv_six_r_w_1_t_28*six_r_w_1_t_44);
+    const real six_r_w_4_t_3 = inv_six_r_w_1_t_79*(six_r_w_1_t_61*six_r_w_4_t -
+        inv_six_r_w_1_t_28*six_r_w_1_t_44 + six_r_w_1_t_73*six_r_w_4_t_2);
     const real six_r_w_4_in_axes5_x = six_r_w_1_t_50*six_r_w_4_t +
         six_r_w_1_t_68*six_r_w_4_t_2 - six_r_w_1_t_80*six_r_w_4_t_3;
     const real six_r_w_4_in_axes5_y = six_r_w_1_t_81*six_r_w_4_t_3 -
@@ -4053,9 +4063,9 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
         six_r_w_1_t_33*six_r_w_5_t);
     const real six_r_w_5_t_3 = inv_six_r_w_1_t_67*(inv_six_r_w_1_t_12*six_r_w_1_t_22 +
         six_r_w_1_t_39*six_r_w_5_t - six_r_w_1_t_55*six_r_w_5_t_2);
-    const real six_r_w_5_t_4 = inv_six_r_w_1_t_79*(inv_six_r_w_1_t_12*six_r_w_1_t_25 +
-        six_r_w_1_t_61*six_r_w_5_t_2 + six_r_w_1_t_73*six_r_w_5_t_3 -
-        six_r_w_1_t_44*six_r_w_5_t);
+    const real six_r_w_5_t_4 = inv_six_r_w_1_t_79*(inv_six_r_w_1_t_12*six_r_w_1_t_25 -
+        six_r_w_1_t_44*six_r_w_5_t + six_r_w_1_t_61*six_r_w_5_t_2 +
+        six_r_w_1_t_73*six_r_w_5_t_3);
     const real six_r_w_5_t_5 = six_r_w_1_t_50*six_r_w_5_t_2 + six_r_w_1_t_68*six_r_w_5_t_3 -
         six_r_w_1_t_80*six_r_w_5_t_4;
     const real six_r_w_5_in_axes5_y = inv_six_r_w_1_t_12*six_r_w_1_t_13 +
@@ -4069,9 +4079,9 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
         six_r_w_1_t_53*six_r_w_5_t_2 + six_r_w_1_t_71*six_r_w_5_t_3 -
         six_r_m1_w_1_t*six_r_w_5_t_4);
     /* (six_r-m2_w_5) moment part 2 of reciprocal wrench 5 */
-    const real six_r_m2_w_5_t = m->six_r_size[i]*(six_r_w_1_t_32*six_r_w_5_t +
-        six_r_w_1_t_54*six_r_w_5_t_2 + six_r_w_1_t_72*six_r_w_5_t_3 -
-        inv_six_r_w_1_t_12*six_r_w_1_t_14 - six_r_m2_w_1_t*six_r_w_5_t_4);
+    const real six_r_m2_w_5_t = m->six_r_size[i]*(six_r_w_1_t_32*six_r_w_5_t -
+        inv_six_r_w_1_t_12*six_r_w_1_t_14 + six_r_w_1_t_54*six_r_w_5_t_2 +
+        six_r_w_1_t_72*six_r_w_5_t_3 - six_r_m2_w_1_t*six_r_w_5_t_4);
     /* (six_r-o_1) moment part of reciprocal wrench 1 */
     const real six_r_o_1_in_axes5_x = six_r_end_p1_in_axes5_y*six_r_m1_w_1_t_2;
     const real six_r_o_1_t = six_r_end_p1_in_axes5_y*six_r_m2_w_1_t_2;
@@ -4119,19 +4129,19 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
         six_r_S_dot_in_axes5_z*six_r_w_1_t_70 + six_r_qd_1_t*six_r_w_1_t_71 +
         six_r_qd_1_t_2*six_r_w_1_t_72 - six_r_S_dot_in_axes5_y*six_r_w_1_t_69 -
         six_r_qd_1_t_3*six_r_w_1_t_73);
-    const real six_r_qd_1_t_5 = inv_six_r_w_1_t_49*(six_r_S_dot_in_axes5_y*six_r_w_1_t_51 +
-        six_r_qd_1_t_3*six_r_w_1_t_61 + six_r_qd_1_t_4*six_r_w_1_t_55 -
+    const real six_r_qd_1_t_5 = inv_six_r_w_1_t_49*(six_r_S_dot_in_axes5_y*six_r_w_1_t_51 -
         six_r_S_dot_in_axes5_x*six_r_w_1_t_50 - six_r_S_dot_in_axes5_z*six_r_w_1_t_52 -
-        six_r_qd_1_t*six_r_w_1_t_53 - six_r_qd_1_t_2*six_r_w_1_t_54);
+        six_r_qd_1_t*six_r_w_1_t_53 - six_r_qd_1_t_2*six_r_w_1_t_54 +
+        six_r_qd_1_t_3*six_r_w_1_t_61 + six_r_qd_1_t_4*six_r_w_1_t_55);
     /* (six_r-qd_4) rate of joint 4 */
     const real six_r_qd_4 = inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_z*six_r_w_1_t_30 +
-        six_r_qd_1_t*six_r_w_1_t_31 + six_r_qd_1_t_2*six_r_w_1_t_32 +
-        six_r_qd_1_t_3*six_r_w_1_t_44 + six_r_qd_1_t_4*six_r_w_1_t_39 -
-        six_r_S_dot_in_axes5_y*six_r_w_1_t_29 - six_r_qd_1_t_5*six_r_w_1_t_33);
+        six_r_qd_1_t*six_r_w_1_t_31 + six_r_qd_1_t_2*six_r_w_1_t_32 -
+        six_r_S_dot_in_axes5_y*six_r_w_1_t_29 + six_r_qd_1_t_3*six_r_w_1_t_44 +
+        six_r_qd_1_t_4*six_r_w_1_t_39 - six_r_qd_1_t_5*six_r_w_1_t_33);
     /* (six_r-qd_5) rate of joint 5 */
     const real six_r_qd_5 = inv_six_r_w_1_t_12*(six_r_S_dot_in_axes5_y*six_r_w_1_t_13 +
-        six_r_qd_1_t_2*six_r_w_1_t_14 + six_r_qd_1_t_3*six_r_w_1_t_25 +
-        six_r_qd_1_t_5*six_r_w_1_t_18 - six_r_qd_1_t_4*six_r_w_1_t_22 -
+        six_r_qd_1_t_2*six_r_w_1_t_14 + six_r_qd_1_t_3*six_r_w_1_t_25 -
+        six_r_qd_1_t_4*six_r_w_1_t_22 + six_r_qd_1_t_5*six_r_w_1_t_18 -
         six_r_qd_4*six_r_w_1_t_15);
     /* (six_r-omega_1) angular velocity of link 1 */
     const real six_r_omega_1_in_axes2_x = -v.six_r_c_2*six_r_qd_1_t_5;
@@ -4168,8 +4178,8 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
         v.six_r_h_4_t*six_r_omega_2_in_axes3_x;
     const real six_r_omega_3_t = v.six_r_J_5_t*six_r_omega_3_in_axes4_x;
     const real six_r_omega_3_t_2 = v.six_r_e_4_in_axes5_x*six_r_omega_3_in_axes4_x;
-    const real six_r_omega_3_in_axes5_x = six_r_omega_3_t +
-        v.six_r_e_4_in_axes5_x*six_r_omega_2_in_axes3_y;
+    const real six_r_omega_3_in_axes5_x = v.six_r_e_4_in_axes5_x*six_r_omega_2_in_axes3_y +
+        six_r_omega_3_t;
     const real six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 -
         v.six_r_J_5_t*six_r_omega_2_in_axes3_y;
     /* (six_r-W_3) centripetal tensor of link 3 */
@@ -4177,13 +4187,13 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     const real six_r_W_3_t_2 = six_r_omega_3_in_axes3_z*six_r_omega_3_in_axes3_z;
     const real six_r_W_3_in_axes3_xy = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_y;
     const real six_r_W_3_in_axes3_xz = six_r_omega_2_in_axes3_x*six_r_omega_3_in_axes3_z;
-    const real six_r_W_3_t_3 = six_r_W_3_t + six_r_W_3_t_2;
+    const real six_r_W_3_t_3 = six_r_W_3_t_2 + six_r_W_3_t;
     const real six_r_W_3_in_axes3_yz = six_r_omega_2_in_axes3_y*six_r_omega_3_in_axes3_z;
     const real six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y;
     /* (six_r-omega_4) angular velocity of link 4 */
     const real six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y + six_r_qd_4;
-    const real six_r_omega_4_in_axes5_x = six_r_omega_3_t +
-        v.six_r_e_4_in_axes5_x*six_r_omega_4_in_axes4_z;
+    const real six_r_omega_4_in_axes5_x = v.six_r_e_4_in_axes5_x*six_r_omega_4_in_axes4_z +
+        six_r_omega_3_t;
     const real six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 -
         v.six_r_J_5_t*six_r_omega_4_in_axes4_z;
     /* (six_r-W_4) centripetal tensor of link 4 */
@@ -4242,7 +4252,7 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     const real six_r_zeta_5_in_axes5_x = six_r_omega_4_in_axes5_y*six_r_qd_5;
     const real six_r_zeta_5_t = six_r_omega_4_in_axes5_x*six_r_qd_5;
     /* (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations */
-    const real six_r_beta_5_in_axes5_x = six_r_beta_4_in_axes5_x + six_r_zeta_5_in_axes5_x;
+    const real six_r_beta_5_in_axes5_x = six_r_zeta_5_in_axes5_x + six_r_beta_4_in_axes5_x;
     const real six_r_beta_5_in_axes5_y = six_r_beta_4_in_axes5_y - six_r_zeta_5_t;
     /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
     const real six_r_bias_t = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y;
@@ -4271,41 +4281,38 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     const real six_r_bias_t_17 = v.six_r_J_5_t*m->six_r_joint5_offset_x[i];
     const real six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y;
     const real six_r_bias_in_axes5_x = six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_y +
-        six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_z +
+        six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_z - six_r_d_2_in_axes5_x*(six_r_bias_t_8 +
+        six_r_bias_t_9) - six_r_d_3_in_axes5_x*(six_r_bias_t_14 + six_r_bias_t_15) +
         six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
         six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) -
         six_r_W_5_t_3*m->six_r_platform_joint_offset_x[i] -
         six_r_bias_t_16*(six_r_W_3_in_axes5_xy - six_r_beta_3_in_axes4_y) -
         six_r_bias_t_17*(six_r_W_4_in_axes5_xy - six_r_beta_4_in_axes4_y) -
-        six_r_d_2_in_axes5_x*(six_r_bias_t_8 + six_r_bias_t_9) -
-        six_r_d_3_in_axes5_x*(six_r_bias_t_14 + six_r_bias_t_15) -
         six_r_d_4_in_axes5_x*(six_r_bias_t +
-        six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) - six_r_d_5_in_axes5_x*(six_r_W_5_t
-        + six_r_bias_t);
+        six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) -
+        six_r_d_5_in_axes5_x*(six_r_bias_t + six_r_W_5_t);
     const real six_r_bias_in_axes5_y = six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_x +
-        six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_z + six_r_bias_t_16*(six_r_bias_t +
-        six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) + six_r_bias_t_17*(six_r_bias_t +
-        six_r_bias_t_2) + six_r_bias_t_18*six_r_d_5_in_axes5_x +
-        six_r_bias_t_18*m->six_r_platform_joint_offset_x[i] +
+        six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_z - six_r_d_2_in_axes5_y*(six_r_bias_t_7 +
+        six_r_bias_t_9) - six_r_d_3_in_axes5_y*(six_r_bias_t_13 + six_r_bias_t_15) +
         six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
         six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
-        six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_y) -
-        six_r_d_2_in_axes5_y*(six_r_bias_t_7 + six_r_bias_t_9) -
-        six_r_d_3_in_axes5_y*(six_r_bias_t_13 + six_r_bias_t_15);
+        six_r_bias_t_16*(six_r_bias_t + six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) +
+        six_r_bias_t_17*(six_r_bias_t + six_r_bias_t_2) + six_r_bias_t_18*six_r_d_5_in_axes5_x
+        + six_r_bias_t_18*m->six_r_platform_joint_offset_x[i] +
+        six_r_d_4_in_axes5_x*(six_r_beta_3_in_axes4_y + six_r_W_3_in_axes5_xy);
     const real six_r_bias_in_axes5_z = six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_x +
-        six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_y +
+        six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_y - six_r_d_2_in_axes5_z*(six_r_bias_t_7 +
+        six_r_bias_t_8) - six_r_d_3_in_axes5_z*(six_r_bias_t_13 + six_r_bias_t_14) +
         six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
         six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
         six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*v.six_r_e_4_in_axes5_x +
-        six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) +
+        six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) - six_r_bias_t_16*(six_r_beta_4_t +
+        six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - v.six_r_J_5_t*six_r_beta_3_t) +
         six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
-        six_r_beta_4_in_axes5_y) + m->six_r_platform_joint_offset_x[i]*(six_r_W_5_in_axes5_xz
-        - six_r_beta_5_in_axes5_y) - six_r_bias_t_16*(six_r_beta_4_t +
-        six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - v.six_r_J_5_t*six_r_beta_3_t) -
-        six_r_bias_t_17*(six_r_beta_4_in_axes5_x +
-        six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y) -
-        six_r_d_2_in_axes5_z*(six_r_bias_t_7 + six_r_bias_t_8) -
-        six_r_d_3_in_axes5_z*(six_r_bias_t_13 + six_r_bias_t_14);
+        six_r_beta_4_in_axes5_y) -
+        six_r_bias_t_17*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y +
+        six_r_beta_4_in_axes5_x) + m->six_r_platform_joint_offset_x[i]*(six_r_W_5_in_axes5_xz
+        - six_r_beta_5_in_axes5_y);
     /* (six_r-rel_o) remainder of: acceleration of the connection point left to the joint
        accelerations */
     const real six_r_rel_o_in_axes5_x = six_r_u_1_in_axes5_x - six_r_bias_in_axes5_x;
@@ -4333,8 +4340,8 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     const real six_r_nu_1_t_4 = six_r_omega_4_in_axes5_y - six_r_omega_in_axes5_y;
     const real six_r_nu_1_t_5 = six_r_omega_5_in_axes5_z - six_r_omega_in_axes5_z;
     const real six_r_nu_1_t_6 = six_r_nd_m1_in_axes5_x*six_r_nu_1_t_3 +
-        six_r_nd_m1_in_axes5_y*six_r_nu_1_t_4 + six_r_nu_1_t_5*(six_r_nu_1_t +
-        six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x);
+        six_r_nd_m1_in_axes5_y*six_r_nu_1_t_4 +
+        six_r_nu_1_t_5*(six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x + six_r_nu_1_t);
     const real six_r_nu_1 = six_r_nu_1_t_2 - six_r_nu_1_t_6;
     /* (six_r-nd_m2) rate of moment direction 2 */
     const real six_r_nd_m2_in_axes5_y = six_r_n_m1_in_axes5_y*six_r_omega_in_axes5_y -
@@ -4346,46 +4353,46 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     const real six_r_nu_2_t = six_r_beta_5_in_axes5_y*six_r_end_p1_in_axes5_z -
         six_r_beta_4_in_axes4_y*six_r_end_p1_in_axes5_y;
     const real six_r_nu_2_t_2 = six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 +
-        six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 + six_r_nu_1_t_3*(six_r_nu_1_t +
-        six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z);
+        six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 +
+        six_r_nu_1_t_3*(six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z + six_r_nu_1_t);
     const real six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2;
     /* (six_r-qdd_1_o) remainder of: acceleration of joint 1 */
     const real six_r_qdd_1_o_t = six_r_nu_1*m->six_r_size[i];
     const real six_r_qdd_1_o_t_2 = six_r_nu_2*m->six_r_size[i];
     const real six_r_qdd_1_o_t_3 = inv_six_r_w_1_t_79*(six_r_m1_w_1_t*six_r_qdd_1_o_t +
-        six_r_m2_w_1_t*six_r_qdd_1_o_t_2 + six_r_rel_o_in_axes5_x*six_r_w_1_t_80 +
-        six_r_rel_o_in_axes5_z*six_r_w_1_t_82 - six_r_rel_o_in_axes5_y*six_r_w_1_t_81);
+        six_r_m2_w_1_t*six_r_qdd_1_o_t_2 + six_r_rel_o_in_axes5_x*six_r_w_1_t_80 -
+        six_r_rel_o_in_axes5_y*six_r_w_1_t_81 + six_r_rel_o_in_axes5_z*six_r_w_1_t_82);
     const real six_r_qdd_1_o_t_4 = inv_six_r_w_1_t_67*(six_r_qdd_1_o_t*six_r_w_1_t_71 +
-        six_r_qdd_1_o_t_2*six_r_w_1_t_72 + six_r_rel_o_in_axes5_x*six_r_w_1_t_68 +
-        six_r_rel_o_in_axes5_z*six_r_w_1_t_70 - six_r_qdd_1_o_t_3*six_r_w_1_t_73 -
-        six_r_rel_o_in_axes5_y*six_r_w_1_t_69);
-    const real six_r_qdd_1_o_t_5 = inv_six_r_w_1_t_49*(six_r_qdd_1_o_t_3*six_r_w_1_t_61 +
-        six_r_qdd_1_o_t_4*six_r_w_1_t_55 + six_r_rel_o_in_axes5_y*six_r_w_1_t_51 -
+        six_r_qdd_1_o_t_2*six_r_w_1_t_72 + six_r_rel_o_in_axes5_x*six_r_w_1_t_68 -
+        six_r_rel_o_in_axes5_y*six_r_w_1_t_69 + six_r_rel_o_in_axes5_z*six_r_w_1_t_70 -
+        six_r_qdd_1_o_t_3*six_r_w_1_t_73);
+    const real six_r_qdd_1_o_t_5 = inv_six_r_w_1_t_49*(six_r_rel_o_in_axes5_y*six_r_w_1_t_51 -
         six_r_qdd_1_o_t*six_r_w_1_t_53 - six_r_qdd_1_o_t_2*six_r_w_1_t_54 -
-        six_r_rel_o_in_axes5_x*six_r_w_1_t_50 - six_r_rel_o_in_axes5_z*six_r_w_1_t_52);
+        six_r_rel_o_in_axes5_x*six_r_w_1_t_50 - six_r_rel_o_in_axes5_z*six_r_w_1_t_52 +
+        six_r_qdd_1_o_t_3*six_r_w_1_t_61 + six_r_qdd_1_o_t_4*six_r_w_1_t_55);
     /* (six_r-qdd_4_o) remainder of: acceleration of joint 4 */
     const real six_r_qdd_4_o = inv_six_r_w_1_t_28*(six_r_qdd_1_o_t*six_r_w_1_t_31 +
-        six_r_qdd_1_o_t_2*six_r_w_1_t_32 + six_r_qdd_1_o_t_3*six_r_w_1_t_44 +
-        six_r_qdd_1_o_t_4*six_r_w_1_t_39 + six_r_rel_o_in_axes5_z*six_r_w_1_t_30 -
-        six_r_qdd_1_o_t_5*six_r_w_1_t_33 - six_r_rel_o_in_axes5_y*six_r_w_1_t_29);
+        six_r_qdd_1_o_t_2*six_r_w_1_t_32 - six_r_rel_o_in_axes5_y*six_r_w_1_t_29 +
+        six_r_rel_o_in_axes5_z*six_r_w_1_t_30 + six_r_qdd_1_o_t_3*six_r_w_1_t_44 +
+        six_r_qdd_1_o_t_4*six_r_w_1_t_39 - six_r_qdd_1_o_t_5*six_r_w_1_t_33);
     /* (six_r-alpha_1_o) remainder of: angular acceleration of link 1 */
     const real six_r_alpha_1_o_t = v.six_r_c_2*six_r_qdd_1_o_t_5;
     const real six_r_alpha_1_o_in_axes2_y = six_r_qdd_1_o_t_5*v.six_r_s_2;
     /* (six_r-alpha_2_o) remainder of: angular acceleration of link 2 */
     const real six_r_alpha_2_o_in_axes2_x = six_r_W_2_in_axes2_yz - six_r_alpha_1_o_t;
-    const real six_r_alpha_2_o_in_axes2_y = six_r_alpha_1_o_in_axes2_y +
-        six_r_zeta_2_in_axes2_y;
+    const real six_r_alpha_2_o_in_axes2_y = six_r_zeta_2_in_axes2_y +
+        six_r_alpha_1_o_in_axes2_y;
     /* (six_r-B_2_o) remainder of the acceleration tensor of link 2 */
     const real six_r_B_2_o_in_axes2_xy = six_r_W_2_in_axes2_xy - six_r_qdd_1_o_t_4;
     const real six_r_B_2_o_in_axes2_yx = six_r_W_2_in_axes2_xy + six_r_qdd_1_o_t_4;
-    const real six_r_B_2_o_in_axes2_zx = -six_r_alpha_2_o_in_axes2_y -
-        six_r_zeta_2_in_axes2_y;
+    const real six_r_B_2_o_in_axes2_zx = -six_r_zeta_2_in_axes2_y -
+        six_r_alpha_2_o_in_axes2_y;
     const real six_r_B_2_o_in_axes2_zy = six_r_W_2_in_axes2_yz + six_r_alpha_2_o_in_axes2_x;
     /* (six_r-alpha_3_o) remainder of: angular acceleration of link 3 */
     const real six_r_alpha_3_o_in_axes3_x = six_r_zeta_3_in_axes3_x +
         six_r_alpha_2_o_in_axes2_x*v.six_r_s_3 - six_r_alpha_2_o_in_axes2_y*v.six_r_c_3;
-    const real six_r_alpha_3_o_in_axes3_y = six_r_alpha_2_o_in_axes2_x*v.six_r_c_3 +
-        six_r_alpha_2_o_in_axes2_y*v.six_r_s_3 - six_r_zeta_3_t;
+    const real six_r_alpha_3_o_in_axes3_y = six_r_alpha_2_o_in_axes2_x*v.six_r_c_3 -
+        six_r_zeta_3_t + six_r_alpha_2_o_in_axes2_y*v.six_r_s_3;
     const real six_r_alpha_3_o_in_axes3_z = six_r_qdd_1_o_t_3 + six_r_qdd_1_o_t_4;
     /* (six_r-B_3_o) remainder of the acceleration tensor of link 3 */
     const real six_r_B_3_o_in_axes3_xy = six_r_W_3_in_axes3_xy - six_r_alpha_3_o_in_axes3_z;
@@ -4398,9 +4405,9 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     const real six_r_alpha_4_o_in_axes4_x = six_r_zeta_4_in_axes4_x +
         six_r_alpha_3_o_in_axes3_z*v.six_r_h_4_t -
         six_r_alpha_3_o_in_axes3_x*v.six_r_e_2_in_axes5_z;
-    const real six_r_alpha_4_o_in_axes4_y = six_r_alpha_3_o_in_axes3_x*v.six_r_h_4_t +
-        six_r_alpha_3_o_in_axes3_z*v.six_r_e_2_in_axes5_z - six_r_zeta_4_t;
-    const real six_r_alpha_4_o_in_axes4_z = six_r_alpha_3_o_in_axes3_y + six_r_qdd_4_o;
+    const real six_r_alpha_4_o_in_axes4_y = six_r_alpha_3_o_in_axes3_z*v.six_r_e_2_in_axes5_z
+        - six_r_zeta_4_t + six_r_alpha_3_o_in_axes3_x*v.six_r_h_4_t;
+    const real six_r_alpha_4_o_in_axes4_z = six_r_qdd_4_o + six_r_alpha_3_o_in_axes3_y;
     /* (six_r-B_4_o) remainder of the acceleration tensor of link 4 */
     const real six_r_B_4_o_in_axes4_xy = six_r_W_4_in_axes4_xy - six_r_alpha_4_o_in_axes4_z;
     const real six_r_B_4_o_in_axes4_xz = six_r_W_4_in_axes4_xz + six_r_alpha_4_o_in_axes4_y;
@@ -4410,60 +4417,60 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     const real six_r_B_4_o_in_axes4_zy = six_r_W_4_in_axes4_yz + six_r_alpha_4_o_in_axes4_x;
     /* (six_r-dalpha_alpha_5) coefficient of the acceleration in: angular acceleration of link 5 */
     const real six_r_dalpha_alpha_5_in_axes5_xx = v.six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_x
-        - v.six_r_e_2_in_axes5_x*six_r_o_2_t - v.six_r_e_2_in_axes5_x*six_r_o_3_t -
-        v.six_r_e_4_in_axes5_x*six_r_o_4_t;
+        - v.six_r_e_2_in_axes5_x*six_r_o_3_t - v.six_r_e_4_in_axes5_x*six_r_o_4_t -
+        v.six_r_e_2_in_axes5_x*six_r_o_2_t;
     const real six_r_dalpha_alpha_5_in_axes5_xy = v.six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_y
-        + v.six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_y +
-        v.six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_y +
-        v.six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_y;
-    const real six_r_dalpha_alpha_5_in_axes5_xz = v.six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_z
-        + v.six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_z +
-        v.six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_z - v.six_r_e_1_in_axes5_x*six_r_o_1_t;
+        + v.six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_y +
+        v.six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_y +
+        v.six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_y;
+    const real six_r_dalpha_alpha_5_in_axes5_xz = v.six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_z
+        + v.six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_z - v.six_r_e_1_in_axes5_x*six_r_o_1_t +
+        v.six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_z;
     const real six_r_dalpha_alpha_5_in_axes5_yx = v.six_r_J_5_t*six_r_o_4_t +
-        v.six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_x - v.six_r_e_2_in_axes5_y*six_r_o_2_t -
-        v.six_r_e_2_in_axes5_y*six_r_o_3_t;
+        v.six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_x - v.six_r_e_2_in_axes5_y*six_r_o_3_t -
+        v.six_r_e_2_in_axes5_y*six_r_o_2_t;
     const real six_r_dalpha_alpha_5_in_axes5_yy = v.six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_y
-        + v.six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_y +
-        v.six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_y - v.six_r_J_5_t*six_r_o_4_in_axes5_y;
-    const real six_r_dalpha_alpha_5_in_axes5_yz = v.six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_z
-        + v.six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_z - v.six_r_J_5_t*six_r_o_4_in_axes5_z -
-        v.six_r_e_1_in_axes5_y*six_r_o_1_t;
+        + v.six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_y - v.six_r_J_5_t*six_r_o_4_in_axes5_y +
+        v.six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_y;
+    const real six_r_dalpha_alpha_5_in_axes5_yz = v.six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_z
+        - v.six_r_J_5_t*six_r_o_4_in_axes5_z - v.six_r_e_1_in_axes5_y*six_r_o_1_t +
+        v.six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_z;
     const real six_r_dalpha_alpha_5_in_axes5_zx = six_r_o_5_in_axes5_x +
-        v.six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_x - v.six_r_e_2_in_axes5_z*six_r_o_2_t -
-        v.six_r_e_2_in_axes5_z*six_r_o_3_t;
+        v.six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_x - v.six_r_e_2_in_axes5_z*six_r_o_3_t -
+        v.six_r_e_2_in_axes5_z*six_r_o_2_t;
     const real six_r_dalpha_alpha_5_in_axes5_zy = six_r_o_5_in_axes5_y +
         v.six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_y +
-        v.six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_y +
-        v.six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_y;
-    const real six_r_dalpha_alpha_5_in_axes5_zz = v.six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_z
-        + v.six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_z - six_r_o_5_t -
-        v.six_r_e_1_in_axes5_z*six_r_o_1_t;
+        v.six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_y +
+        v.six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_y;
+    const real six_r_dalpha_alpha_5_in_axes5_zz = v.six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_z
+        - six_r_o_5_t - v.six_r_e_1_in_axes5_z*six_r_o_1_t +
+        v.six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_z;
     /* (six_r-d_alpha_5) coefficient of the acceleration in: angular acceleration of link 5 */
     const real six_r_d_alpha_5_in_axes5_xz = v.six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_z +
-        v.six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_z +
         v.six_r_e_2_in_axes5_x*six_r_w_3_in_axes5_z +
-        v.six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_z;
+        v.six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_z +
+        v.six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_z;
     const real six_r_d_alpha_5_in_axes5_yz = v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_z +
-        v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_z +
-        v.six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_z - v.six_r_J_5_t*six_r_w_4_in_axes5_z;
+        v.six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_z - v.six_r_J_5_t*six_r_w_4_in_axes5_z +
+        v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_z;
     const real six_r_d_alpha_5_in_axes5_zy = six_r_w_5_in_axes5_y +
-        v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_y +
-        v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_y - v.six_r_e_2_in_axes5_z*six_r_w_3_t;
+        v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_y - v.six_r_e_2_in_axes5_z*six_r_w_3_t +
+        v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_y;
     const real six_r_d_alpha_5_in_axes5_zz = six_r_w_5_in_axes5_z +
         v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_z +
-        v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_z +
-        v.six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_z;
+        v.six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_z +
+        v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_z;
     /* (six_r-alpha_5_o) remainder of: angular acceleration of link 5 */
     const real six_r_alpha_5_o_in_axes5_x = six_r_zeta_5_in_axes5_x +
         v.six_r_J_5_t*six_r_alpha_4_o_in_axes4_x +
         six_r_alpha_4_o_in_axes4_z*v.six_r_e_4_in_axes5_x;
     const real six_r_alpha_5_o_in_axes5_y = six_r_alpha_4_o_in_axes4_x*v.six_r_e_4_in_axes5_x
         - six_r_zeta_5_t - v.six_r_J_5_t*six_r_alpha_4_o_in_axes4_z;
-    const real six_r_alpha_5_o_in_axes5_z = six_r_alpha_4_o_in_axes4_y +
+    const real six_r_alpha_5_o_in_axes5_z =
         inv_six_r_w_1_t_12*(six_r_qdd_1_o_t_2*six_r_w_1_t_14 +
-        six_r_qdd_1_o_t_3*six_r_w_1_t_25 + six_r_qdd_1_o_t_5*six_r_w_1_t_18 +
-        six_r_rel_o_in_axes5_y*six_r_w_1_t_13 - six_r_qdd_1_o_t_4*six_r_w_1_t_22 -
-        six_r_qdd_4_o*six_r_w_1_t_15);
+        six_r_rel_o_in_axes5_y*six_r_w_1_t_13 + six_r_qdd_1_o_t_3*six_r_w_1_t_25 -
+        six_r_qdd_1_o_t_4*six_r_w_1_t_22 + six_r_qdd_1_o_t_5*six_r_w_1_t_18 -
+        six_r_qdd_4_o*six_r_w_1_t_15) + six_r_alpha_4_o_in_axes4_y;
     /* (six_r-B_5_o) remainder of the acceleration tensor of link 5 */
     const real six_r_B_5_o_in_axes5_xy = six_r_W_4_in_axes5_xy - six_r_alpha_5_o_in_axes5_z;
     const real six_r_B_5_o_in_axes5_xz = six_r_W_5_in_axes5_xz + six_r_alpha_5_o_in_axes5_y;
@@ -4474,8 +4481,8 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     /* (six_r-a_o_3_o) remainder of: acceleration of the origin of joint 3 */
     const real six_r_a_o_3_o_t = six_r_omega_1_in_axes2_y*six_r_omega_1_in_axes2_y;
     const real six_r_a_o_3_o_t_2 = six_r_qd_1_t_4*six_r_qd_1_t_4;
-    const real six_r_a_o_3_o_in_axes2_x = -m->six_r_joint3_offset_x[i]*(six_r_a_o_3_o_t +
-        six_r_a_o_3_o_t_2);
+    const real six_r_a_o_3_o_in_axes2_x = -m->six_r_joint3_offset_x[i]*(six_r_a_o_3_o_t_2 +
+        six_r_a_o_3_o_t);
     const real six_r_a_o_3_o_in_axes2_y = six_r_B_2_o_in_axes2_yx*m->six_r_joint3_offset_x[i];
     const real six_r_a_o_3_o_in_axes2_z = six_r_B_2_o_in_axes2_zx*m->six_r_joint3_offset_x[i];
     const real six_r_a_o_3_o_in_axes3_x = six_r_a_o_3_o_in_axes2_x*v.six_r_s_3 -
@@ -4483,8 +4490,8 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     const real six_r_a_o_3_o_in_axes3_y = six_r_a_o_3_o_in_axes2_x*v.six_r_c_3 +
         six_r_a_o_3_o_in_axes2_y*v.six_r_s_3;
     /* (six_r-a_o_4_o) remainder of: acceleration of the origin of joint 4 */
-    const real six_r_a_o_4_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x +
-        six_r_B_3_o_in_axes3_xy*m->six_r_joint4_offset_x[i];
+    const real six_r_a_o_4_o_in_axes3_x = six_r_B_3_o_in_axes3_xy*m->six_r_joint4_offset_x[i]
+        + six_r_a_o_3_o_in_axes3_x;
     const real six_r_a_o_4_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y -
         six_r_W_3_t_3*m->six_r_joint4_offset_x[i];
     const real six_r_a_o_4_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z +
@@ -4495,41 +4502,41 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     const real six_r_acc_3_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z - v.six_r_g_in_axes1_y;
     /* (six_r-f_3_o) remainder of: inertia force of link 3 less its weight */
     const real six_r_f_3_o_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y;
-    const real six_r_f_3_o_in_axes3_x = six_r_B_3_o_in_axes3_xy*m->six_r_h_3_in_spec3_x[i] +
-        six_r_B_3_o_in_axes3_xz*m->six_r_h_3_in_spec3_z[i] +
+    const real six_r_f_3_o_in_axes3_x = m->six_r_h_3_in_spec3_y[i]*(six_r_W_3_t_2 +
+        six_r_f_3_o_t) + six_r_B_3_o_in_axes3_xy*m->six_r_h_3_in_spec3_x[i] +
         six_r_acc_3_o_in_axes3_x*m->six_r_link3_mass[i] +
-        m->six_r_h_3_in_spec3_y[i]*(six_r_W_3_t_2 + six_r_f_3_o_t);
-    const real six_r_f_3_o_in_axes3_y = six_r_B_3_o_in_axes3_yz*m->six_r_h_3_in_spec3_z[i] +
-        six_r_acc_3_o_in_axes3_y*m->six_r_link3_mass[i] -
-        six_r_B_3_o_in_axes3_yx*m->six_r_h_3_in_spec3_y[i] -
-        six_r_W_3_t_3*m->six_r_h_3_in_spec3_x[i];
-    const real six_r_f_3_o_in_axes3_z = six_r_B_3_o_in_axes3_zy*m->six_r_h_3_in_spec3_x[i] +
+        six_r_B_3_o_in_axes3_xz*m->six_r_h_3_in_spec3_z[i];
+    const real six_r_f_3_o_in_axes3_y = six_r_acc_3_o_in_axes3_y*m->six_r_link3_mass[i] -
+        six_r_W_3_t_3*m->six_r_h_3_in_spec3_x[i] -
+        six_r_B_3_o_in_axes3_yx*m->six_r_h_3_in_spec3_y[i] +
+        six_r_B_3_o_in_axes3_yz*m->six_r_h_3_in_spec3_z[i];
+    const real six_r_f_3_o_in_axes3_z = six_r_B_3_o_in_axes3_zy*m->six_r_h_3_in_spec3_x[i] -
+        m->six_r_h_3_in_spec3_z[i]*(six_r_W_3_t + six_r_f_3_o_t) +
         six_r_acc_3_o_in_axes3_z*m->six_r_link3_mass[i] -
-        six_r_B_3_o_in_axes3_zx*m->six_r_h_3_in_spec3_y[i] -
-        m->six_r_h_3_in_spec3_z[i]*(six_r_W_3_t + six_r_f_3_o_t);
+        six_r_B_3_o_in_axes3_zx*m->six_r_h_3_in_spec3_y[i];
     /* (six_r-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity */
-    const real six_r_acc_4_o_in_axes4_x = six_r_a_o_4_o_in_axes3_z*v.six_r_h_4_t +
-        v.six_r_e_2_in_axes5_z*v.six_r_g_in_axes3_x -
-        six_r_a_o_4_o_in_axes3_x*v.six_r_e_2_in_axes5_z - v.six_r_g_in_axes1_y*v.six_r_h_4_t;
-    const real six_r_acc_4_o_in_axes4_y = six_r_a_o_4_o_in_axes3_x*v.six_r_h_4_t +
-        six_r_a_o_4_o_in_axes3_z*v.six_r_e_2_in_axes5_z -
-        v.six_r_e_2_in_axes5_z*v.six_r_g_in_axes1_y - v.six_r_g_in_axes3_x*v.six_r_h_4_t;
+    const real six_r_acc_4_o_in_axes4_x = v.six_r_e_2_in_axes5_z*v.six_r_g_in_axes3_x -
+        v.six_r_g_in_axes1_y*v.six_r_h_4_t - six_r_a_o_4_o_in_axes3_x*v.six_r_e_2_in_axes5_z +
+        six_r_a_o_4_o_in_axes3_z*v.six_r_h_4_t;
+    const real six_r_acc_4_o_in_axes4_y = six_r_a_o_4_o_in_axes3_x*v.six_r_h_4_t -
+        v.six_r_e_2_in_axes5_z*v.six_r_g_in_axes1_y - v.six_r_g_in_axes3_x*v.six_r_h_4_t +
+        six_r_a_o_4_o_in_axes3_z*v.six_r_e_2_in_axes5_z;
     const real six_r_acc_4_o_in_axes4_z = six_r_a_o_4_o_in_axes3_y - v.six_r_g_in_axes3_y;
     /* (six_r-f_4_o) remainder of: inertia force of link 4 less its weight */
     const real six_r_f_4_o_t = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x;
     const real six_r_f_4_o_t_2 = six_r_omega_4_in_axes4_z*six_r_omega_4_in_axes4_z;
-    const real six_r_f_4_o_in_axes4_x = six_r_B_4_o_in_axes4_xy*m->six_r_h_4_in_spec4_z[i] +
+    const real six_r_f_4_o_in_axes4_x = six_r_B_4_o_in_axes4_xy*m->six_r_h_4_in_spec4_z[i] -
+        m->six_r_h_4_in_spec4_y[i]*(six_r_bias_t + six_r_f_4_o_t_2) +
         six_r_B_4_o_in_axes4_xz*m->six_r_h_4_in_spec4_x[i] +
-        six_r_acc_4_o_in_axes4_x*m->six_r_link4_mass[i] -
-        m->six_r_h_4_in_spec4_y[i]*(six_r_bias_t + six_r_f_4_o_t_2);
-    const real six_r_f_4_o_in_axes4_y = six_r_B_4_o_in_axes4_yx*m->six_r_h_4_in_spec4_y[i] +
+        six_r_acc_4_o_in_axes4_x*m->six_r_link4_mass[i];
+    const real six_r_f_4_o_in_axes4_y = six_r_B_4_o_in_axes4_yx*m->six_r_h_4_in_spec4_y[i] -
+        m->six_r_h_4_in_spec4_z[i]*(six_r_f_4_o_t + six_r_f_4_o_t_2) +
         six_r_B_4_o_in_axes4_yz*m->six_r_h_4_in_spec4_x[i] +
-        six_r_acc_4_o_in_axes4_y*m->six_r_link4_mass[i] -
-        m->six_r_h_4_in_spec4_z[i]*(six_r_f_4_o_t + six_r_f_4_o_t_2);
-    const real six_r_f_4_o_in_axes4_z = six_r_B_4_o_in_axes4_zx*m->six_r_h_4_in_spec4_y[i] +
-        six_r_B_4_o_in_axes4_zy*m->six_r_h_4_in_spec4_z[i] +
-        six_r_acc_4_o_in_axes4_z*m->six_r_link4_mass[i] -
-        m->six_r_h_4_in_spec4_x[i]*(six_r_bias_t + six_r_f_4_o_t);
+        six_r_acc_4_o_in_axes4_y*m->six_r_link4_mass[i];
+    const real six_r_f_4_o_in_axes4_z = six_r_acc_4_o_in_axes4_z*m->six_r_link4_mass[i] -
+        m->six_r_h_4_in_spec4_x[i]*(six_r_bias_t + six_r_f_4_o_t) +
+        six_r_B_4_o_in_axes4_zx*m->six_r_h_4_in_spec4_y[i] +
+        six_r_B_4_o_in_axes4_zy*m->six_r_h_4_in_spec4_z[i];
     const real six_r_f_4_o_in_axes3_x = six_r_f_4_o_in_axes4_y*v.six_r_h_4_t -
         v.six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_x;
     const real six_r_f_4_o_in_axes3_z = v.six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_y +
@@ -4548,56 +4555,54 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
        about its reference point */
     const real six_r_d_phi_5_in_axes5_xx =
         m->six_r_h_5_in_spec5_z[i]*(v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_x +
-        v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_x +
-        v.six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_x - v.six_r_J_5_t*six_r_w_4_in_axes5_x) -
+        v.six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_x - v.six_r_J_5_t*six_r_w_4_in_axes5_x +
+        v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_x) -
         m->six_r_h_5_in_spec5_y[i]*(v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_x +
-        v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_x +
-        v.six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_x - six_r_w_5_t_5);
+        v.six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_x - six_r_w_5_t_5 +
+        v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_x);
     /* (six_r-mu_5_o) remainder of: inertia moment of the links that turn with link 5, about their
        reference points */
-    const real six_r_mu_5_o_in_axes5_x = six_r_B_5_o_in_axes5_yx*m->six_r_J_5_in_spec5_xz[i] +
-        six_r_B_5_o_in_axes5_zy*m->six_r_Sigma_5_in_axes5_yy[i] +
+    const real six_r_mu_5_o_in_axes5_x = six_r_acc_5_o_in_axes5_z*m->six_r_h_5_in_spec5_y[i] -
+        six_r_acc_5_o_in_axes5_y*m->six_r_h_5_in_spec5_z[i] +
         m->six_r_J_5_in_spec5_yz[i]*(six_r_W_5_t - six_r_W_5_t_2) +
-        six_r_acc_5_o_in_axes5_z*m->six_r_h_5_in_spec5_y[i] -
+        six_r_B_5_o_in_axes5_yx*m->six_r_J_5_in_spec5_xz[i] +
+        six_r_B_5_o_in_axes5_zy*m->six_r_Sigma_5_in_axes5_yy[i] -
         six_r_B_5_o_in_axes5_yz*m->six_r_Sigma_5_in_axes5_zz[i] -
-        six_r_B_5_o_in_axes5_zx*m->six_r_J_5_in_spec5_xy[i] -
-        six_r_acc_5_o_in_axes5_y*m->six_r_h_5_in_spec5_z[i];
-    const real six_r_mu_5_o_in_axes5_y =
-        six_r_B_5_o_in_axes5_xz*m->six_r_Sigma_5_in_axes5_zz[i] +
-        six_r_B_5_o_in_axes5_zy*m->six_r_J_5_in_spec5_xy[i] +
-        six_r_acc_5_o_in_axes5_x*m->six_r_h_5_in_spec5_z[i] -
-        six_r_B_5_o_in_axes5_xy*m->six_r_J_5_in_spec5_yz[i] -
-        six_r_B_5_o_in_axes5_zx*m->six_r_Sigma_5_in_axes5_xx[i] -
+        six_r_B_5_o_in_axes5_zx*m->six_r_J_5_in_spec5_xy[i];
+    const real six_r_mu_5_o_in_axes5_y = six_r_acc_5_o_in_axes5_x*m->six_r_h_5_in_spec5_z[i] -
+        six_r_acc_5_o_in_axes5_z*m->six_r_h_5_in_spec5_x[i] -
         m->six_r_J_5_in_spec5_xz[i]*(six_r_bias_t_2 - six_r_W_5_t_2) -
-        six_r_acc_5_o_in_axes5_z*m->six_r_h_5_in_spec5_x[i];
-    const real six_r_mu_5_o_in_axes5_z = six_r_B_5_o_in_axes5_xz*m->six_r_J_5_in_spec5_yz[i] +
-        six_r_B_5_o_in_axes5_yx*m->six_r_Sigma_5_in_axes5_xx[i] +
+        six_r_B_5_o_in_axes5_xy*m->six_r_J_5_in_spec5_yz[i] +
+        six_r_B_5_o_in_axes5_xz*m->six_r_Sigma_5_in_axes5_zz[i] +
+        six_r_B_5_o_in_axes5_zy*m->six_r_J_5_in_spec5_xy[i] -
+        six_r_B_5_o_in_axes5_zx*m->six_r_Sigma_5_in_axes5_xx[i];
+    const real six_r_mu_5_o_in_axes5_z = six_r_acc_5_o_in_axes5_y*m->six_r_h_5_in_spec5_x[i] -
+        six_r_acc_5_o_in_axes5_x*m->six_r_h_5_in_spec5_y[i] +
         m->six_r_J_5_in_spec5_xy[i]*(six_r_bias_t_2 - six_r_W_5_t) +
-        six_r_acc_5_o_in_axes5_y*m->six_r_h_5_in_spec5_x[i] -
-        six_r_B_5_o_in_axes5_xy*m->six_r_Sigma_5_in_axes5_yy[i] -
-        six_r_B_5_o_in_axes5_yz*m->six_r_J_5_in_spec5_xz[i] -
-        six_r_acc_5_o_in_axes5_x*m->six_r_h_5_in_spec5_y[i];
+        six_r_B_5_o_in_axes5_yx*m->six_r_Sigma_5_in_axes5_xx[i] -
+        six_r_B_5_o_in_axes5_xy*m->six_r_Sigma_5_in_axes5_yy[i] +
+        six_r_B_5_o_in_axes5_xz*m->six_r_J_5_in_spec5_yz[i] -
+        six_r_B_5_o_in_axes5_yz*m->six_r_J_5_in_spec5_xz[i];
     /* (six_r-dalpha_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal
        links' inertia and weight */
     const real six_r_dalpha_Gamma_5_in_axes5_x = v.six_r_D_1_5*six_r_o_1_in_axes5_x +
-        m->six_r_J_5_in_spec5_zz[i]*six_r_o_5_in_axes5_x - v.six_r_D_3_5*six_r_o_2_t -
-        v.six_r_D_3_5*six_r_o_3_t - v.six_r_J_5_in_axes4_yz*six_r_o_4_t;
+        m->six_r_J_5_in_spec5_zz[i]*six_r_o_5_in_axes5_x - v.six_r_D_3_5*six_r_o_3_t -
+        v.six_r_J_5_in_axes4_yz*six_r_o_4_t - v.six_r_D_3_5*six_r_o_2_t;
     const real six_r_dalpha_Gamma_5_in_axes5_y = v.six_r_D_1_5*six_r_o_1_in_axes5_y +
-        v.six_r_D_3_5*six_r_o_2_in_axes5_y + v.six_r_D_3_5*six_r_o_3_in_axes5_y +
-        v.six_r_J_5_in_axes4_yz*six_r_o_4_in_axes5_y +
-        m->six_r_J_5_in_spec5_zz[i]*six_r_o_5_in_axes5_y;
-    const real six_r_dalpha_Gamma_5_in_axes5_z = v.six_r_D_3_5*six_r_o_2_in_axes5_z +
-        v.six_r_D_3_5*six_r_o_3_in_axes5_z + v.six_r_J_5_in_axes4_yz*six_r_o_4_in_axes5_z -
-        v.six_r_D_1_5*six_r_o_1_t - m->six_r_J_5_in_spec5_zz[i]*six_r_o_5_t;
+        v.six_r_D_3_5*six_r_o_3_in_axes5_y + v.six_r_J_5_in_axes4_yz*six_r_o_4_in_axes5_y +
+        m->six_r_J_5_in_spec5_zz[i]*six_r_o_5_in_axes5_y + v.six_r_D_3_5*six_r_o_2_in_axes5_y;
+    const real six_r_dalpha_Gamma_5_in_axes5_z = v.six_r_D_3_5*six_r_o_3_in_axes5_z +
+        v.six_r_J_5_in_axes4_yz*six_r_o_4_in_axes5_z - v.six_r_D_1_5*six_r_o_1_t -
+        m->six_r_J_5_in_spec5_zz[i]*six_r_o_5_t + v.six_r_D_3_5*six_r_o_2_in_axes5_z;
     /* (six_r-d_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal links'
        inertia and weight */
     const real six_r_d_Gamma_5_t = inv_six_r_w_1_t_12*m->six_r_J_5_in_spec5_zz[i];
     const real six_r_d_Gamma_5_t_2 = inv_six_r_w_1_t_28*(v.six_r_J_5_in_axes4_yz -
         six_r_d_Gamma_5_t*six_r_w_1_t_15);
-    const real six_r_d_Gamma_5_t_3 = inv_six_r_w_1_t_49*(v.six_r_D_1_5 +
-        six_r_d_Gamma_5_t_2*six_r_w_1_t_33 - six_r_d_Gamma_5_t*six_r_w_1_t_18);
-    const real six_r_d_Gamma_5_t_4 = inv_six_r_w_1_t_67*(v.six_r_D_3_5 +
-        six_r_d_Gamma_5_t_2*six_r_w_1_t_39 - six_r_d_Gamma_5_t*six_r_w_1_t_22 -
+    const real six_r_d_Gamma_5_t_3 = inv_six_r_w_1_t_49*(v.six_r_D_1_5 -
+        six_r_d_Gamma_5_t*six_r_w_1_t_18 + six_r_d_Gamma_5_t_2*six_r_w_1_t_33);
+    const real six_r_d_Gamma_5_t_4 = inv_six_r_w_1_t_67*(v.six_r_D_3_5 -
+        six_r_d_Gamma_5_t*six_r_w_1_t_22 + six_r_d_Gamma_5_t_2*six_r_w_1_t_39 -
         six_r_d_Gamma_5_t_3*six_r_w_1_t_55);
     const real six_r_d_Gamma_5_t_5 = inv_six_r_w_1_t_79*(v.six_r_D_3_5 +
         six_r_d_Gamma_5_t*six_r_w_1_t_25 + six_r_d_Gamma_5_t_2*six_r_w_1_t_44 -
@@ -4605,36 +4610,36 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     const real six_r_d_Gamma_5_in_axes5_z = six_r_d_Gamma_5_t_2*six_r_w_1_t_30 +
         six_r_d_Gamma_5_t_3*six_r_w_1_t_52 + six_r_d_Gamma_5_t_4*six_r_w_1_t_70 +
         six_r_d_Gamma_5_t_5*six_r_w_1_t_82;
-    const real six_r_d_Gamma_5_in_axes5_x = six_r_d_Gamma_5_t_3*six_r_w_1_t_50 +
-        six_r_d_Gamma_5_t_4*six_r_w_1_t_68 + six_r_d_Gamma_5_t_5*six_r_w_1_t_80 -
-        m->six_r_h_5_in_spec5_y[i];
+    const real six_r_d_Gamma_5_in_axes5_x = six_r_d_Gamma_5_t_3*six_r_w_1_t_50 -
+        m->six_r_h_5_in_spec5_y[i] + six_r_d_Gamma_5_t_4*six_r_w_1_t_68 +
+        six_r_d_Gamma_5_t_5*six_r_w_1_t_80;
     const real six_r_d_Gamma_5_in_axes5_y = m->six_r_h_5_in_spec5_x[i] +
         six_r_d_Gamma_5_t*six_r_w_1_t_13 - six_r_d_Gamma_5_t_2*six_r_w_1_t_29 -
         six_r_d_Gamma_5_t_3*six_r_w_1_t_51 - six_r_d_Gamma_5_t_4*six_r_w_1_t_69 -
         six_r_d_Gamma_5_t_5*six_r_w_1_t_81;
     /* (six_r-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their
        reference points */
-    const real six_r_mu_4_o_in_axes4_x = six_r_B_4_o_in_axes4_yx*m->six_r_J_4_in_spec4_xy[i] +
-        six_r_B_4_o_in_axes4_zy*m->six_r_Sigma_4_in_axes4_yy[i] +
-        m->six_r_J_4_in_spec4_xz[i]*(six_r_bias_t - six_r_f_4_o_t_2) +
-        six_r_acc_4_o_in_axes4_z*m->six_r_h_4_in_spec4_z[i] -
+    const real six_r_mu_4_o_in_axes4_x = m->six_r_J_4_in_spec4_xz[i]*(six_r_bias_t -
+        six_r_f_4_o_t_2) + six_r_acc_4_o_in_axes4_z*m->six_r_h_4_in_spec4_z[i] +
+        six_r_B_4_o_in_axes4_yx*m->six_r_J_4_in_spec4_xy[i] +
+        six_r_B_4_o_in_axes4_zy*m->six_r_Sigma_4_in_axes4_yy[i] -
         six_r_B_4_o_in_axes4_yz*m->six_r_Sigma_4_in_axes4_zz[i] -
         six_r_B_4_o_in_axes4_zx*m->six_r_J_4_in_spec4_yz[i] -
         six_r_acc_4_o_in_axes4_y*m->six_r_h_4_in_spec4_x[i];
     const real six_r_mu_4_o_in_axes4_y =
-        six_r_B_4_o_in_axes4_xz*m->six_r_Sigma_4_in_axes4_zz[i] +
-        six_r_B_4_o_in_axes4_zy*m->six_r_J_4_in_spec4_yz[i] +
-        six_r_acc_4_o_in_axes4_x*m->six_r_h_4_in_spec4_x[i] -
-        six_r_B_4_o_in_axes4_xy*m->six_r_J_4_in_spec4_xz[i] -
-        six_r_B_4_o_in_axes4_zx*m->six_r_Sigma_4_in_axes4_xx[i] -
+        six_r_B_4_o_in_axes4_xz*m->six_r_Sigma_4_in_axes4_zz[i] -
         m->six_r_J_4_in_spec4_xy[i]*(six_r_f_4_o_t - six_r_f_4_o_t_2) -
-        six_r_acc_4_o_in_axes4_z*m->six_r_h_4_in_spec4_y[i];
-    const real six_r_mu_4_o_in_axes4_z = six_r_B_4_o_in_axes4_xz*m->six_r_J_4_in_spec4_xz[i] +
-        six_r_B_4_o_in_axes4_yx*m->six_r_Sigma_4_in_axes4_xx[i] +
-        m->six_r_J_4_in_spec4_yz[i]*(six_r_f_4_o_t - six_r_bias_t) +
-        six_r_acc_4_o_in_axes4_y*m->six_r_h_4_in_spec4_y[i] -
+        six_r_acc_4_o_in_axes4_z*m->six_r_h_4_in_spec4_y[i] +
+        six_r_B_4_o_in_axes4_zy*m->six_r_J_4_in_spec4_yz[i] -
+        six_r_B_4_o_in_axes4_xy*m->six_r_J_4_in_spec4_xz[i] -
+        six_r_B_4_o_in_axes4_zx*m->six_r_Sigma_4_in_axes4_xx[i] +
+        six_r_acc_4_o_in_axes4_x*m->six_r_h_4_in_spec4_x[i];
+    const real six_r_mu_4_o_in_axes4_z = m->six_r_J_4_in_spec4_yz[i]*(six_r_f_4_o_t -
+        six_r_bias_t) + six_r_B_4_o_in_axes4_xz*m->six_r_J_4_in_spec4_xz[i] +
+        six_r_B_4_o_in_axes4_yx*m->six_r_Sigma_4_in_axes4_xx[i] -
         six_r_B_4_o_in_axes4_xy*m->six_r_Sigma_4_in_axes4_yy[i] -
-        six_r_B_4_o_in_axes4_yz*m->six_r_J_4_in_spec4_xy[i] -
+        six_r_B_4_o_in_axes4_yz*m->six_r_J_4_in_spec4_xy[i] +
+        six_r_acc_4_o_in_axes4_y*m->six_r_h_4_in_spec4_y[i] -
         six_r_acc_4_o_in_axes4_x*m->six_r_h_4_in_spec4_z[i];
     /* (six_r-N_4_o) remainder of: moment about joint 4 of the links from 4 outwards, the force at the
        connection point left out */
@@ -4642,82 +4647,80 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
         v.six_r_J_5_t*six_r_mu_5_o_in_axes5_x +
         v.six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_y;
     const real six_r_N_4_o_in_axes4_y = six_r_mu_4_o_in_axes4_y + six_r_mu_5_o_in_axes5_z;
-    const real six_r_N_4_o_in_axes4_z = six_r_mu_4_o_in_axes4_z +
-        v.six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_x -
-        v.six_r_J_5_t*six_r_mu_5_o_in_axes5_y;
+    const real six_r_N_4_o_in_axes4_z = v.six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_x -
+        v.six_r_J_5_t*six_r_mu_5_o_in_axes5_y + six_r_mu_4_o_in_axes4_z;
     /* (six_r-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal
        links' inertia and weight */
     const real six_r_dalpha_Gamma_4_in_axes5_x = v.six_r_J_5_in_axes4_yz*six_r_o_5_in_axes5_x
         + v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_x -
-        v.six_r_Jc_4_in_axes4_zz*six_r_o_4_t - v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_t -
-        v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_t;
+        v.six_r_Jc_4_in_axes4_zz*six_r_o_4_t - v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_t -
+        v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_t;
     const real six_r_dalpha_Gamma_4_in_axes5_y = v.six_r_J_5_in_axes4_yz*six_r_o_5_in_axes5_y
         + v.six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_y +
         v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_y +
-        v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_y +
-        v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_y;
+        v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_y +
+        v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_y;
     const real six_r_dalpha_Gamma_4_in_axes5_z = v.six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_z
-        + v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_z +
-        v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_z - v.six_r_J_5_in_axes4_yz*six_r_o_5_t
-        - v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_t;
+        + v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_z -
+        v.six_r_J_5_in_axes4_yz*six_r_o_5_t - v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_t +
+        v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_z;
     /* (six_r-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
        inertia and weight */
     const real six_r_d_Gamma_4_t = inv_six_r_w_1_t_12*v.six_r_J_5_in_axes4_yz;
     const real six_r_d_Gamma_4_t_2 = inv_six_r_w_1_t_28*(v.six_r_Jc_4_in_axes4_zz -
         six_r_d_Gamma_4_t*six_r_w_1_t_15);
-    const real six_r_d_Gamma_4_t_3 = inv_six_r_w_1_t_49*(v.six_r_L_c_4_2_in_axes1_z +
-        six_r_d_Gamma_4_t_2*six_r_w_1_t_33 - six_r_d_Gamma_4_t*six_r_w_1_t_18);
-    const real six_r_d_Gamma_4_t_4 = inv_six_r_w_1_t_67*(v.six_r_L_c_4_2_in_axes2_z +
-        six_r_d_Gamma_4_t_2*six_r_w_1_t_39 - six_r_d_Gamma_4_t*six_r_w_1_t_22 -
+    const real six_r_d_Gamma_4_t_3 = inv_six_r_w_1_t_49*(v.six_r_L_c_4_2_in_axes1_z -
+        six_r_d_Gamma_4_t*six_r_w_1_t_18 + six_r_d_Gamma_4_t_2*six_r_w_1_t_33);
+    const real six_r_d_Gamma_4_t_4 = inv_six_r_w_1_t_67*(v.six_r_L_c_4_2_in_axes2_z -
+        six_r_d_Gamma_4_t*six_r_w_1_t_22 + six_r_d_Gamma_4_t_2*six_r_w_1_t_39 -
         six_r_d_Gamma_4_t_3*six_r_w_1_t_55);
     const real six_r_d_Gamma_4_t_5 = inv_six_r_w_1_t_79*(v.six_r_L_c_4_3_in_axes3_z +
         six_r_d_Gamma_4_t*six_r_w_1_t_25 + six_r_d_Gamma_4_t_2*six_r_w_1_t_44 -
         six_r_d_Gamma_4_t_3*six_r_w_1_t_61 - six_r_d_Gamma_4_t_4*six_r_w_1_t_73);
-    const real six_r_d_Gamma_4_in_axes5_x = six_r_d_Gamma_4_t_3*six_r_w_1_t_50 +
-        six_r_d_Gamma_4_t_4*six_r_w_1_t_68 + six_r_d_Gamma_4_t_5*six_r_w_1_t_80 -
-        v.six_r_J_5_t*m->six_r_h_5_in_spec5_z[i];
+    const real six_r_d_Gamma_4_in_axes5_x = six_r_d_Gamma_4_t_3*six_r_w_1_t_50 -
+        v.six_r_J_5_t*m->six_r_h_5_in_spec5_z[i] + six_r_d_Gamma_4_t_4*six_r_w_1_t_68 +
+        six_r_d_Gamma_4_t_5*six_r_w_1_t_80;
     const real six_r_d_Gamma_4_in_axes5_y = six_r_d_Gamma_4_t*six_r_w_1_t_13 -
-        six_r_d_Gamma_4_t_2*six_r_w_1_t_29 - six_r_d_Gamma_4_t_3*six_r_w_1_t_51 -
-        six_r_d_Gamma_4_t_4*six_r_w_1_t_69 - six_r_d_Gamma_4_t_5*six_r_w_1_t_81 -
-        v.six_r_e_4_in_axes5_x*m->six_r_h_5_in_spec5_z[i];
+        v.six_r_e_4_in_axes5_x*m->six_r_h_5_in_spec5_z[i] - six_r_d_Gamma_4_t_2*six_r_w_1_t_29
+        - six_r_d_Gamma_4_t_3*six_r_w_1_t_51 - six_r_d_Gamma_4_t_4*six_r_w_1_t_69 -
+        six_r_d_Gamma_4_t_5*six_r_w_1_t_81;
     const real six_r_d_Gamma_4_in_axes5_z = v.six_r_J_5_t*m->six_r_h_5_in_spec5_x[i] +
-        six_r_d_Gamma_4_t_2*six_r_w_1_t_30 + six_r_d_Gamma_4_t_3*six_r_w_1_t_52 +
-        six_r_d_Gamma_4_t_4*six_r_w_1_t_70 + six_r_d_Gamma_4_t_5*six_r_w_1_t_82 +
-        v.six_r_e_4_in_axes5_x*m->six_r_h_5_in_spec5_y[i];
+        v.six_r_e_4_in_axes5_x*m->six_r_h_5_in_spec5_y[i] + six_r_d_Gamma_4_t_2*six_r_w_1_t_30
+        + six_r_d_Gamma_4_t_3*six_r_w_1_t_52 + six_r_d_Gamma_4_t_4*six_r_w_1_t_70 +
+        six_r_d_Gamma_4_t_5*six_r_w_1_t_82;
     /* (six_r-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
        reference points */
-    const real six_r_mu_3_o_in_axes3_x = six_r_B_3_o_in_axes3_zx*m->six_r_J_3_in_spec3_xy[i] +
+    const real six_r_mu_3_o_in_axes3_x = m->six_r_J_3_in_spec3_xz[i]*(six_r_f_3_o_t -
+        six_r_W_3_t_2) - six_r_B_3_o_in_axes3_yx*m->six_r_J_3_in_spec3_yz[i] -
+        six_r_acc_3_o_in_axes3_y*m->six_r_h_3_in_spec3_z[i] +
+        six_r_B_3_o_in_axes3_zx*m->six_r_J_3_in_spec3_xy[i] +
         six_r_B_3_o_in_axes3_zy*m->six_r_Sigma_3_in_axes3_yy[i] +
-        m->six_r_J_3_in_spec3_xz[i]*(six_r_f_3_o_t - six_r_W_3_t_2) +
         six_r_acc_3_o_in_axes3_z*m->six_r_h_3_in_spec3_x[i] -
-        six_r_B_3_o_in_axes3_yx*m->six_r_J_3_in_spec3_yz[i] -
-        six_r_B_3_o_in_axes3_yz*m->six_r_Sigma_3_in_axes3_zz[i] -
-        six_r_acc_3_o_in_axes3_y*m->six_r_h_3_in_spec3_z[i];
-    const real six_r_mu_3_o_in_axes3_y =
-        six_r_B_3_o_in_axes3_xz*m->six_r_Sigma_3_in_axes3_zz[i] +
-        m->six_r_J_3_in_spec3_yz[i]*(six_r_W_3_t - six_r_W_3_t_2) +
+        six_r_B_3_o_in_axes3_yz*m->six_r_Sigma_3_in_axes3_zz[i];
+    const real six_r_mu_3_o_in_axes3_y = m->six_r_J_3_in_spec3_yz[i]*(six_r_W_3_t -
+        six_r_W_3_t_2) - six_r_B_3_o_in_axes3_xy*m->six_r_J_3_in_spec3_xz[i] +
         six_r_acc_3_o_in_axes3_x*m->six_r_h_3_in_spec3_z[i] +
+        six_r_B_3_o_in_axes3_xz*m->six_r_Sigma_3_in_axes3_zz[i] +
         six_r_acc_3_o_in_axes3_z*m->six_r_h_3_in_spec3_y[i] -
-        six_r_B_3_o_in_axes3_xy*m->six_r_J_3_in_spec3_xz[i] -
         six_r_B_3_o_in_axes3_zx*m->six_r_Sigma_3_in_axes3_xx[i] -
         six_r_B_3_o_in_axes3_zy*m->six_r_J_3_in_spec3_xy[i];
-    const real six_r_mu_3_o_in_axes3_z = six_r_B_3_o_in_axes3_xz*m->six_r_J_3_in_spec3_xz[i] +
-        six_r_B_3_o_in_axes3_yx*m->six_r_Sigma_3_in_axes3_xx[i] +
-        six_r_B_3_o_in_axes3_yz*m->six_r_J_3_in_spec3_yz[i] -
-        six_r_B_3_o_in_axes3_xy*m->six_r_Sigma_3_in_axes3_yy[i] -
+    const real six_r_mu_3_o_in_axes3_z =
+        six_r_B_3_o_in_axes3_yx*m->six_r_Sigma_3_in_axes3_xx[i] -
         m->six_r_J_3_in_spec3_xy[i]*(six_r_W_3_t - six_r_f_3_o_t) -
+        six_r_B_3_o_in_axes3_xy*m->six_r_Sigma_3_in_axes3_yy[i] -
         six_r_acc_3_o_in_axes3_x*m->six_r_h_3_in_spec3_x[i] -
-        six_r_acc_3_o_in_axes3_y*m->six_r_h_3_in_spec3_y[i];
+        six_r_acc_3_o_in_axes3_y*m->six_r_h_3_in_spec3_y[i] +
+        six_r_B_3_o_in_axes3_xz*m->six_r_J_3_in_spec3_xz[i] +
+        six_r_B_3_o_in_axes3_yz*m->six_r_J_3_in_spec3_yz[i];
     /* (six_r-N_3_o) remainder of: moment about joint 3 of the links from 3 outwards, the force at the
        connection point left out */
     const real six_r_N_3_o_in_axes3_x = six_r_mu_3_o_in_axes3_x +
-        six_r_N_4_o_in_axes4_y*v.six_r_h_4_t +
-        six_r_f_4_o_in_axes3_z*m->six_r_joint4_offset_x[i] -
-        six_r_N_4_o_in_axes4_x*v.six_r_e_2_in_axes5_z;
-    const real six_r_N_3_o_in_axes3_y = six_r_N_4_o_in_axes4_z + six_r_mu_3_o_in_axes3_y;
-    const real six_r_N_3_o_in_axes3_z = six_r_mu_3_o_in_axes3_z +
-        six_r_N_4_o_in_axes4_x*v.six_r_h_4_t + six_r_N_4_o_in_axes4_y*v.six_r_e_2_in_axes5_z -
-        six_r_f_4_o_in_axes3_x*m->six_r_joint4_offset_x[i];
+        six_r_f_4_o_in_axes3_z*m->six_r_joint4_offset_x[i] +
+        six_r_N_4_o_in_axes4_y*v.six_r_h_4_t - six_r_N_4_o_in_axes4_x*v.six_r_e_2_in_axes5_z;
+    const real six_r_N_3_o_in_axes3_y = six_r_mu_3_o_in_axes3_y + six_r_N_4_o_in_axes4_z;
+    const real six_r_N_3_o_in_axes3_z = six_r_mu_3_o_in_axes3_z -
+        six_r_f_4_o_in_axes3_x*m->six_r_joint4_offset_x[i] +
+        six_r_N_4_o_in_axes4_y*v.six_r_e_2_in_axes5_z + six_r_N_4_o_in_axes4_x*v.six_r_h_4_t;
     /* (six_r-T_3_o) remainder of: inertia force of the links from 3 outwards, the last link left out
        */
     const real six_r_T_3_o_in_axes3_x = six_r_f_3_o_in_axes3_x + six_r_f_4_o_in_axes3_x;
@@ -4728,18 +4731,18 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     const real six_r_dalpha_Gamma_3_t = v.six_r_D_3_5*six_r_o_5_in_axes5_x;
     const real six_r_dalpha_Gamma_3_t_2 = v.six_r_D_3_5*six_r_o_5_in_axes5_y;
     const real six_r_dalpha_Gamma_3_t_3 = v.six_r_D_3_5*six_r_o_5_t;
-    const real six_r_dalpha_Gamma_3_in_axes5_x = six_r_dalpha_Gamma_3_t +
+    const real six_r_dalpha_Gamma_3_in_axes5_x =
         v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_x - v.six_r_Jc_3_in_axes3_zz*six_r_o_3_t
-        - v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_t - v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_t;
-    const real six_r_dalpha_Gamma_3_in_axes5_y = six_r_dalpha_Gamma_3_t_2 +
-        v.six_r_Jc_3_in_axes3_zz*six_r_o_3_in_axes5_y +
-        v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_y +
-        v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_in_axes5_y +
-        v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_y;
+        - v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_t + six_r_dalpha_Gamma_3_t -
+        v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_t;
+    const real six_r_dalpha_Gamma_3_in_axes5_y = v.six_r_Jc_3_in_axes3_zz*six_r_o_3_in_axes5_y
+        + v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_y +
+        v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_y + six_r_dalpha_Gamma_3_t_2 +
+        v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_in_axes5_y;
     const real six_r_dalpha_Gamma_3_in_axes5_z = v.six_r_Jc_3_in_axes3_zz*six_r_o_3_in_axes5_z
-        + v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_in_axes5_z +
-        v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_z - six_r_dalpha_Gamma_3_t_3 -
-        v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_t;
+        + v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_z -
+        v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_t +
+        v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_in_axes5_z - six_r_dalpha_Gamma_3_t_3;
     /* (six_r-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
        inertia and weight */
     const real six_r_d_Gamma_3_t_4 = inv_six_r_w_1_t_12*v.six_r_D_3_5;
@@ -4747,83 +4750,81 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     const real six_r_d_Gamma_3_t_6 = inv_six_r_w_1_t_28*(v.six_r_L_c_4_3_in_axes3_z -
         six_r_d_Gamma_3_t_5);
     const real six_r_d_Gamma_3_t_7 = six_r_d_Gamma_3_t_4*six_r_w_1_t_18;
-    const real six_r_d_Gamma_3_t_8 = inv_six_r_w_1_t_49*(v.six_r_L_c_3_2_in_axes1_z +
-        six_r_d_Gamma_3_t_6*six_r_w_1_t_33 - six_r_d_Gamma_3_t_7);
+    const real six_r_d_Gamma_3_t_8 = inv_six_r_w_1_t_49*(v.six_r_L_c_3_2_in_axes1_z -
+        six_r_d_Gamma_3_t_7 + six_r_d_Gamma_3_t_6*six_r_w_1_t_33);
     const real six_r_d_Gamma_3_t_9 = six_r_d_Gamma_3_t_4*six_r_w_1_t_22;
-    const real six_r_d_Gamma_3_t_10 = inv_six_r_w_1_t_67*(v.six_r_L_c_3_2_in_axes2_z +
-        six_r_d_Gamma_3_t_6*six_r_w_1_t_39 - six_r_d_Gamma_3_t_9 -
+    const real six_r_d_Gamma_3_t_10 = inv_six_r_w_1_t_67*(v.six_r_L_c_3_2_in_axes2_z -
+        six_r_d_Gamma_3_t_9 + six_r_d_Gamma_3_t_6*six_r_w_1_t_39 -
         six_r_d_Gamma_3_t_8*six_r_w_1_t_55);
     const real six_r_d_Gamma_3_t_11 = six_r_d_Gamma_3_t_4*six_r_w_1_t_25;
     const real six_r_d_Gamma_3_t_12 = inv_six_r_w_1_t_79*(v.six_r_Jc_3_in_axes3_zz +
         six_r_d_Gamma_3_t_11 + six_r_d_Gamma_3_t_6*six_r_w_1_t_44 -
-        six_r_d_Gamma_3_t_10*six_r_w_1_t_73 - six_r_d_Gamma_3_t_8*six_r_w_1_t_61);
+        six_r_d_Gamma_3_t_8*six_r_w_1_t_61 - six_r_d_Gamma_3_t_10*six_r_w_1_t_73);
     const real six_r_d_Gamma_3_t_13 = six_r_d_Gamma_3_t_4*six_r_w_1_t_13;
     const real six_r_d_Gamma_3_in_axes5_x = v.six_r_d_Gamma_3_t +
-        six_r_d_Gamma_3_t_10*six_r_w_1_t_68 + six_r_d_Gamma_3_t_12*six_r_w_1_t_80 +
-        six_r_d_Gamma_3_t_8*six_r_w_1_t_50;
+        six_r_d_Gamma_3_t_8*six_r_w_1_t_50 + six_r_d_Gamma_3_t_10*six_r_w_1_t_68 +
+        six_r_d_Gamma_3_t_12*six_r_w_1_t_80;
     const real six_r_d_Gamma_3_in_axes5_y = six_r_d_Gamma_3_t_13 - v.six_r_d_Gamma_3_t_2 -
-        six_r_d_Gamma_3_t_10*six_r_w_1_t_69 - six_r_d_Gamma_3_t_12*six_r_w_1_t_81 -
-        six_r_d_Gamma_3_t_6*six_r_w_1_t_29 - six_r_d_Gamma_3_t_8*six_r_w_1_t_51;
+        six_r_d_Gamma_3_t_6*six_r_w_1_t_29 - six_r_d_Gamma_3_t_8*six_r_w_1_t_51 -
+        six_r_d_Gamma_3_t_10*six_r_w_1_t_69 - six_r_d_Gamma_3_t_12*six_r_w_1_t_81;
     const real six_r_d_Gamma_3_in_axes5_z = v.six_r_d_Gamma_3_t_3 +
-        six_r_d_Gamma_3_t_10*six_r_w_1_t_70 + six_r_d_Gamma_3_t_12*six_r_w_1_t_82 +
-        six_r_d_Gamma_3_t_6*six_r_w_1_t_30 + six_r_d_Gamma_3_t_8*six_r_w_1_t_52;
+        six_r_d_Gamma_3_t_6*six_r_w_1_t_30 + six_r_d_Gamma_3_t_8*six_r_w_1_t_52 +
+        six_r_d_Gamma_3_t_10*six_r_w_1_t_70 + six_r_d_Gamma_3_t_12*six_r_w_1_t_82;
     /* (six_r-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real six_r_mu_2_o_t = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_x;
-    const real six_r_mu_2_o_in_axes2_x = six_r_B_2_o_in_axes2_yx*m->six_r_J_2_in_spec2_xz[i] +
-        six_r_B_2_o_in_axes2_zy*m->six_r_Sigma_2_in_axes2_yy[i] +
+    const real six_r_mu_2_o_in_axes2_x = v.six_r_g_in_axes2_y*m->six_r_h_2_in_spec2_z[i] -
+        v.six_r_g_in_axes1_y*m->six_r_h_2_in_spec2_y[i] +
         m->six_r_J_2_in_spec2_yz[i]*(six_r_a_o_3_o_t - six_r_a_o_3_o_t_2) +
-        v.six_r_g_in_axes2_y*m->six_r_h_2_in_spec2_z[i] -
-        six_r_B_2_o_in_axes2_zx*m->six_r_J_2_in_spec2_xy[i] -
-        m->six_r_Sigma_2_in_axes2_zz[i]*six_r_alpha_1_o_t -
-        v.six_r_g_in_axes1_y*m->six_r_h_2_in_spec2_y[i];
-    const real six_r_mu_2_o_in_axes2_y = six_r_B_2_o_in_axes2_zy*m->six_r_J_2_in_spec2_xy[i] +
-        m->six_r_Sigma_2_in_axes2_zz[i]*six_r_alpha_1_o_in_axes2_y +
-        v.six_r_g_in_axes1_y*m->six_r_h_2_in_spec2_x[i] -
-        six_r_B_2_o_in_axes2_xy*m->six_r_J_2_in_spec2_yz[i] -
-        six_r_B_2_o_in_axes2_zx*m->six_r_Sigma_2_in_axes2_xx[i] -
+        six_r_B_2_o_in_axes2_yx*m->six_r_J_2_in_spec2_xz[i] -
+        m->six_r_Sigma_2_in_axes2_zz[i]*six_r_alpha_1_o_t +
+        six_r_B_2_o_in_axes2_zy*m->six_r_Sigma_2_in_axes2_yy[i] -
+        six_r_B_2_o_in_axes2_zx*m->six_r_J_2_in_spec2_xy[i];
+    const real six_r_mu_2_o_in_axes2_y = v.six_r_g_in_axes1_y*m->six_r_h_2_in_spec2_x[i] -
+        v.six_r_g_in_axes2_x*m->six_r_h_2_in_spec2_z[i] -
         m->six_r_J_2_in_spec2_xz[i]*(six_r_mu_2_o_t - six_r_a_o_3_o_t_2) -
-        v.six_r_g_in_axes2_x*m->six_r_h_2_in_spec2_z[i];
-    const real six_r_mu_2_o_in_axes2_z =
-        six_r_B_2_o_in_axes2_yx*m->six_r_Sigma_2_in_axes2_xx[i] +
+        six_r_B_2_o_in_axes2_xy*m->six_r_J_2_in_spec2_yz[i] +
+        m->six_r_Sigma_2_in_axes2_zz[i]*six_r_alpha_1_o_in_axes2_y +
+        six_r_B_2_o_in_axes2_zy*m->six_r_J_2_in_spec2_xy[i] -
+        six_r_B_2_o_in_axes2_zx*m->six_r_Sigma_2_in_axes2_xx[i];
+    const real six_r_mu_2_o_in_axes2_z = v.six_r_g_in_axes2_x*m->six_r_h_2_in_spec2_y[i] -
+        v.six_r_g_in_axes2_y*m->six_r_h_2_in_spec2_x[i] +
         m->six_r_J_2_in_spec2_xy[i]*(six_r_mu_2_o_t - six_r_a_o_3_o_t) +
-        m->six_r_J_2_in_spec2_yz[i]*six_r_alpha_1_o_in_axes2_y +
-        v.six_r_g_in_axes2_x*m->six_r_h_2_in_spec2_y[i] -
-        six_r_B_2_o_in_axes2_xy*m->six_r_Sigma_2_in_axes2_yy[i] -
-        m->six_r_J_2_in_spec2_xz[i]*six_r_alpha_1_o_t -
-        v.six_r_g_in_axes2_y*m->six_r_h_2_in_spec2_x[i];
+        six_r_B_2_o_in_axes2_yx*m->six_r_Sigma_2_in_axes2_xx[i] -
+        six_r_B_2_o_in_axes2_xy*m->six_r_Sigma_2_in_axes2_yy[i] +
+        m->six_r_J_2_in_spec2_yz[i]*six_r_alpha_1_o_in_axes2_y -
+        m->six_r_J_2_in_spec2_xz[i]*six_r_alpha_1_o_t;
     /* (six_r-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
        connection point left out */
     const real six_r_N_2_o_in_axes2_x = six_r_mu_2_o_in_axes2_x +
         six_r_N_3_o_in_axes3_x*v.six_r_s_3 + six_r_N_3_o_in_axes3_y*v.six_r_c_3;
-    const real six_r_N_2_o_in_axes2_y = six_r_mu_2_o_in_axes2_y +
-        six_r_N_3_o_in_axes3_y*v.six_r_s_3 - six_r_N_3_o_in_axes3_x*v.six_r_c_3 -
-        six_r_T_3_o_in_axes3_z*m->six_r_joint3_offset_x[i];
-    const real six_r_N_2_o_in_axes2_z = six_r_N_3_o_in_axes3_z + six_r_mu_2_o_in_axes2_z -
+    const real six_r_N_2_o_in_axes2_y = six_r_mu_2_o_in_axes2_y -
+        six_r_T_3_o_in_axes3_z*m->six_r_joint3_offset_x[i] +
+        six_r_N_3_o_in_axes3_y*v.six_r_s_3 - six_r_N_3_o_in_axes3_x*v.six_r_c_3;
+    const real six_r_N_2_o_in_axes2_z = six_r_mu_2_o_in_axes2_z -
         m->six_r_joint3_offset_x[i]*(six_r_T_3_o_in_axes3_x*v.six_r_c_3 -
-        six_r_T_3_o_in_axes3_y*v.six_r_s_3);
+        six_r_T_3_o_in_axes3_y*v.six_r_s_3) + six_r_N_3_o_in_axes3_z;
     /* (six_r-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
        links' inertia and weight */
-    const real six_r_dalpha_Gamma_2_in_axes5_x = six_r_dalpha_Gamma_3_t +
-        v.six_r_Jc_2_in_axes1_yz*six_r_o_1_in_axes5_x - v.six_r_Jc_2_in_axes2_zz*six_r_o_2_t -
-        v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_t - v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_t;
-    const real six_r_dalpha_Gamma_2_in_axes5_y = six_r_dalpha_Gamma_3_t_2 +
-        v.six_r_Jc_2_in_axes1_yz*six_r_o_1_in_axes5_y +
-        v.six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_y +
-        v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_y +
-        v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_y;
-    const real six_r_dalpha_Gamma_2_in_axes5_z = v.six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_z
-        + v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_z +
-        v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_z - six_r_dalpha_Gamma_3_t_3 -
-        v.six_r_Jc_2_in_axes1_yz*six_r_o_1_t;
+    const real six_r_dalpha_Gamma_2_in_axes5_x = v.six_r_Jc_2_in_axes1_yz*six_r_o_1_in_axes5_x
+        - v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_t - v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_t +
+        six_r_dalpha_Gamma_3_t - v.six_r_Jc_2_in_axes2_zz*six_r_o_2_t;
+    const real six_r_dalpha_Gamma_2_in_axes5_y = v.six_r_Jc_2_in_axes1_yz*six_r_o_1_in_axes5_y
+        + v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_y +
+        v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_y + six_r_dalpha_Gamma_3_t_2 +
+        v.six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_y;
+    const real six_r_dalpha_Gamma_2_in_axes5_z =
+        v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_z +
+        v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_z - v.six_r_Jc_2_in_axes1_yz*six_r_o_1_t
+        + v.six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_z - six_r_dalpha_Gamma_3_t_3;
     /* (six_r-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
        inertia and weight */
     const real six_r_d_Gamma_2_t = inv_six_r_w_1_t_28*(v.six_r_L_c_4_2_in_axes2_z -
         six_r_d_Gamma_3_t_5);
-    const real six_r_d_Gamma_2_t_2 = inv_six_r_w_1_t_49*(v.six_r_Jc_2_in_axes1_yz +
-        six_r_d_Gamma_2_t*six_r_w_1_t_33 - six_r_d_Gamma_3_t_7);
-    const real six_r_d_Gamma_2_t_3 = inv_six_r_w_1_t_67*(v.six_r_Jc_2_in_axes2_zz +
-        six_r_d_Gamma_2_t*six_r_w_1_t_39 - six_r_d_Gamma_3_t_9 -
+    const real six_r_d_Gamma_2_t_2 = inv_six_r_w_1_t_49*(v.six_r_Jc_2_in_axes1_yz -
+        six_r_d_Gamma_3_t_7 + six_r_d_Gamma_2_t*six_r_w_1_t_33);
+    const real six_r_d_Gamma_2_t_3 = inv_six_r_w_1_t_67*(v.six_r_Jc_2_in_axes2_zz -
+        six_r_d_Gamma_3_t_9 + six_r_d_Gamma_2_t*six_r_w_1_t_39 -
         six_r_d_Gamma_2_t_2*six_r_w_1_t_55);
     const real six_r_d_Gamma_2_t_4 = inv_six_r_w_1_t_79*(v.six_r_L_c_3_2_in_axes2_z +
         six_r_d_Gamma_3_t_11 + six_r_d_Gamma_2_t*six_r_w_1_t_44 -
@@ -4840,8 +4841,8 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     /* (six_r-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
     const real six_r_mu_1_o_in_axes1_z = v.six_r_g_in_axes1_x*m->six_r_h_1_in_spec1_z[i] -
-        m->six_r_J_1_in_spec1_xx[i]*six_r_qdd_1_o_t_5 -
-        v.six_r_g_in_axes1_y*m->six_r_h_1_in_spec1_y[i];
+        v.six_r_g_in_axes1_y*m->six_r_h_1_in_spec1_y[i] -
+        m->six_r_J_1_in_spec1_xx[i]*six_r_qdd_1_o_t_5;
     /* (six_r-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
        connection point left out */
     const real six_r_N_1_o_in_axes1_z = six_r_mu_1_o_in_axes1_z +
@@ -4849,43 +4850,42 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     /* (six_r-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
        links' inertia and weight */
     const real six_r_dalpha_Gamma_1_in_axes5_x = v.six_r_D_1_5*six_r_o_5_in_axes5_x +
-        v.six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_x - v.six_r_Jc_2_in_axes1_yz*six_r_o_2_t -
-        v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_t - v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_t;
+        v.six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_x - v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_t
+        - v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_t - v.six_r_Jc_2_in_axes1_yz*six_r_o_2_t;
     const real six_r_dalpha_Gamma_1_in_axes5_y = v.six_r_D_1_5*six_r_o_5_in_axes5_y +
         v.six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_y +
-        v.six_r_Jc_2_in_axes1_yz*six_r_o_2_in_axes5_y +
         v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_y +
-        v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_y;
-    const real six_r_dalpha_Gamma_1_in_axes5_z = v.six_r_Jc_2_in_axes1_yz*six_r_o_2_in_axes5_z
-        + v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_z +
+        v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_y +
+        v.six_r_Jc_2_in_axes1_yz*six_r_o_2_in_axes5_y;
+    const real six_r_dalpha_Gamma_1_in_axes5_z =
+        v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_z +
         v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_z - v.six_r_D_1_5*six_r_o_5_t -
-        v.six_r_Jc_1_in_axes1_zz*six_r_o_1_t;
+        v.six_r_Jc_1_in_axes1_zz*six_r_o_1_t + v.six_r_Jc_2_in_axes1_yz*six_r_o_2_in_axes5_z;
     /* (six_r-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
     const real six_r_d_Gamma_1_t = inv_six_r_w_1_t_12*v.six_r_D_1_5;
     const real six_r_d_Gamma_1_t_2 = inv_six_r_w_1_t_28*(v.six_r_L_c_4_2_in_axes1_z -
         six_r_d_Gamma_1_t*six_r_w_1_t_15);
-    const real six_r_d_Gamma_1_t_3 = inv_six_r_w_1_t_49*(v.six_r_Jc_1_in_axes1_zz +
-        six_r_d_Gamma_1_t_2*six_r_w_1_t_33 - six_r_d_Gamma_1_t*six_r_w_1_t_18);
-    const real six_r_d_Gamma_1_t_4 = inv_six_r_w_1_t_67*(v.six_r_Jc_2_in_axes1_yz +
-        six_r_d_Gamma_1_t_2*six_r_w_1_t_39 - six_r_d_Gamma_1_t*six_r_w_1_t_22 -
+    const real six_r_d_Gamma_1_t_3 = inv_six_r_w_1_t_49*(v.six_r_Jc_1_in_axes1_zz -
+        six_r_d_Gamma_1_t*six_r_w_1_t_18 + six_r_d_Gamma_1_t_2*six_r_w_1_t_33);
+    const real six_r_d_Gamma_1_t_4 = inv_six_r_w_1_t_67*(v.six_r_Jc_2_in_axes1_yz -
+        six_r_d_Gamma_1_t*six_r_w_1_t_22 + six_r_d_Gamma_1_t_2*six_r_w_1_t_39 -
         six_r_d_Gamma_1_t_3*six_r_w_1_t_55);
     const real six_r_d_Gamma_1_t_5 = inv_six_r_w_1_t_79*(v.six_r_L_c_3_2_in_axes1_z +
         six_r_d_Gamma_1_t*six_r_w_1_t_25 + six_r_d_Gamma_1_t_2*six_r_w_1_t_44 -
         six_r_d_Gamma_1_t_3*six_r_w_1_t_61 - six_r_d_Gamma_1_t_4*six_r_w_1_t_73);
-    const real six_r_d_Gamma_1_in_axes5_x = six_r_d_Gamma_1_t_3*six_r_w_1_t_50 +
-        six_r_d_Gamma_1_t_4*six_r_w_1_t_68 + six_r_d_Gamma_1_t_5*six_r_w_1_t_80 +
-        v.six_r_e_1_in_axes5_y*m->six_r_h_5_in_spec5_z[i] -
-        v.six_r_e_1_in_axes5_z*m->six_r_h_5_in_spec5_y[i];
-    const real six_r_d_Gamma_1_in_axes5_y = six_r_d_Gamma_1_t*six_r_w_1_t_13 +
-        v.six_r_e_1_in_axes5_z*m->six_r_h_5_in_spec5_x[i] - six_r_d_Gamma_1_t_2*six_r_w_1_t_29
-        - six_r_d_Gamma_1_t_3*six_r_w_1_t_51 - six_r_d_Gamma_1_t_4*six_r_w_1_t_69 -
-        six_r_d_Gamma_1_t_5*six_r_w_1_t_81 -
-        v.six_r_e_1_in_axes5_x*m->six_r_h_5_in_spec5_z[i];
-    const real six_r_d_Gamma_1_in_axes5_z = six_r_d_Gamma_1_t_2*six_r_w_1_t_30 +
-        six_r_d_Gamma_1_t_3*six_r_w_1_t_52 + six_r_d_Gamma_1_t_4*six_r_w_1_t_70 +
-        six_r_d_Gamma_1_t_5*six_r_w_1_t_82 + v.six_r_e_1_in_axes5_x*m->six_r_h_5_in_spec5_y[i]
-        - v.six_r_e_1_in_axes5_y*m->six_r_h_5_in_spec5_x[i];
+    const real six_r_d_Gamma_1_in_axes5_x = v.six_r_e_1_in_axes5_y*m->six_r_h_5_in_spec5_z[i]
+        - v.six_r_e_1_in_axes5_z*m->six_r_h_5_in_spec5_y[i] +
+        six_r_d_Gamma_1_t_3*six_r_w_1_t_50 + six_r_d_Gamma_1_t_4*six_r_w_1_t_68 +
+        six_r_d_Gamma_1_t_5*six_r_w_1_t_80;
+    const real six_r_d_Gamma_1_in_axes5_y = v.six_r_e_1_in_axes5_z*m->six_r_h_5_in_spec5_x[i]
+        - v.six_r_e_1_in_axes5_x*m->six_r_h_5_in_spec5_z[i] + six_r_d_Gamma_1_t*six_r_w_1_t_13
+        - six_r_d_Gamma_1_t_2*six_r_w_1_t_29 - six_r_d_Gamma_1_t_3*six_r_w_1_t_51 -
+        six_r_d_Gamma_1_t_4*six_r_w_1_t_69 - six_r_d_Gamma_1_t_5*six_r_w_1_t_81;
+    const real six_r_d_Gamma_1_in_axes5_z = v.six_r_e_1_in_axes5_x*m->six_r_h_5_in_spec5_y[i]
+        - v.six_r_e_1_in_axes5_y*m->six_r_h_5_in_spec5_x[i] +
+        six_r_d_Gamma_1_t_2*six_r_w_1_t_30 + six_r_d_Gamma_1_t_3*six_r_w_1_t_52 +
+        six_r_d_Gamma_1_t_4*six_r_w_1_t_70 + six_r_d_Gamma_1_t_5*six_r_w_1_t_82;
     /* (six_r-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
        balances the leg's inertia and weight along all degrees of freedom */
     const real six_r_dalpha_G_m1_in_axes5_x = six_r_dalpha_Gamma_2_in_axes5_x*six_r_m1_w_2 +
@@ -4911,18 +4911,15 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
         axis_z_six_r_axes5_z*six_r_dalpha_G_m1_in_axes5_z;
     /* (six_r-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
        balances the leg's inertia and weight along all degrees of freedom */
-    const real six_r_d_G_m1_in_axes5_x = six_r_d_Gamma_2_in_axes5_x*six_r_m1_w_2 +
-        six_r_d_Gamma_3_in_axes5_x*six_r_m1_w_3 + six_r_d_Gamma_4_in_axes5_x*six_r_m1_w_4 -
-        six_r_d_Gamma_1_in_axes5_x*six_r_m1_w_1_t_2 -
-        six_r_d_Gamma_5_in_axes5_x*six_r_m1_w_5_t;
-    const real six_r_d_G_m1_in_axes5_y = six_r_d_Gamma_2_in_axes5_y*six_r_m1_w_2 +
-        six_r_d_Gamma_3_in_axes5_y*six_r_m1_w_3 + six_r_d_Gamma_4_in_axes5_y*six_r_m1_w_4 -
-        six_r_d_Gamma_1_in_axes5_y*six_r_m1_w_1_t_2 -
-        six_r_d_Gamma_5_in_axes5_y*six_r_m1_w_5_t;
-    const real six_r_d_G_m1_in_axes5_z = six_r_d_Gamma_2_in_axes5_z*six_r_m1_w_2 +
-        six_r_d_Gamma_3_in_axes5_z*six_r_m1_w_3 + six_r_d_Gamma_4_in_axes5_z*six_r_m1_w_4 -
-        six_r_d_Gamma_1_in_axes5_z*six_r_m1_w_1_t_2 -
-        six_r_d_Gamma_5_in_axes5_z*six_r_m1_w_5_t;
+    const real six_r_d_G_m1_in_axes5_x = six_r_d_Gamma_3_in_axes5_x*six_r_m1_w_3 +
+        six_r_d_Gamma_4_in_axes5_x*six_r_m1_w_4 - six_r_d_Gamma_1_in_axes5_x*six_r_m1_w_1_t_2
+        - six_r_d_Gamma_5_in_axes5_x*six_r_m1_w_5_t + six_r_d_Gamma_2_in_axes5_x*six_r_m1_w_2;
+    const real six_r_d_G_m1_in_axes5_y = six_r_d_Gamma_3_in_axes5_y*six_r_m1_w_3 +
+        six_r_d_Gamma_4_in_axes5_y*six_r_m1_w_4 - six_r_d_Gamma_1_in_axes5_y*six_r_m1_w_1_t_2
+        - six_r_d_Gamma_5_in_axes5_y*six_r_m1_w_5_t + six_r_d_Gamma_2_in_axes5_y*six_r_m1_w_2;
+    const real six_r_d_G_m1_in_axes5_z = six_r_d_Gamma_3_in_axes5_z*six_r_m1_w_3 +
+        six_r_d_Gamma_4_in_axes5_z*six_r_m1_w_4 - six_r_d_Gamma_1_in_axes5_z*six_r_m1_w_1_t_2
+        - six_r_d_Gamma_5_in_axes5_z*six_r_m1_w_5_t + six_r_d_Gamma_2_in_axes5_z*six_r_m1_w_2;
     const real six_r_d_G_m1_x = axis_x_six_r_axes5_x*six_r_d_G_m1_in_axes5_x +
         axis_y_six_r_axes5_x*six_r_d_G_m1_in_axes5_y +
         axis_z_six_r_axes5_x*six_r_d_G_m1_in_axes5_z;
@@ -4942,9 +4939,9 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     const real six_r_G_m1_o_t_4 = inv_six_r_w_1_t_67*(six_r_G_m1_o_t*six_r_w_1_t_22 +
         six_r_G_m1_o_t_2*six_r_w_1_t_39 - six_r_N_2_o_in_axes2_z -
         six_r_G_m1_o_t_3*six_r_w_1_t_55);
-    const real six_r_G_m1_o_t_5 = inv_six_r_w_1_t_79*(six_r_N_3_o_in_axes3_z +
-        six_r_G_m1_o_t*six_r_w_1_t_25 + six_r_G_m1_o_t_3*six_r_w_1_t_61 +
-        six_r_G_m1_o_t_4*six_r_w_1_t_73 - six_r_G_m1_o_t_2*six_r_w_1_t_44);
+    const real six_r_G_m1_o_t_5 = inv_six_r_w_1_t_79*(six_r_G_m1_o_t*six_r_w_1_t_25 +
+        six_r_N_3_o_in_axes3_z - six_r_G_m1_o_t_2*six_r_w_1_t_44 +
+        six_r_G_m1_o_t_3*six_r_w_1_t_61 + six_r_G_m1_o_t_4*six_r_w_1_t_73);
     const real six_r_G_m1_o_t_6 = m->six_r_size[i]*(six_r_G_m1_o_t_2*six_r_w_1_t_31 +
         six_r_G_m1_o_t_3*six_r_w_1_t_53 + six_r_G_m1_o_t_4*six_r_w_1_t_71 -
         six_r_G_m1_o_t_5*six_r_m1_w_1_t);
@@ -4973,18 +4970,15 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
         axis_z_six_r_axes5_z*six_r_dalpha_G_m2_in_axes5_z;
     /* (six_r-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
        balances the leg's inertia and weight along all degrees of freedom */
-    const real six_r_d_G_m2_in_axes5_x = six_r_d_Gamma_2_in_axes5_x*six_r_m2_w_2 +
-        six_r_d_Gamma_3_in_axes5_x*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_x*six_r_m2_w_4 -
-        six_r_d_Gamma_1_in_axes5_x*six_r_m2_w_1_t_2 -
-        six_r_d_Gamma_5_in_axes5_x*six_r_m2_w_5_t;
-    const real six_r_d_G_m2_in_axes5_y = six_r_d_Gamma_2_in_axes5_y*six_r_m2_w_2 +
-        six_r_d_Gamma_3_in_axes5_y*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_y*six_r_m2_w_4 -
-        six_r_d_Gamma_1_in_axes5_y*six_r_m2_w_1_t_2 -
-        six_r_d_Gamma_5_in_axes5_y*six_r_m2_w_5_t;
-    const real six_r_d_G_m2_in_axes5_z = six_r_d_Gamma_2_in_axes5_z*six_r_m2_w_2 +
-        six_r_d_Gamma_3_in_axes5_z*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_z*six_r_m2_w_4 -
-        six_r_d_Gamma_1_in_axes5_z*six_r_m2_w_1_t_2 -
-        six_r_d_Gamma_5_in_axes5_z*six_r_m2_w_5_t;
+    const real six_r_d_G_m2_in_axes5_x = six_r_d_Gamma_3_in_axes5_x*six_r_m2_w_3 +
+        six_r_d_Gamma_4_in_axes5_x*six_r_m2_w_4 - six_r_d_Gamma_1_in_axes5_x*six_r_m2_w_1_t_2
+        - six_r_d_Gamma_5_in_axes5_x*six_r_m2_w_5_t + six_r_d_Gamma_2_in_axes5_x*six_r_m2_w_2;
+    const real six_r_d_G_m2_in_axes5_y = six_r_d_Gamma_3_in_axes5_y*six_r_m2_w_3 +
+        six_r_d_Gamma_4_in_axes5_y*six_r_m2_w_4 - six_r_d_Gamma_1_in_axes5_y*six_r_m2_w_1_t_2
+        - six_r_d_Gamma_5_in_axes5_y*six_r_m2_w_5_t + six_r_d_Gamma_2_in_axes5_y*six_r_m2_w_2;
+    const real six_r_d_G_m2_in_axes5_z = six_r_d_Gamma_3_in_axes5_z*six_r_m2_w_3 +
+        six_r_d_Gamma_4_in_axes5_z*six_r_m2_w_4 - six_r_d_Gamma_1_in_axes5_z*six_r_m2_w_1_t_2
+        - six_r_d_Gamma_5_in_axes5_z*six_r_m2_w_5_t + six_r_d_Gamma_2_in_axes5_z*six_r_m2_w_2;
     const real six_r_d_G_m2_x = axis_x_six_r_axes5_x*six_r_d_G_m2_in_axes5_x +
         axis_y_six_r_axes5_x*six_r_d_G_m2_in_axes5_y +
         axis_z_six_r_axes5_x*six_r_d_G_m2_in_axes5_z;
@@ -4996,9 +4990,9 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
         axis_z_six_r_axes5_z*six_r_d_G_m2_in_axes5_z;
     /* (six_r-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia
        and weight along all degrees of freedom */
-    const real six_r_G_m2_o_t = m->six_r_size[i]*(six_r_G_m1_o_t_2*six_r_w_1_t_32 +
-        six_r_G_m1_o_t_3*six_r_w_1_t_54 + six_r_G_m1_o_t_4*six_r_w_1_t_72 -
-        six_r_G_m1_o_t*six_r_w_1_t_14 - six_r_G_m1_o_t_5*six_r_m2_w_1_t);
+    const real six_r_G_m2_o_t = m->six_r_size[i]*(six_r_G_m1_o_t_2*six_r_w_1_t_32 -
+        six_r_G_m1_o_t*six_r_w_1_t_14 + six_r_G_m1_o_t_3*six_r_w_1_t_54 +
+        six_r_G_m1_o_t_4*six_r_w_1_t_72 - six_r_G_m1_o_t_5*six_r_m2_w_1_t);
     /* (six_r-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
        the leg's inertia and weight along all degrees of freedom */
     const real six_r_d_G_m_xx = six_r_d_G_m1_x*six_r_n_m1_x + six_r_d_G_m2_x*six_r_n_m2_x;
@@ -5012,139 +5006,143 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
         six_r_G_m1_o_t_6*six_r_n_m1_in_axes5_y;
     /* (six_r-dalpha_c) coefficient of the acceleration in: leg force on the platform without
        actuation and without the mass at the connection point */
-    const real six_r_dalpha_c_in_axes5_xx = six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_t_5 +
+    const real six_r_dalpha_c_in_axes5_xx =
         six_r_dalpha_alpha_5_in_axes5_zx*m->six_r_h_5_in_spec5_y[i] -
+        six_r_dalpha_alpha_5_in_axes5_yx*m->six_r_h_5_in_spec5_z[i] +
+        six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_t_5 -
         six_r_dalpha_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_x -
         six_r_dalpha_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_x -
         six_r_dalpha_Gamma_3_in_axes5_x*six_r_w_3_in_axes5_x -
-        six_r_dalpha_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_x -
-        six_r_dalpha_alpha_5_in_axes5_yx*m->six_r_h_5_in_spec5_z[i];
-    const real six_r_dalpha_c_in_axes5_xy = six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_t_5 +
+        six_r_dalpha_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_x;
+    const real six_r_dalpha_c_in_axes5_xy =
         six_r_dalpha_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] -
+        six_r_dalpha_alpha_5_in_axes5_yy*m->six_r_h_5_in_spec5_z[i] +
+        six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_t_5 -
         six_r_dalpha_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_x -
         six_r_dalpha_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_x -
         six_r_dalpha_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_x -
-        six_r_dalpha_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_x -
-        six_r_dalpha_alpha_5_in_axes5_yy*m->six_r_h_5_in_spec5_z[i];
-    const real six_r_dalpha_c_in_axes5_xz = six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_t_5 +
+        six_r_dalpha_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_x;
+    const real six_r_dalpha_c_in_axes5_xz =
         six_r_dalpha_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_y[i] -
+        six_r_dalpha_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_z[i] +
+        six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_t_5 -
         six_r_dalpha_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_x -
         six_r_dalpha_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_x -
         six_r_dalpha_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_x -
-        six_r_dalpha_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_x -
-        six_r_dalpha_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_z[i];
-    const real six_r_dalpha_c_in_axes5_yx = six_r_dalpha_Gamma_3_in_axes5_x*six_r_w_3_t +
+        six_r_dalpha_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_x;
+    const real six_r_dalpha_c_in_axes5_yx =
         six_r_dalpha_alpha_5_in_axes5_xx*m->six_r_h_5_in_spec5_z[i] -
+        six_r_dalpha_alpha_5_in_axes5_zx*m->six_r_h_5_in_spec5_x[i] +
+        six_r_dalpha_Gamma_3_in_axes5_x*six_r_w_3_t -
         six_r_dalpha_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_y -
         six_r_dalpha_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_y -
         six_r_dalpha_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_y -
-        six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_in_axes5_y -
-        six_r_dalpha_alpha_5_in_axes5_zx*m->six_r_h_5_in_spec5_x[i];
-    const real six_r_dalpha_c_in_axes5_yy = six_r_dalpha_Gamma_3_in_axes5_y*six_r_w_3_t +
+        six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_in_axes5_y;
+    const real six_r_dalpha_c_in_axes5_yy =
         six_r_dalpha_alpha_5_in_axes5_xy*m->six_r_h_5_in_spec5_z[i] -
+        six_r_dalpha_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_x[i] +
+        six_r_dalpha_Gamma_3_in_axes5_y*six_r_w_3_t -
         six_r_dalpha_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_y -
         six_r_dalpha_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_y -
         six_r_dalpha_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_y -
-        six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_y -
-        six_r_dalpha_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_x[i];
-    const real six_r_dalpha_c_in_axes5_yz = six_r_dalpha_Gamma_3_in_axes5_z*six_r_w_3_t +
+        six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_y;
+    const real six_r_dalpha_c_in_axes5_yz =
         six_r_dalpha_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] -
+        six_r_dalpha_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_x[i] +
+        six_r_dalpha_Gamma_3_in_axes5_z*six_r_w_3_t -
         six_r_dalpha_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_y -
         six_r_dalpha_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_y -
         six_r_dalpha_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_y -
-        six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_y -
-        six_r_dalpha_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_x[i];
+        six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_y;
     const real six_r_dalpha_c_in_axes5_zx =
         six_r_dalpha_alpha_5_in_axes5_yx*m->six_r_h_5_in_spec5_x[i] -
+        six_r_dalpha_alpha_5_in_axes5_xx*m->six_r_h_5_in_spec5_y[i] -
         six_r_dalpha_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_z -
         six_r_dalpha_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_z -
         six_r_dalpha_Gamma_3_in_axes5_x*six_r_w_3_in_axes5_z -
         six_r_dalpha_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_z -
-        six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_in_axes5_z -
-        six_r_dalpha_alpha_5_in_axes5_xx*m->six_r_h_5_in_spec5_y[i];
+        six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_in_axes5_z;
     const real six_r_dalpha_c_in_axes5_zy =
         six_r_dalpha_alpha_5_in_axes5_yy*m->six_r_h_5_in_spec5_x[i] -
+        six_r_dalpha_alpha_5_in_axes5_xy*m->six_r_h_5_in_spec5_y[i] -
         six_r_dalpha_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_z -
         six_r_dalpha_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_z -
         six_r_dalpha_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_z -
         six_r_dalpha_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_z -
-        six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_z -
-        six_r_dalpha_alpha_5_in_axes5_xy*m->six_r_h_5_in_spec5_y[i];
+        six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_z;
     const real six_r_dalpha_c_in_axes5_zz =
         six_r_dalpha_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_x[i] -
+        six_r_dalpha_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_y[i] -
         six_r_dalpha_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_z -
         six_r_dalpha_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_z -
         six_r_dalpha_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_z -
         six_r_dalpha_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_z -
-        six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_z -
-        six_r_dalpha_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_y[i];
+        six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_z;
     /* (six_r-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
        without the mass at the connection point */
     const real six_r_d_c_in_axes5_xx = six_r_d_Gamma_5_in_axes5_x*six_r_w_5_t_5 -
-        six_r_d_phi_5_in_axes5_xx - six_r_d_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_x -
-        six_r_d_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_x -
+        six_r_d_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_x -
         six_r_d_Gamma_3_in_axes5_x*six_r_w_3_in_axes5_x -
-        six_r_d_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_x;
-    const real six_r_d_c_in_axes5_xy = six_r_d_Gamma_5_in_axes5_y*six_r_w_5_t_5 +
-        six_r_d_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] -
+        six_r_d_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_x -
+        six_r_d_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_x - six_r_d_phi_5_in_axes5_xx;
+    const real six_r_d_c_in_axes5_xy = six_r_d_Gamma_5_in_axes5_y*six_r_w_5_t_5 -
         six_r_d_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_x -
-        six_r_d_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_x -
         six_r_d_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_x -
         six_r_d_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_x -
-        m->six_r_h_5_in_spec5_z[i]*(v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_y +
-        v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_y - v.six_r_J_5_t*six_r_w_4_in_axes5_y -
-        v.six_r_e_2_in_axes5_y*six_r_w_3_t);
-    const real six_r_d_c_in_axes5_xz = six_r_d_Gamma_5_in_axes5_z*six_r_w_5_t_5 +
-        six_r_d_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_y[i] -
+        six_r_d_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_x +
+        six_r_d_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] -
+        m->six_r_h_5_in_spec5_z[i]*(v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_y -
+        v.six_r_J_5_t*six_r_w_4_in_axes5_y - v.six_r_e_2_in_axes5_y*six_r_w_3_t +
+        v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_y);
+    const real six_r_d_c_in_axes5_xz = six_r_d_Gamma_5_in_axes5_z*six_r_w_5_t_5 -
         six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_x -
-        six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_x -
         six_r_d_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_x -
         six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_x -
+        six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_x +
+        six_r_d_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_y[i] -
         six_r_d_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_z[i];
-    const real six_r_d_c_in_axes5_yy = six_r_d_Gamma_3_in_axes5_y*six_r_w_3_t +
-        m->six_r_h_5_in_spec5_z[i]*(v.six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_y +
-        v.six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_y +
-        v.six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_y - v.six_r_e_2_in_axes5_x*six_r_w_3_t) -
+    const real six_r_d_c_in_axes5_yy = six_r_d_Gamma_3_in_axes5_y*six_r_w_3_t -
         six_r_d_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_y -
-        six_r_d_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_y -
         six_r_d_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_y -
         six_r_d_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_y -
+        six_r_d_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_y +
+        m->six_r_h_5_in_spec5_z[i]*(v.six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_y +
+        v.six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_y - v.six_r_e_2_in_axes5_x*six_r_w_3_t +
+        v.six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_y) -
         six_r_d_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_x[i];
-    const real six_r_d_c_in_axes5_yz = six_r_d_Gamma_3_in_axes5_z*six_r_w_3_t +
-        six_r_d_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] -
+    const real six_r_d_c_in_axes5_yz = six_r_d_Gamma_3_in_axes5_z*six_r_w_3_t -
         six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_y -
-        six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_y -
         six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_y -
         six_r_d_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_y -
+        six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_y +
+        six_r_d_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] -
         six_r_d_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_x[i];
     /* (six_r-c_o) remainder of: leg force on the platform without actuation and without the mass at
        the connection point */
-    const real six_r_c_o_in_axes5_x = six_r_G_m1_o_t_3*six_r_w_1_t_50 +
-        six_r_G_m1_o_t_4*six_r_w_1_t_68 + six_r_W_5_t_3*m->six_r_h_5_in_spec5_x[i] -
+    const real six_r_c_o_in_axes5_x = six_r_W_5_t_3*m->six_r_h_5_in_spec5_x[i] -
         six_r_B_5_o_in_axes5_xy*m->six_r_h_5_in_spec5_y[i] -
-        six_r_B_5_o_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] - six_r_G_m1_o_t_5*six_r_w_1_t_80;
-    const real six_r_c_o_in_axes5_y = six_r_G_m1_o_t_5*six_r_w_1_t_81 +
-        m->six_r_h_5_in_spec5_y[i]*(six_r_W_5_t_2 + six_r_bias_t_2) -
-        six_r_B_5_o_in_axes5_yx*m->six_r_h_5_in_spec5_x[i] -
+        six_r_B_5_o_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] + six_r_G_m1_o_t_3*six_r_w_1_t_50 +
+        six_r_G_m1_o_t_4*six_r_w_1_t_68 - six_r_G_m1_o_t_5*six_r_w_1_t_80;
+    const real six_r_c_o_in_axes5_y = m->six_r_h_5_in_spec5_y[i]*(six_r_W_5_t_2 +
+        six_r_bias_t_2) - six_r_B_5_o_in_axes5_yx*m->six_r_h_5_in_spec5_x[i] -
         six_r_B_5_o_in_axes5_yz*m->six_r_h_5_in_spec5_z[i] - six_r_G_m1_o_t*six_r_w_1_t_13 -
         six_r_G_m1_o_t_2*six_r_w_1_t_29 - six_r_G_m1_o_t_3*six_r_w_1_t_51 -
-        six_r_G_m1_o_t_4*six_r_w_1_t_69;
-    const real six_r_c_o_in_axes5_z = six_r_G_m1_o_t_2*six_r_w_1_t_30 +
-        six_r_G_m1_o_t_3*six_r_w_1_t_52 + six_r_G_m1_o_t_4*six_r_w_1_t_70 +
-        m->six_r_h_5_in_spec5_z[i]*(six_r_W_5_t + six_r_bias_t_2) -
-        six_r_B_5_o_in_axes5_zx*m->six_r_h_5_in_spec5_x[i] -
-        six_r_B_5_o_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] - six_r_G_m1_o_t_5*six_r_w_1_t_82;
+        six_r_G_m1_o_t_4*six_r_w_1_t_69 + six_r_G_m1_o_t_5*six_r_w_1_t_81;
+    const real six_r_c_o_in_axes5_z = m->six_r_h_5_in_spec5_z[i]*(six_r_W_5_t +
+        six_r_bias_t_2) - six_r_B_5_o_in_axes5_zx*m->six_r_h_5_in_spec5_x[i] -
+        six_r_B_5_o_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] + six_r_G_m1_o_t_2*six_r_w_1_t_30 +
+        six_r_G_m1_o_t_3*six_r_w_1_t_52 + six_r_G_m1_o_t_4*six_r_w_1_t_70 -
+        six_r_G_m1_o_t_5*six_r_w_1_t_82;
     /* (six_r-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real six_r_Q_t = six_r_d_c_in_axes5_xx - six_r_d_c_in_axes5_yy;
     const real six_r_Q_t_2 = R(0.5)*six_r_Q_t;
-    const real six_r_Q_t_3 = six_r_d_c_in_axes5_xx +
-        six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_z +
-        six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_z +
+    const real six_r_Q_t_3 = six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_z +
         six_r_d_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_z +
         six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_z +
         six_r_d_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_z +
+        six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_z +
         six_r_d_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_y[i] -
-        six_r_d_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_x[i];
+        six_r_d_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_x[i] + six_r_d_c_in_axes5_xx;
     const real six_r_Q_t_4 = R(0.5)*six_r_Q_t_3;
     const real six_r_Q_t_5 = axis_x_six_r_axes5_x*six_r_d_c_in_axes5_xy +
         axis_z_six_r_axes5_x*six_r_d_c_in_axes5_yz - axis_y_six_r_axes5_x*six_r_Q_t_2;
@@ -5160,7 +5158,7 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
         axis_x_six_r_axes5_z*six_r_d_c_in_axes5_xz;
     const real six_r_Q_t_11 = axis_y_six_r_axes5_x*six_r_Q_t_5 -
         axis_z_six_r_axes5_x*six_r_Q_t_8;
-    const real six_r_Q_xx = -2*six_r_Q_t_11 - six_r_d_c_in_axes5_xx;
+    const real six_r_Q_xx = -six_r_d_c_in_axes5_xx - 2*six_r_Q_t_11;
     const real six_r_Q_xy = axis_z_six_r_axes5_x*six_r_Q_t_9 +
         axis_z_six_r_axes5_y*six_r_Q_t_8 - axis_y_six_r_axes5_x*six_r_Q_t_6 -
         axis_y_six_r_axes5_y*six_r_Q_t_5;
@@ -5169,13 +5167,13 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
         axis_y_six_r_axes5_z*six_r_Q_t_5;
     const real six_r_Q_t_12 = axis_y_six_r_axes5_y*six_r_Q_t_6 -
         axis_z_six_r_axes5_y*six_r_Q_t_9;
-    const real six_r_Q_yy = -2*six_r_Q_t_12 - six_r_d_c_in_axes5_xx;
+    const real six_r_Q_yy = -six_r_d_c_in_axes5_xx - 2*six_r_Q_t_12;
     const real six_r_Q_yz = axis_z_six_r_axes5_y*six_r_Q_t_10 +
         axis_z_six_r_axes5_z*six_r_Q_t_9 - axis_y_six_r_axes5_y*six_r_Q_t_7 -
         axis_y_six_r_axes5_z*six_r_Q_t_6;
     const real six_r_Q_t_13 = axis_y_six_r_axes5_z*six_r_Q_t_7 -
         axis_z_six_r_axes5_z*six_r_Q_t_10;
-    const real six_r_Q_zz = -2*six_r_Q_t_13 - six_r_d_c_in_axes5_xx;
+    const real six_r_Q_zz = -six_r_d_c_in_axes5_xx - 2*six_r_Q_t_13;
     /* (six_r-c_m_o) remainder of: moment of the leg on the platform without actuation */
     const real six_r_c_m_o_in_axes5_z = six_r_G_m2_o_t*six_r_end_p1_in_axes5_y;
     /* (six_r-U) velocity and gravity terms of the leg force */
@@ -5219,57 +5217,58 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     const real six_r_M_ta_t_13 = six_r_M_ta_t_10 + six_r_M_ta_t_11 -
         axis_x_six_r_axes5_x*six_r_M_ta_t - axis_y_six_r_axes5_x*six_r_M_ta_t_4 -
         axis_z_six_r_axes5_x*six_r_M_ta_t_7;
-    const real six_r_M_ta_t_14 = six_r_Q_xx*v.six_r_q_z - axis_x_six_r_axes5_y*six_r_M_ta_t -
-        axis_y_six_r_axes5_y*six_r_M_ta_t_4 - axis_z_six_r_axes5_y*six_r_M_ta_t_7 -
-        six_r_Q_xz*v.six_r_q_x;
-    const real six_r_M_ta_t_15 = six_r_Q_xy*v.six_r_q_x - axis_x_six_r_axes5_z*six_r_M_ta_t -
-        axis_y_six_r_axes5_z*six_r_M_ta_t_4 - axis_z_six_r_axes5_z*six_r_M_ta_t_7 -
-        six_r_Q_xx*v.six_r_q_y;
-    const real six_r_M_ta_t_16 = six_r_Q_yz*v.six_r_q_y - axis_x_six_r_axes5_x*six_r_M_ta_t_2
-        - axis_y_six_r_axes5_x*six_r_M_ta_t_5 - axis_z_six_r_axes5_x*six_r_M_ta_t_8 -
-        six_r_Q_yy*v.six_r_q_z;
+    const real six_r_M_ta_t_14 = six_r_Q_xx*v.six_r_q_z - six_r_Q_xz*v.six_r_q_x -
+        axis_x_six_r_axes5_y*six_r_M_ta_t - axis_y_six_r_axes5_y*six_r_M_ta_t_4 -
+        axis_z_six_r_axes5_y*six_r_M_ta_t_7;
+    const real six_r_M_ta_t_15 = six_r_Q_xy*v.six_r_q_x - six_r_Q_xx*v.six_r_q_y -
+        axis_x_six_r_axes5_z*six_r_M_ta_t - axis_y_six_r_axes5_z*six_r_M_ta_t_4 -
+        axis_z_six_r_axes5_z*six_r_M_ta_t_7;
+    const real six_r_M_ta_t_16 = six_r_Q_yz*v.six_r_q_y - six_r_Q_yy*v.six_r_q_z -
+        axis_x_six_r_axes5_x*six_r_M_ta_t_2 - axis_y_six_r_axes5_x*six_r_M_ta_t_5 -
+        axis_z_six_r_axes5_x*six_r_M_ta_t_8;
     const real six_r_M_ta_t_17 = six_r_M_ta_t_10 + six_r_M_ta_t_12 +
         axis_x_six_r_axes5_y*six_r_M_ta_t_2 + axis_y_six_r_axes5_y*six_r_M_ta_t_5 +
         axis_z_six_r_axes5_y*six_r_M_ta_t_8;
-    const real six_r_M_ta_t_18 = six_r_Q_yy*v.six_r_q_x - axis_x_six_r_axes5_z*six_r_M_ta_t_2
-        - axis_y_six_r_axes5_z*six_r_M_ta_t_5 - axis_z_six_r_axes5_z*six_r_M_ta_t_8 -
-        six_r_Q_xy*v.six_r_q_y;
-    const real six_r_M_ta_t_19 = six_r_Q_zz*v.six_r_q_y - axis_x_six_r_axes5_x*six_r_M_ta_t_3
-        - axis_y_six_r_axes5_x*six_r_M_ta_t_6 - axis_z_six_r_axes5_x*six_r_M_ta_t_9 -
-        six_r_Q_yz*v.six_r_q_z;
-    const real six_r_M_ta_t_20 = six_r_Q_xz*v.six_r_q_z - axis_x_six_r_axes5_y*six_r_M_ta_t_3
-        - axis_y_six_r_axes5_y*six_r_M_ta_t_6 - axis_z_six_r_axes5_y*six_r_M_ta_t_9 -
-        six_r_Q_zz*v.six_r_q_x;
+    const real six_r_M_ta_t_18 = six_r_Q_yy*v.six_r_q_x - six_r_Q_xy*v.six_r_q_y -
+        axis_x_six_r_axes5_z*six_r_M_ta_t_2 - axis_y_six_r_axes5_z*six_r_M_ta_t_5 -
+        axis_z_six_r_axes5_z*six_r_M_ta_t_8;
+    const real six_r_M_ta_t_19 = six_r_Q_zz*v.six_r_q_y - six_r_Q_yz*v.six_r_q_z -
+        axis_x_six_r_axes5_x*six_r_M_ta_t_3 - axis_y_six_r_axes5_x*six_r_M_ta_t_6 -
+        axis_z_six_r_axes5_x*six_r_M_ta_t_9;
+    const real six_r_M_ta_t_20 = six_r_Q_xz*v.six_r_q_z - six_r_Q_zz*v.six_r_q_x -
+        axis_x_six_r_axes5_y*six_r_M_ta_t_3 - axis_y_six_r_axes5_y*six_r_M_ta_t_6 -
+        axis_z_six_r_axes5_y*six_r_M_ta_t_9;
     const real six_r_M_ta_t_21 = six_r_M_ta_t_12 - six_r_M_ta_t_11 -
         axis_x_six_r_axes5_z*six_r_M_ta_t_3 - axis_y_six_r_axes5_z*six_r_M_ta_t_6 -
         axis_z_six_r_axes5_z*six_r_M_ta_t_9;
     /* (M_aa) rotational block of M */
-    const real six_r_M_aa_t = six_r_M_ta_t_19*v.six_r_q_y + six_r_d_G_m_xz*v.six_r_q_y +
+    const real six_r_M_aa_t = six_r_d_G_m_xz*v.six_r_q_y - six_r_d_G_m_xy*v.six_r_q_z +
         six_r_n_m1_x*(axis_x_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_x +
         axis_y_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_y +
         axis_z_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_z) +
         six_r_n_m2_x*(axis_x_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_x +
         axis_y_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_y +
-        axis_z_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_z) - six_r_M_ta_t_16*v.six_r_q_z -
-        six_r_d_G_m_xy*v.six_r_q_z;
-    const real six_r_M_aa_t_2 = six_r_M_ta_t_17*v.six_r_q_z + six_r_M_ta_t_20*v.six_r_q_y +
-        six_r_d_G_m_xx*v.six_r_q_z + six_r_dalpha_G_m1_y*six_r_n_m1_x +
-        six_r_dalpha_G_m2_y*six_r_n_m2_x - six_r_d_G_m_xz*v.six_r_q_x;
-    const real six_r_M_aa_t_3 = six_r_M_ta_t_21*v.six_r_q_y + six_r_d_G_m_xy*v.six_r_q_x +
-        six_r_dalpha_G_m1_z*six_r_n_m1_x + six_r_dalpha_G_m2_z*six_r_n_m2_x -
-        six_r_M_ta_t_18*v.six_r_q_z - six_r_d_G_m_xx*v.six_r_q_y;
-    const real six_r_M_aa_t_4 = six_r_M_ta_t_14*v.six_r_q_z + six_r_d_G_m_yx*v.six_r_q_z +
-        six_r_dalpha_G_m1_y*six_r_n_m1_y + six_r_dalpha_G_m2_y*six_r_n_m2_y -
-        six_r_M_ta_t_20*v.six_r_q_x - v.six_r_q_x*(six_r_d_G_m1_z*six_r_n_m1_y +
-        six_r_d_G_m2_z*six_r_n_m2_y);
-    const real six_r_M_aa_t_5 = six_r_M_ta_t_15*v.six_r_q_z + six_r_dalpha_G_m1_z*six_r_n_m1_y
-        + six_r_dalpha_G_m2_z*six_r_n_m2_y + v.six_r_q_x*(six_r_d_G_m1_y*six_r_n_m1_y +
-        six_r_d_G_m2_y*six_r_n_m2_y) - six_r_M_ta_t_21*v.six_r_q_x -
-        six_r_d_G_m_yx*v.six_r_q_y;
-    const real six_r_M_aa_t_6 = six_r_M_ta_t_18*v.six_r_q_x + six_r_dalpha_G_m1_z*six_r_n_m1_z
-        + six_r_dalpha_G_m2_z*six_r_n_m2_z + v.six_r_q_x*(six_r_d_G_m1_y*six_r_n_m1_z +
-        six_r_d_G_m2_y*six_r_n_m2_z) - six_r_M_ta_t_15*v.six_r_q_y -
-        v.six_r_q_y*(six_r_d_G_m1_x*six_r_n_m1_z + six_r_d_G_m2_x*six_r_n_m2_z);
+        axis_z_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_z) + six_r_M_ta_t_19*v.six_r_q_y -
+        six_r_M_ta_t_16*v.six_r_q_z;
+    const real six_r_M_aa_t_2 = six_r_d_G_m_xx*v.six_r_q_z - six_r_d_G_m_xz*v.six_r_q_x +
+        six_r_dalpha_G_m1_y*six_r_n_m1_x + six_r_dalpha_G_m2_y*six_r_n_m2_x +
+        six_r_M_ta_t_17*v.six_r_q_z + six_r_M_ta_t_20*v.six_r_q_y;
+    const real six_r_M_aa_t_3 = six_r_d_G_m_xy*v.six_r_q_x - six_r_d_G_m_xx*v.six_r_q_y +
+        six_r_dalpha_G_m1_z*six_r_n_m1_x + six_r_dalpha_G_m2_z*six_r_n_m2_x +
+        six_r_M_ta_t_21*v.six_r_q_y - six_r_M_ta_t_18*v.six_r_q_z;
+    const real six_r_M_aa_t_4 = six_r_d_G_m_yx*v.six_r_q_z -
+        v.six_r_q_x*(six_r_d_G_m1_z*six_r_n_m1_y + six_r_d_G_m2_z*six_r_n_m2_y) +
+        six_r_dalpha_G_m1_y*six_r_n_m1_y + six_r_dalpha_G_m2_y*six_r_n_m2_y +
+        six_r_M_ta_t_14*v.six_r_q_z - six_r_M_ta_t_20*v.six_r_q_x;
+    const real six_r_M_aa_t_5 = v.six_r_q_x*(six_r_d_G_m1_y*six_r_n_m1_y +
+        six_r_d_G_m2_y*six_r_n_m2_y) - six_r_d_G_m_yx*v.six_r_q_y +
+        six_r_dalpha_G_m1_z*six_r_n_m1_y + six_r_dalpha_G_m2_z*six_r_n_m2_y +
+        six_r_M_ta_t_15*v.six_r_q_z - six_r_M_ta_t_21*v.six_r_q_x;
+    const real six_r_M_aa_t_6 = v.six_r_q_x*(six_r_d_G_m1_y*six_r_n_m1_z +
+        six_r_d_G_m2_y*six_r_n_m2_z) - v.six_r_q_y*(six_r_d_G_m1_x*six_r_n_m1_z +
+        six_r_d_G_m2_x*six_r_n_m2_z) + six_r_dalpha_G_m1_z*six_r_n_m1_z +
+        six_r_dalpha_G_m2_z*six_r_n_m2_z + six_r_M_ta_t_18*v.six_r_q_x -
+        six_r_M_ta_t_15*v.six_r_q_y;
     /* (Z_a) rotational part of Z */
     const real six_r_Z_a_t = axis_x_six_r_axes5_x*six_r_G_m_o_in_axes5_x +
         axis_y_six_r_axes5_x*six_r_G_m_o_in_axes5_y + six_r_U_z*v.six_r_q_y -
@@ -5354,15 +5353,15 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[11*w + k];
-    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
     const real h_star_y = s[10*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -5370,9 +5369,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[9*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
@@ -5407,13 +5406,13 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[24*w + k];
     const real Z_q_x = s[21*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[25*w + k];
     const real Z_q_y = s[22*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[26*w + k];
     const real Z_q_z = s[23*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
     const real M_tt_xy = sums[1*w + k];
@@ -5478,7 +5477,8 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, const r
 {
     real s[24] = {0}, sums[27] = {0};
     real terms_six_r[27*LEGS(LEGS_OF_six_r)] = {0}, o_six_r[8*LEGS(LEGS_OF_six_r)] = {0};
-    dynamics_before(m, 1, 0, X, V, s, t);
+    values v;
+    dynamics_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
         dynamics_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), 0, s, V, joints, terms_six_r, o_six_r);
     }
@@ -5488,6 +5488,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, const r
     for (size_t n = 0; n < 27; ++n) {
         sums[n] = total(terms_six_r + n*LEGS(LEGS_OF_six_r), LEGS_OF_six_r);
     }
+    dynamics_between(m, 1, 0, V, &v, s);
     dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
@@ -5497,7 +5498,9 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, c
     real s[24*LANES], sums[27*LANES];
     real o_six_r[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        dynamics_before(m, LANES, k, X, V, s, t);
+        values v;
+        dynamics_before(m, LANES, k, X, &v, s, t);
+        dynamics_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 27*LANES);
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
@@ -5514,30 +5517,34 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, c
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_M_dynamics(m, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.h_star_x;
-    s[10*w + k] = v.h_star_y;
-    s[11*w + k] = v.h_star_z;
-    s[12*w + k] = v.J_star_xx;
-    s[13*w + k] = v.J_star_xy;
-    s[14*w + k] = v.J_star_xz;
-    s[15*w + k] = v.J_star_yy;
-    s[16*w + k] = v.J_star_yz;
-    s[17*w + k] = v.J_star_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->h_star_x;
+    s[10*w + k] = v->h_star_y;
+    s[11*w + k] = v->h_star_z;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void M_between(const prepared *m, size_t w, size_t k, values *v, real *s)
+{
+    stage_M_dynamics(m, v);
+    s[12*w + k] = v->J_star_xx;
+    s[13*w + k] = v->J_star_xy;
+    s[14*w + k] = v->J_star_xz;
+    s[15*w + k] = v->J_star_yy;
+    s[16*w + k] = v->J_star_yz;
+    s[17*w + k] = v->J_star_zz;
 }
 
 INLINE void M_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -5593,24 +5600,24 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real six_r_n_m1_t_14 =
-        m->six_r_platform_joint_axis_platform_x[i]*(R_xx*m->six_r_base_frame_xy[i] +
-        R_yx*m->six_r_base_frame_yy[i] + R_zx*m->six_r_base_frame_zy[i]) +
+        m->six_r_platform_joint_axis_platform_x[i]*(R_yx*m->six_r_base_frame_yy[i] +
+        R_zx*m->six_r_base_frame_zy[i] + R_xx*m->six_r_base_frame_xy[i]) +
         m->six_r_platform_joint_axis_platform_y[i]*(R_xy*m->six_r_base_frame_xy[i] +
-        R_yy*m->six_r_base_frame_yy[i] + R_zy*m->six_r_base_frame_zy[i]) +
+        R_zy*m->six_r_base_frame_zy[i] + R_yy*m->six_r_base_frame_yy[i]) +
         m->six_r_platform_joint_axis_platform_z[i]*(R_xz*m->six_r_base_frame_xy[i] +
         R_yz*m->six_r_base_frame_yy[i] + R_zz*m->six_r_base_frame_zy[i]);
     const real six_r_n_m1_t_15 =
-        m->six_r_platform_joint_axis_platform_x[i]*(R_xx*m->six_r_base_frame_xz[i] +
-        R_yx*m->six_r_base_frame_yz[i] + R_zx*m->six_r_base_frame_zz[i]) +
+        m->six_r_platform_joint_axis_platform_x[i]*(R_yx*m->six_r_base_frame_yz[i] +
+        R_zx*m->six_r_base_frame_zz[i] + R_xx*m->six_r_base_frame_xz[i]) +
         m->six_r_platform_joint_axis_platform_y[i]*(R_xy*m->six_r_base_frame_xz[i] +
-        R_yy*m->six_r_base_frame_yz[i] + R_zy*m->six_r_base_frame_zz[i]) +
+        R_zy*m->six_r_base_frame_zz[i] + R_yy*m->six_r_base_frame_yz[i]) +
         m->six_r_platform_joint_axis_platform_z[i]*(R_xz*m->six_r_base_frame_xz[i] +
         R_yz*m->six_r_base_frame_yz[i] + R_zz*m->six_r_base_frame_zz[i]);
     const real six_r_n_m1_t_16 =
-        m->six_r_platform_joint_axis_platform_x[i]*(R_xx*m->six_r_base_frame_xx[i] +
-        R_yx*m->six_r_base_frame_yx[i] + R_zx*m->six_r_base_frame_zx[i]) +
+        m->six_r_platform_joint_axis_platform_x[i]*(R_yx*m->six_r_base_frame_yx[i] +
+        R_zx*m->six_r_base_frame_zx[i] + R_xx*m->six_r_base_frame_xx[i]) +
         m->six_r_platform_joint_axis_platform_y[i]*(R_xy*m->six_r_base_frame_xx[i] +
-        R_yy*m->six_r_base_frame_yx[i] + R_zy*m->six_r_base_frame_zx[i]) +
+        R_zy*m->six_r_base_frame_zx[i] + R_yy*m->six_r_base_frame_yx[i]) +
         m->six_r_platform_joint_axis_platform_z[i]*(R_xz*m->six_r_base_frame_xx[i] +
         R_yz*m->six_r_base_frame_yx[i] + R_zz*m->six_r_base_frame_zx[i]);
     const real six_r_n_m1_t_17 = v.six_r_c_1*six_r_n_m1_t_14 + six_r_n_m1_t_15*v.six_r_s_1;
@@ -5621,8 +5628,8 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
     const real six_r_n_m1_t_22 = v.six_r_c_3*six_r_n_m1_t_19 + six_r_n_m1_t_20*v.six_r_s_3;
     const real six_r_n_m1_t_23 = v.six_r_h_4_t*six_r_n_m1_t_18 -
         v.six_r_e_2_in_axes5_z*six_r_n_m1_t_21;
-    const real six_r_n_m1_in_axes5_y = v.six_r_J_5_t*six_r_n_m1_t_23 +
-        v.six_r_e_4_in_axes5_x*six_r_n_m1_t_22;
+    const real six_r_n_m1_in_axes5_y = v.six_r_e_4_in_axes5_x*six_r_n_m1_t_22 +
+        v.six_r_J_5_t*six_r_n_m1_t_23;
     const real six_r_end_p1_in_axes5_y = v.six_r_e_4_in_axes5_x*six_r_n_m1_t_23 -
         v.six_r_J_5_t*six_r_n_m1_t_22;
     const real six_r_n_m1_x = axis_y_six_r_axes5_x*six_r_n_m1_in_axes5_y -
@@ -5676,8 +5683,8 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
     const real six_r_w_1_t_26 = v.six_r_v_3_in_axes5_y + six_r_w_1_t_13*six_r_w_1_t_25;
     const real six_r_w_1_t_27 = six_r_w_1_t_8 - six_r_w_1_t_14*six_r_w_1_t_25;
     const real six_r_w_1_t_28 = root(v.six_r_v_4_in_axes5_z*v.six_r_v_4_in_axes5_z +
-        six_r_w_1_t_16*six_r_w_1_t_16 + six_r_w_1_t_17*six_r_w_1_t_17 +
-        six_r_w_1_t_9*six_r_w_1_t_9);
+        six_r_w_1_t_9*six_r_w_1_t_9 + six_r_w_1_t_16*six_r_w_1_t_16 +
+        six_r_w_1_t_17*six_r_w_1_t_17);
     const real inv_six_r_w_1_t_28 = 1/six_r_w_1_t_28;
     const real six_r_w_1_t_29 = inv_six_r_w_1_t_28*six_r_w_1_t_16;
     const real six_r_w_1_t_30 = inv_six_r_w_1_t_28*v.six_r_v_4_in_axes5_z;
@@ -5690,14 +5697,14 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
     const real six_r_w_1_t_36 = six_r_w_1_t_31*six_r_w_1_t_33 - six_r_w_1_t_5;
     const real six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_33 - six_r_w_1_t_20;
     const real six_r_w_1_t_38 = six_r_w_1_t_31*six_r_w_1_t_7;
-    const real six_r_w_1_t_39 = six_r_w_1_t_38 + six_r_w_1_t_23*six_r_w_1_t_29 +
-        six_r_w_1_t_24*six_r_w_1_t_32 - v.six_r_v_2_in_axes5_z*six_r_w_1_t_30;
+    const real six_r_w_1_t_39 = six_r_w_1_t_23*six_r_w_1_t_29 + six_r_w_1_t_24*six_r_w_1_t_32
+        - v.six_r_v_2_in_axes5_z*six_r_w_1_t_30 + six_r_w_1_t_38;
     const real six_r_w_1_t_40 = six_r_w_1_t_29*six_r_w_1_t_39 - six_r_w_1_t_23;
     const real six_r_w_1_t_41 = v.six_r_v_2_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_39;
     const real six_r_w_1_t_42 = six_r_w_1_t_31*six_r_w_1_t_39 - six_r_w_1_t_7;
     const real six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_39 - six_r_w_1_t_24;
-    const real six_r_w_1_t_44 = six_r_w_1_t_38 + six_r_w_1_t_26*six_r_w_1_t_29 +
-        six_r_w_1_t_27*six_r_w_1_t_32 - v.six_r_v_3_in_axes5_z*six_r_w_1_t_30;
+    const real six_r_w_1_t_44 = six_r_w_1_t_26*six_r_w_1_t_29 + six_r_w_1_t_27*six_r_w_1_t_32
+        - v.six_r_v_3_in_axes5_z*six_r_w_1_t_30 + six_r_w_1_t_38;
     const real six_r_w_1_t_45 = six_r_w_1_t_29*six_r_w_1_t_44 - six_r_w_1_t_26;
     const real six_r_w_1_t_46 = v.six_r_v_3_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_44;
     const real six_r_w_1_t_47 = six_r_w_1_t_31*six_r_w_1_t_44 - six_r_w_1_t_7;
@@ -5756,18 +5763,18 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
         six_r_w_1_t_73*six_r_w_1_t_83);
     const real six_r_w_1_in_axes5_x = inv_six_r_w_1_t_49*six_r_w_1_t_50 -
         six_r_w_1_t_68*six_r_w_1_t_83 - six_r_w_1_t_80*six_r_w_1_t_84;
-    const real six_r_w_1_in_axes5_y = six_r_w_1_t_69*six_r_w_1_t_83 +
-        six_r_w_1_t_81*six_r_w_1_t_84 - inv_six_r_w_1_t_49*six_r_w_1_t_51;
+    const real six_r_w_1_in_axes5_y = six_r_w_1_t_69*six_r_w_1_t_83 -
+        inv_six_r_w_1_t_49*six_r_w_1_t_51 + six_r_w_1_t_81*six_r_w_1_t_84;
     const real six_r_w_1_in_axes5_z = inv_six_r_w_1_t_49*six_r_w_1_t_52 -
         six_r_w_1_t_70*six_r_w_1_t_83 - six_r_w_1_t_82*six_r_w_1_t_84;
     /* (six_r-m1_w_1) moment part 1 of reciprocal wrench 1 */
     const real six_r_m1_w_1_t = inv_six_r_w_1_t_79*six_r_w_1_t_77;
-    const real six_r_m1_w_1_t_2 = m->six_r_size[i]*(six_r_m1_w_1_t*six_r_w_1_t_84 +
-        six_r_w_1_t_71*six_r_w_1_t_83 - inv_six_r_w_1_t_49*six_r_w_1_t_53);
+    const real six_r_m1_w_1_t_2 = m->six_r_size[i]*(six_r_w_1_t_71*six_r_w_1_t_83 -
+        inv_six_r_w_1_t_49*six_r_w_1_t_53 + six_r_m1_w_1_t*six_r_w_1_t_84);
     /* (six_r-m2_w_1) moment part 2 of reciprocal wrench 1 */
     const real six_r_m2_w_1_t = inv_six_r_w_1_t_79*six_r_w_1_t_78;
-    const real six_r_m2_w_1_t_2 = m->six_r_size[i]*(six_r_m2_w_1_t*six_r_w_1_t_84 +
-        six_r_w_1_t_72*six_r_w_1_t_83 - inv_six_r_w_1_t_49*six_r_w_1_t_54);
+    const real six_r_m2_w_1_t_2 = m->six_r_size[i]*(six_r_w_1_t_72*six_r_w_1_t_83 -
+        inv_six_r_w_1_t_49*six_r_w_1_t_54 + six_r_m2_w_1_t*six_r_w_1_t_84);
     /* (six_r-w_2) force part of reciprocal wrench 2 */
     const real six_r_w_2_t = inv_six_r_w_1_t_67*inv_six_r_w_1_t_79*six_r_w_1_t_73;
     const real six_r_w_2_in_axes5_x = inv_six_r_w_1_t_67*six_r_w_1_t_68 -
@@ -5794,8 +5801,8 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
     const real six_r_w_4_t = inv_six_r_w_1_t_28*inv_six_r_w_1_t_49*six_r_w_1_t_33;
     const real six_r_w_4_t_2 = inv_six_r_w_1_t_67*(inv_six_r_w_1_t_28*six_r_w_1_t_39 -
         six_r_w_1_t_55*six_r_w_4_t);
-    const real six_r_w_4_t_3 = inv_six_r_w_1_t_79*(six_r_w_1_t_61*six_r_w_4_t +
-        six_r_w_1_t_73*six_r_w_4_t_2 - inv_six_r_w_1_t_28*six_r_w_1_t_44);
+    const real six_r_w_4_t_3 = inv_six_r_w_1_t_79*(six_r_w_1_t_61*six_r_w_4_t -
+        inv_six_r_w_1_t_28*six_r_w_1_t_44 + six_r_w_1_t_73*six_r_w_4_t_2);
     const real six_r_w_4_in_axes5_x = six_r_w_1_t_50*six_r_w_4_t +
         six_r_w_1_t_68*six_r_w_4_t_2 - six_r_w_1_t_80*six_r_w_4_t_3;
     const real six_r_w_4_in_axes5_y = six_r_w_1_t_81*six_r_w_4_t_3 -
@@ -5818,9 +5825,9 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
         six_r_w_1_t_33*six_r_w_5_t);
     const real six_r_w_5_t_3 = inv_six_r_w_1_t_67*(inv_six_r_w_1_t_12*six_r_w_1_t_22 +
         six_r_w_1_t_39*six_r_w_5_t - six_r_w_1_t_55*six_r_w_5_t_2);
-    const real six_r_w_5_t_4 = inv_six_r_w_1_t_79*(inv_six_r_w_1_t_12*six_r_w_1_t_25 +
-        six_r_w_1_t_61*six_r_w_5_t_2 + six_r_w_1_t_73*six_r_w_5_t_3 -
-        six_r_w_1_t_44*six_r_w_5_t);
+    const real six_r_w_5_t_4 = inv_six_r_w_1_t_79*(inv_six_r_w_1_t_12*six_r_w_1_t_25 -
+        six_r_w_1_t_44*six_r_w_5_t + six_r_w_1_t_61*six_r_w_5_t_2 +
+        six_r_w_1_t_73*six_r_w_5_t_3);
     const real six_r_w_5_t_5 = six_r_w_1_t_50*six_r_w_5_t_2 + six_r_w_1_t_68*six_r_w_5_t_3 -
         six_r_w_1_t_80*six_r_w_5_t_4;
     const real six_r_w_5_in_axes5_y = inv_six_r_w_1_t_12*six_r_w_1_t_13 +
@@ -5834,9 +5841,9 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
         six_r_w_1_t_53*six_r_w_5_t_2 + six_r_w_1_t_71*six_r_w_5_t_3 -
         six_r_m1_w_1_t*six_r_w_5_t_4);
     /* (six_r-m2_w_5) moment part 2 of reciprocal wrench 5 */
-    const real six_r_m2_w_5_t = m->six_r_size[i]*(six_r_w_1_t_32*six_r_w_5_t +
-        six_r_w_1_t_54*six_r_w_5_t_2 + six_r_w_1_t_72*six_r_w_5_t_3 -
-        inv_six_r_w_1_t_12*six_r_w_1_t_14 - six_r_m2_w_1_t*six_r_w_5_t_4);
+    const real six_r_m2_w_5_t = m->six_r_size[i]*(six_r_w_1_t_32*six_r_w_5_t -
+        inv_six_r_w_1_t_12*six_r_w_1_t_14 + six_r_w_1_t_54*six_r_w_5_t_2 +
+        six_r_w_1_t_72*six_r_w_5_t_3 - six_r_m2_w_1_t*six_r_w_5_t_4);
     /* (six_r-o_1) moment part of reciprocal wrench 1 */
     const real six_r_o_1_in_axes5_x = six_r_end_p1_in_axes5_y*six_r_m1_w_1_t_2;
     const real six_r_o_1_t = six_r_end_p1_in_axes5_y*six_r_m2_w_1_t_2;
@@ -5864,79 +5871,78 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
         six_r_m1_w_5_t*six_r_n_m1_in_axes5_y;
     /* (six_r-dalpha_alpha_5) coefficient of the acceleration in: angular acceleration of link 5 */
     const real six_r_dalpha_alpha_5_in_axes5_xx = v.six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_x
-        - v.six_r_e_2_in_axes5_x*six_r_o_2_t - v.six_r_e_2_in_axes5_x*six_r_o_3_t -
-        v.six_r_e_4_in_axes5_x*six_r_o_4_t;
+        - v.six_r_e_2_in_axes5_x*six_r_o_3_t - v.six_r_e_4_in_axes5_x*six_r_o_4_t -
+        v.six_r_e_2_in_axes5_x*six_r_o_2_t;
     const real six_r_dalpha_alpha_5_in_axes5_xy = v.six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_y
-        + v.six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_y +
-        v.six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_y +
-        v.six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_y;
-    const real six_r_dalpha_alpha_5_in_axes5_xz = v.six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_z
-        + v.six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_z +
-        v.six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_z - v.six_r_e_1_in_axes5_x*six_r_o_1_t;
+        + v.six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_y +
+        v.six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_y +
+        v.six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_y;
+    const real six_r_dalpha_alpha_5_in_axes5_xz = v.six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_z
+        + v.six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_z - v.six_r_e_1_in_axes5_x*six_r_o_1_t +
+        v.six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_z;
     const real six_r_dalpha_alpha_5_in_axes5_yx = v.six_r_J_5_t*six_r_o_4_t +
-        v.six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_x - v.six_r_e_2_in_axes5_y*six_r_o_2_t -
-        v.six_r_e_2_in_axes5_y*six_r_o_3_t;
+        v.six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_x - v.six_r_e_2_in_axes5_y*six_r_o_3_t -
+        v.six_r_e_2_in_axes5_y*six_r_o_2_t;
     const real six_r_dalpha_alpha_5_in_axes5_yy = v.six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_y
-        + v.six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_y +
-        v.six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_y - v.six_r_J_5_t*six_r_o_4_in_axes5_y;
-    const real six_r_dalpha_alpha_5_in_axes5_yz = v.six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_z
-        + v.six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_z - v.six_r_J_5_t*six_r_o_4_in_axes5_z -
-        v.six_r_e_1_in_axes5_y*six_r_o_1_t;
+        + v.six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_y - v.six_r_J_5_t*six_r_o_4_in_axes5_y +
+        v.six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_y;
+    const real six_r_dalpha_alpha_5_in_axes5_yz = v.six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_z
+        - v.six_r_J_5_t*six_r_o_4_in_axes5_z - v.six_r_e_1_in_axes5_y*six_r_o_1_t +
+        v.six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_z;
     const real six_r_dalpha_alpha_5_in_axes5_zx = six_r_o_5_in_axes5_x +
-        v.six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_x - v.six_r_e_2_in_axes5_z*six_r_o_2_t -
-        v.six_r_e_2_in_axes5_z*six_r_o_3_t;
+        v.six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_x - v.six_r_e_2_in_axes5_z*six_r_o_3_t -
+        v.six_r_e_2_in_axes5_z*six_r_o_2_t;
     const real six_r_dalpha_alpha_5_in_axes5_zy = six_r_o_5_in_axes5_y +
         v.six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_y +
-        v.six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_y +
-        v.six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_y;
-    const real six_r_dalpha_alpha_5_in_axes5_zz = v.six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_z
-        + v.six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_z - six_r_o_5_t -
-        v.six_r_e_1_in_axes5_z*six_r_o_1_t;
+        v.six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_y +
+        v.six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_y;
+    const real six_r_dalpha_alpha_5_in_axes5_zz = v.six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_z
+        - six_r_o_5_t - v.six_r_e_1_in_axes5_z*six_r_o_1_t +
+        v.six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_z;
     /* (six_r-d_alpha_5) coefficient of the acceleration in: angular acceleration of link 5 */
     const real six_r_d_alpha_5_in_axes5_xz = v.six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_z +
-        v.six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_z +
         v.six_r_e_2_in_axes5_x*six_r_w_3_in_axes5_z +
-        v.six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_z;
+        v.six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_z +
+        v.six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_z;
     const real six_r_d_alpha_5_in_axes5_yz = v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_z +
-        v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_z +
-        v.six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_z - v.six_r_J_5_t*six_r_w_4_in_axes5_z;
+        v.six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_z - v.six_r_J_5_t*six_r_w_4_in_axes5_z +
+        v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_z;
     const real six_r_d_alpha_5_in_axes5_zy = six_r_w_5_in_axes5_y +
-        v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_y +
-        v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_y - v.six_r_e_2_in_axes5_z*six_r_w_3_t;
+        v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_y - v.six_r_e_2_in_axes5_z*six_r_w_3_t +
+        v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_y;
     const real six_r_d_alpha_5_in_axes5_zz = six_r_w_5_in_axes5_z +
         v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_z +
-        v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_z +
-        v.six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_z;
+        v.six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_z +
+        v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_z;
     /* (six_r-d_phi_5) coefficient of the acceleration in: inertia force of link 5 from its turning
        about its reference point */
     const real six_r_d_phi_5_in_axes5_xx =
         m->six_r_h_5_in_spec5_z[i]*(v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_x +
-        v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_x +
-        v.six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_x - v.six_r_J_5_t*six_r_w_4_in_axes5_x) -
+        v.six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_x - v.six_r_J_5_t*six_r_w_4_in_axes5_x +
+        v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_x) -
         m->six_r_h_5_in_spec5_y[i]*(v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_x +
-        v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_x +
-        v.six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_x - six_r_w_5_t_5);
+        v.six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_x - six_r_w_5_t_5 +
+        v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_x);
     /* (six_r-dalpha_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal
        links' inertia and weight */
     const real six_r_dalpha_Gamma_5_in_axes5_x = v.six_r_D_1_5*six_r_o_1_in_axes5_x +
-        m->six_r_J_5_in_spec5_zz[i]*six_r_o_5_in_axes5_x - v.six_r_D_3_5*six_r_o_2_t -
-        v.six_r_D_3_5*six_r_o_3_t - v.six_r_J_5_in_axes4_yz*six_r_o_4_t;
+        m->six_r_J_5_in_spec5_zz[i]*six_r_o_5_in_axes5_x - v.six_r_D_3_5*six_r_o_3_t -
+        v.six_r_J_5_in_axes4_yz*six_r_o_4_t - v.six_r_D_3_5*six_r_o_2_t;
     const real six_r_dalpha_Gamma_5_in_axes5_y = v.six_r_D_1_5*six_r_o_1_in_axes5_y +
-        v.six_r_D_3_5*six_r_o_2_in_axes5_y + v.six_r_D_3_5*six_r_o_3_in_axes5_y +
-        v.six_r_J_5_in_axes4_yz*six_r_o_4_in_axes5_y +
-        m->six_r_J_5_in_spec5_zz[i]*six_r_o_5_in_axes5_y;
-    const real six_r_dalpha_Gamma_5_in_axes5_z = v.six_r_D_3_5*six_r_o_2_in_axes5_z +
-        v.six_r_D_3_5*six_r_o_3_in_axes5_z + v.six_r_J_5_in_axes4_yz*six_r_o_4_in_axes5_z -
-        v.six_r_D_1_5*six_r_o_1_t - m->six_r_J_5_in_spec5_zz[i]*six_r_o_5_t;
+        v.six_r_D_3_5*six_r_o_3_in_axes5_y + v.six_r_J_5_in_axes4_yz*six_r_o_4_in_axes5_y +
+        m->six_r_J_5_in_spec5_zz[i]*six_r_o_5_in_axes5_y + v.six_r_D_3_5*six_r_o_2_in_axes5_y;
+    const real six_r_dalpha_Gamma_5_in_axes5_z = v.six_r_D_3_5*six_r_o_3_in_axes5_z +
+        v.six_r_J_5_in_axes4_yz*six_r_o_4_in_axes5_z - v.six_r_D_1_5*six_r_o_1_t -
+        m->six_r_J_5_in_spec5_zz[i]*six_r_o_5_t + v.six_r_D_3_5*six_r_o_2_in_axes5_z;
     /* (six_r-d_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal links'
        inertia and weight */
     const real six_r_d_Gamma_5_t = inv_six_r_w_1_t_12*m->six_r_J_5_in_spec5_zz[i];
     const real six_r_d_Gamma_5_t_2 = inv_six_r_w_1_t_28*(v.six_r_J_5_in_axes4_yz -
         six_r_d_Gamma_5_t*six_r_w_1_t_15);
-    const real six_r_d_Gamma_5_t_3 = inv_six_r_w_1_t_49*(v.six_r_D_1_5 +
-        six_r_d_Gamma_5_t_2*six_r_w_1_t_33 - six_r_d_Gamma_5_t*six_r_w_1_t_18);
-    const real six_r_d_Gamma_5_t_4 = inv_six_r_w_1_t_67*(v.six_r_D_3_5 +
-        six_r_d_Gamma_5_t_2*six_r_w_1_t_39 - six_r_d_Gamma_5_t*six_r_w_1_t_22 -
+    const real six_r_d_Gamma_5_t_3 = inv_six_r_w_1_t_49*(v.six_r_D_1_5 -
+        six_r_d_Gamma_5_t*six_r_w_1_t_18 + six_r_d_Gamma_5_t_2*six_r_w_1_t_33);
+    const real six_r_d_Gamma_5_t_4 = inv_six_r_w_1_t_67*(v.six_r_D_3_5 -
+        six_r_d_Gamma_5_t*six_r_w_1_t_22 + six_r_d_Gamma_5_t_2*six_r_w_1_t_39 -
         six_r_d_Gamma_5_t_3*six_r_w_1_t_55);
     const real six_r_d_Gamma_5_t_5 = inv_six_r_w_1_t_79*(v.six_r_D_3_5 +
         six_r_d_Gamma_5_t*six_r_w_1_t_25 + six_r_d_Gamma_5_t_2*six_r_w_1_t_44 -
@@ -5944,9 +5950,9 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
     const real six_r_d_Gamma_5_in_axes5_z = six_r_d_Gamma_5_t_2*six_r_w_1_t_30 +
         six_r_d_Gamma_5_t_3*six_r_w_1_t_52 + six_r_d_Gamma_5_t_4*six_r_w_1_t_70 +
         six_r_d_Gamma_5_t_5*six_r_w_1_t_82;
-    const real six_r_d_Gamma_5_in_axes5_x = six_r_d_Gamma_5_t_3*six_r_w_1_t_50 +
-        six_r_d_Gamma_5_t_4*six_r_w_1_t_68 + six_r_d_Gamma_5_t_5*six_r_w_1_t_80 -
-        m->six_r_h_5_in_spec5_y[i];
+    const real six_r_d_Gamma_5_in_axes5_x = six_r_d_Gamma_5_t_3*six_r_w_1_t_50 -
+        m->six_r_h_5_in_spec5_y[i] + six_r_d_Gamma_5_t_4*six_r_w_1_t_68 +
+        six_r_d_Gamma_5_t_5*six_r_w_1_t_80;
     const real six_r_d_Gamma_5_in_axes5_y = m->six_r_h_5_in_spec5_x[i] +
         six_r_d_Gamma_5_t*six_r_w_1_t_13 - six_r_d_Gamma_5_t_2*six_r_w_1_t_29 -
         six_r_d_Gamma_5_t_3*six_r_w_1_t_51 - six_r_d_Gamma_5_t_4*six_r_w_1_t_69 -
@@ -5955,58 +5961,58 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
        links' inertia and weight */
     const real six_r_dalpha_Gamma_4_in_axes5_x = v.six_r_J_5_in_axes4_yz*six_r_o_5_in_axes5_x
         + v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_x -
-        v.six_r_Jc_4_in_axes4_zz*six_r_o_4_t - v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_t -
-        v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_t;
+        v.six_r_Jc_4_in_axes4_zz*six_r_o_4_t - v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_t -
+        v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_t;
     const real six_r_dalpha_Gamma_4_in_axes5_y = v.six_r_J_5_in_axes4_yz*six_r_o_5_in_axes5_y
         + v.six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_y +
         v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_y +
-        v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_y +
-        v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_y;
+        v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_y +
+        v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_y;
     const real six_r_dalpha_Gamma_4_in_axes5_z = v.six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_z
-        + v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_z +
-        v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_z - v.six_r_J_5_in_axes4_yz*six_r_o_5_t
-        - v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_t;
+        + v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_z -
+        v.six_r_J_5_in_axes4_yz*six_r_o_5_t - v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_t +
+        v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_z;
     /* (six_r-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
        inertia and weight */
     const real six_r_d_Gamma_4_t = inv_six_r_w_1_t_12*v.six_r_J_5_in_axes4_yz;
     const real six_r_d_Gamma_4_t_2 = inv_six_r_w_1_t_28*(v.six_r_Jc_4_in_axes4_zz -
         six_r_d_Gamma_4_t*six_r_w_1_t_15);
-    const real six_r_d_Gamma_4_t_3 = inv_six_r_w_1_t_49*(v.six_r_L_c_4_2_in_axes1_z +
-        six_r_d_Gamma_4_t_2*six_r_w_1_t_33 - six_r_d_Gamma_4_t*six_r_w_1_t_18);
-    const real six_r_d_Gamma_4_t_4 = inv_six_r_w_1_t_67*(v.six_r_L_c_4_2_in_axes2_z +
-        six_r_d_Gamma_4_t_2*six_r_w_1_t_39 - six_r_d_Gamma_4_t*six_r_w_1_t_22 -
+    const real six_r_d_Gamma_4_t_3 = inv_six_r_w_1_t_49*(v.six_r_L_c_4_2_in_axes1_z -
+        six_r_d_Gamma_4_t*six_r_w_1_t_18 + six_r_d_Gamma_4_t_2*six_r_w_1_t_33);
+    const real six_r_d_Gamma_4_t_4 = inv_six_r_w_1_t_67*(v.six_r_L_c_4_2_in_axes2_z -
+        six_r_d_Gamma_4_t*six_r_w_1_t_22 + six_r_d_Gamma_4_t_2*six_r_w_1_t_39 -
         six_r_d_Gamma_4_t_3*six_r_w_1_t_55);
     const real six_r_d_Gamma_4_t_5 = inv_six_r_w_1_t_79*(v.six_r_L_c_4_3_in_axes3_z +
         six_r_d_Gamma_4_t*six_r_w_1_t_25 + six_r_d_Gamma_4_t_2*six_r_w_1_t_44 -
         six_r_d_Gamma_4_t_3*six_r_w_1_t_61 - six_r_d_Gamma_4_t_4*six_r_w_1_t_73);
-    const real six_r_d_Gamma_4_in_axes5_x = six_r_d_Gamma_4_t_3*six_r_w_1_t_50 +
-        six_r_d_Gamma_4_t_4*six_r_w_1_t_68 + six_r_d_Gamma_4_t_5*six_r_w_1_t_80 -
-        v.six_r_J_5_t*m->six_r_h_5_in_spec5_z[i];
+    const real six_r_d_Gamma_4_in_axes5_x = six_r_d_Gamma_4_t_3*six_r_w_1_t_50 -
+        v.six_r_J_5_t*m->six_r_h_5_in_spec5_z[i] + six_r_d_Gamma_4_t_4*six_r_w_1_t_68 +
+        six_r_d_Gamma_4_t_5*six_r_w_1_t_80;
     const real six_r_d_Gamma_4_in_axes5_y = six_r_d_Gamma_4_t*six_r_w_1_t_13 -
-        six_r_d_Gamma_4_t_2*six_r_w_1_t_29 - six_r_d_Gamma_4_t_3*six_r_w_1_t_51 -
-        six_r_d_Gamma_4_t_4*six_r_w_1_t_69 - six_r_d_Gamma_4_t_5*six_r_w_1_t_81 -
-        v.six_r_e_4_in_axes5_x*m->six_r_h_5_in_spec5_z[i];
+        v.six_r_e_4_in_axes5_x*m->six_r_h_5_in_spec5_z[i] - six_r_d_Gamma_4_t_2*six_r_w_1_t_29
+        - six_r_d_Gamma_4_t_3*six_r_w_1_t_51 - six_r_d_Gamma_4_t_4*six_r_w_1_t_69 -
+        six_r_d_Gamma_4_t_5*six_r_w_1_t_81;
     const real six_r_d_Gamma_4_in_axes5_z = v.six_r_J_5_t*m->six_r_h_5_in_spec5_x[i] +
-        six_r_d_Gamma_4_t_2*six_r_w_1_t_30 + six_r_d_Gamma_4_t_3*six_r_w_1_t_52 +
-        six_r_d_Gamma_4_t_4*six_r_w_1_t_70 + six_r_d_Gamma_4_t_5*six_r_w_1_t_82 +
-        v.six_r_e_4_in_axes5_x*m->six_r_h_5_in_spec5_y[i];
+        v.six_r_e_4_in_axes5_x*m->six_r_h_5_in_spec5_y[i] + six_r_d_Gamma_4_t_2*six_r_w_1_t_30
+        + six_r_d_Gamma_4_t_3*six_r_w_1_t_52 + six_r_d_Gamma_4_t_4*six_r_w_1_t_70 +
+        six_r_d_Gamma_4_t_5*six_r_w_1_t_82;
     /* (six_r-dalpha_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
        links' inertia and weight */
     const real six_r_dalpha_Gamma_3_t = v.six_r_D_3_5*six_r_o_5_in_axes5_x;
     const real six_r_dalpha_Gamma_3_t_2 = v.six_r_D_3_5*six_r_o_5_in_axes5_y;
     const real six_r_dalpha_Gamma_3_t_3 = v.six_r_D_3_5*six_r_o_5_t;
-    const real six_r_dalpha_Gamma_3_in_axes5_x = six_r_dalpha_Gamma_3_t +
+    const real six_r_dalpha_Gamma_3_in_axes5_x =
         v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_x - v.six_r_Jc_3_in_axes3_zz*six_r_o_3_t
-        - v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_t - v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_t;
-    const real six_r_dalpha_Gamma_3_in_axes5_y = six_r_dalpha_Gamma_3_t_2 +
-        v.six_r_Jc_3_in_axes3_zz*six_r_o_3_in_axes5_y +
-        v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_y +
-        v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_in_axes5_y +
-        v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_y;
+        - v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_t + six_r_dalpha_Gamma_3_t -
+        v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_t;
+    const real six_r_dalpha_Gamma_3_in_axes5_y = v.six_r_Jc_3_in_axes3_zz*six_r_o_3_in_axes5_y
+        + v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_y +
+        v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_y + six_r_dalpha_Gamma_3_t_2 +
+        v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_in_axes5_y;
     const real six_r_dalpha_Gamma_3_in_axes5_z = v.six_r_Jc_3_in_axes3_zz*six_r_o_3_in_axes5_z
-        + v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_in_axes5_z +
-        v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_z - six_r_dalpha_Gamma_3_t_3 -
-        v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_t;
+        + v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_z -
+        v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_t +
+        v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_in_axes5_z - six_r_dalpha_Gamma_3_t_3;
     /* (six_r-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
        inertia and weight */
     const real six_r_d_Gamma_3_t_4 = inv_six_r_w_1_t_12*v.six_r_D_3_5;
@@ -6014,48 +6020,47 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
     const real six_r_d_Gamma_3_t_6 = inv_six_r_w_1_t_28*(v.six_r_L_c_4_3_in_axes3_z -
         six_r_d_Gamma_3_t_5);
     const real six_r_d_Gamma_3_t_7 = six_r_d_Gamma_3_t_4*six_r_w_1_t_18;
-    const real six_r_d_Gamma_3_t_8 = inv_six_r_w_1_t_49*(v.six_r_L_c_3_2_in_axes1_z +
-        six_r_d_Gamma_3_t_6*six_r_w_1_t_33 - six_r_d_Gamma_3_t_7);
+    const real six_r_d_Gamma_3_t_8 = inv_six_r_w_1_t_49*(v.six_r_L_c_3_2_in_axes1_z -
+        six_r_d_Gamma_3_t_7 + six_r_d_Gamma_3_t_6*six_r_w_1_t_33);
     const real six_r_d_Gamma_3_t_9 = six_r_d_Gamma_3_t_4*six_r_w_1_t_22;
-    const real six_r_d_Gamma_3_t_10 = inv_six_r_w_1_t_67*(v.six_r_L_c_3_2_in_axes2_z +
-        six_r_d_Gamma_3_t_6*six_r_w_1_t_39 - six_r_d_Gamma_3_t_9 -
+    const real six_r_d_Gamma_3_t_10 = inv_six_r_w_1_t_67*(v.six_r_L_c_3_2_in_axes2_z -
+        six_r_d_Gamma_3_t_9 + six_r_d_Gamma_3_t_6*six_r_w_1_t_39 -
         six_r_d_Gamma_3_t_8*six_r_w_1_t_55);
     const real six_r_d_Gamma_3_t_11 = six_r_d_Gamma_3_t_4*six_r_w_1_t_25;
     const real six_r_d_Gamma_3_t_12 = inv_six_r_w_1_t_79*(v.six_r_Jc_3_in_axes3_zz +
         six_r_d_Gamma_3_t_11 + six_r_d_Gamma_3_t_6*six_r_w_1_t_44 -
-        six_r_d_Gamma_3_t_10*six_r_w_1_t_73 - six_r_d_Gamma_3_t_8*six_r_w_1_t_61);
+        six_r_d_Gamma_3_t_8*six_r_w_1_t_61 - six_r_d_Gamma_3_t_10*six_r_w_1_t_73);
     const real six_r_d_Gamma_3_t_13 = six_r_d_Gamma_3_t_4*six_r_w_1_t_13;
     const real six_r_d_Gamma_3_in_axes5_x = v.six_r_d_Gamma_3_t +
-        six_r_d_Gamma_3_t_10*six_r_w_1_t_68 + six_r_d_Gamma_3_t_12*six_r_w_1_t_80 +
-        six_r_d_Gamma_3_t_8*six_r_w_1_t_50;
+        six_r_d_Gamma_3_t_8*six_r_w_1_t_50 + six_r_d_Gamma_3_t_10*six_r_w_1_t_68 +
+        six_r_d_Gamma_3_t_12*six_r_w_1_t_80;
     const real six_r_d_Gamma_3_in_axes5_y = six_r_d_Gamma_3_t_13 - v.six_r_d_Gamma_3_t_2 -
-        six_r_d_Gamma_3_t_10*six_r_w_1_t_69 - six_r_d_Gamma_3_t_12*six_r_w_1_t_81 -
-        six_r_d_Gamma_3_t_6*six_r_w_1_t_29 - six_r_d_Gamma_3_t_8*six_r_w_1_t_51;
+        six_r_d_Gamma_3_t_6*six_r_w_1_t_29 - six_r_d_Gamma_3_t_8*six_r_w_1_t_51 -
+        six_r_d_Gamma_3_t_10*six_r_w_1_t_69 - six_r_d_Gamma_3_t_12*six_r_w_1_t_81;
     const real six_r_d_Gamma_3_in_axes5_z = v.six_r_d_Gamma_3_t_3 +
-        six_r_d_Gamma_3_t_10*six_r_w_1_t_70 + six_r_d_Gamma_3_t_12*six_r_w_1_t_82 +
-        six_r_d_Gamma_3_t_6*six_r_w_1_t_30 + six_r_d_Gamma_3_t_8*six_r_w_1_t_52;
+        six_r_d_Gamma_3_t_6*six_r_w_1_t_30 + six_r_d_Gamma_3_t_8*six_r_w_1_t_52 +
+        six_r_d_Gamma_3_t_10*six_r_w_1_t_70 + six_r_d_Gamma_3_t_12*six_r_w_1_t_82;
     /* (six_r-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
        links' inertia and weight */
-    const real six_r_dalpha_Gamma_2_in_axes5_x = six_r_dalpha_Gamma_3_t +
-        v.six_r_Jc_2_in_axes1_yz*six_r_o_1_in_axes5_x - v.six_r_Jc_2_in_axes2_zz*six_r_o_2_t -
-        v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_t - v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_t;
-    const real six_r_dalpha_Gamma_2_in_axes5_y = six_r_dalpha_Gamma_3_t_2 +
-        v.six_r_Jc_2_in_axes1_yz*six_r_o_1_in_axes5_y +
-        v.six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_y +
-        v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_y +
-        v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_y;
-    const real six_r_dalpha_Gamma_2_in_axes5_z = v.six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_z
-        + v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_z +
-        v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_z - six_r_dalpha_Gamma_3_t_3 -
-        v.six_r_Jc_2_in_axes1_yz*six_r_o_1_t;
+    const real six_r_dalpha_Gamma_2_in_axes5_x = v.six_r_Jc_2_in_axes1_yz*six_r_o_1_in_axes5_x
+        - v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_t - v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_t +
+        six_r_dalpha_Gamma_3_t - v.six_r_Jc_2_in_axes2_zz*six_r_o_2_t;
+    const real six_r_dalpha_Gamma_2_in_axes5_y = v.six_r_Jc_2_in_axes1_yz*six_r_o_1_in_axes5_y
+        + v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_y +
+        v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_y + six_r_dalpha_Gamma_3_t_2 +
+        v.six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_y;
+    const real six_r_dalpha_Gamma_2_in_axes5_z =
+        v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_z +
+        v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_z - v.six_r_Jc_2_in_axes1_yz*six_r_o_1_t
+        + v.six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_z - six_r_dalpha_Gamma_3_t_3;
     /* (six_r-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
        inertia and weight */
     const real six_r_d_Gamma_2_t = inv_six_r_w_1_t_28*(v.six_r_L_c_4_2_in_axes2_z -
         six_r_d_Gamma_3_t_5);
-    const real six_r_d_Gamma_2_t_2 = inv_six_r_w_1_t_49*(v.six_r_Jc_2_in_axes1_yz +
-        six_r_d_Gamma_2_t*six_r_w_1_t_33 - six_r_d_Gamma_3_t_7);
-    const real six_r_d_Gamma_2_t_3 = inv_six_r_w_1_t_67*(v.six_r_Jc_2_in_axes2_zz +
-        six_r_d_Gamma_2_t*six_r_w_1_t_39 - six_r_d_Gamma_3_t_9 -
+    const real six_r_d_Gamma_2_t_2 = inv_six_r_w_1_t_49*(v.six_r_Jc_2_in_axes1_yz -
+        six_r_d_Gamma_3_t_7 + six_r_d_Gamma_2_t*six_r_w_1_t_33);
+    const real six_r_d_Gamma_2_t_3 = inv_six_r_w_1_t_67*(v.six_r_Jc_2_in_axes2_zz -
+        six_r_d_Gamma_3_t_9 + six_r_d_Gamma_2_t*six_r_w_1_t_39 -
         six_r_d_Gamma_2_t_2*six_r_w_1_t_55);
     const real six_r_d_Gamma_2_t_4 = inv_six_r_w_1_t_79*(v.six_r_L_c_3_2_in_axes2_z +
         six_r_d_Gamma_3_t_11 + six_r_d_Gamma_2_t*six_r_w_1_t_44 -
@@ -6072,43 +6077,42 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
     /* (six_r-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
        links' inertia and weight */
     const real six_r_dalpha_Gamma_1_in_axes5_x = v.six_r_D_1_5*six_r_o_5_in_axes5_x +
-        v.six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_x - v.six_r_Jc_2_in_axes1_yz*six_r_o_2_t -
-        v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_t - v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_t;
+        v.six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_x - v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_t
+        - v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_t - v.six_r_Jc_2_in_axes1_yz*six_r_o_2_t;
     const real six_r_dalpha_Gamma_1_in_axes5_y = v.six_r_D_1_5*six_r_o_5_in_axes5_y +
         v.six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_y +
-        v.six_r_Jc_2_in_axes1_yz*six_r_o_2_in_axes5_y +
         v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_y +
-        v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_y;
-    const real six_r_dalpha_Gamma_1_in_axes5_z = v.six_r_Jc_2_in_axes1_yz*six_r_o_2_in_axes5_z
-        + v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_z +
+        v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_y +
+        v.six_r_Jc_2_in_axes1_yz*six_r_o_2_in_axes5_y;
+    const real six_r_dalpha_Gamma_1_in_axes5_z =
+        v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_z +
         v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_z - v.six_r_D_1_5*six_r_o_5_t -
-        v.six_r_Jc_1_in_axes1_zz*six_r_o_1_t;
+        v.six_r_Jc_1_in_axes1_zz*six_r_o_1_t + v.six_r_Jc_2_in_axes1_yz*six_r_o_2_in_axes5_z;
     /* (six_r-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
     const real six_r_d_Gamma_1_t = inv_six_r_w_1_t_12*v.six_r_D_1_5;
     const real six_r_d_Gamma_1_t_2 = inv_six_r_w_1_t_28*(v.six_r_L_c_4_2_in_axes1_z -
         six_r_d_Gamma_1_t*six_r_w_1_t_15);
-    const real six_r_d_Gamma_1_t_3 = inv_six_r_w_1_t_49*(v.six_r_Jc_1_in_axes1_zz +
-        six_r_d_Gamma_1_t_2*six_r_w_1_t_33 - six_r_d_Gamma_1_t*six_r_w_1_t_18);
-    const real six_r_d_Gamma_1_t_4 = inv_six_r_w_1_t_67*(v.six_r_Jc_2_in_axes1_yz +
-        six_r_d_Gamma_1_t_2*six_r_w_1_t_39 - six_r_d_Gamma_1_t*six_r_w_1_t_22 -
+    const real six_r_d_Gamma_1_t_3 = inv_six_r_w_1_t_49*(v.six_r_Jc_1_in_axes1_zz -
+        six_r_d_Gamma_1_t*six_r_w_1_t_18 + six_r_d_Gamma_1_t_2*six_r_w_1_t_33);
+    const real six_r_d_Gamma_1_t_4 = inv_six_r_w_1_t_67*(v.six_r_Jc_2_in_axes1_yz -
+        six_r_d_Gamma_1_t*six_r_w_1_t_22 + six_r_d_Gamma_1_t_2*six_r_w_1_t_39 -
         six_r_d_Gamma_1_t_3*six_r_w_1_t_55);
     const real six_r_d_Gamma_1_t_5 = inv_six_r_w_1_t_79*(v.six_r_L_c_3_2_in_axes1_z +
         six_r_d_Gamma_1_t*six_r_w_1_t_25 + six_r_d_Gamma_1_t_2*six_r_w_1_t_44 -
         six_r_d_Gamma_1_t_3*six_r_w_1_t_61 - six_r_d_Gamma_1_t_4*six_r_w_1_t_73);
-    const real six_r_d_Gamma_1_in_axes5_x = six_r_d_Gamma_1_t_3*six_r_w_1_t_50 +
-        six_r_d_Gamma_1_t_4*six_r_w_1_t_68 + six_r_d_Gamma_1_t_5*six_r_w_1_t_80 +
-        v.six_r_e_1_in_axes5_y*m->six_r_h_5_in_spec5_z[i] -
-        v.six_r_e_1_in_axes5_z*m->six_r_h_5_in_spec5_y[i];
-    const real six_r_d_Gamma_1_in_axes5_y = six_r_d_Gamma_1_t*six_r_w_1_t_13 +
-        v.six_r_e_1_in_axes5_z*m->six_r_h_5_in_spec5_x[i] - six_r_d_Gamma_1_t_2*six_r_w_1_t_29
-        - six_r_d_Gamma_1_t_3*six_r_w_1_t_51 - six_r_d_Gamma_1_t_4*six_r_w_1_t_69 -
-        six_r_d_Gamma_1_t_5*six_r_w_1_t_81 -
-        v.six_r_e_1_in_axes5_x*m->six_r_h_5_in_spec5_z[i];
-    const real six_r_d_Gamma_1_in_axes5_z = six_r_d_Gamma_1_t_2*six_r_w_1_t_30 +
-        six_r_d_Gamma_1_t_3*six_r_w_1_t_52 + six_r_d_Gamma_1_t_4*six_r_w_1_t_70 +
-        six_r_d_Gamma_1_t_5*six_r_w_1_t_82 + v.six_r_e_1_in_axes5_x*m->six_r_h_5_in_spec5_y[i]
-        - v.six_r_e_1_in_axes5_y*m->six_r_h_5_in_spec5_x[i];
+    const real six_r_d_Gamma_1_in_axes5_x = v.six_r_e_1_in_axes5_y*m->six_r_h_5_in_spec5_z[i]
+        - v.six_r_e_1_in_axes5_z*m->six_r_h_5_in_spec5_y[i] +
+        six_r_d_Gamma_1_t_3*six_r_w_1_t_50 + six_r_d_Gamma_1_t_4*six_r_w_1_t_68 +
+        six_r_d_Gamma_1_t_5*six_r_w_1_t_80;
+    const real six_r_d_Gamma_1_in_axes5_y = v.six_r_e_1_in_axes5_z*m->six_r_h_5_in_spec5_x[i]
+        - v.six_r_e_1_in_axes5_x*m->six_r_h_5_in_spec5_z[i] + six_r_d_Gamma_1_t*six_r_w_1_t_13
+        - six_r_d_Gamma_1_t_2*six_r_w_1_t_29 - six_r_d_Gamma_1_t_3*six_r_w_1_t_51 -
+        six_r_d_Gamma_1_t_4*six_r_w_1_t_69 - six_r_d_Gamma_1_t_5*six_r_w_1_t_81;
+    const real six_r_d_Gamma_1_in_axes5_z = v.six_r_e_1_in_axes5_x*m->six_r_h_5_in_spec5_y[i]
+        - v.six_r_e_1_in_axes5_y*m->six_r_h_5_in_spec5_x[i] +
+        six_r_d_Gamma_1_t_2*six_r_w_1_t_30 + six_r_d_Gamma_1_t_3*six_r_w_1_t_52 +
+        six_r_d_Gamma_1_t_4*six_r_w_1_t_70 + six_r_d_Gamma_1_t_5*six_r_w_1_t_82;
     /* (six_r-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
        balances the leg's inertia and weight along all degrees of freedom */
     const real six_r_dalpha_G_m1_in_axes5_x = six_r_dalpha_Gamma_2_in_axes5_x*six_r_m1_w_2 +
@@ -6134,18 +6138,15 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
         axis_z_six_r_axes5_z*six_r_dalpha_G_m1_in_axes5_z;
     /* (six_r-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
        balances the leg's inertia and weight along all degrees of freedom */
-    const real six_r_d_G_m1_in_axes5_x = six_r_d_Gamma_2_in_axes5_x*six_r_m1_w_2 +
-        six_r_d_Gamma_3_in_axes5_x*six_r_m1_w_3 + six_r_d_Gamma_4_in_axes5_x*six_r_m1_w_4 -
-        six_r_d_Gamma_1_in_axes5_x*six_r_m1_w_1_t_2 -
-        six_r_d_Gamma_5_in_axes5_x*six_r_m1_w_5_t;
-    const real six_r_d_G_m1_in_axes5_y = six_r_d_Gamma_2_in_axes5_y*six_r_m1_w_2 +
-        six_r_d_Gamma_3_in_axes5_y*six_r_m1_w_3 + six_r_d_Gamma_4_in_axes5_y*six_r_m1_w_4 -
-        six_r_d_Gamma_1_in_axes5_y*six_r_m1_w_1_t_2 -
-        six_r_d_Gamma_5_in_axes5_y*six_r_m1_w_5_t;
-    const real six_r_d_G_m1_in_axes5_z = six_r_d_Gamma_2_in_axes5_z*six_r_m1_w_2 +
-        six_r_d_Gamma_3_in_axes5_z*six_r_m1_w_3 + six_r_d_Gamma_4_in_axes5_z*six_r_m1_w_4 -
-        six_r_d_Gamma_1_in_axes5_z*six_r_m1_w_1_t_2 -
-        six_r_d_Gamma_5_in_axes5_z*six_r_m1_w_5_t;
+    const real six_r_d_G_m1_in_axes5_x = six_r_d_Gamma_3_in_axes5_x*six_r_m1_w_3 +
+        six_r_d_Gamma_4_in_axes5_x*six_r_m1_w_4 - six_r_d_Gamma_1_in_axes5_x*six_r_m1_w_1_t_2
+        - six_r_d_Gamma_5_in_axes5_x*six_r_m1_w_5_t + six_r_d_Gamma_2_in_axes5_x*six_r_m1_w_2;
+    const real six_r_d_G_m1_in_axes5_y = six_r_d_Gamma_3_in_axes5_y*six_r_m1_w_3 +
+        six_r_d_Gamma_4_in_axes5_y*six_r_m1_w_4 - six_r_d_Gamma_1_in_axes5_y*six_r_m1_w_1_t_2
+        - six_r_d_Gamma_5_in_axes5_y*six_r_m1_w_5_t + six_r_d_Gamma_2_in_axes5_y*six_r_m1_w_2;
+    const real six_r_d_G_m1_in_axes5_z = six_r_d_Gamma_3_in_axes5_z*six_r_m1_w_3 +
+        six_r_d_Gamma_4_in_axes5_z*six_r_m1_w_4 - six_r_d_Gamma_1_in_axes5_z*six_r_m1_w_1_t_2
+        - six_r_d_Gamma_5_in_axes5_z*six_r_m1_w_5_t + six_r_d_Gamma_2_in_axes5_z*six_r_m1_w_2;
     const real six_r_d_G_m1_x = axis_x_six_r_axes5_x*six_r_d_G_m1_in_axes5_x +
         axis_y_six_r_axes5_x*six_r_d_G_m1_in_axes5_y +
         axis_z_six_r_axes5_x*six_r_d_G_m1_in_axes5_z;
@@ -6180,18 +6181,15 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
         axis_z_six_r_axes5_z*six_r_dalpha_G_m2_in_axes5_z;
     /* (six_r-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
        balances the leg's inertia and weight along all degrees of freedom */
-    const real six_r_d_G_m2_in_axes5_x = six_r_d_Gamma_2_in_axes5_x*six_r_m2_w_2 +
-        six_r_d_Gamma_3_in_axes5_x*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_x*six_r_m2_w_4 -
-        six_r_d_Gamma_1_in_axes5_x*six_r_m2_w_1_t_2 -
-        six_r_d_Gamma_5_in_axes5_x*six_r_m2_w_5_t;
-    const real six_r_d_G_m2_in_axes5_y = six_r_d_Gamma_2_in_axes5_y*six_r_m2_w_2 +
-        six_r_d_Gamma_3_in_axes5_y*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_y*six_r_m2_w_4 -
-        six_r_d_Gamma_1_in_axes5_y*six_r_m2_w_1_t_2 -
-        six_r_d_Gamma_5_in_axes5_y*six_r_m2_w_5_t;
-    const real six_r_d_G_m2_in_axes5_z = six_r_d_Gamma_2_in_axes5_z*six_r_m2_w_2 +
-        six_r_d_Gamma_3_in_axes5_z*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_z*six_r_m2_w_4 -
-        six_r_d_Gamma_1_in_axes5_z*six_r_m2_w_1_t_2 -
-        six_r_d_Gamma_5_in_axes5_z*six_r_m2_w_5_t;
+    const real six_r_d_G_m2_in_axes5_x = six_r_d_Gamma_3_in_axes5_x*six_r_m2_w_3 +
+        six_r_d_Gamma_4_in_axes5_x*six_r_m2_w_4 - six_r_d_Gamma_1_in_axes5_x*six_r_m2_w_1_t_2
+        - six_r_d_Gamma_5_in_axes5_x*six_r_m2_w_5_t + six_r_d_Gamma_2_in_axes5_x*six_r_m2_w_2;
+    const real six_r_d_G_m2_in_axes5_y = six_r_d_Gamma_3_in_axes5_y*six_r_m2_w_3 +
+        six_r_d_Gamma_4_in_axes5_y*six_r_m2_w_4 - six_r_d_Gamma_1_in_axes5_y*six_r_m2_w_1_t_2
+        - six_r_d_Gamma_5_in_axes5_y*six_r_m2_w_5_t + six_r_d_Gamma_2_in_axes5_y*six_r_m2_w_2;
+    const real six_r_d_G_m2_in_axes5_z = six_r_d_Gamma_3_in_axes5_z*six_r_m2_w_3 +
+        six_r_d_Gamma_4_in_axes5_z*six_r_m2_w_4 - six_r_d_Gamma_1_in_axes5_z*six_r_m2_w_1_t_2
+        - six_r_d_Gamma_5_in_axes5_z*six_r_m2_w_5_t + six_r_d_Gamma_2_in_axes5_z*six_r_m2_w_2;
     const real six_r_d_G_m2_x = axis_x_six_r_axes5_x*six_r_d_G_m2_in_axes5_x +
         axis_y_six_r_axes5_x*six_r_d_G_m2_in_axes5_y +
         axis_z_six_r_axes5_x*six_r_d_G_m2_in_axes5_z;
@@ -6209,122 +6207,127 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
     const real six_r_d_G_m_yx = six_r_d_G_m1_x*six_r_n_m1_y + six_r_d_G_m2_x*six_r_n_m2_y;
     /* (six_r-dalpha_c) coefficient of the acceleration in: leg force on the platform without
        actuation and without the mass at the connection point */
-    const real six_r_dalpha_c_in_axes5_xx = six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_t_5 +
+    const real six_r_dalpha_c_in_axes5_xx =
         six_r_dalpha_alpha_5_in_axes5_zx*m->six_r_h_5_in_spec5_y[i] -
+        six_r_dalpha_alpha_5_in_axes5_yx*m->six_r_h_5_in_spec5_z[i] +
+        six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_t_5 -
         six_r_dalpha_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_x -
         six_r_dalpha_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_x -
         six_r_dalpha_Gamma_3_in_axes5_x*six_r_w_3_in_axes5_x -
-        six_r_dalpha_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_x -
-        six_r_dalpha_alpha_5_in_axes5_yx*m->six_r_h_5_in_spec5_z[i];
-    const real six_r_dalpha_c_in_axes5_xy = six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_t_5 +
+        six_r_dalpha_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_x;
+    const real six_r_dalpha_c_in_axes5_xy =
         six_r_dalpha_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] -
+        six_r_dalpha_alpha_5_in_axes5_yy*m->six_r_h_5_in_spec5_z[i] +
+        six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_t_5 -
         six_r_dalpha_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_x -
         six_r_dalpha_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_x -
         six_r_dalpha_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_x -
-        six_r_dalpha_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_x -
-        six_r_dalpha_alpha_5_in_axes5_yy*m->six_r_h_5_in_spec5_z[i];
-    const real six_r_dalpha_c_in_axes5_xz = six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_t_5 +
+        six_r_dalpha_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_x;
+    const real six_r_dalpha_c_in_axes5_xz =
         six_r_dalpha_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_y[i] -
+        six_r_dalpha_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_z[i] +
+        six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_t_5 -
         six_r_dalpha_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_x -
         six_r_dalpha_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_x -
         six_r_dalpha_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_x -
-        six_r_dalpha_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_x -
-        six_r_dalpha_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_z[i];
-    const real six_r_dalpha_c_in_axes5_yx = six_r_dalpha_Gamma_3_in_axes5_x*six_r_w_3_t +
+        six_r_dalpha_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_x;
+    const real six_r_dalpha_c_in_axes5_yx =
         six_r_dalpha_alpha_5_in_axes5_xx*m->six_r_h_5_in_spec5_z[i] -
+        six_r_dalpha_alpha_5_in_axes5_zx*m->six_r_h_5_in_spec5_x[i] +
+        six_r_dalpha_Gamma_3_in_axes5_x*six_r_w_3_t -
         six_r_dalpha_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_y -
         six_r_dalpha_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_y -
         six_r_dalpha_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_y -
-        six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_in_axes5_y -
-        six_r_dalpha_alpha_5_in_axes5_zx*m->six_r_h_5_in_spec5_x[i];
-    const real six_r_dalpha_c_in_axes5_yy = six_r_dalpha_Gamma_3_in_axes5_y*six_r_w_3_t +
+        six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_in_axes5_y;
+    const real six_r_dalpha_c_in_axes5_yy =
         six_r_dalpha_alpha_5_in_axes5_xy*m->six_r_h_5_in_spec5_z[i] -
+        six_r_dalpha_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_x[i] +
+        six_r_dalpha_Gamma_3_in_axes5_y*six_r_w_3_t -
         six_r_dalpha_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_y -
         six_r_dalpha_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_y -
         six_r_dalpha_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_y -
-        six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_y -
-        six_r_dalpha_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_x[i];
-    const real six_r_dalpha_c_in_axes5_yz = six_r_dalpha_Gamma_3_in_axes5_z*six_r_w_3_t +
+        six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_y;
+    const real six_r_dalpha_c_in_axes5_yz =
         six_r_dalpha_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] -
+        six_r_dalpha_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_x[i] +
+        six_r_dalpha_Gamma_3_in_axes5_z*six_r_w_3_t -
         six_r_dalpha_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_y -
         six_r_dalpha_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_y -
         six_r_dalpha_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_y -
-        six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_y -
-        six_r_dalpha_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_x[i];
+        six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_y;
     const real six_r_dalpha_c_in_axes5_zx =
         six_r_dalpha_alpha_5_in_axes5_yx*m->six_r_h_5_in_spec5_x[i] -
+        six_r_dalpha_alpha_5_in_axes5_xx*m->six_r_h_5_in_spec5_y[i] -
         six_r_dalpha_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_z -
         six_r_dalpha_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_z -
         six_r_dalpha_Gamma_3_in_axes5_x*six_r_w_3_in_axes5_z -
         six_r_dalpha_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_z -
-        six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_in_axes5_z -
-        six_r_dalpha_alpha_5_in_axes5_xx*m->six_r_h_5_in_spec5_y[i];
+        six_r_dalpha_Gamma_5_in_axes5_x*six_r_w_5_in_axes5_z;
     const real six_r_dalpha_c_in_axes5_zy =
         six_r_dalpha_alpha_5_in_axes5_yy*m->six_r_h_5_in_spec5_x[i] -
+        six_r_dalpha_alpha_5_in_axes5_xy*m->six_r_h_5_in_spec5_y[i] -
         six_r_dalpha_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_z -
         six_r_dalpha_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_z -
         six_r_dalpha_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_z -
         six_r_dalpha_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_z -
-        six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_z -
-        six_r_dalpha_alpha_5_in_axes5_xy*m->six_r_h_5_in_spec5_y[i];
+        six_r_dalpha_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_z;
     const real six_r_dalpha_c_in_axes5_zz =
         six_r_dalpha_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_x[i] -
+        six_r_dalpha_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_y[i] -
         six_r_dalpha_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_z -
         six_r_dalpha_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_z -
         six_r_dalpha_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_z -
         six_r_dalpha_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_z -
-        six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_z -
-        six_r_dalpha_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_y[i];
+        six_r_dalpha_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_z;
     /* (six_r-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
        without the mass at the connection point */
     const real six_r_d_c_in_axes5_xx = six_r_d_Gamma_5_in_axes5_x*six_r_w_5_t_5 -
-        six_r_d_phi_5_in_axes5_xx - six_r_d_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_x -
-        six_r_d_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_x -
+        six_r_d_Gamma_1_in_axes5_x*six_r_w_1_in_axes5_x -
         six_r_d_Gamma_3_in_axes5_x*six_r_w_3_in_axes5_x -
-        six_r_d_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_x;
-    const real six_r_d_c_in_axes5_xy = six_r_d_Gamma_5_in_axes5_y*six_r_w_5_t_5 +
-        six_r_d_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] -
+        six_r_d_Gamma_4_in_axes5_x*six_r_w_4_in_axes5_x -
+        six_r_d_Gamma_2_in_axes5_x*six_r_w_2_in_axes5_x - six_r_d_phi_5_in_axes5_xx;
+    const real six_r_d_c_in_axes5_xy = six_r_d_Gamma_5_in_axes5_y*six_r_w_5_t_5 -
         six_r_d_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_x -
-        six_r_d_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_x -
         six_r_d_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_x -
         six_r_d_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_x -
-        m->six_r_h_5_in_spec5_z[i]*(v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_y +
-        v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_y - v.six_r_J_5_t*six_r_w_4_in_axes5_y -
-        v.six_r_e_2_in_axes5_y*six_r_w_3_t);
-    const real six_r_d_c_in_axes5_xz = six_r_d_Gamma_5_in_axes5_z*six_r_w_5_t_5 +
-        six_r_d_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_y[i] -
+        six_r_d_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_x +
+        six_r_d_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] -
+        m->six_r_h_5_in_spec5_z[i]*(v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_y -
+        v.six_r_J_5_t*six_r_w_4_in_axes5_y - v.six_r_e_2_in_axes5_y*six_r_w_3_t +
+        v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_y);
+    const real six_r_d_c_in_axes5_xz = six_r_d_Gamma_5_in_axes5_z*six_r_w_5_t_5 -
         six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_x -
-        six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_x -
         six_r_d_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_x -
         six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_x -
+        six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_x +
+        six_r_d_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_y[i] -
         six_r_d_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_z[i];
-    const real six_r_d_c_in_axes5_yy = six_r_d_Gamma_3_in_axes5_y*six_r_w_3_t +
-        m->six_r_h_5_in_spec5_z[i]*(v.six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_y +
-        v.six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_y +
-        v.six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_y - v.six_r_e_2_in_axes5_x*six_r_w_3_t) -
+    const real six_r_d_c_in_axes5_yy = six_r_d_Gamma_3_in_axes5_y*six_r_w_3_t -
         six_r_d_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_y -
-        six_r_d_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_y -
         six_r_d_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_y -
         six_r_d_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_y -
+        six_r_d_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_y +
+        m->six_r_h_5_in_spec5_z[i]*(v.six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_y +
+        v.six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_y - v.six_r_e_2_in_axes5_x*six_r_w_3_t +
+        v.six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_y) -
         six_r_d_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_x[i];
-    const real six_r_d_c_in_axes5_yz = six_r_d_Gamma_3_in_axes5_z*six_r_w_3_t +
-        six_r_d_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] -
+    const real six_r_d_c_in_axes5_yz = six_r_d_Gamma_3_in_axes5_z*six_r_w_3_t -
         six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_y -
-        six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_y -
         six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_y -
         six_r_d_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_y -
+        six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_y +
+        six_r_d_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] -
         six_r_d_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_x[i];
     /* (six_r-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real six_r_Q_t = six_r_d_c_in_axes5_xx - six_r_d_c_in_axes5_yy;
     const real six_r_Q_t_2 = R(0.5)*six_r_Q_t;
-    const real six_r_Q_t_3 = six_r_d_c_in_axes5_xx +
-        six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_z +
-        six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_z +
+    const real six_r_Q_t_3 = six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_z +
         six_r_d_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_z +
         six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_z +
         six_r_d_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_z +
+        six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_z +
         six_r_d_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_y[i] -
-        six_r_d_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_x[i];
+        six_r_d_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_x[i] + six_r_d_c_in_axes5_xx;
     const real six_r_Q_t_4 = R(0.5)*six_r_Q_t_3;
     const real six_r_Q_t_5 = axis_x_six_r_axes5_x*six_r_d_c_in_axes5_xy +
         axis_z_six_r_axes5_x*six_r_d_c_in_axes5_yz - axis_y_six_r_axes5_x*six_r_Q_t_2;
@@ -6340,7 +6343,7 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
         axis_x_six_r_axes5_z*six_r_d_c_in_axes5_xz;
     const real six_r_Q_t_11 = axis_y_six_r_axes5_x*six_r_Q_t_5 -
         axis_z_six_r_axes5_x*six_r_Q_t_8;
-    const real six_r_Q_xx = -2*six_r_Q_t_11 - six_r_d_c_in_axes5_xx;
+    const real six_r_Q_xx = -six_r_d_c_in_axes5_xx - 2*six_r_Q_t_11;
     const real six_r_Q_xy = axis_z_six_r_axes5_x*six_r_Q_t_9 +
         axis_z_six_r_axes5_y*six_r_Q_t_8 - axis_y_six_r_axes5_x*six_r_Q_t_6 -
         axis_y_six_r_axes5_y*six_r_Q_t_5;
@@ -6349,13 +6352,13 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
         axis_y_six_r_axes5_z*six_r_Q_t_5;
     const real six_r_Q_t_12 = axis_y_six_r_axes5_y*six_r_Q_t_6 -
         axis_z_six_r_axes5_y*six_r_Q_t_9;
-    const real six_r_Q_yy = -2*six_r_Q_t_12 - six_r_d_c_in_axes5_xx;
+    const real six_r_Q_yy = -six_r_d_c_in_axes5_xx - 2*six_r_Q_t_12;
     const real six_r_Q_yz = axis_z_six_r_axes5_y*six_r_Q_t_10 +
         axis_z_six_r_axes5_z*six_r_Q_t_9 - axis_y_six_r_axes5_y*six_r_Q_t_7 -
         axis_y_six_r_axes5_z*six_r_Q_t_6;
     const real six_r_Q_t_13 = axis_y_six_r_axes5_z*six_r_Q_t_7 -
         axis_z_six_r_axes5_z*six_r_Q_t_10;
-    const real six_r_Q_zz = -2*six_r_Q_t_13 - six_r_d_c_in_axes5_xx;
+    const real six_r_Q_zz = -six_r_d_c_in_axes5_xx - 2*six_r_Q_t_13;
     /* (M_ta) coupling block of M */
     const real six_r_M_ta_t = axis_x_six_r_axes5_x*six_r_dalpha_c_in_axes5_xx +
         axis_y_six_r_axes5_x*six_r_dalpha_c_in_axes5_yx +
@@ -6390,57 +6393,58 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
     const real six_r_M_ta_t_13 = six_r_M_ta_t_10 + six_r_M_ta_t_11 -
         axis_x_six_r_axes5_x*six_r_M_ta_t - axis_y_six_r_axes5_x*six_r_M_ta_t_4 -
         axis_z_six_r_axes5_x*six_r_M_ta_t_7;
-    const real six_r_M_ta_t_14 = six_r_Q_xx*v.six_r_q_z - axis_x_six_r_axes5_y*six_r_M_ta_t -
-        axis_y_six_r_axes5_y*six_r_M_ta_t_4 - axis_z_six_r_axes5_y*six_r_M_ta_t_7 -
-        six_r_Q_xz*v.six_r_q_x;
-    const real six_r_M_ta_t_15 = six_r_Q_xy*v.six_r_q_x - axis_x_six_r_axes5_z*six_r_M_ta_t -
-        axis_y_six_r_axes5_z*six_r_M_ta_t_4 - axis_z_six_r_axes5_z*six_r_M_ta_t_7 -
-        six_r_Q_xx*v.six_r_q_y;
-    const real six_r_M_ta_t_16 = six_r_Q_yz*v.six_r_q_y - axis_x_six_r_axes5_x*six_r_M_ta_t_2
-        - axis_y_six_r_axes5_x*six_r_M_ta_t_5 - axis_z_six_r_axes5_x*six_r_M_ta_t_8 -
-        six_r_Q_yy*v.six_r_q_z;
+    const real six_r_M_ta_t_14 = six_r_Q_xx*v.six_r_q_z - six_r_Q_xz*v.six_r_q_x -
+        axis_x_six_r_axes5_y*six_r_M_ta_t - axis_y_six_r_axes5_y*six_r_M_ta_t_4 -
+        axis_z_six_r_axes5_y*six_r_M_ta_t_7;
+    const real six_r_M_ta_t_15 = six_r_Q_xy*v.six_r_q_x - six_r_Q_xx*v.six_r_q_y -
+        axis_x_six_r_axes5_z*six_r_M_ta_t - axis_y_six_r_axes5_z*six_r_M_ta_t_4 -
+        axis_z_six_r_axes5_z*six_r_M_ta_t_7;
+    const real six_r_M_ta_t_16 = six_r_Q_yz*v.six_r_q_y - six_r_Q_yy*v.six_r_q_z -
+        axis_x_six_r_axes5_x*six_r_M_ta_t_2 - axis_y_six_r_axes5_x*six_r_M_ta_t_5 -
+        axis_z_six_r_axes5_x*six_r_M_ta_t_8;
     const real six_r_M_ta_t_17 = six_r_M_ta_t_10 + six_r_M_ta_t_12 +
         axis_x_six_r_axes5_y*six_r_M_ta_t_2 + axis_y_six_r_axes5_y*six_r_M_ta_t_5 +
         axis_z_six_r_axes5_y*six_r_M_ta_t_8;
-    const real six_r_M_ta_t_18 = six_r_Q_yy*v.six_r_q_x - axis_x_six_r_axes5_z*six_r_M_ta_t_2
-        - axis_y_six_r_axes5_z*six_r_M_ta_t_5 - axis_z_six_r_axes5_z*six_r_M_ta_t_8 -
-        six_r_Q_xy*v.six_r_q_y;
-    const real six_r_M_ta_t_19 = six_r_Q_zz*v.six_r_q_y - axis_x_six_r_axes5_x*six_r_M_ta_t_3
-        - axis_y_six_r_axes5_x*six_r_M_ta_t_6 - axis_z_six_r_axes5_x*six_r_M_ta_t_9 -
-        six_r_Q_yz*v.six_r_q_z;
-    const real six_r_M_ta_t_20 = six_r_Q_xz*v.six_r_q_z - axis_x_six_r_axes5_y*six_r_M_ta_t_3
-        - axis_y_six_r_axes5_y*six_r_M_ta_t_6 - axis_z_six_r_axes5_y*six_r_M_ta_t_9 -
-        six_r_Q_zz*v.six_r_q_x;
+    const real six_r_M_ta_t_18 = six_r_Q_yy*v.six_r_q_x - six_r_Q_xy*v.six_r_q_y -
+        axis_x_six_r_axes5_z*six_r_M_ta_t_2 - axis_y_six_r_axes5_z*six_r_M_ta_t_5 -
+        axis_z_six_r_axes5_z*six_r_M_ta_t_8;
+    const real six_r_M_ta_t_19 = six_r_Q_zz*v.six_r_q_y - six_r_Q_yz*v.six_r_q_z -
+        axis_x_six_r_axes5_x*six_r_M_ta_t_3 - axis_y_six_r_axes5_x*six_r_M_ta_t_6 -
+        axis_z_six_r_axes5_x*six_r_M_ta_t_9;
+    const real six_r_M_ta_t_20 = six_r_Q_xz*v.six_r_q_z - six_r_Q_zz*v.six_r_q_x -
+        axis_x_six_r_axes5_y*six_r_M_ta_t_3 - axis_y_six_r_axes5_y*six_r_M_ta_t_6 -
+        axis_z_six_r_axes5_y*six_r_M_ta_t_9;
     const real six_r_M_ta_t_21 = six_r_M_ta_t_12 - six_r_M_ta_t_11 -
         axis_x_six_r_axes5_z*six_r_M_ta_t_3 - axis_y_six_r_axes5_z*six_r_M_ta_t_6 -
         axis_z_six_r_axes5_z*six_r_M_ta_t_9;
     /* (M_aa) rotational block of M */
-    const real six_r_M_aa_t = six_r_M_ta_t_19*v.six_r_q_y + six_r_d_G_m_xz*v.six_r_q_y +
+    const real six_r_M_aa_t = six_r_d_G_m_xz*v.six_r_q_y - six_r_d_G_m_xy*v.six_r_q_z +
         six_r_n_m1_x*(axis_x_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_x +
         axis_y_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_y +
         axis_z_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_z) +
         six_r_n_m2_x*(axis_x_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_x +
         axis_y_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_y +
-        axis_z_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_z) - six_r_M_ta_t_16*v.six_r_q_z -
-        six_r_d_G_m_xy*v.six_r_q_z;
-    const real six_r_M_aa_t_2 = six_r_M_ta_t_17*v.six_r_q_z + six_r_M_ta_t_20*v.six_r_q_y +
-        six_r_d_G_m_xx*v.six_r_q_z + six_r_dalpha_G_m1_y*six_r_n_m1_x +
-        six_r_dalpha_G_m2_y*six_r_n_m2_x - six_r_d_G_m_xz*v.six_r_q_x;
-    const real six_r_M_aa_t_3 = six_r_M_ta_t_21*v.six_r_q_y + six_r_d_G_m_xy*v.six_r_q_x +
-        six_r_dalpha_G_m1_z*six_r_n_m1_x + six_r_dalpha_G_m2_z*six_r_n_m2_x -
-        six_r_M_ta_t_18*v.six_r_q_z - six_r_d_G_m_xx*v.six_r_q_y;
-    const real six_r_M_aa_t_4 = six_r_M_ta_t_14*v.six_r_q_z + six_r_d_G_m_yx*v.six_r_q_z +
-        six_r_dalpha_G_m1_y*six_r_n_m1_y + six_r_dalpha_G_m2_y*six_r_n_m2_y -
-        six_r_M_ta_t_20*v.six_r_q_x - v.six_r_q_x*(six_r_d_G_m1_z*six_r_n_m1_y +
-        six_r_d_G_m2_z*six_r_n_m2_y);
-    const real six_r_M_aa_t_5 = six_r_M_ta_t_15*v.six_r_q_z + six_r_dalpha_G_m1_z*six_r_n_m1_y
-        + six_r_dalpha_G_m2_z*six_r_n_m2_y + v.six_r_q_x*(six_r_d_G_m1_y*six_r_n_m1_y +
-        six_r_d_G_m2_y*six_r_n_m2_y) - six_r_M_ta_t_21*v.six_r_q_x -
-        six_r_d_G_m_yx*v.six_r_q_y;
-    const real six_r_M_aa_t_6 = six_r_M_ta_t_18*v.six_r_q_x + six_r_dalpha_G_m1_z*six_r_n_m1_z
-        + six_r_dalpha_G_m2_z*six_r_n_m2_z + v.six_r_q_x*(six_r_d_G_m1_y*six_r_n_m1_z +
-        six_r_d_G_m2_y*six_r_n_m2_z) - six_r_M_ta_t_15*v.six_r_q_y -
-        v.six_r_q_y*(six_r_d_G_m1_x*six_r_n_m1_z + six_r_d_G_m2_x*six_r_n_m2_z);
+        axis_z_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_z) + six_r_M_ta_t_19*v.six_r_q_y -
+        six_r_M_ta_t_16*v.six_r_q_z;
+    const real six_r_M_aa_t_2 = six_r_d_G_m_xx*v.six_r_q_z - six_r_d_G_m_xz*v.six_r_q_x +
+        six_r_dalpha_G_m1_y*six_r_n_m1_x + six_r_dalpha_G_m2_y*six_r_n_m2_x +
+        six_r_M_ta_t_17*v.six_r_q_z + six_r_M_ta_t_20*v.six_r_q_y;
+    const real six_r_M_aa_t_3 = six_r_d_G_m_xy*v.six_r_q_x - six_r_d_G_m_xx*v.six_r_q_y +
+        six_r_dalpha_G_m1_z*six_r_n_m1_x + six_r_dalpha_G_m2_z*six_r_n_m2_x +
+        six_r_M_ta_t_21*v.six_r_q_y - six_r_M_ta_t_18*v.six_r_q_z;
+    const real six_r_M_aa_t_4 = six_r_d_G_m_yx*v.six_r_q_z -
+        v.six_r_q_x*(six_r_d_G_m1_z*six_r_n_m1_y + six_r_d_G_m2_z*six_r_n_m2_y) +
+        six_r_dalpha_G_m1_y*six_r_n_m1_y + six_r_dalpha_G_m2_y*six_r_n_m2_y +
+        six_r_M_ta_t_14*v.six_r_q_z - six_r_M_ta_t_20*v.six_r_q_x;
+    const real six_r_M_aa_t_5 = v.six_r_q_x*(six_r_d_G_m1_y*six_r_n_m1_y +
+        six_r_d_G_m2_y*six_r_n_m2_y) - six_r_d_G_m_yx*v.six_r_q_y +
+        six_r_dalpha_G_m1_z*six_r_n_m1_y + six_r_dalpha_G_m2_z*six_r_n_m2_y +
+        six_r_M_ta_t_15*v.six_r_q_z - six_r_M_ta_t_21*v.six_r_q_x;
+    const real six_r_M_aa_t_6 = v.six_r_q_x*(six_r_d_G_m1_y*six_r_n_m1_z +
+        six_r_d_G_m2_y*six_r_n_m2_z) - v.six_r_q_y*(six_r_d_G_m1_x*six_r_n_m1_z +
+        six_r_d_G_m2_x*six_r_n_m2_z) + six_r_dalpha_G_m1_z*six_r_n_m1_z +
+        six_r_dalpha_G_m2_z*six_r_n_m2_z + six_r_M_ta_t_18*v.six_r_q_x -
+        six_r_M_ta_t_15*v.six_r_q_y;
     /* (M_tt) translational block of M */
     gather(&terms[0*count + k], add, six_r_Q_xx);  /* M_tt_xx_of_legs */
     gather(&terms[1*count + k], add, six_r_Q_xy);  /* M_tt_xy */
@@ -6482,15 +6486,15 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[11*w + k];
-    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
     const real h_star_y = s[10*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -6498,9 +6502,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[9*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
@@ -6577,7 +6581,8 @@ APART void M_run(const prepared *m, const real *X, const real *joints, real *M, 
 {
     real s[18] = {0}, sums[21] = {0};
     real terms_six_r[21*LEGS(LEGS_OF_six_r)] = {0}, o_six_r[LEGS(LEGS_OF_six_r)] = {0};
-    M_before(m, 1, 0, X, s, t);
+    values v;
+    M_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
         M_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), 0, s, joints, terms_six_r, o_six_r);
     }
@@ -6587,6 +6592,7 @@ APART void M_run(const prepared *m, const real *X, const real *joints, real *M, 
     for (size_t n = 0; n < 21; ++n) {
         sums[n] = total(terms_six_r + n*LEGS(LEGS_OF_six_r), LEGS_OF_six_r);
     }
+    M_between(m, 1, 0, &v, s);
     M_after(m, 1, 0, s, sums, M, t);
 }
 
@@ -6596,7 +6602,9 @@ INLINE void M_run_lanes(const prepared *m, const real *X, const real *joints, re
     real s[18*LANES], sums[21*LANES];
     real o_six_r[LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        M_before(m, LANES, k, X, s, t);
+        values v;
+        M_before(m, LANES, k, X, &v, s, t);
+        M_between(m, LANES, k, &v, s);
     }
     clear(sums, 21*LANES);
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
@@ -6613,29 +6621,32 @@ INLINE void M_run_lanes(const prepared *m, const real *X, const real *joints, re
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s,
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
     verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_Z_dynamics(m, w, k, V, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.Z_p_x;
-    s[10*w + k] = v.Z_p_y;
-    s[11*w + k] = v.Z_p_z;
-    s[12*w + k] = v.Z_q_x;
-    s[13*w + k] = v.Z_q_y;
-    s[14*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_Z_dynamics(m, w, k, V, v);
+    s[9*w + k] = v->Z_p_x;
+    s[10*w + k] = v->Z_p_y;
+    s[11*w + k] = v->Z_p_z;
+    s[12*w + k] = v->Z_q_x;
+    s[13*w + k] = v->Z_q_y;
+    s[14*w + k] = v->Z_q_z;
 }
 
 INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -6679,19 +6690,19 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
         six_r_qd_1_t_7*v.six_r_w_1_t_72 - v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_69 -
         six_r_qd_1_t_8*v.six_r_w_1_t_73);
     const real six_r_qd_1_t_10 =
-        v.inv_six_r_w_1_t_49*(v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_51 +
-        six_r_qd_1_t_8*v.six_r_w_1_t_61 + six_r_qd_1_t_9*v.six_r_w_1_t_55 -
+        v.inv_six_r_w_1_t_49*(v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_51 -
         v.six_r_S_dot_in_axes5_x*v.six_r_w_1_t_50 - v.six_r_S_dot_in_axes5_z*v.six_r_w_1_t_52
-        - six_r_qd_1_t_6*v.six_r_w_1_t_53 - six_r_qd_1_t_7*v.six_r_w_1_t_54);
+        - six_r_qd_1_t_6*v.six_r_w_1_t_53 - six_r_qd_1_t_7*v.six_r_w_1_t_54 +
+        six_r_qd_1_t_8*v.six_r_w_1_t_61 + six_r_qd_1_t_9*v.six_r_w_1_t_55);
     /* (six_r-qd_4) rate of joint 4 */
     const real six_r_qd_4 = v.inv_six_r_w_1_t_28*(v.six_r_S_dot_in_axes5_z*v.six_r_w_1_t_30 +
-        six_r_qd_1_t_6*v.six_r_w_1_t_31 + six_r_qd_1_t_7*v.six_r_w_1_t_32 +
-        six_r_qd_1_t_8*v.six_r_w_1_t_44 + six_r_qd_1_t_9*v.six_r_w_1_t_39 -
-        v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_29 - six_r_qd_1_t_10*v.six_r_w_1_t_33);
+        six_r_qd_1_t_6*v.six_r_w_1_t_31 + six_r_qd_1_t_7*v.six_r_w_1_t_32 -
+        v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_29 + six_r_qd_1_t_8*v.six_r_w_1_t_44 +
+        six_r_qd_1_t_9*v.six_r_w_1_t_39 - six_r_qd_1_t_10*v.six_r_w_1_t_33);
     /* (six_r-qd_5) rate of joint 5 */
     const real six_r_qd_5 = v.inv_six_r_w_1_t_12*(v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_13 +
-        six_r_qd_1_t_10*v.six_r_w_1_t_18 + six_r_qd_1_t_7*v.six_r_w_1_t_14 +
-        six_r_qd_1_t_8*v.six_r_w_1_t_25 - six_r_qd_1_t_9*v.six_r_w_1_t_22 -
+        six_r_qd_1_t_7*v.six_r_w_1_t_14 + six_r_qd_1_t_8*v.six_r_w_1_t_25 -
+        six_r_qd_1_t_9*v.six_r_w_1_t_22 + six_r_qd_1_t_10*v.six_r_w_1_t_18 -
         six_r_qd_4*v.six_r_w_1_t_15);
     /* (six_r-omega_1) angular velocity of link 1 */
     const real six_r_omega_1_in_axes2_x = -v.six_r_c_2*six_r_qd_1_t_10;
@@ -6727,8 +6738,8 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
         six_r_omega_2_in_axes3_x*v.six_r_s_4;
     const real six_r_omega_3_t = six_r_omega_3_in_axes4_x*v.six_r_s_5;
     const real six_r_omega_3_t_2 = v.six_r_c_5*six_r_omega_3_in_axes4_x;
-    const real six_r_omega_3_in_axes5_x = six_r_omega_3_t +
-        v.six_r_c_5*six_r_omega_2_in_axes3_y;
+    const real six_r_omega_3_in_axes5_x = v.six_r_c_5*six_r_omega_2_in_axes3_y +
+        six_r_omega_3_t;
     const real six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 -
         six_r_omega_2_in_axes3_y*v.six_r_s_5;
     /* (six_r-W_3) centripetal tensor of link 3 */
@@ -6736,13 +6747,13 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
     const real six_r_W_3_t_2 = six_r_omega_3_in_axes3_z*six_r_omega_3_in_axes3_z;
     const real six_r_W_3_in_axes3_xy = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_y;
     const real six_r_W_3_in_axes3_xz = six_r_omega_2_in_axes3_x*six_r_omega_3_in_axes3_z;
-    const real six_r_W_3_t_3 = six_r_W_3_t + six_r_W_3_t_2;
+    const real six_r_W_3_t_3 = six_r_W_3_t_2 + six_r_W_3_t;
     const real six_r_W_3_in_axes3_yz = six_r_omega_2_in_axes3_y*six_r_omega_3_in_axes3_z;
     const real six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y;
     /* (six_r-omega_4) angular velocity of link 4 */
     const real six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y + six_r_qd_4;
-    const real six_r_omega_4_in_axes5_x = six_r_omega_3_t +
-        v.six_r_c_5*six_r_omega_4_in_axes4_z;
+    const real six_r_omega_4_in_axes5_x = v.six_r_c_5*six_r_omega_4_in_axes4_z +
+        six_r_omega_3_t;
     const real six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 -
         six_r_omega_4_in_axes4_z*v.six_r_s_5;
     /* (six_r-W_4) centripetal tensor of link 4 */
@@ -6775,8 +6786,8 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
     const real six_r_zeta_2_in_axes5_z = v.six_r_s_4*six_r_zeta_2_in_axes3_x;
     const real six_r_zeta_2_in_axes5_x = v.six_r_c_5*six_r_zeta_2_in_axes3_y -
         v.six_r_s_5*six_r_zeta_2_t;
-    const real six_r_zeta_2_in_axes5_y = -v.six_r_c_5*six_r_zeta_2_t -
-        v.six_r_s_5*six_r_zeta_2_in_axes3_y;
+    const real six_r_zeta_2_in_axes5_y = -v.six_r_s_5*six_r_zeta_2_in_axes3_y -
+        v.six_r_c_5*six_r_zeta_2_t;
     /* (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
     const real six_r_zeta_3_in_axes3_x = six_r_omega_2_in_axes3_y*six_r_qd_1_t_8;
     const real six_r_zeta_3_t = six_r_omega_2_in_axes3_x*six_r_qd_1_t_8;
@@ -6800,7 +6811,7 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
     const real six_r_zeta_5_in_axes5_x = six_r_omega_4_in_axes5_y*six_r_qd_5;
     const real six_r_zeta_5_t = six_r_omega_4_in_axes5_x*six_r_qd_5;
     /* (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations */
-    const real six_r_beta_5_in_axes5_x = six_r_beta_4_in_axes5_x + six_r_zeta_5_in_axes5_x;
+    const real six_r_beta_5_in_axes5_x = six_r_zeta_5_in_axes5_x + six_r_beta_4_in_axes5_x;
     const real six_r_beta_5_in_axes5_y = six_r_beta_4_in_axes5_y - six_r_zeta_5_t;
     /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
     const real six_r_bias_t = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y;
@@ -6827,41 +6838,39 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
     const real six_r_bias_t_17 = m->six_r_joint5_offset_x[i]*v.six_r_s_5;
     const real six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y;
     const real six_r_bias_in_axes5_x = six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_y +
-        six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_z +
+        six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_z - six_r_d_2_in_axes5_x*(six_r_bias_t_8 +
+        six_r_bias_t_9) - six_r_d_3_in_axes5_x*(six_r_bias_t_14 + six_r_bias_t_15) +
         six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
         six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) -
         six_r_W_5_t_3*m->six_r_platform_joint_offset_x[i] -
         six_r_bias_t_16*(six_r_W_3_in_axes5_xy - six_r_beta_3_in_axes4_y) -
         six_r_bias_t_17*(six_r_W_4_in_axes5_xy - six_r_beta_4_in_axes4_y) -
-        six_r_d_2_in_axes5_x*(six_r_bias_t_8 + six_r_bias_t_9) -
-        six_r_d_3_in_axes5_x*(six_r_bias_t_14 + six_r_bias_t_15) -
         v.six_r_d_4_in_axes5_x*(six_r_bias_t +
         six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) -
-        v.six_r_d_5_in_axes5_x*(six_r_W_5_t + six_r_bias_t);
+        v.six_r_d_5_in_axes5_x*(six_r_bias_t + six_r_W_5_t);
     const real six_r_bias_in_axes5_y = six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_x +
-        six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_z + six_r_bias_t_16*(six_r_bias_t +
-        six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) + six_r_bias_t_17*(six_r_bias_t +
-        six_r_bias_t_2) + six_r_bias_t_18*v.six_r_d_5_in_axes5_x +
-        six_r_bias_t_18*m->six_r_platform_joint_offset_x[i] +
+        six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_z - six_r_d_2_in_axes5_y*(six_r_bias_t_7 +
+        six_r_bias_t_9) - six_r_d_3_in_axes5_y*(six_r_bias_t_13 + six_r_bias_t_15) +
         six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
         six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
-        v.six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_y) -
-        six_r_d_2_in_axes5_y*(six_r_bias_t_7 + six_r_bias_t_9) -
-        six_r_d_3_in_axes5_y*(six_r_bias_t_13 + six_r_bias_t_15);
+        six_r_bias_t_16*(six_r_bias_t + six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) +
+        six_r_bias_t_17*(six_r_bias_t + six_r_bias_t_2) +
+        six_r_bias_t_18*v.six_r_d_5_in_axes5_x +
+        six_r_bias_t_18*m->six_r_platform_joint_offset_x[i] +
+        v.six_r_d_4_in_axes5_x*(six_r_beta_3_in_axes4_y + six_r_W_3_in_axes5_xy);
     const real six_r_bias_in_axes5_z = six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_x +
-        six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_y +
+        six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_y - six_r_d_2_in_axes5_z*(six_r_bias_t_7 +
+        six_r_bias_t_8) - six_r_d_3_in_axes5_z*(six_r_bias_t_13 + six_r_bias_t_14) +
         six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
         six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
         v.six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*v.six_r_c_5 +
-        six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) +
+        six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) - six_r_bias_t_16*(six_r_beta_4_t +
+        six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - six_r_beta_3_t*v.six_r_s_5) +
         v.six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
-        six_r_beta_4_in_axes5_y) + m->six_r_platform_joint_offset_x[i]*(six_r_W_5_in_axes5_xz
-        - six_r_beta_5_in_axes5_y) - six_r_bias_t_16*(six_r_beta_4_t +
-        six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - six_r_beta_3_t*v.six_r_s_5) -
-        six_r_bias_t_17*(six_r_beta_4_in_axes5_x +
-        six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y) -
-        six_r_d_2_in_axes5_z*(six_r_bias_t_7 + six_r_bias_t_8) -
-        six_r_d_3_in_axes5_z*(six_r_bias_t_13 + six_r_bias_t_14);
+        six_r_beta_4_in_axes5_y) -
+        six_r_bias_t_17*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y +
+        six_r_beta_4_in_axes5_x) + m->six_r_platform_joint_offset_x[i]*(six_r_W_5_in_axes5_xz
+        - six_r_beta_5_in_axes5_y);
     /* (six_r-rel_o) remainder of: acceleration of the connection point left to the joint
        accelerations */
     const real six_r_rel_o_in_axes5_x = six_r_u_1_in_axes5_x - six_r_bias_in_axes5_x;
@@ -6871,8 +6880,8 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
     const real six_r_nd_m1_in_axes5_x = -v.six_r_nd_m1_t -
         v.six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_x;
     const real six_r_nd_m1_in_axes5_y = v.six_r_end_p1_in_axes5_z*v.six_r_omega_in_axes5_y -
-        v.six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y -
-        v.six_r_n_m2_in_axes5_z*v.six_r_omega_in_axes5_z;
+        v.six_r_n_m2_in_axes5_z*v.six_r_omega_in_axes5_z -
+        v.six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y;
     /* (six_r-nu_1) bias of the angular acceleration along moment direction 1 */
     const real six_r_nu_1_t = v.six_r_n_m2_in_axes5_z*six_r_omega_4_in_axes5_y;
     const real six_r_nu_1_t_2 = six_r_beta_5_in_axes5_x*v.six_r_n_m2_in_axes5_z -
@@ -6881,59 +6890,60 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
     const real six_r_nu_1_t_4 = six_r_omega_4_in_axes5_y - v.six_r_omega_in_axes5_y;
     const real six_r_nu_1_t_5 = six_r_omega_5_in_axes5_z - v.six_r_omega_in_axes5_z;
     const real six_r_nu_1_t_6 = six_r_nd_m1_in_axes5_x*six_r_nu_1_t_3 +
-        six_r_nd_m1_in_axes5_y*six_r_nu_1_t_4 + six_r_nu_1_t_5*(six_r_nu_1_t +
-        v.six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x);
+        six_r_nd_m1_in_axes5_y*six_r_nu_1_t_4 +
+        six_r_nu_1_t_5*(v.six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x + six_r_nu_1_t);
     const real six_r_nu_1 = six_r_nu_1_t_2 - six_r_nu_1_t_6;
     /* (six_r-nd_m2) rate of moment direction 2 */
     const real six_r_nd_m2_in_axes5_y = v.six_r_n_m1_in_axes5_y*v.six_r_omega_in_axes5_y -
-        v.six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y -
-        v.six_r_n_m2_in_axes5_z*v.six_r_omega_in_axes5_x;
+        v.six_r_n_m2_in_axes5_z*v.six_r_omega_in_axes5_x -
+        v.six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y;
     const real six_r_nd_m2_in_axes5_z = v.six_r_nd_m1_t -
         v.six_r_n_m1_in_axes5_y*six_r_omega_5_in_axes5_z;
     /* (six_r-nu_2) bias of the angular acceleration along moment direction 2 */
     const real six_r_nu_2_t = six_r_beta_5_in_axes5_y*v.six_r_end_p1_in_axes5_z -
         six_r_beta_4_in_axes4_y*v.six_r_n_m2_in_axes5_z;
     const real six_r_nu_2_t_2 = six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 +
-        six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 + six_r_nu_1_t_3*(six_r_nu_1_t +
-        v.six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z);
+        six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 +
+        six_r_nu_1_t_3*(v.six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z + six_r_nu_1_t);
     const real six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2;
     /* (six_r-qdd_1_o) remainder of: acceleration of joint 1 */
     const real six_r_qdd_1_o_t = six_r_nu_1*m->six_r_size[i];
     const real six_r_qdd_1_o_t_2 = six_r_nu_2*m->six_r_size[i];
-    const real six_r_qdd_1_o_t_3 = v.inv_six_r_w_1_t_79*(v.six_r_qd_1_t*six_r_rel_o_in_axes5_x
-        + v.six_r_qd_1_t_3*six_r_rel_o_in_axes5_z + v.six_r_qd_1_t_4*six_r_qdd_1_o_t +
-        v.six_r_qd_1_t_5*six_r_qdd_1_o_t_2 - v.six_r_qd_1_t_2*six_r_rel_o_in_axes5_y);
+    const real six_r_qdd_1_o_t_3 = v.inv_six_r_w_1_t_79*(v.six_r_qd_1_t_4*six_r_qdd_1_o_t +
+        v.six_r_qd_1_t_5*six_r_qdd_1_o_t_2 + v.six_r_qd_1_t*six_r_rel_o_in_axes5_x -
+        v.six_r_qd_1_t_2*six_r_rel_o_in_axes5_y + v.six_r_qd_1_t_3*six_r_rel_o_in_axes5_z);
     const real six_r_qdd_1_o_t_4 = v.inv_six_r_w_1_t_67*(six_r_qdd_1_o_t*v.six_r_w_1_t_71 +
-        six_r_qdd_1_o_t_2*v.six_r_w_1_t_72 + six_r_rel_o_in_axes5_x*v.six_r_w_1_t_68 +
-        six_r_rel_o_in_axes5_z*v.six_r_w_1_t_70 - six_r_qdd_1_o_t_3*v.six_r_w_1_t_73 -
-        six_r_rel_o_in_axes5_y*v.six_r_w_1_t_69);
-    const real six_r_qdd_1_o_t_5 = v.inv_six_r_w_1_t_49*(six_r_qdd_1_o_t_3*v.six_r_w_1_t_61 +
-        six_r_qdd_1_o_t_4*v.six_r_w_1_t_55 + six_r_rel_o_in_axes5_y*v.six_r_w_1_t_51 -
+        six_r_qdd_1_o_t_2*v.six_r_w_1_t_72 + six_r_rel_o_in_axes5_x*v.six_r_w_1_t_68 -
+        six_r_rel_o_in_axes5_y*v.six_r_w_1_t_69 + six_r_rel_o_in_axes5_z*v.six_r_w_1_t_70 -
+        six_r_qdd_1_o_t_3*v.six_r_w_1_t_73);
+    const real six_r_qdd_1_o_t_5 =
+        v.inv_six_r_w_1_t_49*(six_r_rel_o_in_axes5_y*v.six_r_w_1_t_51 -
         six_r_qdd_1_o_t*v.six_r_w_1_t_53 - six_r_qdd_1_o_t_2*v.six_r_w_1_t_54 -
-        six_r_rel_o_in_axes5_x*v.six_r_w_1_t_50 - six_r_rel_o_in_axes5_z*v.six_r_w_1_t_52);
+        six_r_rel_o_in_axes5_x*v.six_r_w_1_t_50 - six_r_rel_o_in_axes5_z*v.six_r_w_1_t_52 +
+        six_r_qdd_1_o_t_3*v.six_r_w_1_t_61 + six_r_qdd_1_o_t_4*v.six_r_w_1_t_55);
     /* (six_r-qdd_4_o) remainder of: acceleration of joint 4 */
     const real six_r_qdd_4_o = v.inv_six_r_w_1_t_28*(six_r_qdd_1_o_t*v.six_r_w_1_t_31 +
-        six_r_qdd_1_o_t_2*v.six_r_w_1_t_32 + six_r_qdd_1_o_t_3*v.six_r_w_1_t_44 +
-        six_r_qdd_1_o_t_4*v.six_r_w_1_t_39 + six_r_rel_o_in_axes5_z*v.six_r_w_1_t_30 -
-        six_r_qdd_1_o_t_5*v.six_r_w_1_t_33 - six_r_rel_o_in_axes5_y*v.six_r_w_1_t_29);
+        six_r_qdd_1_o_t_2*v.six_r_w_1_t_32 - six_r_rel_o_in_axes5_y*v.six_r_w_1_t_29 +
+        six_r_rel_o_in_axes5_z*v.six_r_w_1_t_30 + six_r_qdd_1_o_t_3*v.six_r_w_1_t_44 +
+        six_r_qdd_1_o_t_4*v.six_r_w_1_t_39 - six_r_qdd_1_o_t_5*v.six_r_w_1_t_33);
     /* (six_r-alpha_1_o) remainder of: angular acceleration of link 1 */
     const real six_r_alpha_1_o_t = v.six_r_c_2*six_r_qdd_1_o_t_5;
     const real six_r_alpha_1_o_in_axes2_y = six_r_qdd_1_o_t_5*v.six_r_s_2;
     /* (six_r-alpha_2_o) remainder of: angular acceleration of link 2 */
     const real six_r_alpha_2_o_in_axes2_x = six_r_W_2_in_axes2_yz - six_r_alpha_1_o_t;
-    const real six_r_alpha_2_o_in_axes2_y = six_r_alpha_1_o_in_axes2_y +
-        six_r_zeta_2_in_axes2_y;
+    const real six_r_alpha_2_o_in_axes2_y = six_r_zeta_2_in_axes2_y +
+        six_r_alpha_1_o_in_axes2_y;
     /* (six_r-B_2_o) remainder of the acceleration tensor of link 2 */
     const real six_r_B_2_o_in_axes2_xy = six_r_W_2_in_axes2_xy - six_r_qdd_1_o_t_4;
     const real six_r_B_2_o_in_axes2_yx = six_r_W_2_in_axes2_xy + six_r_qdd_1_o_t_4;
-    const real six_r_B_2_o_in_axes2_zx = -six_r_alpha_2_o_in_axes2_y -
-        six_r_zeta_2_in_axes2_y;
+    const real six_r_B_2_o_in_axes2_zx = -six_r_zeta_2_in_axes2_y -
+        six_r_alpha_2_o_in_axes2_y;
     const real six_r_B_2_o_in_axes2_zy = six_r_W_2_in_axes2_yz + six_r_alpha_2_o_in_axes2_x;
     /* (six_r-alpha_3_o) remainder of: angular acceleration of link 3 */
     const real six_r_alpha_3_o_in_axes3_x = six_r_zeta_3_in_axes3_x +
         six_r_alpha_2_o_in_axes2_x*v.six_r_s_3 - six_r_alpha_2_o_in_axes2_y*v.six_r_c_3;
-    const real six_r_alpha_3_o_in_axes3_y = six_r_alpha_2_o_in_axes2_x*v.six_r_c_3 +
-        six_r_alpha_2_o_in_axes2_y*v.six_r_s_3 - six_r_zeta_3_t;
+    const real six_r_alpha_3_o_in_axes3_y = six_r_alpha_2_o_in_axes2_x*v.six_r_c_3 -
+        six_r_zeta_3_t + six_r_alpha_2_o_in_axes2_y*v.six_r_s_3;
     const real six_r_alpha_3_o_in_axes3_z = six_r_qdd_1_o_t_3 + six_r_qdd_1_o_t_4;
     /* (six_r-B_3_o) remainder of the acceleration tensor of link 3 */
     const real six_r_B_3_o_in_axes3_xy = six_r_W_3_in_axes3_xy - six_r_alpha_3_o_in_axes3_z;
@@ -6945,9 +6955,9 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
     /* (six_r-alpha_4_o) remainder of: angular acceleration of link 4 */
     const real six_r_alpha_4_o_in_axes4_x = six_r_zeta_4_in_axes4_x +
         six_r_alpha_3_o_in_axes3_z*v.six_r_s_4 - six_r_alpha_3_o_in_axes3_x*v.six_r_c_4;
-    const real six_r_alpha_4_o_in_axes4_y = six_r_alpha_3_o_in_axes3_x*v.six_r_s_4 +
-        six_r_alpha_3_o_in_axes3_z*v.six_r_c_4 - six_r_zeta_4_t;
-    const real six_r_alpha_4_o_in_axes4_z = six_r_alpha_3_o_in_axes3_y + six_r_qdd_4_o;
+    const real six_r_alpha_4_o_in_axes4_y = six_r_alpha_3_o_in_axes3_z*v.six_r_c_4 -
+        six_r_zeta_4_t + six_r_alpha_3_o_in_axes3_x*v.six_r_s_4;
+    const real six_r_alpha_4_o_in_axes4_z = six_r_qdd_4_o + six_r_alpha_3_o_in_axes3_y;
     /* (six_r-B_4_o) remainder of the acceleration tensor of link 4 */
     const real six_r_B_4_o_in_axes4_xy = six_r_W_4_in_axes4_xy - six_r_alpha_4_o_in_axes4_z;
     const real six_r_B_4_o_in_axes4_xz = six_r_W_4_in_axes4_xz + six_r_alpha_4_o_in_axes4_y;
@@ -6960,11 +6970,11 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
         six_r_alpha_4_o_in_axes4_x*v.six_r_s_5 + six_r_alpha_4_o_in_axes4_z*v.six_r_c_5;
     const real six_r_alpha_5_o_in_axes5_y = six_r_alpha_4_o_in_axes4_x*v.six_r_c_5 -
         six_r_zeta_5_t - six_r_alpha_4_o_in_axes4_z*v.six_r_s_5;
-    const real six_r_alpha_5_o_in_axes5_z = six_r_alpha_4_o_in_axes4_y +
+    const real six_r_alpha_5_o_in_axes5_z =
         v.inv_six_r_w_1_t_12*(six_r_qdd_1_o_t_2*v.six_r_w_1_t_14 +
-        six_r_qdd_1_o_t_3*v.six_r_w_1_t_25 + six_r_qdd_1_o_t_5*v.six_r_w_1_t_18 +
-        six_r_rel_o_in_axes5_y*v.six_r_w_1_t_13 - six_r_qdd_1_o_t_4*v.six_r_w_1_t_22 -
-        six_r_qdd_4_o*v.six_r_w_1_t_15);
+        six_r_rel_o_in_axes5_y*v.six_r_w_1_t_13 + six_r_qdd_1_o_t_3*v.six_r_w_1_t_25 -
+        six_r_qdd_1_o_t_4*v.six_r_w_1_t_22 + six_r_qdd_1_o_t_5*v.six_r_w_1_t_18 -
+        six_r_qdd_4_o*v.six_r_w_1_t_15) + six_r_alpha_4_o_in_axes4_y;
     /* (six_r-B_5_o) remainder of the acceleration tensor of link 5 */
     const real six_r_B_5_o_in_axes5_xy = six_r_W_4_in_axes5_xy - six_r_alpha_5_o_in_axes5_z;
     const real six_r_B_5_o_in_axes5_xz = six_r_W_5_in_axes5_xz + six_r_alpha_5_o_in_axes5_y;
@@ -6975,8 +6985,8 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
     /* (six_r-a_o_3_o) remainder of: acceleration of the origin of joint 3 */
     const real six_r_a_o_3_o_t = six_r_omega_1_in_axes2_y*six_r_omega_1_in_axes2_y;
     const real six_r_a_o_3_o_t_2 = six_r_qd_1_t_9*six_r_qd_1_t_9;
-    const real six_r_a_o_3_o_in_axes2_x = -m->six_r_joint3_offset_x[i]*(six_r_a_o_3_o_t +
-        six_r_a_o_3_o_t_2);
+    const real six_r_a_o_3_o_in_axes2_x = -m->six_r_joint3_offset_x[i]*(six_r_a_o_3_o_t_2 +
+        six_r_a_o_3_o_t);
     const real six_r_a_o_3_o_in_axes2_y = six_r_B_2_o_in_axes2_yx*m->six_r_joint3_offset_x[i];
     const real six_r_a_o_3_o_in_axes2_z = six_r_B_2_o_in_axes2_zx*m->six_r_joint3_offset_x[i];
     const real six_r_a_o_3_o_in_axes3_x = six_r_a_o_3_o_in_axes2_x*v.six_r_s_3 -
@@ -6984,8 +6994,8 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
     const real six_r_a_o_3_o_in_axes3_y = six_r_a_o_3_o_in_axes2_x*v.six_r_c_3 +
         six_r_a_o_3_o_in_axes2_y*v.six_r_s_3;
     /* (six_r-a_o_4_o) remainder of: acceleration of the origin of joint 4 */
-    const real six_r_a_o_4_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x +
-        six_r_B_3_o_in_axes3_xy*m->six_r_joint4_offset_x[i];
+    const real six_r_a_o_4_o_in_axes3_x = six_r_B_3_o_in_axes3_xy*m->six_r_joint4_offset_x[i]
+        + six_r_a_o_3_o_in_axes3_x;
     const real six_r_a_o_4_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y -
         six_r_W_3_t_3*m->six_r_joint4_offset_x[i];
     const real six_r_a_o_4_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z +
@@ -6996,41 +7006,41 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
     const real six_r_acc_3_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z - v.six_r_g_in_axes1_y;
     /* (six_r-f_3_o) remainder of: inertia force of link 3 less its weight */
     const real six_r_f_3_o_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y;
-    const real six_r_f_3_o_in_axes3_x = six_r_B_3_o_in_axes3_xy*m->six_r_h_3_in_spec3_x[i] +
-        six_r_B_3_o_in_axes3_xz*m->six_r_h_3_in_spec3_z[i] +
+    const real six_r_f_3_o_in_axes3_x = m->six_r_h_3_in_spec3_y[i]*(six_r_W_3_t_2 +
+        six_r_f_3_o_t) + six_r_B_3_o_in_axes3_xy*m->six_r_h_3_in_spec3_x[i] +
         six_r_acc_3_o_in_axes3_x*m->six_r_link3_mass[i] +
-        m->six_r_h_3_in_spec3_y[i]*(six_r_W_3_t_2 + six_r_f_3_o_t);
-    const real six_r_f_3_o_in_axes3_y = six_r_B_3_o_in_axes3_yz*m->six_r_h_3_in_spec3_z[i] +
-        six_r_acc_3_o_in_axes3_y*m->six_r_link3_mass[i] -
-        six_r_B_3_o_in_axes3_yx*m->six_r_h_3_in_spec3_y[i] -
-        six_r_W_3_t_3*m->six_r_h_3_in_spec3_x[i];
-    const real six_r_f_3_o_in_axes3_z = six_r_B_3_o_in_axes3_zy*m->six_r_h_3_in_spec3_x[i] +
+        six_r_B_3_o_in_axes3_xz*m->six_r_h_3_in_spec3_z[i];
+    const real six_r_f_3_o_in_axes3_y = six_r_acc_3_o_in_axes3_y*m->six_r_link3_mass[i] -
+        six_r_W_3_t_3*m->six_r_h_3_in_spec3_x[i] -
+        six_r_B_3_o_in_axes3_yx*m->six_r_h_3_in_spec3_y[i] +
+        six_r_B_3_o_in_axes3_yz*m->six_r_h_3_in_spec3_z[i];
+    const real six_r_f_3_o_in_axes3_z = six_r_B_3_o_in_axes3_zy*m->six_r_h_3_in_spec3_x[i] -
+        m->six_r_h_3_in_spec3_z[i]*(six_r_W_3_t + six_r_f_3_o_t) +
         six_r_acc_3_o_in_axes3_z*m->six_r_link3_mass[i] -
-        six_r_B_3_o_in_axes3_zx*m->six_r_h_3_in_spec3_y[i] -
-        m->six_r_h_3_in_spec3_z[i]*(six_r_W_3_t + six_r_f_3_o_t);
+        six_r_B_3_o_in_axes3_zx*m->six_r_h_3_in_spec3_y[i];
     /* (six_r-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity */
-    const real six_r_acc_4_o_in_axes4_x = six_r_a_o_4_o_in_axes3_z*v.six_r_s_4 +
-        v.six_r_c_4*v.six_r_g_in_axes3_x - six_r_a_o_4_o_in_axes3_x*v.six_r_c_4 -
-        v.six_r_g_in_axes1_y*v.six_r_s_4;
-    const real six_r_acc_4_o_in_axes4_y = six_r_a_o_4_o_in_axes3_x*v.six_r_s_4 +
-        six_r_a_o_4_o_in_axes3_z*v.six_r_c_4 - v.six_r_c_4*v.six_r_g_in_axes1_y -
-        v.six_r_g_in_axes3_x*v.six_r_s_4;
+    const real six_r_acc_4_o_in_axes4_x = v.six_r_c_4*v.six_r_g_in_axes3_x -
+        v.six_r_g_in_axes1_y*v.six_r_s_4 - six_r_a_o_4_o_in_axes3_x*v.six_r_c_4 +
+        six_r_a_o_4_o_in_axes3_z*v.six_r_s_4;
+    const real six_r_acc_4_o_in_axes4_y = six_r_a_o_4_o_in_axes3_x*v.six_r_s_4 -
+        v.six_r_c_4*v.six_r_g_in_axes1_y - v.six_r_g_in_axes3_x*v.six_r_s_4 +
+        six_r_a_o_4_o_in_axes3_z*v.six_r_c_4;
     const real six_r_acc_4_o_in_axes4_z = six_r_a_o_4_o_in_axes3_y - v.six_r_g_in_axes3_y;
     /* (six_r-f_4_o) remainder of: inertia force of link 4 less its weight */
     const real six_r_f_4_o_t = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x;
     const real six_r_f_4_o_t_2 = six_r_omega_4_in_axes4_z*six_r_omega_4_in_axes4_z;
-    const real six_r_f_4_o_in_axes4_x = six_r_B_4_o_in_axes4_xy*m->six_r_h_4_in_spec4_z[i] +
+    const real six_r_f_4_o_in_axes4_x = six_r_B_4_o_in_axes4_xy*m->six_r_h_4_in_spec4_z[i] -
+        m->six_r_h_4_in_spec4_y[i]*(six_r_bias_t + six_r_f_4_o_t_2) +
         six_r_B_4_o_in_axes4_xz*m->six_r_h_4_in_spec4_x[i] +
-        six_r_acc_4_o_in_axes4_x*m->six_r_link4_mass[i] -
-        m->six_r_h_4_in_spec4_y[i]*(six_r_bias_t + six_r_f_4_o_t_2);
-    const real six_r_f_4_o_in_axes4_y = six_r_B_4_o_in_axes4_yx*m->six_r_h_4_in_spec4_y[i] +
+        six_r_acc_4_o_in_axes4_x*m->six_r_link4_mass[i];
+    const real six_r_f_4_o_in_axes4_y = six_r_B_4_o_in_axes4_yx*m->six_r_h_4_in_spec4_y[i] -
+        m->six_r_h_4_in_spec4_z[i]*(six_r_f_4_o_t + six_r_f_4_o_t_2) +
         six_r_B_4_o_in_axes4_yz*m->six_r_h_4_in_spec4_x[i] +
-        six_r_acc_4_o_in_axes4_y*m->six_r_link4_mass[i] -
-        m->six_r_h_4_in_spec4_z[i]*(six_r_f_4_o_t + six_r_f_4_o_t_2);
-    const real six_r_f_4_o_in_axes4_z = six_r_B_4_o_in_axes4_zx*m->six_r_h_4_in_spec4_y[i] +
-        six_r_B_4_o_in_axes4_zy*m->six_r_h_4_in_spec4_z[i] +
-        six_r_acc_4_o_in_axes4_z*m->six_r_link4_mass[i] -
-        m->six_r_h_4_in_spec4_x[i]*(six_r_bias_t + six_r_f_4_o_t);
+        six_r_acc_4_o_in_axes4_y*m->six_r_link4_mass[i];
+    const real six_r_f_4_o_in_axes4_z = six_r_acc_4_o_in_axes4_z*m->six_r_link4_mass[i] -
+        m->six_r_h_4_in_spec4_x[i]*(six_r_bias_t + six_r_f_4_o_t) +
+        six_r_B_4_o_in_axes4_zx*m->six_r_h_4_in_spec4_y[i] +
+        six_r_B_4_o_in_axes4_zy*m->six_r_h_4_in_spec4_z[i];
     const real six_r_f_4_o_in_axes3_x = six_r_f_4_o_in_axes4_y*v.six_r_s_4 -
         v.six_r_c_4*six_r_f_4_o_in_axes4_x;
     const real six_r_f_4_o_in_axes3_z = v.six_r_c_4*six_r_f_4_o_in_axes4_y +
@@ -7047,93 +7057,91 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
         v.axis_z_six_r_axes5_z*m->gravity_z;
     /* (six_r-mu_5_o) remainder of: inertia moment of the links that turn with link 5, about their
        reference points */
-    const real six_r_mu_5_o_in_axes5_x = six_r_B_5_o_in_axes5_yx*m->six_r_J_5_in_spec5_xz[i] +
-        six_r_B_5_o_in_axes5_zy*m->six_r_Sigma_5_in_axes5_yy[i] +
+    const real six_r_mu_5_o_in_axes5_x = six_r_acc_5_o_in_axes5_z*m->six_r_h_5_in_spec5_y[i] -
+        six_r_acc_5_o_in_axes5_y*m->six_r_h_5_in_spec5_z[i] +
         m->six_r_J_5_in_spec5_yz[i]*(six_r_W_5_t - six_r_W_5_t_2) +
-        six_r_acc_5_o_in_axes5_z*m->six_r_h_5_in_spec5_y[i] -
+        six_r_B_5_o_in_axes5_yx*m->six_r_J_5_in_spec5_xz[i] +
+        six_r_B_5_o_in_axes5_zy*m->six_r_Sigma_5_in_axes5_yy[i] -
         six_r_B_5_o_in_axes5_yz*m->six_r_Sigma_5_in_axes5_zz[i] -
-        six_r_B_5_o_in_axes5_zx*m->six_r_J_5_in_spec5_xy[i] -
-        six_r_acc_5_o_in_axes5_y*m->six_r_h_5_in_spec5_z[i];
-    const real six_r_mu_5_o_in_axes5_y =
-        six_r_B_5_o_in_axes5_xz*m->six_r_Sigma_5_in_axes5_zz[i] +
-        six_r_B_5_o_in_axes5_zy*m->six_r_J_5_in_spec5_xy[i] +
-        six_r_acc_5_o_in_axes5_x*m->six_r_h_5_in_spec5_z[i] -
-        six_r_B_5_o_in_axes5_xy*m->six_r_J_5_in_spec5_yz[i] -
-        six_r_B_5_o_in_axes5_zx*m->six_r_Sigma_5_in_axes5_xx[i] -
+        six_r_B_5_o_in_axes5_zx*m->six_r_J_5_in_spec5_xy[i];
+    const real six_r_mu_5_o_in_axes5_y = six_r_acc_5_o_in_axes5_x*m->six_r_h_5_in_spec5_z[i] -
+        six_r_acc_5_o_in_axes5_z*m->six_r_h_5_in_spec5_x[i] -
         m->six_r_J_5_in_spec5_xz[i]*(six_r_bias_t_2 - six_r_W_5_t_2) -
-        six_r_acc_5_o_in_axes5_z*m->six_r_h_5_in_spec5_x[i];
-    const real six_r_mu_5_o_in_axes5_z = six_r_B_5_o_in_axes5_xz*m->six_r_J_5_in_spec5_yz[i] +
-        six_r_B_5_o_in_axes5_yx*m->six_r_Sigma_5_in_axes5_xx[i] +
+        six_r_B_5_o_in_axes5_xy*m->six_r_J_5_in_spec5_yz[i] +
+        six_r_B_5_o_in_axes5_xz*m->six_r_Sigma_5_in_axes5_zz[i] +
+        six_r_B_5_o_in_axes5_zy*m->six_r_J_5_in_spec5_xy[i] -
+        six_r_B_5_o_in_axes5_zx*m->six_r_Sigma_5_in_axes5_xx[i];
+    const real six_r_mu_5_o_in_axes5_z = six_r_acc_5_o_in_axes5_y*m->six_r_h_5_in_spec5_x[i] -
+        six_r_acc_5_o_in_axes5_x*m->six_r_h_5_in_spec5_y[i] +
         m->six_r_J_5_in_spec5_xy[i]*(six_r_bias_t_2 - six_r_W_5_t) +
-        six_r_acc_5_o_in_axes5_y*m->six_r_h_5_in_spec5_x[i] -
-        six_r_B_5_o_in_axes5_xy*m->six_r_Sigma_5_in_axes5_yy[i] -
-        six_r_B_5_o_in_axes5_yz*m->six_r_J_5_in_spec5_xz[i] -
-        six_r_acc_5_o_in_axes5_x*m->six_r_h_5_in_spec5_y[i];
+        six_r_B_5_o_in_axes5_yx*m->six_r_Sigma_5_in_axes5_xx[i] -
+        six_r_B_5_o_in_axes5_xy*m->six_r_Sigma_5_in_axes5_yy[i] +
+        six_r_B_5_o_in_axes5_xz*m->six_r_J_5_in_spec5_yz[i] -
+        six_r_B_5_o_in_axes5_yz*m->six_r_J_5_in_spec5_xz[i];
     /* (six_r-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their
        reference points */
-    const real six_r_mu_4_o_in_axes4_x = six_r_B_4_o_in_axes4_yx*m->six_r_J_4_in_spec4_xy[i] +
-        six_r_B_4_o_in_axes4_zy*m->six_r_Sigma_4_in_axes4_yy[i] +
-        m->six_r_J_4_in_spec4_xz[i]*(six_r_bias_t - six_r_f_4_o_t_2) +
-        six_r_acc_4_o_in_axes4_z*m->six_r_h_4_in_spec4_z[i] -
+    const real six_r_mu_4_o_in_axes4_x = m->six_r_J_4_in_spec4_xz[i]*(six_r_bias_t -
+        six_r_f_4_o_t_2) + six_r_acc_4_o_in_axes4_z*m->six_r_h_4_in_spec4_z[i] +
+        six_r_B_4_o_in_axes4_yx*m->six_r_J_4_in_spec4_xy[i] +
+        six_r_B_4_o_in_axes4_zy*m->six_r_Sigma_4_in_axes4_yy[i] -
         six_r_B_4_o_in_axes4_yz*m->six_r_Sigma_4_in_axes4_zz[i] -
         six_r_B_4_o_in_axes4_zx*m->six_r_J_4_in_spec4_yz[i] -
         six_r_acc_4_o_in_axes4_y*m->six_r_h_4_in_spec4_x[i];
     const real six_r_mu_4_o_in_axes4_y =
-        six_r_B_4_o_in_axes4_xz*m->six_r_Sigma_4_in_axes4_zz[i] +
-        six_r_B_4_o_in_axes4_zy*m->six_r_J_4_in_spec4_yz[i] +
-        six_r_acc_4_o_in_axes4_x*m->six_r_h_4_in_spec4_x[i] -
-        six_r_B_4_o_in_axes4_xy*m->six_r_J_4_in_spec4_xz[i] -
-        six_r_B_4_o_in_axes4_zx*m->six_r_Sigma_4_in_axes4_xx[i] -
+        six_r_B_4_o_in_axes4_xz*m->six_r_Sigma_4_in_axes4_zz[i] -
         m->six_r_J_4_in_spec4_xy[i]*(six_r_f_4_o_t - six_r_f_4_o_t_2) -
-        six_r_acc_4_o_in_axes4_z*m->six_r_h_4_in_spec4_y[i];
-    const real six_r_mu_4_o_in_axes4_z = six_r_B_4_o_in_axes4_xz*m->six_r_J_4_in_spec4_xz[i] +
-        six_r_B_4_o_in_axes4_yx*m->six_r_Sigma_4_in_axes4_xx[i] +
-        m->six_r_J_4_in_spec4_yz[i]*(six_r_f_4_o_t - six_r_bias_t) +
-        six_r_acc_4_o_in_axes4_y*m->six_r_h_4_in_spec4_y[i] -
+        six_r_acc_4_o_in_axes4_z*m->six_r_h_4_in_spec4_y[i] +
+        six_r_B_4_o_in_axes4_zy*m->six_r_J_4_in_spec4_yz[i] -
+        six_r_B_4_o_in_axes4_xy*m->six_r_J_4_in_spec4_xz[i] -
+        six_r_B_4_o_in_axes4_zx*m->six_r_Sigma_4_in_axes4_xx[i] +
+        six_r_acc_4_o_in_axes4_x*m->six_r_h_4_in_spec4_x[i];
+    const real six_r_mu_4_o_in_axes4_z = m->six_r_J_4_in_spec4_yz[i]*(six_r_f_4_o_t -
+        six_r_bias_t) + six_r_B_4_o_in_axes4_xz*m->six_r_J_4_in_spec4_xz[i] +
+        six_r_B_4_o_in_axes4_yx*m->six_r_Sigma_4_in_axes4_xx[i] -
         six_r_B_4_o_in_axes4_xy*m->six_r_Sigma_4_in_axes4_yy[i] -
-        six_r_B_4_o_in_axes4_yz*m->six_r_J_4_in_spec4_xy[i] -
+        six_r_B_4_o_in_axes4_yz*m->six_r_J_4_in_spec4_xy[i] +
+        six_r_acc_4_o_in_axes4_y*m->six_r_h_4_in_spec4_y[i] -
         six_r_acc_4_o_in_axes4_x*m->six_r_h_4_in_spec4_z[i];
     /* (six_r-N_4_o) remainder of: moment about joint 4 of the links from 4 outwards, the force at the
        connection point left out */
     const real six_r_N_4_o_in_axes4_x = six_r_mu_4_o_in_axes4_x +
         v.six_r_c_5*six_r_mu_5_o_in_axes5_y + six_r_mu_5_o_in_axes5_x*v.six_r_s_5;
     const real six_r_N_4_o_in_axes4_y = six_r_mu_4_o_in_axes4_y + six_r_mu_5_o_in_axes5_z;
-    const real six_r_N_4_o_in_axes4_z = six_r_mu_4_o_in_axes4_z +
-        v.six_r_c_5*six_r_mu_5_o_in_axes5_x - six_r_mu_5_o_in_axes5_y*v.six_r_s_5;
+    const real six_r_N_4_o_in_axes4_z = v.six_r_c_5*six_r_mu_5_o_in_axes5_x -
+        six_r_mu_5_o_in_axes5_y*v.six_r_s_5 + six_r_mu_4_o_in_axes4_z;
     /* (six_r-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
        reference points */
-    const real six_r_mu_3_o_in_axes3_x = six_r_B_3_o_in_axes3_zx*m->six_r_J_3_in_spec3_xy[i] +
+    const real six_r_mu_3_o_in_axes3_x = m->six_r_J_3_in_spec3_xz[i]*(six_r_f_3_o_t -
+        six_r_W_3_t_2) - six_r_B_3_o_in_axes3_yx*m->six_r_J_3_in_spec3_yz[i] -
+        six_r_acc_3_o_in_axes3_y*m->six_r_h_3_in_spec3_z[i] +
+        six_r_B_3_o_in_axes3_zx*m->six_r_J_3_in_spec3_xy[i] +
         six_r_B_3_o_in_axes3_zy*m->six_r_Sigma_3_in_axes3_yy[i] +
-        m->six_r_J_3_in_spec3_xz[i]*(six_r_f_3_o_t - six_r_W_3_t_2) +
         six_r_acc_3_o_in_axes3_z*m->six_r_h_3_in_spec3_x[i] -
-        six_r_B_3_o_in_axes3_yx*m->six_r_J_3_in_spec3_yz[i] -
-        six_r_B_3_o_in_axes3_yz*m->six_r_Sigma_3_in_axes3_zz[i] -
-        six_r_acc_3_o_in_axes3_y*m->six_r_h_3_in_spec3_z[i];
-    const real six_r_mu_3_o_in_axes3_y =
-        six_r_B_3_o_in_axes3_xz*m->six_r_Sigma_3_in_axes3_zz[i] +
-        m->six_r_J_3_in_spec3_yz[i]*(six_r_W_3_t - six_r_W_3_t_2) +
+        six_r_B_3_o_in_axes3_yz*m->six_r_Sigma_3_in_axes3_zz[i];
+    const real six_r_mu_3_o_in_axes3_y = m->six_r_J_3_in_spec3_yz[i]*(six_r_W_3_t -
+        six_r_W_3_t_2) - six_r_B_3_o_in_axes3_xy*m->six_r_J_3_in_spec3_xz[i] +
         six_r_acc_3_o_in_axes3_x*m->six_r_h_3_in_spec3_z[i] +
+        six_r_B_3_o_in_axes3_xz*m->six_r_Sigma_3_in_axes3_zz[i] +
         six_r_acc_3_o_in_axes3_z*m->six_r_h_3_in_spec3_y[i] -
-        six_r_B_3_o_in_axes3_xy*m->six_r_J_3_in_spec3_xz[i] -
         six_r_B_3_o_in_axes3_zx*m->six_r_Sigma_3_in_axes3_xx[i] -
         six_r_B_3_o_in_axes3_zy*m->six_r_J_3_in_spec3_xy[i];
-    const real six_r_mu_3_o_in_axes3_z = six_r_B_3_o_in_axes3_xz*m->six_r_J_3_in_spec3_xz[i] +
-        six_r_B_3_o_in_axes3_yx*m->six_r_Sigma_3_in_axes3_xx[i] +
-        six_r_B_3_o_in_axes3_yz*m->six_r_J_3_in_spec3_yz[i] -
-        six_r_B_3_o_in_axes3_xy*m->six_r_Sigma_3_in_axes3_yy[i] -
+    const real six_r_mu_3_o_in_axes3_z =
+        six_r_B_3_o_in_axes3_yx*m->six_r_Sigma_3_in_axes3_xx[i] -
         m->six_r_J_3_in_spec3_xy[i]*(six_r_W_3_t - six_r_f_3_o_t) -
+        six_r_B_3_o_in_axes3_xy*m->six_r_Sigma_3_in_axes3_yy[i] -
         six_r_acc_3_o_in_axes3_x*m->six_r_h_3_in_spec3_x[i] -
-        six_r_acc_3_o_in_axes3_y*m->six_r_h_3_in_spec3_y[i];
+        six_r_acc_3_o_in_axes3_y*m->six_r_h_3_in_spec3_y[i] +
+        six_r_B_3_o_in_axes3_xz*m->six_r_J_3_in_spec3_xz[i] +
+        six_r_B_3_o_in_axes3_yz*m->six_r_J_3_in_spec3_yz[i];
     /* (six_r-N_3_o) remainder of: moment about joint 3 of the links from 3 outwards, the force at the
        connection point left out */
     const real six_r_N_3_o_in_axes3_x = six_r_mu_3_o_in_axes3_x +
-        six_r_N_4_o_in_axes4_y*v.six_r_s_4 +
-        six_r_f_4_o_in_axes3_z*m->six_r_joint4_offset_x[i] -
-        six_r_N_4_o_in_axes4_x*v.six_r_c_4;
-    const real six_r_N_3_o_in_axes3_y = six_r_N_4_o_in_axes4_z + six_r_mu_3_o_in_axes3_y;
-    const real six_r_N_3_o_in_axes3_z = six_r_mu_3_o_in_axes3_z +
-        six_r_N_4_o_in_axes4_x*v.six_r_s_4 + six_r_N_4_o_in_axes4_y*v.six_r_c_4 -
-        six_r_f_4_o_in_axes3_x*m->six_r_joint4_offset_x[i];
+        six_r_f_4_o_in_axes3_z*m->six_r_joint4_offset_x[i] +
+        six_r_N_4_o_in_axes4_y*v.six_r_s_4 - six_r_N_4_o_in_axes4_x*v.six_r_c_4;
+    const real six_r_N_3_o_in_axes3_y = six_r_mu_3_o_in_axes3_y + six_r_N_4_o_in_axes4_z;
+    const real six_r_N_3_o_in_axes3_z = six_r_mu_3_o_in_axes3_z -
+        six_r_f_4_o_in_axes3_x*m->six_r_joint4_offset_x[i] +
+        six_r_N_4_o_in_axes4_y*v.six_r_c_4 + six_r_N_4_o_in_axes4_x*v.six_r_s_4;
     /* (six_r-T_3_o) remainder of: inertia force of the links from 3 outwards, the last link left out
        */
     const real six_r_T_3_o_in_axes3_x = six_r_f_3_o_in_axes3_x + six_r_f_4_o_in_axes3_x;
@@ -7142,43 +7150,42 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
     /* (six_r-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real six_r_mu_2_o_t = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_x;
-    const real six_r_mu_2_o_in_axes2_x = six_r_B_2_o_in_axes2_yx*m->six_r_J_2_in_spec2_xz[i] +
-        six_r_B_2_o_in_axes2_zy*m->six_r_Sigma_2_in_axes2_yy[i] +
+    const real six_r_mu_2_o_in_axes2_x = v.six_r_g_in_axes2_y*m->six_r_h_2_in_spec2_z[i] -
+        v.six_r_g_in_axes1_y*m->six_r_h_2_in_spec2_y[i] +
         m->six_r_J_2_in_spec2_yz[i]*(six_r_a_o_3_o_t - six_r_a_o_3_o_t_2) +
-        v.six_r_g_in_axes2_y*m->six_r_h_2_in_spec2_z[i] -
-        six_r_B_2_o_in_axes2_zx*m->six_r_J_2_in_spec2_xy[i] -
-        m->six_r_Sigma_2_in_axes2_zz[i]*six_r_alpha_1_o_t -
-        v.six_r_g_in_axes1_y*m->six_r_h_2_in_spec2_y[i];
-    const real six_r_mu_2_o_in_axes2_y = six_r_B_2_o_in_axes2_zy*m->six_r_J_2_in_spec2_xy[i] +
-        m->six_r_Sigma_2_in_axes2_zz[i]*six_r_alpha_1_o_in_axes2_y +
-        v.six_r_g_in_axes1_y*m->six_r_h_2_in_spec2_x[i] -
-        six_r_B_2_o_in_axes2_xy*m->six_r_J_2_in_spec2_yz[i] -
-        six_r_B_2_o_in_axes2_zx*m->six_r_Sigma_2_in_axes2_xx[i] -
+        six_r_B_2_o_in_axes2_yx*m->six_r_J_2_in_spec2_xz[i] -
+        m->six_r_Sigma_2_in_axes2_zz[i]*six_r_alpha_1_o_t +
+        six_r_B_2_o_in_axes2_zy*m->six_r_Sigma_2_in_axes2_yy[i] -
+        six_r_B_2_o_in_axes2_zx*m->six_r_J_2_in_spec2_xy[i];
+    const real six_r_mu_2_o_in_axes2_y = v.six_r_g_in_axes1_y*m->six_r_h_2_in_spec2_x[i] -
+        v.six_r_g_in_axes2_x*m->six_r_h_2_in_spec2_z[i] -
         m->six_r_J_2_in_spec2_xz[i]*(six_r_mu_2_o_t - six_r_a_o_3_o_t_2) -
-        v.six_r_g_in_axes2_x*m->six_r_h_2_in_spec2_z[i];
-    const real six_r_mu_2_o_in_axes2_z =
-        six_r_B_2_o_in_axes2_yx*m->six_r_Sigma_2_in_axes2_xx[i] +
+        six_r_B_2_o_in_axes2_xy*m->six_r_J_2_in_spec2_yz[i] +
+        m->six_r_Sigma_2_in_axes2_zz[i]*six_r_alpha_1_o_in_axes2_y +
+        six_r_B_2_o_in_axes2_zy*m->six_r_J_2_in_spec2_xy[i] -
+        six_r_B_2_o_in_axes2_zx*m->six_r_Sigma_2_in_axes2_xx[i];
+    const real six_r_mu_2_o_in_axes2_z = v.six_r_g_in_axes2_x*m->six_r_h_2_in_spec2_y[i] -
+        v.six_r_g_in_axes2_y*m->six_r_h_2_in_spec2_x[i] +
         m->six_r_J_2_in_spec2_xy[i]*(six_r_mu_2_o_t - six_r_a_o_3_o_t) +
-        m->six_r_J_2_in_spec2_yz[i]*six_r_alpha_1_o_in_axes2_y +
-        v.six_r_g_in_axes2_x*m->six_r_h_2_in_spec2_y[i] -
-        six_r_B_2_o_in_axes2_xy*m->six_r_Sigma_2_in_axes2_yy[i] -
-        m->six_r_J_2_in_spec2_xz[i]*six_r_alpha_1_o_t -
-        v.six_r_g_in_axes2_y*m->six_r_h_2_in_spec2_x[i];
+        six_r_B_2_o_in_axes2_yx*m->six_r_Sigma_2_in_axes2_xx[i] -
+        six_r_B_2_o_in_axes2_xy*m->six_r_Sigma_2_in_axes2_yy[i] +
+        m->six_r_J_2_in_spec2_yz[i]*six_r_alpha_1_o_in_axes2_y -
+        m->six_r_J_2_in_spec2_xz[i]*six_r_alpha_1_o_t;
     /* (six_r-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
        connection point left out */
     const real six_r_N_2_o_in_axes2_x = six_r_mu_2_o_in_axes2_x +
         six_r_N_3_o_in_axes3_x*v.six_r_s_3 + six_r_N_3_o_in_axes3_y*v.six_r_c_3;
-    const real six_r_N_2_o_in_axes2_y = six_r_mu_2_o_in_axes2_y +
-        six_r_N_3_o_in_axes3_y*v.six_r_s_3 - six_r_N_3_o_in_axes3_x*v.six_r_c_3 -
-        six_r_T_3_o_in_axes3_z*m->six_r_joint3_offset_x[i];
-    const real six_r_N_2_o_in_axes2_z = six_r_N_3_o_in_axes3_z + six_r_mu_2_o_in_axes2_z -
+    const real six_r_N_2_o_in_axes2_y = six_r_mu_2_o_in_axes2_y -
+        six_r_T_3_o_in_axes3_z*m->six_r_joint3_offset_x[i] +
+        six_r_N_3_o_in_axes3_y*v.six_r_s_3 - six_r_N_3_o_in_axes3_x*v.six_r_c_3;
+    const real six_r_N_2_o_in_axes2_z = six_r_mu_2_o_in_axes2_z -
         m->six_r_joint3_offset_x[i]*(six_r_T_3_o_in_axes3_x*v.six_r_c_3 -
-        six_r_T_3_o_in_axes3_y*v.six_r_s_3);
+        six_r_T_3_o_in_axes3_y*v.six_r_s_3) + six_r_N_3_o_in_axes3_z;
     /* (six_r-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
     const real six_r_mu_1_o_in_axes1_z = v.six_r_g_in_axes1_x*m->six_r_h_1_in_spec1_z[i] -
-        m->six_r_J_1_in_spec1_xx[i]*six_r_qdd_1_o_t_5 -
-        v.six_r_g_in_axes1_y*m->six_r_h_1_in_spec1_y[i];
+        v.six_r_g_in_axes1_y*m->six_r_h_1_in_spec1_y[i] -
+        m->six_r_J_1_in_spec1_xx[i]*six_r_qdd_1_o_t_5;
     /* (six_r-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
        connection point left out */
     const real six_r_N_1_o_in_axes1_z = six_r_mu_1_o_in_axes1_z +
@@ -7193,17 +7200,17 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
     const real six_r_G_m1_o_t_4 = v.inv_six_r_w_1_t_67*(six_r_G_m1_o_t*v.six_r_w_1_t_22 +
         six_r_G_m1_o_t_2*v.six_r_w_1_t_39 - six_r_N_2_o_in_axes2_z -
         six_r_G_m1_o_t_3*v.six_r_w_1_t_55);
-    const real six_r_G_m1_o_t_5 = v.inv_six_r_w_1_t_79*(six_r_N_3_o_in_axes3_z +
-        six_r_G_m1_o_t*v.six_r_w_1_t_25 + six_r_G_m1_o_t_3*v.six_r_w_1_t_61 +
-        six_r_G_m1_o_t_4*v.six_r_w_1_t_73 - six_r_G_m1_o_t_2*v.six_r_w_1_t_44);
+    const real six_r_G_m1_o_t_5 = v.inv_six_r_w_1_t_79*(six_r_G_m1_o_t*v.six_r_w_1_t_25 +
+        six_r_N_3_o_in_axes3_z - six_r_G_m1_o_t_2*v.six_r_w_1_t_44 +
+        six_r_G_m1_o_t_3*v.six_r_w_1_t_61 + six_r_G_m1_o_t_4*v.six_r_w_1_t_73);
     const real six_r_G_m1_o_t_6 = m->six_r_size[i]*(six_r_G_m1_o_t_2*v.six_r_w_1_t_31 +
         six_r_G_m1_o_t_3*v.six_r_w_1_t_53 + six_r_G_m1_o_t_4*v.six_r_w_1_t_71 -
         six_r_G_m1_o_t_5*v.six_r_qd_1_t_4);
     /* (six_r-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia
        and weight along all degrees of freedom */
-    const real six_r_G_m2_o_t = m->six_r_size[i]*(six_r_G_m1_o_t_2*v.six_r_w_1_t_32 +
-        six_r_G_m1_o_t_3*v.six_r_w_1_t_54 + six_r_G_m1_o_t_4*v.six_r_w_1_t_72 -
-        six_r_G_m1_o_t*v.six_r_w_1_t_14 - six_r_G_m1_o_t_5*v.six_r_qd_1_t_5);
+    const real six_r_G_m2_o_t = m->six_r_size[i]*(six_r_G_m1_o_t_2*v.six_r_w_1_t_32 -
+        six_r_G_m1_o_t*v.six_r_w_1_t_14 + six_r_G_m1_o_t_3*v.six_r_w_1_t_54 +
+        six_r_G_m1_o_t_4*v.six_r_w_1_t_72 - six_r_G_m1_o_t_5*v.six_r_qd_1_t_5);
     /* (six_r-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
        weight along all degrees of freedom */
     const real six_r_G_m_o_in_axes5_x = six_r_G_m1_o_t_6*v.six_r_n_m2_in_axes5_z;
@@ -7211,21 +7218,19 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
         six_r_G_m1_o_t_6*v.six_r_n_m1_in_axes5_y;
     /* (six_r-c_o) remainder of: leg force on the platform without actuation and without the mass at
        the connection point */
-    const real six_r_c_o_in_axes5_x = six_r_G_m1_o_t_3*v.six_r_w_1_t_50 +
-        six_r_G_m1_o_t_4*v.six_r_w_1_t_68 + six_r_W_5_t_3*m->six_r_h_5_in_spec5_x[i] -
+    const real six_r_c_o_in_axes5_x = six_r_W_5_t_3*m->six_r_h_5_in_spec5_x[i] -
         six_r_B_5_o_in_axes5_xy*m->six_r_h_5_in_spec5_y[i] -
-        six_r_B_5_o_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] - six_r_G_m1_o_t_5*v.six_r_qd_1_t;
-    const real six_r_c_o_in_axes5_y = six_r_G_m1_o_t_5*v.six_r_qd_1_t_2 +
-        m->six_r_h_5_in_spec5_y[i]*(six_r_W_5_t_2 + six_r_bias_t_2) -
-        six_r_B_5_o_in_axes5_yx*m->six_r_h_5_in_spec5_x[i] -
+        six_r_B_5_o_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] + six_r_G_m1_o_t_3*v.six_r_w_1_t_50
+        + six_r_G_m1_o_t_4*v.six_r_w_1_t_68 - six_r_G_m1_o_t_5*v.six_r_qd_1_t;
+    const real six_r_c_o_in_axes5_y = m->six_r_h_5_in_spec5_y[i]*(six_r_W_5_t_2 +
+        six_r_bias_t_2) - six_r_B_5_o_in_axes5_yx*m->six_r_h_5_in_spec5_x[i] -
         six_r_B_5_o_in_axes5_yz*m->six_r_h_5_in_spec5_z[i] - six_r_G_m1_o_t*v.six_r_w_1_t_13 -
         six_r_G_m1_o_t_2*v.six_r_w_1_t_29 - six_r_G_m1_o_t_3*v.six_r_w_1_t_51 -
-        six_r_G_m1_o_t_4*v.six_r_w_1_t_69;
-    const real six_r_c_o_in_axes5_z = six_r_G_m1_o_t_2*v.six_r_w_1_t_30 +
-        six_r_G_m1_o_t_3*v.six_r_w_1_t_52 + six_r_G_m1_o_t_4*v.six_r_w_1_t_70 +
-        m->six_r_h_5_in_spec5_z[i]*(six_r_W_5_t + six_r_bias_t_2) -
-        six_r_B_5_o_in_axes5_zx*m->six_r_h_5_in_spec5_x[i] -
-        six_r_B_5_o_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] -
+        six_r_G_m1_o_t_4*v.six_r_w_1_t_69 + six_r_G_m1_o_t_5*v.six_r_qd_1_t_2;
+    const real six_r_c_o_in_axes5_z = m->six_r_h_5_in_spec5_z[i]*(six_r_W_5_t +
+        six_r_bias_t_2) - six_r_B_5_o_in_axes5_zx*m->six_r_h_5_in_spec5_x[i] -
+        six_r_B_5_o_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] + six_r_G_m1_o_t_2*v.six_r_w_1_t_30
+        + six_r_G_m1_o_t_3*v.six_r_w_1_t_52 + six_r_G_m1_o_t_4*v.six_r_w_1_t_70 -
         six_r_G_m1_o_t_5*v.six_r_qd_1_t_3;
     /* (six_r-c_m_o) remainder of: moment of the leg on the platform without actuation */
     const real six_r_c_m_o_in_axes5_z = six_r_G_m2_o_t*v.six_r_n_m2_in_axes5_z;
@@ -7284,13 +7289,13 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[3*w + k];
     const real Z_q_x = s[12*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[4*w + k];
     const real Z_q_y = s[13*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[5*w + k];
     const real Z_q_z = s[14*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
     Z[1*w + k] = Z_t_y;
@@ -7307,7 +7312,8 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, const real *j
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_six_r[6*LEGS(LEGS_OF_six_r)] = {0}, o_six_r[LEGS(LEGS_OF_six_r)] = {0};
-    Z_before(m, 1, 0, X, V, s, t);
+    values v;
+    Z_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
         Z_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), 0, s, V, joints, terms_six_r, o_six_r);
     }
@@ -7317,6 +7323,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, const real *j
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_six_r + n*LEGS(LEGS_OF_six_r), LEGS_OF_six_r);
     }
+    Z_between(m, 1, 0, V, &v, s);
     Z_after(1, 0, s, sums, Z, t);
 }
 
@@ -7326,7 +7333,9 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, const r
     real s[15*LANES], sums[6*LANES];
     real o_six_r[LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        Z_before(m, LANES, k, X, V, s, t);
+        values v;
+        Z_before(m, LANES, k, X, &v, s, t);
+        Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
@@ -7343,20 +7352,20 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, const r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void H_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -7401,7 +7410,8 @@ APART void H_run(const prepared *m, const real *X, const real *joints, real *H, 
 {
     real s[9] = {0};
     real o_six_r[8*LEGS(LEGS_OF_six_r)] = {0};
-    H_before(m, 1, 0, X, s, t);
+    values v;
+    H_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
         H_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), s, joints, o_six_r);
     }
@@ -7416,7 +7426,8 @@ INLINE void H_run_lanes(const prepared *m, const real *X, const real *joints, re
     real s[9*LANES];
     real o_six_r[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        H_before(m, LANES, k, X, s, t);
+        values v;
+        H_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -7429,12 +7440,26 @@ INLINE void H_run_lanes(const prepared *m, const real *X, const real *joints, re
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, real *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
+    values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
     /* (W_p) centripetal tensor of the platform */
     const real omega_x = V[3*w + k];
     const real omega_y = V[4*w + k];
@@ -7449,72 +7474,62 @@ INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X
     const real a_t_y = t_ddot_y - m->gravity_y;
     const real t_ddot_z = A[2*w + k];
     const real a_t_z = t_ddot_z - m->gravity_z;
-    const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
-    const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
-    const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
+    const real a_t_in_platform_x = v->R_yx*a_t_y + v->R_zx*a_t_z + v->R_xx*a_t_x;
+    const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
+    const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
     const real f_p_t = omega_x*omega_x;
     const real f_p_t_2 = omega_y*omega_y;
     const real f_p_t_3 = omega_z*omega_z;
     const real alpha_y = A[4*w + k];
     const real alpha_z = A[5*w + k];
-    const real f_p_x = a_t_x*m->m_star + v.h_star_y*(W_p_xy - alpha_z) + v.h_star_z*(W_p_xz +
-        alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+    const real f_p_x = a_t_x*m->m_star + v->h_star_y*(W_p_xy - alpha_z) + v->h_star_z*(alpha_y
+        + W_p_xz) - v->h_star_x*(f_p_t_2 + f_p_t_3);
     const real alpha_x = A[3*w + k];
-    const real f_p_y = a_t_y*m->m_star + v.h_star_x*(W_p_xy + alpha_z) + v.h_star_z*(W_p_yz -
-        alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
-    const real f_p_z = a_t_z*m->m_star + v.h_star_x*(W_p_xz - alpha_y) + v.h_star_y*(W_p_yz +
-        alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
+    const real f_p_y = a_t_y*m->m_star + v->h_star_x*(alpha_z + W_p_xy) + v->h_star_z*(W_p_yz
+        - alpha_x) - v->h_star_y*(f_p_t + f_p_t_3);
+    const real f_p_z = a_t_z*m->m_star + v->h_star_x*(W_p_xz - alpha_y) + v->h_star_y*(alpha_x
+        + W_p_yz) - v->h_star_z*(f_p_t + f_p_t_2);
     /* (mu_p) inertia moment of the platform less that of its weight */
-    const real mu_p_t = m->J_star_in_platform_xx*v.omega_in_platform_x +
-        m->J_star_in_platform_xy*v.omega_in_platform_y +
-        m->J_star_in_platform_xz*v.omega_in_platform_z;
-    const real mu_p_t_2 = m->J_star_in_platform_xy*v.omega_in_platform_x +
-        m->J_star_in_platform_yy*v.omega_in_platform_y +
-        m->J_star_in_platform_yz*v.omega_in_platform_z;
-    const real mu_p_t_3 = m->J_star_in_platform_xz*v.omega_in_platform_x +
-        m->J_star_in_platform_yz*v.omega_in_platform_y +
-        m->J_star_in_platform_zz*v.omega_in_platform_z;
-    const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
-    const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
-    const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+    const real mu_p_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
+        m->J_star_in_platform_xy*v->omega_in_platform_y +
+        m->J_star_in_platform_xz*v->omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
+        m->J_star_in_platform_yy*v->omega_in_platform_y +
+        m->J_star_in_platform_yz*v->omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
+        m->J_star_in_platform_yz*v->omega_in_platform_y +
+        m->J_star_in_platform_zz*v->omega_in_platform_z;
+    const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
+    const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
+    const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
     const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
         m->J_star_in_platform_xy*alpha_in_platform_y +
         m->J_star_in_platform_xz*alpha_in_platform_z +
-        a_t_in_platform_z*m->h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
-        a_t_in_platform_y*m->h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+        a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
+        + mu_p_t_3*v->omega_in_platform_y - mu_p_t_2*v->omega_in_platform_z;
     const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
         m->J_star_in_platform_yz*alpha_in_platform_z +
-        a_t_in_platform_x*m->h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
-        a_t_in_platform_z*m->h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
+        a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
+        + mu_p_t*v->omega_in_platform_z - mu_p_t_3*v->omega_in_platform_x;
     const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
         m->J_star_in_platform_zz*alpha_in_platform_z +
-        a_t_in_platform_y*m->h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
-        a_t_in_platform_x*m->h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
-    const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
-        v.R_xz*mu_p_in_platform_z;
-    const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
-        v.R_yz*mu_p_in_platform_z;
-    const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
-        v.R_zz*mu_p_in_platform_z;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+        a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
+        + mu_p_t_2*v->omega_in_platform_x - mu_p_t*v->omega_in_platform_y;
+    const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
+        v->R_xz*mu_p_in_platform_z;
+    const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
+        v->R_yz*mu_p_in_platform_z;
+    const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
+        v->R_zz*mu_p_in_platform_z;
     s[9*w + k] = f_p_x;
     s[10*w + k] = f_p_y;
     s[11*w + k] = f_p_z;
     s[12*w + k] = mu_p_x;
     s[13*w + k] = mu_p_y;
     s[14*w + k] = mu_p_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void required_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -7614,13 +7629,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[12*w + k];
-    const real R_a_x = R_a_x_of_legs + mu_p_x;
+    const real R_a_x = mu_p_x + R_a_x_of_legs;
     const real R_a_y_of_legs = sums[4*w + k];
     const real mu_p_y = s[13*w + k];
-    const real R_a_y = R_a_y_of_legs + mu_p_y;
+    const real R_a_y = mu_p_y + R_a_y_of_legs;
     const real R_a_z_of_legs = sums[5*w + k];
     const real mu_p_z = s[14*w + k];
-    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
     required[1*w + k] = R_t_y;
@@ -7631,12 +7646,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[5*w + k] = R_a_z;
 }
 
-APART void required_run(const prepared *m, const real *X, const real *V, const real *A, const real
-    *joints, real *required, real *H, verdict *t)
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, const
+    real *joints, real *required, real *H, verdict *t)
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_six_r[6*LEGS(LEGS_OF_six_r)] = {0}, o_six_r[7*LEGS(LEGS_OF_six_r)] = {0};
-    required_before(m, 1, 0, X, V, A, s, t);
+    values v;
+    required_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
         required_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), 0, s, V, A, joints, terms_six_r, o_six_r);
     }
@@ -7646,6 +7662,7 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_six_r + n*LEGS(LEGS_OF_six_r), LEGS_OF_six_r);
     }
+    required_between(m, 1, 0, V, A, &v, s);
     required_after(1, 0, s, sums, required);
 }
 
@@ -7655,7 +7672,9 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real s[15*LANES], sums[6*LANES];
     real o_six_r[7*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        required_before(m, LANES, k, X, V, A, s, t);
+        values v;
+        required_before(m, LANES, k, X, &v, s, t);
+        required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
@@ -7672,10 +7691,6 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before()
-{
-}
-
 INLINE void inverse_kinematics_legs_six_r(size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *joints, real *o)
 {
@@ -7735,21 +7750,20 @@ INLINE void inverse_kinematics_run_lanes(const real *joints, real *restrict q, v
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_rates_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k,
@@ -7796,18 +7810,18 @@ INLINE void joint_rates_legs_six_r(const prepared *m, size_t w, size_t i, size_t
         six_r_S_dot_in_axes5_z*v.six_r_w_1_t_70 - six_r_qd_1_t*v.six_r_w_1_t_71 -
         six_r_qd_1_t_3*v.six_r_w_1_t_73);
     const real six_r_qd_1 = v.inv_six_r_w_1_t_49*(six_r_S_dot_in_axes5_x*v.six_r_w_1_t_50 +
-        six_r_S_dot_in_axes5_z*v.six_r_w_1_t_52 + six_r_qd_1_t*v.six_r_w_1_t_53 +
-        six_r_qd_1_t_3*v.six_r_w_1_t_61 - six_r_S_dot_in_axes5_y*v.six_r_w_1_t_51 -
-        six_r_qd_1_t_2*v.six_r_w_1_t_54 - six_r_qd_1_t_4*v.six_r_w_1_t_55);
+        six_r_S_dot_in_axes5_z*v.six_r_w_1_t_52 + six_r_qd_1_t*v.six_r_w_1_t_53 -
+        six_r_S_dot_in_axes5_y*v.six_r_w_1_t_51 - six_r_qd_1_t_2*v.six_r_w_1_t_54 +
+        six_r_qd_1_t_3*v.six_r_w_1_t_61 - six_r_qd_1_t_4*v.six_r_w_1_t_55);
     /* (six_r-qd_4) rate of joint 4 */
     const real six_r_qd_4_t = v.inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_y*v.six_r_w_1_t_29 +
-        six_r_qd_1_t_2*v.six_r_w_1_t_32 + six_r_qd_1_t_3*v.six_r_w_1_t_44 -
-        six_r_S_dot_in_axes5_z*v.six_r_w_1_t_30 - six_r_qd_1*v.six_r_w_1_t_33 -
-        six_r_qd_1_t*v.six_r_w_1_t_31 - six_r_qd_1_t_4*v.six_r_w_1_t_39);
+        six_r_qd_1_t_2*v.six_r_w_1_t_32 - six_r_S_dot_in_axes5_z*v.six_r_w_1_t_30 -
+        six_r_qd_1_t*v.six_r_w_1_t_31 + six_r_qd_1_t_3*v.six_r_w_1_t_44 -
+        six_r_qd_1_t_4*v.six_r_w_1_t_39 - six_r_qd_1*v.six_r_w_1_t_33);
     /* (six_r-qd_5) rate of joint 5 */
-    const real six_r_qd_5_t = v.inv_six_r_w_1_t_12*(six_r_qd_1*v.six_r_w_1_t_18 +
-        six_r_qd_1_t_2*v.six_r_w_1_t_14 + six_r_qd_1_t_3*v.six_r_w_1_t_25 +
-        six_r_qd_1_t_4*v.six_r_w_1_t_22 - six_r_S_dot_in_axes5_y*v.six_r_w_1_t_13 -
+    const real six_r_qd_5_t = v.inv_six_r_w_1_t_12*(six_r_qd_1_t_2*v.six_r_w_1_t_14 -
+        six_r_S_dot_in_axes5_y*v.six_r_w_1_t_13 + six_r_qd_1_t_3*v.six_r_w_1_t_25 +
+        six_r_qd_1_t_4*v.six_r_w_1_t_22 + six_r_qd_1*v.six_r_w_1_t_18 -
         six_r_qd_4_t*v.six_r_w_1_t_15);
     /* (six_r-qd_1) */
     o[0*count + k] = six_r_qd_1;
@@ -7845,7 +7859,8 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, cons
 {
     real s[9] = {0};
     real o_six_r[7*LEGS(LEGS_OF_six_r)] = {0};
-    joint_rates_before(m, 1, 0, X, s, t);
+    values v;
+    joint_rates_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
         joint_rates_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), s, V, joints, o_six_r);
     }
@@ -7860,7 +7875,8 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real s[9*LANES];
     real o_six_r[7*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_rates_before(m, LANES, k, X, s, t);
+        values v;
+        joint_rates_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -7873,21 +7889,20 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
+    values *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_accelerations_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
@@ -7918,18 +7933,18 @@ INLINE void joint_accelerations_legs_six_r(const prepared *m, size_t w, size_t i
         v.six_r_S_dot_in_axes5_z*v.six_r_w_1_t_70 - six_r_qd_1_t_6*v.six_r_w_1_t_71 -
         six_r_qd_1_t_8*v.six_r_w_1_t_73);
     const real six_r_qd_1 = v.inv_six_r_w_1_t_49*(v.six_r_S_dot_in_axes5_x*v.six_r_w_1_t_50 +
-        v.six_r_S_dot_in_axes5_z*v.six_r_w_1_t_52 + six_r_qd_1_t_6*v.six_r_w_1_t_53 +
-        six_r_qd_1_t_8*v.six_r_w_1_t_61 - v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_51 -
-        six_r_qd_1_t_7*v.six_r_w_1_t_54 - six_r_qd_1_t_9*v.six_r_w_1_t_55);
+        v.six_r_S_dot_in_axes5_z*v.six_r_w_1_t_52 + six_r_qd_1_t_6*v.six_r_w_1_t_53 -
+        v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_51 - six_r_qd_1_t_7*v.six_r_w_1_t_54 +
+        six_r_qd_1_t_8*v.six_r_w_1_t_61 - six_r_qd_1_t_9*v.six_r_w_1_t_55);
     /* (six_r-qd_4) rate of joint 4 */
     const real six_r_qd_4_t = v.inv_six_r_w_1_t_28*(v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_29
-        + six_r_qd_1_t_7*v.six_r_w_1_t_32 + six_r_qd_1_t_8*v.six_r_w_1_t_44 -
-        v.six_r_S_dot_in_axes5_z*v.six_r_w_1_t_30 - six_r_qd_1*v.six_r_w_1_t_33 -
-        six_r_qd_1_t_6*v.six_r_w_1_t_31 - six_r_qd_1_t_9*v.six_r_w_1_t_39);
+        + six_r_qd_1_t_7*v.six_r_w_1_t_32 - v.six_r_S_dot_in_axes5_z*v.six_r_w_1_t_30 -
+        six_r_qd_1_t_6*v.six_r_w_1_t_31 + six_r_qd_1_t_8*v.six_r_w_1_t_44 -
+        six_r_qd_1_t_9*v.six_r_w_1_t_39 - six_r_qd_1*v.six_r_w_1_t_33);
     /* (six_r-qd_5) rate of joint 5 */
-    const real six_r_qd_5_t = v.inv_six_r_w_1_t_12*(six_r_qd_1*v.six_r_w_1_t_18 +
-        six_r_qd_1_t_7*v.six_r_w_1_t_14 + six_r_qd_1_t_8*v.six_r_w_1_t_25 +
-        six_r_qd_1_t_9*v.six_r_w_1_t_22 - v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_13 -
+    const real six_r_qd_5_t = v.inv_six_r_w_1_t_12*(six_r_qd_1_t_7*v.six_r_w_1_t_14 -
+        v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_13 + six_r_qd_1_t_8*v.six_r_w_1_t_25 +
+        six_r_qd_1_t_9*v.six_r_w_1_t_22 + six_r_qd_1*v.six_r_w_1_t_18 -
         six_r_qd_4_t*v.six_r_w_1_t_15);
     /* (six_r-omega_1) angular velocity of link 1 */
     const real six_r_omega_1_in_axes2_x = v.six_r_c_2*six_r_qd_1;
@@ -7946,12 +7961,12 @@ INLINE void joint_accelerations_legs_six_r(const prepared *m, size_t w, size_t i
         v.six_r_c_3*six_r_omega_1_in_axes2_y;
     const real six_r_omega_2_in_axes3_y = v.six_r_c_3*six_r_omega_1_in_axes2_x +
         six_r_omega_1_in_axes2_y*v.six_r_s_3;
-    const real six_r_omega_2_in_axes5_x = six_r_omega_1_in_axes5_x +
-        v.six_r_e_2_in_axes5_x*six_r_qd_1_t_9;
-    const real six_r_omega_2_in_axes5_y = six_r_omega_1_in_axes5_y +
-        v.six_r_e_2_in_axes5_y*six_r_qd_1_t_9;
-    const real six_r_omega_2_in_axes5_z = six_r_omega_1_in_axes5_z +
-        v.six_r_c_4*six_r_qd_1_t_9;
+    const real six_r_omega_2_in_axes5_x = v.six_r_e_2_in_axes5_x*six_r_qd_1_t_9 +
+        six_r_omega_1_in_axes5_x;
+    const real six_r_omega_2_in_axes5_y = v.six_r_e_2_in_axes5_y*six_r_qd_1_t_9 +
+        six_r_omega_1_in_axes5_y;
+    const real six_r_omega_2_in_axes5_z = v.six_r_c_4*six_r_qd_1_t_9 +
+        six_r_omega_1_in_axes5_z;
     /* (six_r-W_2) centripetal tensor of link 2 */
     const real six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_9;
     const real six_r_W_2_in_axes5_xy = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_y;
@@ -7965,16 +7980,16 @@ INLINE void joint_accelerations_legs_six_r(const prepared *m, size_t w, size_t i
         six_r_omega_2_in_axes3_x*v.six_r_s_4;
     const real six_r_omega_3_t = six_r_omega_3_in_axes4_x*v.six_r_s_5;
     const real six_r_omega_3_t_2 = v.six_r_c_5*six_r_omega_3_in_axes4_x;
-    const real six_r_omega_3_in_axes5_x = six_r_omega_3_t +
-        v.six_r_c_5*six_r_omega_2_in_axes3_y;
+    const real six_r_omega_3_in_axes5_x = v.six_r_c_5*six_r_omega_2_in_axes3_y +
+        six_r_omega_3_t;
     const real six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 -
         six_r_omega_2_in_axes3_y*v.six_r_s_5;
     /* (six_r-W_3) centripetal tensor of link 3 */
     const real six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y;
     /* (six_r-omega_4) angular velocity of link 4 */
     const real six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y - six_r_qd_4_t;
-    const real six_r_omega_4_in_axes5_x = six_r_omega_3_t +
-        v.six_r_c_5*six_r_omega_4_in_axes4_z;
+    const real six_r_omega_4_in_axes5_x = v.six_r_c_5*six_r_omega_4_in_axes4_z +
+        six_r_omega_3_t;
     const real six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 -
         six_r_omega_4_in_axes4_z*v.six_r_s_5;
     /* (six_r-W_4) centripetal tensor of link 4 */
@@ -7991,20 +8006,20 @@ INLINE void joint_accelerations_legs_six_r(const prepared *m, size_t w, size_t i
     const real six_r_zeta_2_in_axes5_z = v.six_r_s_4*six_r_zeta_2_in_axes3_x;
     const real six_r_zeta_2_in_axes5_x = v.six_r_c_5*six_r_zeta_2_in_axes3_y -
         v.six_r_s_5*six_r_zeta_2_t;
-    const real six_r_zeta_2_in_axes5_y = -v.six_r_c_5*six_r_zeta_2_t -
-        v.six_r_s_5*six_r_zeta_2_in_axes3_y;
+    const real six_r_zeta_2_in_axes5_y = -v.six_r_s_5*six_r_zeta_2_in_axes3_y -
+        v.six_r_c_5*six_r_zeta_2_t;
     /* (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations */
     const real six_r_beta_3_in_axes3_x = six_r_zeta_2_in_axes3_x -
         six_r_omega_2_in_axes3_y*six_r_qd_1_t_8;
-    const real six_r_beta_3_in_axes3_y = six_r_zeta_2_in_axes3_y +
-        six_r_omega_2_in_axes3_x*six_r_qd_1_t_8;
+    const real six_r_beta_3_in_axes3_y = six_r_omega_2_in_axes3_x*six_r_qd_1_t_8 +
+        six_r_zeta_2_in_axes3_y;
     const real six_r_beta_3_t = six_r_beta_3_in_axes3_x*v.six_r_c_4;
     const real six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*v.six_r_s_4;
     /* (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations */
-    const real six_r_beta_4_in_axes4_x = -six_r_beta_3_t -
-        six_r_omega_3_in_axes4_y*six_r_qd_4_t;
-    const real six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y +
-        six_r_omega_3_in_axes4_x*six_r_qd_4_t;
+    const real six_r_beta_4_in_axes4_x = -six_r_omega_3_in_axes4_y*six_r_qd_4_t -
+        six_r_beta_3_t;
+    const real six_r_beta_4_in_axes4_y = six_r_omega_3_in_axes4_x*six_r_qd_4_t +
+        six_r_beta_3_in_axes4_y;
     const real six_r_beta_4_t = six_r_beta_3_in_axes3_y*v.six_r_c_5;
     const real six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_beta_4_in_axes4_x*v.six_r_s_5;
     const real six_r_beta_4_t_2 = six_r_beta_3_in_axes3_y*v.six_r_s_5;
@@ -8013,8 +8028,8 @@ INLINE void joint_accelerations_legs_six_r(const prepared *m, size_t w, size_t i
     /* (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations */
     const real six_r_beta_5_in_axes5_x = six_r_beta_4_in_axes5_x -
         six_r_omega_4_in_axes5_y*six_r_qd_5_t;
-    const real six_r_beta_5_in_axes5_y = six_r_beta_4_in_axes5_y +
-        six_r_omega_4_in_axes5_x*six_r_qd_5_t;
+    const real six_r_beta_5_in_axes5_y = six_r_omega_4_in_axes5_x*six_r_qd_5_t +
+        six_r_beta_4_in_axes5_y;
     /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
     const real six_r_bias_t_10 = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y;
     const real six_r_bias_t_11 = six_r_omega_4_in_axes5_y*six_r_omega_4_in_axes5_y;
@@ -8026,44 +8041,42 @@ INLINE void joint_accelerations_legs_six_r(const prepared *m, size_t w, size_t i
     const real six_r_bias_t_17 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z;
     const real six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y;
     const real six_r_bias_in_axes5_x = six_r_W_1_in_axes5_xy*v.six_r_d_2_in_axes5_y +
-        six_r_W_1_in_axes5_xz*v.six_r_d_2_in_axes5_z +
+        six_r_W_1_in_axes5_xz*v.six_r_d_2_in_axes5_z - v.six_r_d_2_in_axes5_x*(six_r_bias_t_13
+        + six_r_bias_t_14) - v.six_r_d_3_in_axes5_x*(six_r_bias_t_16 + six_r_bias_t_17) +
         v.six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
         v.six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) -
         v.six_r_bias_t_8*(six_r_W_3_in_axes5_xy - six_r_beta_3_in_axes4_y) -
         v.six_r_bias_t_9*(six_r_W_4_in_axes5_xy - six_r_beta_4_in_axes4_y) -
-        v.six_r_d_2_in_axes5_x*(six_r_bias_t_13 + six_r_bias_t_14) -
-        v.six_r_d_3_in_axes5_x*(six_r_bias_t_16 + six_r_bias_t_17) -
         v.six_r_d_4_in_axes5_x*(six_r_bias_t_10 +
         six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) -
         v.six_r_d_5_in_axes5_x*(six_r_bias_t_10 + six_r_bias_t_11) -
         m->six_r_platform_joint_offset_x[i]*(six_r_bias_t_11 +
         six_r_omega_5_in_axes5_z*six_r_omega_5_in_axes5_z);
     const real six_r_bias_in_axes5_y = six_r_W_1_in_axes5_xy*v.six_r_d_2_in_axes5_x +
-        six_r_W_1_in_axes5_yz*v.six_r_d_2_in_axes5_z + six_r_bias_t_18*v.six_r_d_5_in_axes5_x
-        + six_r_bias_t_18*m->six_r_platform_joint_offset_x[i] +
+        six_r_W_1_in_axes5_yz*v.six_r_d_2_in_axes5_z - v.six_r_d_2_in_axes5_y*(six_r_bias_t_12
+        + six_r_bias_t_14) - v.six_r_d_3_in_axes5_y*(six_r_bias_t_15 + six_r_bias_t_17) +
+        v.six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
+        v.six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
+        six_r_bias_t_18*v.six_r_d_5_in_axes5_x +
+        six_r_bias_t_18*m->six_r_platform_joint_offset_x[i] +
         v.six_r_bias_t_8*(six_r_bias_t_10 + six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x)
         + v.six_r_bias_t_9*(six_r_bias_t_10 +
         six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x) +
-        v.six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
-        v.six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
-        v.six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_y) -
-        v.six_r_d_2_in_axes5_y*(six_r_bias_t_12 + six_r_bias_t_14) -
-        v.six_r_d_3_in_axes5_y*(six_r_bias_t_15 + six_r_bias_t_17);
+        v.six_r_d_4_in_axes5_x*(six_r_beta_3_in_axes4_y + six_r_W_3_in_axes5_xy);
     const real six_r_bias_in_axes5_z = six_r_W_1_in_axes5_xz*v.six_r_d_2_in_axes5_x +
-        six_r_W_1_in_axes5_yz*v.six_r_d_2_in_axes5_y +
+        six_r_W_1_in_axes5_yz*v.six_r_d_2_in_axes5_y - v.six_r_d_2_in_axes5_z*(six_r_bias_t_12
+        + six_r_bias_t_13) - v.six_r_d_3_in_axes5_z*(six_r_bias_t_15 + six_r_bias_t_16) +
         v.six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
         v.six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
         v.six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*v.six_r_c_5 +
-        six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) +
+        six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) - v.six_r_bias_t_8*(six_r_beta_4_t
+        + six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - six_r_beta_3_t*v.six_r_s_5) +
         v.six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
-        six_r_beta_4_in_axes5_y) +
+        six_r_beta_4_in_axes5_y) -
+        v.six_r_bias_t_9*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y +
+        six_r_beta_4_in_axes5_x) +
         m->six_r_platform_joint_offset_x[i]*(six_r_omega_4_in_axes5_x*six_r_omega_5_in_axes5_z
-        - six_r_beta_5_in_axes5_y) - v.six_r_bias_t_8*(six_r_beta_4_t +
-        six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - six_r_beta_3_t*v.six_r_s_5) -
-        v.six_r_bias_t_9*(six_r_beta_4_in_axes5_x +
-        six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y) -
-        v.six_r_d_2_in_axes5_z*(six_r_bias_t_12 + six_r_bias_t_13) -
-        v.six_r_d_3_in_axes5_z*(six_r_bias_t_15 + six_r_bias_t_16);
+        - six_r_beta_5_in_axes5_y);
     /* (six_r-rel) acceleration of the connection point left to the joint accelerations */
     const real six_r_rel_in_axes5_x = v.axis_x_six_r_axes5_x*v.six_r_S_ddot_x +
         v.axis_x_six_r_axes5_y*v.six_r_S_ddot_y + v.axis_x_six_r_axes5_z*v.six_r_S_ddot_z -
@@ -8087,8 +8100,8 @@ INLINE void joint_accelerations_legs_six_r(const prepared *m, size_t w, size_t i
     const real six_r_nu_1_t_4 = six_r_omega_4_in_axes5_y - v.six_r_omega_in_axes5_y;
     const real six_r_nu_1_t_5 = six_r_omega_5_in_axes5_z - v.six_r_omega_in_axes5_z;
     const real six_r_nu_1_t_6 = six_r_nd_m1_in_axes5_x*six_r_nu_1_t_3 +
-        six_r_nd_m1_in_axes5_y*six_r_nu_1_t_4 + six_r_nu_1_t_5*(six_r_nu_1_t +
-        v.six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x);
+        six_r_nd_m1_in_axes5_y*six_r_nu_1_t_4 +
+        six_r_nu_1_t_5*(v.six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x + six_r_nu_1_t);
     const real six_r_nu_1 = six_r_nu_1_t_2 - six_r_nu_1_t_6;
     /* (six_r-nd_m2) rate of moment direction 2 */
     const real six_r_nd_m2_in_axes5_y = v.six_r_eta_1 -
@@ -8099,8 +8112,8 @@ INLINE void joint_accelerations_legs_six_r(const prepared *m, size_t w, size_t i
     const real six_r_nu_2_t = six_r_beta_5_in_axes5_y*v.six_r_end_p1_in_axes5_z -
         six_r_beta_4_in_axes4_y*v.six_r_n_m2_in_axes5_z;
     const real six_r_nu_2_t_2 = six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 +
-        six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 + six_r_nu_1_t_3*(six_r_nu_1_t +
-        v.six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z);
+        six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 +
+        six_r_nu_1_t_3*(v.six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z + six_r_nu_1_t);
     const real six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2;
     /* (six_r-etad_1) acceleration with which the joints turn along moment direction 1 */
     const real six_r_etad_1 = six_r_nu_1 - v.six_r_etad_1_t;
@@ -8109,26 +8122,26 @@ INLINE void joint_accelerations_legs_six_r(const prepared *m, size_t w, size_t i
     /* (six_r-qdd_1) acceleration of joint 1 */
     const real six_r_qdd_1_t = six_r_etad_1*m->six_r_size[i];
     const real six_r_qdd_1_t_2 = six_r_etad_2*m->six_r_size[i];
-    const real six_r_qdd_1_t_3 = v.inv_six_r_w_1_t_79*(v.six_r_qd_1_t*six_r_rel_in_axes5_x +
-        v.six_r_qd_1_t_3*six_r_rel_in_axes5_z + v.six_r_qd_1_t_4*six_r_qdd_1_t +
-        v.six_r_qd_1_t_5*six_r_qdd_1_t_2 - v.six_r_qd_1_t_2*six_r_rel_in_axes5_y);
+    const real six_r_qdd_1_t_3 = v.inv_six_r_w_1_t_79*(v.six_r_qd_1_t_4*six_r_qdd_1_t +
+        v.six_r_qd_1_t_5*six_r_qdd_1_t_2 + v.six_r_qd_1_t*six_r_rel_in_axes5_x -
+        v.six_r_qd_1_t_2*six_r_rel_in_axes5_y + v.six_r_qd_1_t_3*six_r_rel_in_axes5_z);
     const real six_r_qdd_1_t_4 = v.inv_six_r_w_1_t_67*(six_r_qdd_1_t*v.six_r_w_1_t_71 +
-        six_r_qdd_1_t_2*v.six_r_w_1_t_72 + six_r_rel_in_axes5_x*v.six_r_w_1_t_68 +
-        six_r_rel_in_axes5_z*v.six_r_w_1_t_70 - six_r_qdd_1_t_3*v.six_r_w_1_t_73 -
-        six_r_rel_in_axes5_y*v.six_r_w_1_t_69);
-    const real six_r_qdd_1_t_5 = v.inv_six_r_w_1_t_49*(six_r_qdd_1_t_3*v.six_r_w_1_t_61 +
-        six_r_qdd_1_t_4*v.six_r_w_1_t_55 + six_r_rel_in_axes5_y*v.six_r_w_1_t_51 -
+        six_r_qdd_1_t_2*v.six_r_w_1_t_72 + six_r_rel_in_axes5_x*v.six_r_w_1_t_68 -
+        six_r_rel_in_axes5_y*v.six_r_w_1_t_69 + six_r_rel_in_axes5_z*v.six_r_w_1_t_70 -
+        six_r_qdd_1_t_3*v.six_r_w_1_t_73);
+    const real six_r_qdd_1_t_5 = v.inv_six_r_w_1_t_49*(six_r_rel_in_axes5_y*v.six_r_w_1_t_51 -
         six_r_qdd_1_t*v.six_r_w_1_t_53 - six_r_qdd_1_t_2*v.six_r_w_1_t_54 -
-        six_r_rel_in_axes5_x*v.six_r_w_1_t_50 - six_r_rel_in_axes5_z*v.six_r_w_1_t_52);
+        six_r_rel_in_axes5_x*v.six_r_w_1_t_50 - six_r_rel_in_axes5_z*v.six_r_w_1_t_52 +
+        six_r_qdd_1_t_3*v.six_r_w_1_t_61 + six_r_qdd_1_t_4*v.six_r_w_1_t_55);
     /* (six_r-qdd_4) acceleration of joint 4 */
     const real six_r_qdd_4 = v.inv_six_r_w_1_t_28*(six_r_qdd_1_t*v.six_r_w_1_t_31 +
-        six_r_qdd_1_t_2*v.six_r_w_1_t_32 + six_r_qdd_1_t_3*v.six_r_w_1_t_44 +
-        six_r_qdd_1_t_4*v.six_r_w_1_t_39 + six_r_rel_in_axes5_z*v.six_r_w_1_t_30 -
-        six_r_qdd_1_t_5*v.six_r_w_1_t_33 - six_r_rel_in_axes5_y*v.six_r_w_1_t_29);
+        six_r_qdd_1_t_2*v.six_r_w_1_t_32 - six_r_rel_in_axes5_y*v.six_r_w_1_t_29 +
+        six_r_rel_in_axes5_z*v.six_r_w_1_t_30 + six_r_qdd_1_t_3*v.six_r_w_1_t_44 +
+        six_r_qdd_1_t_4*v.six_r_w_1_t_39 - six_r_qdd_1_t_5*v.six_r_w_1_t_33);
     /* (six_r-qdd_5) acceleration of joint 5 */
     const real six_r_qdd_5 = v.inv_six_r_w_1_t_12*(six_r_qdd_1_t_2*v.six_r_w_1_t_14 +
-        six_r_qdd_1_t_3*v.six_r_w_1_t_25 + six_r_qdd_1_t_5*v.six_r_w_1_t_18 +
-        six_r_rel_in_axes5_y*v.six_r_w_1_t_13 - six_r_qdd_1_t_4*v.six_r_w_1_t_22 -
+        six_r_rel_in_axes5_y*v.six_r_w_1_t_13 + six_r_qdd_1_t_3*v.six_r_w_1_t_25 -
+        six_r_qdd_1_t_4*v.six_r_w_1_t_22 + six_r_qdd_1_t_5*v.six_r_w_1_t_18 -
         six_r_qdd_4*v.six_r_w_1_t_15);
     /* (six_r-qdd_1) */
     o[0*count + k] = -six_r_qdd_1_t_5;
@@ -8166,7 +8179,8 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 {
     real s[9] = {0};
     real o_six_r[7*LEGS(LEGS_OF_six_r)] = {0};
-    joint_accelerations_before(m, 1, 0, X, s, t);
+    values v;
+    joint_accelerations_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
         joint_accelerations_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), s, V, A, joints, o_six_r);
     }
@@ -8181,7 +8195,8 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real s[9*LANES];
     real o_six_r[7*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_accelerations_before(m, LANES, k, X, s, t);
+        values v;
+        joint_accelerations_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -8194,20 +8209,20 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void legs_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -8304,7 +8319,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 {
     real s[9] = {0};
     real o_six_r[13*LEGS(LEGS_OF_six_r)] = {0};
-    legs_before(m, 1, 0, X, s, t);
+    values v;
+    legs_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
         legs_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), s, V, A, joints, o_six_r);
     }
@@ -8314,23 +8330,27 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
     verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s)
+{
     /* (potential) potential energy */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
-    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x +
-        v.R_xy*m->h_star_in_platform_y + v.R_xz*m->h_star_in_platform_z + m->m_star*t_x) +
-        m->gravity_y*(v.R_yx*m->h_star_in_platform_x + v.R_yy*m->h_star_in_platform_y +
-        v.R_yz*m->h_star_in_platform_z + m->m_star*t_y) +
-        m->gravity_z*(v.R_zx*m->h_star_in_platform_x + v.R_zy*m->h_star_in_platform_y +
-        v.R_zz*m->h_star_in_platform_z + m->m_star*t_z);
+    const real potential_t = m->gravity_x*(m->m_star*t_x + v->R_xy*m->h_star_in_platform_y +
+        v->R_xz*m->h_star_in_platform_z + v->R_xx*m->h_star_in_platform_x) +
+        m->gravity_y*(m->m_star*t_y + v->R_yx*m->h_star_in_platform_x +
+        v->R_yz*m->h_star_in_platform_z + v->R_yy*m->h_star_in_platform_y) +
+        m->gravity_z*(m->m_star*t_z + v->R_zx*m->h_star_in_platform_x +
+        v->R_zy*m->h_star_in_platform_y + v->R_zz*m->h_star_in_platform_z);
     s[0*w + k] = potential_t;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void potential_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -8356,38 +8376,37 @@ INLINE void potential_legs_six_r(const prepared *m, size_t w, size_t i, size_t j
     const real six_r_potential_t_9 = v.six_r_e_2_in_axes5_z*six_r_potential_t_4 -
         v.six_r_h_4_t*m->six_r_h_5_in_spec5_z[i];
     const real six_r_potential_t_10 = m->six_r_h_2_in_spec2_x[i] +
-        six_r_b_in_spec2_x*m->six_r_link1_mass[i] + v.six_r_c_2*m->six_r_h_1_in_spec1_x[i] +
-        v.six_r_c_3*m->six_r_h_3_in_spec3_x[i] + v.six_r_c_3*m->six_r_h_4_in_spec4_x[i] +
-        v.six_r_c_3*six_r_potential_t_8 + m->six_r_h_1_in_spec1_y[i]*v.six_r_s_2 +
-        m->six_r_link2_mass[i]*(six_r_b_in_spec2_x + v.six_r_d_2_in_spec2_x) +
-        m->six_r_link3_mass[i]*(six_r_b_in_spec2_x + v.six_r_d_2_in_spec2_x +
-        m->six_r_joint3_offset_x[i]) + m->six_r_link4_mass[i]*(six_r_b_in_spec2_x +
-        v.six_r_d_2_in_spec2_x + m->six_r_joint3_offset_x[i] +
-        v.six_r_c_3*m->six_r_joint4_offset_x[i]) - m->six_r_h_3_in_spec3_y[i]*v.six_r_s_3 -
-        v.six_r_h_4_in_spec3_y*v.six_r_s_3 - six_r_potential_t_9*v.six_r_s_3;
+        v.six_r_c_2*m->six_r_h_1_in_spec1_x[i] + v.six_r_c_3*m->six_r_h_3_in_spec3_x[i] +
+        v.six_r_c_3*m->six_r_h_4_in_spec4_x[i] + m->six_r_h_1_in_spec1_y[i]*v.six_r_s_2 -
+        m->six_r_h_3_in_spec3_y[i]*v.six_r_s_3 + v.six_r_c_3*six_r_potential_t_8 -
+        v.six_r_h_4_in_spec3_y*v.six_r_s_3 + six_r_b_in_spec2_x*m->six_r_link1_mass[i] -
+        six_r_potential_t_9*v.six_r_s_3 + m->six_r_link2_mass[i]*(v.six_r_d_2_in_spec2_x +
+        six_r_b_in_spec2_x) + m->six_r_link3_mass[i]*(m->six_r_joint3_offset_x[i] +
+        v.six_r_d_2_in_spec2_x + six_r_b_in_spec2_x) +
+        m->six_r_link4_mass[i]*(m->six_r_joint3_offset_x[i] +
+        v.six_r_c_3*m->six_r_joint4_offset_x[i] + v.six_r_d_2_in_spec2_x +
+        six_r_b_in_spec2_x);
     const real six_r_potential_t_11 = m->six_r_h_2_in_spec2_y[i] +
-        six_r_b_in_spec2_y*m->six_r_link1_mass[i] + v.six_r_c_2*m->six_r_h_1_in_spec1_y[i] +
-        v.six_r_c_3*m->six_r_h_3_in_spec3_y[i] + v.six_r_c_3*v.six_r_h_4_in_spec3_y +
-        v.six_r_c_3*six_r_potential_t_9 + m->six_r_h_3_in_spec3_x[i]*v.six_r_s_3 +
-        m->six_r_h_4_in_spec4_x[i]*v.six_r_s_3 + m->six_r_link2_mass[i]*six_r_potential_t_7 +
+        v.six_r_c_2*m->six_r_h_1_in_spec1_y[i] + v.six_r_c_3*m->six_r_h_3_in_spec3_y[i] +
+        m->six_r_h_3_in_spec3_x[i]*v.six_r_s_3 + m->six_r_h_4_in_spec4_x[i]*v.six_r_s_3 -
+        m->six_r_h_1_in_spec1_x[i]*v.six_r_s_2 + v.six_r_c_3*v.six_r_h_4_in_spec3_y +
+        six_r_potential_t_8*v.six_r_s_3 + six_r_b_in_spec2_y*m->six_r_link1_mass[i] +
+        v.six_r_c_3*six_r_potential_t_9 + m->six_r_link2_mass[i]*six_r_potential_t_7 +
         m->six_r_link3_mass[i]*six_r_potential_t_7 +
-        m->six_r_link4_mass[i]*(six_r_b_in_spec2_y + m->six_r_joint4_offset_x[i]*v.six_r_s_3 -
-        six_r_potential_t_5) + six_r_potential_t_8*v.six_r_s_3 -
-        m->six_r_h_1_in_spec1_x[i]*v.six_r_s_2;
+        m->six_r_link4_mass[i]*(m->six_r_joint4_offset_x[i]*v.six_r_s_3 - six_r_potential_t_5
+        + six_r_b_in_spec2_y);
     const real six_r_potential_t_12 = m->six_r_h_1_in_spec1_z[i] + m->six_r_h_2_in_spec2_z[i]
-        + m->six_r_h_3_in_spec3_z[i] + six_r_b_in_spec2_z*m->six_r_link1_mass[i] +
-        six_r_b_in_spec2_z*m->six_r_link2_mass[i] + six_r_b_in_spec2_z*m->six_r_link3_mass[i]
-        + six_r_b_in_spec2_z*m->six_r_link4_mass[i] +
-        v.six_r_e_2_in_axes5_z*m->six_r_h_4_in_spec4_z[i] +
+        + m->six_r_h_3_in_spec3_z[i] + v.six_r_e_2_in_axes5_z*m->six_r_h_4_in_spec4_z[i] +
         v.six_r_e_2_in_axes5_z*m->six_r_h_5_in_spec5_z[i] +
-        m->six_r_h_4_in_spec4_y[i]*v.six_r_h_4_t + v.six_r_h_4_t*six_r_potential_t_4;
-    const real six_r_potential_t_13 =
+        m->six_r_h_4_in_spec4_y[i]*v.six_r_h_4_t + six_r_b_in_spec2_z*m->six_r_link1_mass[i] +
+        six_r_b_in_spec2_z*m->six_r_link2_mass[i] + six_r_b_in_spec2_z*m->six_r_link3_mass[i]
+        + six_r_b_in_spec2_z*m->six_r_link4_mass[i] + v.six_r_h_4_t*six_r_potential_t_4;
+    const real six_r_potential_t_13 = six_r_potential_t_12*(m->six_r_acc_3_t_2[i]*v.six_r_c_1
+        - m->six_r_acc_3_t[i]*v.six_r_s_1) +
         six_r_potential_t_10*(v.six_r_c_2*m->six_r_g_in_axes1_z[i] +
         v.six_r_g_in_axes1_x*v.six_r_s_2) +
         six_r_potential_t_11*(v.six_r_c_2*v.six_r_g_in_axes1_x -
-        m->six_r_g_in_axes1_z[i]*v.six_r_s_2) +
-        six_r_potential_t_12*(m->six_r_acc_3_t_2[i]*v.six_r_c_1 -
-        m->six_r_acc_3_t[i]*v.six_r_s_1);
+        m->six_r_g_in_axes1_z[i]*v.six_r_s_2);
     /* (potential) */
     gather(&terms[0*count + k], add, six_r_potential_t_13);  /* potential_of_legs */
 }
@@ -8401,7 +8420,7 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     /* (potential) */
     const real potential_of_legs = sums[0*w + k];
     const real potential_t = s[0*w + k];
-    const real potential_ = -potential_of_legs - potential_t;
+    const real potential_ = -potential_t - potential_of_legs;
     /* (potential) */
     potential[0*w + k] = potential_;
 }
@@ -8411,35 +8430,36 @@ INLINE void potential_run(const prepared *m, const real *X, const real *joints, 
 {
     real s[1] = {0}, sums[1] = {0};
     real terms_six_r[LEGS(LEGS_OF_six_r)] = {0};
-    potential_before(m, 1, 0, X, s, t);
+    values v;
+    potential_before(m, 1, 0, X, &v, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
         potential_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), 0, joints, terms_six_r);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_six_r + n*LEGS(LEGS_OF_six_r), LEGS_OF_six_r);
     }
+    potential_between(m, 1, 0, X, &v, s);
     potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
-    *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, real *lengths, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void condition_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -8518,7 +8538,8 @@ APART void condition_run(const prepared *m, const real *X, const real *joints, r
     real s[9] = {0}, sums[1] = {0};
     real terms_six_r[LEGS(LEGS_OF_six_r)] = {0}, o_six_r[9*LEGS(LEGS_OF_six_r)] = {0};
     clear(reach, NL);
-    condition_before(m, 1, 0, X, s, lengths, t);
+    values v;
+    condition_before(m, 1, 0, X, &v, s, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
         condition_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), 0, s, joints, terms_six_r, o_six_r);
     }
@@ -8545,11 +8566,7 @@ int hexapod_6x6r_M(const prepared *m, const real *X, const real *q0, real *M_out
         check(NV*NV, 1, M, why.overflow);
     }
     copy(NV*NV, M, M_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-    }
-    return code;
+    return settled(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, const real *q0, real *M_out, int *code)
@@ -8580,11 +8597,7 @@ int hexapod_6x6r_Z(const prepared *m, const real *X, const real *q0, const real 
         check(NV, 1, Z, why.overflow);
     }
     copy(NV, Z, Z_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, Z_out);
-    }
-    return code;
+    return settled(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *q0, const real *V, real *Z_out,
@@ -8613,11 +8626,7 @@ int hexapod_6x6r_H(const prepared *m, const real *X, const real *q0, real *H_out
         check(NV*NU, 1, H, why.overflow);
     }
     copy(NV*NU, H, H_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, const real *q0, real *H_out, int *code)
@@ -8644,11 +8653,7 @@ int hexapod_6x6r_inverse_kinematics(const prepared *m, const real *X, const real
         check(NJ, 1, q, why.overflow);
     }
     copy(NJ, q, q_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, q_out);
-    }
-    return code;
+    return settled(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, const real *q0, real
@@ -8681,11 +8686,7 @@ int hexapod_6x6r_joint_rates(const prepared *m, const real *X, const real *q0, c
         check(NJ, 1, qd, why.overflow);
     }
     copy(NJ, qd, qd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qd_out);
-    }
-    return code;
+    return settled(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *q0, const real *V,
@@ -8720,11 +8721,7 @@ int hexapod_6x6r_joint_accelerations(const prepared *m, const real *X, const rea
         check(NJ, 1, qdd, why.overflow);
     }
     copy(NJ, qdd, qdd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qdd_out);
-    }
-    return code;
+    return settled(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *q0, const real
@@ -8763,13 +8760,9 @@ int hexapod_6x6r_dynamics(const prepared *m, const real *X, const real *q0, cons
     copy(NV*NV, M, M_out);
     copy(NV, Z, Z_out);
     copy(NV*NU, H, H_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-        refuse(NV, Z_out);
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    settled(&why, NV*NV, M_out);
+    settled(&why, NV, Z_out);
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *q0, const real *V, real
@@ -8965,8 +8958,9 @@ static const real sizes_tau[] = {0.25, 0.015625, 4.0, 1.0, 1.0, 0.25};
 int hexapod_6x6r_inverse_dynamics(const prepared *m, const real *X, const real *q0, const real *V,
     const real *A, const real *wrench, real *tau_out)
 {
-    real wrench_in[NW], joints[NJ] = {0}, required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0},
-        unsure_tau[1] = {0}, work[NV*PADDED(NV)];
+    static const real no_wrench[NW] = {0};
+    real joints[NJ] = {0}, required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] =
+        {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
@@ -8975,7 +8969,7 @@ int hexapod_6x6r_inverse_dynamics(const prepared *m, const real *X, const real *
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     close_loops(m, 1, X, q0, joints, &why);
     required_run(m, X, V, A, joints, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
@@ -8990,11 +8984,7 @@ int hexapod_6x6r_inverse_dynamics(const prepared *m, const real *X, const real *
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, tau_out);
-    }
-    return code;
+    return settled(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *q0, const real
@@ -9024,8 +9014,9 @@ static const real sizes_A[] = {16.0, 16.0, 16.0, 1.0, 1.0, 1.0};
 int hexapod_6x6r_forward_dynamics(const prepared *m, const real *X, const real *q0, const real *V,
     const real *tau, const real *wrench, real *A_out)
 {
-    real wrench_in[NW], joints[NJ] = {0}, M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] =
-        {0}, add_1[NV] = {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    static const real no_wrench[NW] = {0};
+    real joints[NJ] = {0}, M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] =
+        {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
@@ -9034,7 +9025,7 @@ int hexapod_6x6r_forward_dynamics(const prepared *m, const real *X, const real *
         check(NV, 1, V, why.invalid);
         check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     close_loops(m, 1, X, q0, joints, &why);
     dynamics_run(m, X, V, joints, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
@@ -9053,11 +9044,7 @@ int hexapod_6x6r_forward_dynamics(const prepared *m, const real *X, const real *
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, A_out);
-    }
-    return code;
+    return settled(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *q0, const real
@@ -9100,20 +9087,17 @@ int hexapod_6x6r_complete_acceleration(const prepared *m, const real *X, const r
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, completed_out);
-    }
-    return code;
+    return settled(&why, NV, completed_out);
 }
 
 int hexapod_6x6r_leg_reactions(const prepared *m, const real *X, const real *q0, const real *V,
     const real *A, const real *wrench, real *forces_out)
 {
+    static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2, 3, 4, 5};
-    real wrench_in[NW], joints[NJ] = {0}, required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0},
-        solve_1[NV] = {0}, unsure_solve_1[1] = {0}, leg_force[6*NL] = {0}, actuator[36] = {0},
-        forces[NL*NL] = {0}, work[NV*PADDED(NV)];
+    real joints[NJ] = {0}, required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] =
+        {0}, unsure_solve_1[1] = {0}, leg_force[6*NL] = {0}, actuator[36] = {0}, forces[NL*NL] = {0},
+        work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
@@ -9122,7 +9106,7 @@ int hexapod_6x6r_leg_reactions(const prepared *m, const real *X, const real *q0,
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     close_loops(m, 1, X, q0, joints, &why);
     required_run(m, X, V, A, joints, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
@@ -9141,11 +9125,7 @@ int hexapod_6x6r_leg_reactions(const prepared *m, const real *X, const real *q0,
     add_forces(NL, 6, 1, places_forces, solve_1, actuator, forces);
     check(NL*NL, 1, forces, why.overflow);
     copy(NL*NL, forces, forces_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NL*NL, forces_out);
-    }
-    return code;
+    return settled(&why, NL*NL, forces_out);
 }
 
 int hexapod_6x6r_energy(const prepared *m, const real *X, const real *q0, const real *V, real
@@ -9168,26 +9148,23 @@ int hexapod_6x6r_energy(const prepared *m, const real *X, const real *q0, const 
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, kinetic_out);
-        refuse(1, potential_out);
-    }
-    return code;
+    settled(&why, 1, kinetic_out);
+    return settled(&why, 1, potential_out);
 }
 
 int hexapod_6x6r_condition(const prepared *m, const real *X, const real *q0, real *sigma_out, real
     *legs_out)
 {
     const real *length = NULL;
+    static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real length_in[1], joints[NJ] = {0}, H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] =
-        {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real joints[NJ] = {0}, H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
+        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, length, 0, length_in, why.invalid);
+    length = optional(1, length, no_length, why.invalid);
     close_loops(m, 1, X, q0, joints, &why);
     condition_run(m, X, joints, H, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
@@ -9206,12 +9183,8 @@ int hexapod_6x6r_condition(const prepared *m, const real *X, const real *q0, rea
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, sigma_out);
-        refuse(NL, legs_out);
-    }
-    return code;
+    settled(&why, NV, sigma_out);
+    return settled(&why, NL, legs_out);
 }
 
 int hexapod_6x6r_manipulability(const prepared *m, const real *X, const real *q0, real
@@ -9246,12 +9219,8 @@ int hexapod_6x6r_manipulability(const prepared *m, const real *X, const real *q0
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, measure_out);
-        refuse(1, isotropy_out);
-    }
-    return code;
+    settled(&why, 1, measure_out);
+    return settled(&why, 1, isotropy_out);
 }
 
 int hexapod_6x6r_singularity_distance(const prepared *m, const real *X, const real *q0, real
@@ -9286,12 +9255,8 @@ int hexapod_6x6r_singularity_distance(const prepared *m, const real *X, const re
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, actuators_out);
-        refuse(1, legs_out);
-    }
-    return code;
+    settled(&why, 1, actuators_out);
+    return settled(&why, 1, legs_out);
 }
 
 static int mismatch_one(const prepared *m, const real *X, const real *q0, const real *q_actuated,
@@ -9319,11 +9284,7 @@ static int mismatch_one(const prepared *m, const real *X, const real *q0, const 
     wrap_turns(NU, 1, places_gap, gap);
     check(NU, 1, gap, why.overflow);
     copy(NU, gap, gap_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, gap_out);
-    }
-    return code;
+    return settled(&why, NU, gap_out);
 }
 
 static int slope_one(const prepared *m, const real *X, const real *q0, real *slope_out)
@@ -9338,11 +9299,7 @@ static int slope_one(const prepared *m, const real *X, const real *q0, real *slo
         check(NV*NU, 1, slope, why.overflow);
     }
     copy(NV*NU, slope, slope_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, slope_out);
-    }
-    return code;
+    return settled(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -9404,11 +9361,7 @@ int hexapod_6x6r_forward_kinematics(const prepared *m, const real *q_actuated, c
     blame(search_mismatch(m, q0, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int hexapod_6x6r_dissipation(const prepared *m, const real *X, const real *q0, const real *V, real
@@ -9427,11 +9380,7 @@ int hexapod_6x6r_dissipation(const prepared *m, const real *X, const real *q0, c
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, dissipation_out);
-    }
-    return code;
+    return settled(&why, 1, dissipation_out);
 }
 
 int hexapod_6x6r_momentum(const prepared *m, const real *X, const real *q0, const real *V, real
@@ -9450,11 +9399,7 @@ int hexapod_6x6r_momentum(const prepared *m, const real *X, const real *q0, cons
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, momentum_out);
-    }
-    return code;
+    return settled(&why, NV, momentum_out);
 }
 
 int hexapod_6x6r_joint_margins(const prepared *m, const real *X, const real *q0, real
@@ -9473,11 +9418,7 @@ int hexapod_6x6r_joint_margins(const prepared *m, const real *X, const real *q0,
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, margins_out);
-    }
-    return code;
+    return settled(&why, NJ, margins_out);
 }
 
 int hexapod_6x6r_within_limits(const prepared *m, const real *X, const real *q0, real *within_out)
@@ -9494,11 +9435,7 @@ int hexapod_6x6r_within_limits(const prepared *m, const real *X, const real *q0,
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, within_out);
-    }
-    return code;
+    return settled(&why, 1, within_out);
 }
 
 int hexapod_6x6r_actuator_positions(const prepared *m, const real *X, const real *q0, real *q_out)
@@ -9512,11 +9449,7 @@ int hexapod_6x6r_actuator_positions(const prepared *m, const real *X, const real
     take(NU, 1, hexapod_6x6r_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, q_out);
-    }
-    return code;
+    return settled(&why, NU, q_out);
 }
 
 int hexapod_6x6r_actuator_rates(const prepared *m, const real *X, const real *q0, const real *V,
@@ -9535,11 +9468,7 @@ int hexapod_6x6r_actuator_rates(const prepared *m, const real *X, const real *q0
     take(NU, 1, hexapod_6x6r_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qd_out);
-    }
-    return code;
+    return settled(&why, NU, qd_out);
 }
 
 int hexapod_6x6r_actuator_accelerations(const prepared *m, const real *X, const real *q0, const
@@ -9559,11 +9488,7 @@ int hexapod_6x6r_actuator_accelerations(const prepared *m, const real *X, const 
     take(NU, 1, hexapod_6x6r_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qdd_out);
-    }
-    return code;
+    return settled(&why, NU, qdd_out);
 }
 
 int hexapod_6x6r_power(const prepared *m, const real *X, const real *q0, const real *V, const real
@@ -9584,11 +9509,7 @@ int hexapod_6x6r_power(const prepared *m, const real *X, const real *q0, const r
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, power_out);
-    }
-    return code;
+    return settled(&why, 1, power_out);
 }
 
 int hexapod_6x6r_rotation(const real *X, real *R_out)
@@ -9601,11 +9522,7 @@ int hexapod_6x6r_rotation(const real *X, real *R_out)
     rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     copy(9, R, R_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(9, R_out);
-    }
-    return code;
+    return settled(&why, 9, R_out);
 }
 
 int hexapod_6x6r_pose(const real *t, const real *R, real *X_out)
@@ -9623,11 +9540,7 @@ int hexapod_6x6r_pose(const real *t, const real *R, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int hexapod_6x6r_X_dot(const real *X, const real *V, real *X_dot_out)
@@ -9647,11 +9560,7 @@ int hexapod_6x6r_X_dot(const real *X, const real *V, real *X_dot_out)
     beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_dot_out);
-    }
-    return code;
+    return settled(&why, NQ, X_dot_out);
 }
 
 int hexapod_6x6r_pose_from_rpy(const real *t, const real *rpy, real *X_out)
@@ -9669,11 +9578,7 @@ int hexapod_6x6r_pose_from_rpy(const real *t, const real *rpy, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int hexapod_6x6r_retract(const real *X, const real *step, real *X_moved_out)
@@ -9697,11 +9602,7 @@ int hexapod_6x6r_retract(const real *X, const real *step, real *X_moved_out)
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_moved_out);
-    }
-    return code;
+    return settled(&why, NQ, X_moved_out);
 }
 
 int hexapod_6x6r_difference(const real *X0, const real *X1, real *step_out)
@@ -9725,11 +9626,7 @@ int hexapod_6x6r_difference(const real *X0, const real *X1, real *step_out)
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, step_out);
-    }
-    return code;
+    return settled(&why, NV, step_out);
 }
 
 int hexapod_6x6r_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
@@ -9767,11 +9664,7 @@ int hexapod_6x6r_interpolate(const real *X0, const real *X1, const real *s, real
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 /* ---- one state, and batches ---- */

@@ -231,15 +231,12 @@ INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *t
 }
 
 /* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
-INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+INLINE const real *optional(size_t size, const real *x, const real *none, real *flags)
 {
-    for (size_t e = 0; e < size && !x; ++e) {
-        own[e] = none;
-    }
     if (x) {
         check(size, 1, x, flags);
     }
-    return x ? x : own;
+    return x ? x : none;
 }
 
 INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
@@ -296,6 +293,16 @@ APART void refuse(size_t size, real *out)
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
     }
+}
+
+/* The status of a state; an output is refused where it is impossible. */
+INLINE int settled(const verdict *t, size_t size, real *out)
+{
+    const int code = judge(t);
+    if (code != OK) {
+        refuse(size, out);
+    }
+    return code;
 }
 
 /* Outputs of a state where the user wants them, and of states side by side, state by state. */
@@ -425,19 +432,19 @@ INLINE int all_rotations(const real *x, size_t n)
 /* ---- parameters ---- */
 
 const hybrid_3crs_params hybrid_3crs_default_params = {
-    {R(0.0), R(0.0), R(-9.81)},  /* gravity */
+    {0, 0, R(-9.81)},  /* gravity */
     R(12.0),  /* platform_mass */
-    {R(0.0), R(0.0), R(0.04)},  /* platform_centre_of_mass */
-    {{R(0.35), R(0.0), R(0.0)}, {R(0.0), R(0.35), R(0.0)}, {R(0.0), R(0.0), R(0.6)}},  /* platform_inertia */
+    {0, 0, R(0.04)},  /* platform_centre_of_mass */
+    {{R(0.35), 0, 0}, {0, R(0.35), 0}, {0, 0, R(0.6)}},  /* platform_inertia */
     {  /* crs_base_point */
         {R(-0.06938081942349372), R(-0.0940425916311898), R(0.09681130985905906)},
         {R(0.11613368310208311), R(-0.013064256340531433), R(0.09681130985905906)},
         {R(-0.04675286367858936), R(0.10710684797172126), R(0.09681130985905906)},
     },
     {  /* crs_base_frame */
-        {{R(0.0), R(0.9800665778412416), R(-0.19866933079506122)}, {R(0.0), R(0.19866933079506122), R(0.9800665778412416)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.6620859763419978), R(-0.7494278884130636)}, {R(0.0), R(0.7494278884130636), R(-0.6620859763419978)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.317980601499244), R(0.9480972192081247)}, {R(0.0), R(-0.9480972192081247), R(-0.317980601499244)}, {R(1.0), R(0.0), R(0.0)}},
+        {{0, R(0.9800665778412416), R(-0.19866933079506122)}, {0, R(0.19866933079506122), R(0.9800665778412416)}, {1, 0, 0}},
+        {{0, R(-0.6620859763419978), R(-0.7494278884130636)}, {0, R(0.7494278884130636), R(-0.6620859763419978)}, {1, 0, 0}},
+        {{0, R(-0.317980601499244), R(0.9480972192081247)}, {0, R(-0.9480972192081247), R(-0.317980601499244)}, {1, 0, 0}},
     },
     {  /* crs_platform_point */
         {R(0.29401997335237245), R(0.05960079923851836), R(-0.02)},
@@ -445,14 +452,14 @@ const hybrid_3crs_params hybrid_3crs_default_params = {
         {R(-0.0953941804497732), R(-0.28442916576243743), R(-0.02)},
     },
     {  /* crs_joint3_offset */
-        {R(0.05), R(0.0), R(0.0)},
-        {R(0.05), R(0.0), R(0.0)},
-        {R(0.05), R(0.0), R(0.0)},
+        {R(0.05), 0, 0},
+        {R(0.05), 0, 0},
+        {R(0.05), 0, 0},
     },
     {  /* crs_platform_joint_offset */
-        {R(0.55), R(0.0), R(0.0)},
-        {R(0.55), R(0.0), R(0.0)},
-        {R(0.55), R(0.0), R(0.0)},
+        {R(0.55), 0, 0},
+        {R(0.55), 0, 0},
+        {R(0.55), 0, 0},
     },
     {  /* crs_link2_mass */
         R(2.5),
@@ -460,14 +467,14 @@ const hybrid_3crs_params hybrid_3crs_default_params = {
         R(2.5),
     },
     {  /* crs_link2_centre_of_mass */
-        {R(0.0), R(0.0), R(0.0)},
-        {R(0.0), R(0.0), R(0.0)},
-        {R(0.0), R(0.0), R(0.0)},
+        {0, 0, 0},
+        {0, 0, 0},
+        {0, 0, 0},
     },
     {  /* crs_link2_inertia */
-        {{R(0.005), R(0.0), R(0.0)}, {R(0.0), R(0.005), R(0.0)}, {R(0.0), R(0.0), R(0.005)}},
-        {{R(0.005), R(0.0), R(0.0)}, {R(0.0), R(0.005), R(0.0)}, {R(0.0), R(0.0), R(0.005)}},
-        {{R(0.005), R(0.0), R(0.0)}, {R(0.0), R(0.005), R(0.0)}, {R(0.0), R(0.0), R(0.005)}},
+        {{R(0.005), 0, 0}, {0, R(0.005), 0}, {0, 0, R(0.005)}},
+        {{R(0.005), 0, 0}, {0, R(0.005), 0}, {0, 0, R(0.005)}},
+        {{R(0.005), 0, 0}, {0, R(0.005), 0}, {0, 0, R(0.005)}},
     },
     {  /* crs_link3_mass */
         R(1.3),
@@ -475,18 +482,18 @@ const hybrid_3crs_params hybrid_3crs_default_params = {
         R(1.3),
     },
     {  /* crs_link3_centre_of_mass */
-        {R(0.275), R(0.0), R(0.0)},
-        {R(0.275), R(0.0), R(0.0)},
-        {R(0.275), R(0.0), R(0.0)},
+        {R(0.275), 0, 0},
+        {R(0.275), 0, 0},
+        {R(0.275), 0, 0},
     },
     {  /* crs_link3_inertia */
-        {{R(0.00026000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.03290083333333334), R(0.0)}, {R(0.0), R(0.0), R(0.03290083333333334)}},
-        {{R(0.00026000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.03290083333333334), R(0.0)}, {R(0.0), R(0.0), R(0.03290083333333334)}},
-        {{R(0.00026000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.03290083333333334), R(0.0)}, {R(0.0), R(0.0), R(0.03290083333333334)}},
+        {{R(0.00026000000000000003), 0, 0}, {0, R(0.03290083333333334), 0}, {0, 0, R(0.03290083333333334)}},
+        {{R(0.00026000000000000003), 0, 0}, {0, R(0.03290083333333334), 0}, {0, 0, R(0.03290083333333334)}},
+        {{R(0.00026000000000000003), 0, 0}, {0, R(0.03290083333333334), 0}, {0, 0, R(0.03290083333333334)}},
     },
 };
 
-const hybrid_3crs_real hybrid_3crs_HOME_X[HYBRID_3CRS_NQ] = {R(0.0), R(0.0), R(0.75), R(0.0), R(0.0), R(0.0), R(1.0)};
+const hybrid_3crs_real hybrid_3crs_HOME_X[HYBRID_3CRS_NQ] = {0, 0, R(0.75), 0, 0, 0, 1};
 const hybrid_3crs_real hybrid_3crs_HOME_Q[HYBRID_3CRS_NJ] = {R(0.2), R(0.2), R(0.8), R(0.2), R(0.2), R(0.8), R(0.2), R(0.2), R(0.8)};
 const size_t hybrid_3crs_ACTUATED[HYBRID_3CRS_NU] = {0, 1, 3, 4, 6, 7};
 const char *const hybrid_3crs_ACTUATOR_NAMES[HYBRID_3CRS_NU] = {
@@ -529,6 +536,9 @@ static int acceptable(const hybrid_3crs_params *p)
     ok &= all_inertias(&p->crs_link3_inertia[0][0][0], LEGS_OF_crs);
     return ok;
 }
+
+#define KEEP(name) model->name = name
+#define KEEP_OF_LEG(name) model->name[leg] = name
 
 int hybrid_3crs_prepare(const hybrid_3crs_params *params, hybrid_3crs_model *model)
 {
@@ -580,10 +590,10 @@ int hybrid_3crs_prepare(const hybrid_3crs_params *params, hybrid_3crs_model *mod
     const real J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4);
     /* (spread) rms distance of the platform points from their centroid */
     const real spread_t = R(0.3333333333333333)*root(3);
-    model->gravity_x = gravity_x;
-    model->gravity_y = gravity_y;
-    model->gravity_z = gravity_z;
-    model->spread_t = spread_t;
+    KEEP(gravity_x);
+    KEEP(gravity_y);
+    KEEP(gravity_z);
+    KEEP(spread_t);
     for (size_t leg = 0; leg < FILLED(LEGS_OF_crs); ++leg) {
         const size_t own = leg < LEGS_OF_crs ? leg : 0;
         const real crs_base_point_x = params->crs_base_point[own][0];
@@ -703,55 +713,55 @@ int hybrid_3crs_prepare(const hybrid_3crs_params *params, hybrid_3crs_model *mod
             crs_base_frame_yz*crs_base_point_y + crs_base_frame_zz*crs_base_point_z;
         const real crs_b_in_axes1_z = crs_base_frame_xx*crs_base_point_x +
             crs_base_frame_yx*crs_base_point_y + crs_base_frame_zx*crs_base_point_z;
-        model->crs_J_2_in_spec1_xx[leg] = crs_J_2_in_spec1_xx;
-        model->crs_J_3_in_spec3_xx[leg] = crs_J_3_in_spec3_xx;
-        model->crs_J_3_in_spec3_xy[leg] = crs_J_3_in_spec3_xy;
-        model->crs_J_3_in_spec3_xz[leg] = crs_J_3_in_spec3_xz;
-        model->crs_J_3_in_spec3_yy[leg] = crs_J_3_in_spec3_yy;
-        model->crs_J_3_in_spec3_yz[leg] = crs_J_3_in_spec3_yz;
-        model->crs_J_3_in_spec3_zz[leg] = crs_J_3_in_spec3_zz;
-        model->crs_Sigma_3_in_axes3_xx[leg] = crs_Sigma_3_in_axes3_xx;
-        model->crs_Sigma_3_in_axes3_yy[leg] = crs_Sigma_3_in_axes3_yy;
-        model->crs_Sigma_3_in_axes3_zz[leg] = crs_Sigma_3_in_axes3_zz;
-        model->crs_acc_3_t[leg] = crs_acc_3_t;
-        model->crs_acc_3_t_2[leg] = crs_acc_3_t_2;
-        model->crs_b_in_axes1_z[leg] = crs_b_in_axes1_z;
-        model->crs_base_frame_xx[leg] = crs_base_frame_xx;
-        model->crs_base_frame_xy[leg] = crs_base_frame_xy;
-        model->crs_base_frame_xz[leg] = crs_base_frame_xz;
-        model->crs_base_frame_yx[leg] = crs_base_frame_yx;
-        model->crs_base_frame_yy[leg] = crs_base_frame_yy;
-        model->crs_base_frame_yz[leg] = crs_base_frame_yz;
-        model->crs_base_frame_zx[leg] = crs_base_frame_zx;
-        model->crs_base_frame_zy[leg] = crs_base_frame_zy;
-        model->crs_base_frame_zz[leg] = crs_base_frame_zz;
-        model->crs_base_point_x[leg] = crs_base_point_x;
-        model->crs_base_point_y[leg] = crs_base_point_y;
-        model->crs_base_point_z[leg] = crs_base_point_z;
-        model->crs_branch_1[leg] = crs_branch_1;
-        model->crs_branch_2[leg] = crs_branch_2;
-        model->crs_g_in_axes1_z[leg] = crs_g_in_axes1_z;
-        model->crs_h_2_in_spec1_x[leg] = crs_h_2_in_spec1_x;
-        model->crs_h_2_in_spec1_y[leg] = crs_h_2_in_spec1_y;
-        model->crs_h_2_in_spec1_z[leg] = crs_h_2_in_spec1_z;
-        model->crs_h_3_in_spec3_x[leg] = crs_h_3_in_spec3_x;
-        model->crs_h_3_in_spec3_y[leg] = crs_h_3_in_spec3_y;
-        model->crs_h_3_in_spec3_z[leg] = crs_h_3_in_spec3_z;
-        model->crs_joint3_offset_x[leg] = crs_joint3_offset_x;
-        model->crs_link2_mass[leg] = crs_link2_mass;
-        model->crs_link3_mass[leg] = crs_link3_mass;
-        model->crs_platform_joint_offset_x[leg] = crs_platform_joint_offset_x;
-        model->crs_platform_point_x[leg] = crs_platform_point_x;
-        model->crs_platform_point_y[leg] = crs_platform_point_y;
-        model->crs_platform_point_z[leg] = crs_platform_point_z;
-        model->crs_potential_t[leg] = crs_potential_t;
-        model->crs_potential_t_2[leg] = crs_potential_t_2;
-        model->crs_size[leg] = crs_size;
-        model->crs_size_t[leg] = crs_size_t;
-        model->crs_size_t_2[leg] = crs_size_t_2;
-        model->inv_crs_size[leg] = inv_crs_size;
-        model->inv_crs_size_t[leg] = inv_crs_size_t;
-        model->inv_crs_size_t_2[leg] = inv_crs_size_t_2;
+        KEEP_OF_LEG(crs_J_2_in_spec1_xx);
+        KEEP_OF_LEG(crs_J_3_in_spec3_xx);
+        KEEP_OF_LEG(crs_J_3_in_spec3_xy);
+        KEEP_OF_LEG(crs_J_3_in_spec3_xz);
+        KEEP_OF_LEG(crs_J_3_in_spec3_yy);
+        KEEP_OF_LEG(crs_J_3_in_spec3_yz);
+        KEEP_OF_LEG(crs_J_3_in_spec3_zz);
+        KEEP_OF_LEG(crs_Sigma_3_in_axes3_xx);
+        KEEP_OF_LEG(crs_Sigma_3_in_axes3_yy);
+        KEEP_OF_LEG(crs_Sigma_3_in_axes3_zz);
+        KEEP_OF_LEG(crs_acc_3_t);
+        KEEP_OF_LEG(crs_acc_3_t_2);
+        KEEP_OF_LEG(crs_b_in_axes1_z);
+        KEEP_OF_LEG(crs_base_frame_xx);
+        KEEP_OF_LEG(crs_base_frame_xy);
+        KEEP_OF_LEG(crs_base_frame_xz);
+        KEEP_OF_LEG(crs_base_frame_yx);
+        KEEP_OF_LEG(crs_base_frame_yy);
+        KEEP_OF_LEG(crs_base_frame_yz);
+        KEEP_OF_LEG(crs_base_frame_zx);
+        KEEP_OF_LEG(crs_base_frame_zy);
+        KEEP_OF_LEG(crs_base_frame_zz);
+        KEEP_OF_LEG(crs_base_point_x);
+        KEEP_OF_LEG(crs_base_point_y);
+        KEEP_OF_LEG(crs_base_point_z);
+        KEEP_OF_LEG(crs_branch_1);
+        KEEP_OF_LEG(crs_branch_2);
+        KEEP_OF_LEG(crs_g_in_axes1_z);
+        KEEP_OF_LEG(crs_h_2_in_spec1_x);
+        KEEP_OF_LEG(crs_h_2_in_spec1_y);
+        KEEP_OF_LEG(crs_h_2_in_spec1_z);
+        KEEP_OF_LEG(crs_h_3_in_spec3_x);
+        KEEP_OF_LEG(crs_h_3_in_spec3_y);
+        KEEP_OF_LEG(crs_h_3_in_spec3_z);
+        KEEP_OF_LEG(crs_joint3_offset_x);
+        KEEP_OF_LEG(crs_link2_mass);
+        KEEP_OF_LEG(crs_link3_mass);
+        KEEP_OF_LEG(crs_platform_joint_offset_x);
+        KEEP_OF_LEG(crs_platform_point_x);
+        KEEP_OF_LEG(crs_platform_point_y);
+        KEEP_OF_LEG(crs_platform_point_z);
+        KEEP_OF_LEG(crs_potential_t);
+        KEEP_OF_LEG(crs_potential_t_2);
+        KEEP_OF_LEG(crs_size);
+        KEEP_OF_LEG(crs_size_t);
+        KEEP_OF_LEG(crs_size_t_2);
+        KEEP_OF_LEG(inv_crs_size);
+        KEEP_OF_LEG(inv_crs_size_t);
+        KEEP_OF_LEG(inv_crs_size_t_2);
         m_star_of_legs += leg < LEGS_OF_crs ? crs_link3_mass : 0;
         h_star_in_platform_x_of_legs += leg < LEGS_OF_crs ? crs_h_star_t : 0;
         h_star_in_platform_y_of_legs += leg < LEGS_OF_crs ? crs_h_star_t_2 : 0;
@@ -800,25 +810,25 @@ int hybrid_3crs_prepare(const hybrid_3crs_params *params, hybrid_3crs_model *mod
     const real b_c_in_platform_z = R(0.3333333333333333)*b_c_crs_in_platform_z;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = root(legs_size_crs)*spread_t;
-    model->J_star_in_platform_xx = J_star_in_platform_xx;
-    model->J_star_in_platform_xy = J_star_in_platform_xy;
-    model->J_star_in_platform_xz = J_star_in_platform_xz;
-    model->J_star_in_platform_yy = J_star_in_platform_yy;
-    model->J_star_in_platform_yz = J_star_in_platform_yz;
-    model->J_star_in_platform_zz = J_star_in_platform_zz;
-    model->J_star_t_12 = J_star_t_12;
-    model->J_star_t_14 = J_star_t_14;
-    model->Z_p_t = Z_p_t;
-    model->Z_p_t_2 = Z_p_t_2;
-    model->Z_p_t_3 = Z_p_t_3;
-    model->b_c_in_platform_x = b_c_in_platform_x;
-    model->b_c_in_platform_y = b_c_in_platform_y;
-    model->b_c_in_platform_z = b_c_in_platform_z;
-    model->h_star_in_platform_x = h_star_in_platform_x;
-    model->h_star_in_platform_y = h_star_in_platform_y;
-    model->h_star_in_platform_z = h_star_in_platform_z;
-    model->legs_size = legs_size;
-    model->m_star = m_star;
+    KEEP(J_star_in_platform_xx);
+    KEEP(J_star_in_platform_xy);
+    KEEP(J_star_in_platform_xz);
+    KEEP(J_star_in_platform_yy);
+    KEEP(J_star_in_platform_yz);
+    KEEP(J_star_in_platform_zz);
+    KEEP(J_star_t_12);
+    KEEP(J_star_t_14);
+    KEEP(Z_p_t);
+    KEEP(Z_p_t_2);
+    KEEP(Z_p_t_3);
+    KEEP(b_c_in_platform_x);
+    KEEP(b_c_in_platform_y);
+    KEEP(b_c_in_platform_z);
+    KEEP(h_star_in_platform_x);
+    KEEP(h_star_in_platform_y);
+    KEEP(h_star_in_platform_z);
+    KEEP(legs_size);
+    KEEP(m_star);
     return OK;
 }
 
@@ -1410,10 +1420,10 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real R_zy = quaternion_wx + quaternion_yz;
     const real R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = R_xx*m->h_star_in_platform_x + R_xy*m->h_star_in_platform_y +
-        R_xz*m->h_star_in_platform_z;
-    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yy*m->h_star_in_platform_y +
-        R_yz*m->h_star_in_platform_z;
+    const real h_star_x = R_xy*m->h_star_in_platform_y + R_xz*m->h_star_in_platform_z +
+        R_xx*m->h_star_in_platform_x;
+    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yz*m->h_star_in_platform_z +
+        R_yy*m->h_star_in_platform_y;
     const real h_star_z = R_zx*m->h_star_in_platform_x + R_zy*m->h_star_in_platform_y +
         R_zz*m->h_star_in_platform_z;
     v->quaternion_scale = quaternion_scale;
@@ -1437,8 +1447,8 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
     const real omega_x = V[3*w + k];
     const real omega_y = V[4*w + k];
     const real omega_z = V[5*w + k];
-    const real omega_in_platform_x = v->R_xx*omega_x + v->R_yx*omega_y + v->R_zx*omega_z;
-    const real omega_in_platform_y = v->R_xy*omega_x + v->R_yy*omega_y + v->R_zy*omega_z;
+    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
     const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
     v->omega_in_platform_x = omega_in_platform_x;
     v->omega_in_platform_y = omega_in_platform_y;
@@ -1448,24 +1458,24 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
 INLINE void stage_M_dynamics(const prepared *m, values *v)
 {
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_t = m->J_star_in_platform_xy*v->R_xx + m->J_star_in_platform_yz*v->R_xz
-        - m->J_star_t_12*v->R_xy;
+    const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
+        m->J_star_in_platform_xy*v->R_xx;
     const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
         m->J_star_in_platform_yz*v->R_yz - m->J_star_t_12*v->R_yy;
-    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx +
-        m->J_star_in_platform_yz*v->R_zz - m->J_star_t_12*v->R_zy;
+    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx - m->J_star_t_12*v->R_zy +
+        m->J_star_in_platform_yz*v->R_zz;
     const real J_star_t_4 = m->J_star_t_14*v->R_xz - m->J_star_in_platform_xz*v->R_xx;
     const real J_star_t_5 = m->J_star_t_14*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
     const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
-    const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
-        J_star_t_5*v->R_xz;
+    const real J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
+        J_star_t_4*v->R_yz;
     const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
     const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
     const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
-    const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
+    const real J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
     const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
     const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
@@ -1490,10 +1500,10 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
     const real Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real g_in_platform_x = v->R_xx*m->gravity_x + v->R_yx*m->gravity_y +
-        v->R_zx*m->gravity_z;
-    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_yy*m->gravity_y +
-        v->R_zy*m->gravity_z;
+    const real g_in_platform_x = v->R_yx*m->gravity_y + v->R_zx*m->gravity_z +
+        v->R_xx*m->gravity_x;
+    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_zy*m->gravity_z +
+        v->R_yy*m->gravity_y;
     const real g_in_platform_z = v->R_xz*m->gravity_x + v->R_yz*m->gravity_y +
         v->R_zz*m->gravity_z;
     const real Z_q_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
@@ -1505,15 +1515,15 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
         m->J_star_in_platform_yz*v->omega_in_platform_y +
         m->J_star_in_platform_zz*v->omega_in_platform_z;
-    const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
-        g_in_platform_y*m->h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
-        g_in_platform_z*m->h_star_in_platform_y;
-    const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
-        g_in_platform_z*m->h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
-        g_in_platform_x*m->h_star_in_platform_z;
-    const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
-        g_in_platform_x*m->h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
-        g_in_platform_y*m->h_star_in_platform_x;
+    const real Z_q_in_platform_x = g_in_platform_y*m->h_star_in_platform_z -
+        g_in_platform_z*m->h_star_in_platform_y + Z_q_t_3*v->omega_in_platform_y -
+        Z_q_t_2*v->omega_in_platform_z;
+    const real Z_q_in_platform_y = g_in_platform_z*m->h_star_in_platform_x -
+        g_in_platform_x*m->h_star_in_platform_z + Z_q_t*v->omega_in_platform_z -
+        Z_q_t_3*v->omega_in_platform_x;
+    const real Z_q_in_platform_z = g_in_platform_x*m->h_star_in_platform_y -
+        g_in_platform_y*m->h_star_in_platform_x + Z_q_t_2*v->omega_in_platform_x -
+        Z_q_t*v->omega_in_platform_y;
     const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
         v->R_xz*Z_q_in_platform_z;
     const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
@@ -1557,24 +1567,24 @@ INLINE void stage_crs_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real crs_q_x = R_xx*m->crs_platform_point_x[i] + R_xy*m->crs_platform_point_y[i] +
-        R_xz*m->crs_platform_point_z[i];
+    const real crs_q_x = R_xy*m->crs_platform_point_y[i] + R_xz*m->crs_platform_point_z[i] +
+        R_xx*m->crs_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real crs_q_y = R_yx*m->crs_platform_point_x[i] + R_yy*m->crs_platform_point_y[i] +
-        R_yz*m->crs_platform_point_z[i];
+    const real crs_q_y = R_yx*m->crs_platform_point_x[i] + R_yz*m->crs_platform_point_z[i] +
+        R_yy*m->crs_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real crs_q_z = R_zx*m->crs_platform_point_x[i] + R_zy*m->crs_platform_point_y[i] +
         R_zz*m->crs_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real crs_S_x = crs_q_x + t_x - m->crs_base_point_x[i];
+    const real crs_S_x = t_x - m->crs_base_point_x[i] + crs_q_x;
     const real t_y = X[1*w + j];
-    const real crs_S_y = crs_q_y + t_y - m->crs_base_point_y[i];
+    const real crs_S_y = t_y - m->crs_base_point_y[i] + crs_q_y;
     const real t_z = X[2*w + j];
-    const real crs_S_z = crs_q_z + t_z - m->crs_base_point_z[i];
+    const real crs_S_z = t_z - m->crs_base_point_z[i] + crs_q_z;
     const real crs_S_in_turn1_x = crs_S_x*m->crs_base_frame_xy[i] +
         crs_S_y*m->crs_base_frame_yy[i] + crs_S_z*m->crs_base_frame_zy[i];
     const real crs_S_in_turn1_y = crs_S_x*m->crs_base_frame_xz[i] +
@@ -1607,11 +1617,11 @@ INLINE void stage_crs_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (crs-r_1) from joint 1 to the connection point, along the links */
     const real crs_d_4_in_axes1_z = crs_c_3*m->crs_platform_joint_offset_x[i];
     const real crs_r_1_in_axes1_x = m->crs_platform_joint_offset_x[i]*crs_s_3;
-    const real crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + m->crs_joint3_offset_x[i] + crs_q_2;
+    const real crs_r_1_in_axes1_z = m->crs_joint3_offset_x[i] + crs_q_2 + crs_d_4_in_axes1_z;
     /* (crs-v_1) velocity of the connection point per rate of joint 1 */
     const real crs_v_1_in_axes3_z = crs_c_3*(crs_c_3*crs_r_1_in_axes1_x -
-        crs_r_1_in_axes1_z*crs_s_3) + crs_s_3*(crs_c_3*crs_r_1_in_axes1_z +
-        crs_r_1_in_axes1_x*crs_s_3);
+        crs_r_1_in_axes1_z*crs_s_3) + crs_s_3*(crs_r_1_in_axes1_x*crs_s_3 +
+        crs_c_3*crs_r_1_in_axes1_z);
     /* (crs-w_1) reciprocal vector 1 */
     const real axis_z_crs_axes3_x = m->crs_base_frame_xz[i]*crs_c_1 -
         m->crs_base_frame_xy[i]*crs_s_1;
@@ -1626,12 +1636,12 @@ INLINE void stage_crs_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (crs-w_2) reciprocal vector 2 */
     const real crs_w_2_t = crs_c_1*crs_c_3;
     const real crs_w_2_t_2 = crs_c_3*crs_s_1;
-    const real axis_y_crs_axes3_x = m->crs_base_frame_xy[i]*crs_w_2_t +
-        m->crs_base_frame_xz[i]*crs_w_2_t_2 - m->crs_base_frame_xx[i]*crs_s_3;
-    const real axis_y_crs_axes3_y = m->crs_base_frame_yy[i]*crs_w_2_t +
-        m->crs_base_frame_yz[i]*crs_w_2_t_2 - m->crs_base_frame_yx[i]*crs_s_3;
-    const real axis_y_crs_axes3_z = m->crs_base_frame_zy[i]*crs_w_2_t +
-        m->crs_base_frame_zz[i]*crs_w_2_t_2 - m->crs_base_frame_zx[i]*crs_s_3;
+    const real axis_y_crs_axes3_x = m->crs_base_frame_xy[i]*crs_w_2_t -
+        m->crs_base_frame_xx[i]*crs_s_3 + m->crs_base_frame_xz[i]*crs_w_2_t_2;
+    const real axis_y_crs_axes3_y = m->crs_base_frame_yy[i]*crs_w_2_t -
+        m->crs_base_frame_yx[i]*crs_s_3 + m->crs_base_frame_yz[i]*crs_w_2_t_2;
+    const real axis_y_crs_axes3_z = m->crs_base_frame_zy[i]*crs_w_2_t -
+        m->crs_base_frame_zx[i]*crs_s_3 + m->crs_base_frame_zz[i]*crs_w_2_t_2;
     const real axis_x_crs_axes3_x = axis_y_crs_axes3_y*axis_z_crs_axes3_z -
         axis_y_crs_axes3_z*axis_z_crs_axes3_y;
     const real axis_x_crs_axes3_y = axis_y_crs_axes3_z*axis_z_crs_axes3_x -
@@ -1722,11 +1732,11 @@ INLINE void stage_crs_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real crs_S_dot_t_2 = v->crs_q_x*omega_z - v->crs_q_z*omega_x;
     const real crs_S_dot_t_3 = v->crs_q_y*omega_x - v->crs_q_x*omega_y;
     const real t_dot_x = V[0*w + j];
-    const real crs_S_dot_x = crs_S_dot_t + t_dot_x;
+    const real crs_S_dot_x = t_dot_x + crs_S_dot_t;
     const real t_dot_y = V[1*w + j];
-    const real crs_S_dot_y = crs_S_dot_t_2 + t_dot_y;
+    const real crs_S_dot_y = t_dot_y + crs_S_dot_t_2;
     const real t_dot_z = V[2*w + j];
-    const real crs_S_dot_z = crs_S_dot_t_3 + t_dot_z;
+    const real crs_S_dot_z = t_dot_z + crs_S_dot_t_3;
     /* (crs-qd_1) rate of joint 1 */
     const real crs_qd_1_t = crs_S_dot_x*m->crs_base_frame_xy[i] +
         crs_S_dot_y*m->crs_base_frame_yy[i] + crs_S_dot_z*m->crs_base_frame_zy[i];
@@ -1754,12 +1764,12 @@ INLINE void stage_crs_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real crs_bias_t_2 = m->crs_platform_joint_offset_x[i]*crs_qd_2_t;
     const real crs_bias_t_3 = -crs_omega_1_in_axes3_y*m->crs_platform_joint_offset_x[i];
     const real crs_bias_in_axes3_x = crs_bias_t_3*crs_omega_1_in_axes3_y -
-        crs_bias_t*crs_omega_1_in_axes3_y - crs_bias_t_2*crs_qd_2_t;
+        crs_bias_t_2*crs_qd_2_t - crs_bias_t*crs_omega_1_in_axes3_y;
     const real crs_bias_in_axes3_y = crs_bias_t*crs_omega_1_in_axes3_x -
         crs_bias_t_3*crs_omega_1_in_axes3_x;
-    const real crs_bias_in_axes3_z = crs_W_3_in_axes3_xz*m->crs_platform_joint_offset_x[i] +
-        crs_bias_t_2*crs_omega_1_in_axes3_x - 2*crs_qd_2*(v->crs_c_3*crs_omega_1_in_axes3_y +
-        crs_omega_1_in_axes3_x*v->crs_s_3);
+    const real crs_bias_in_axes3_z = crs_bias_t_2*crs_omega_1_in_axes3_x +
+        crs_W_3_in_axes3_xz*m->crs_platform_joint_offset_x[i] -
+        2*crs_qd_2*(v->crs_c_3*crs_omega_1_in_axes3_y + crs_omega_1_in_axes3_x*v->crs_s_3);
     v->crs_S_dot_t = crs_S_dot_t;
     v->crs_S_dot_t_2 = crs_S_dot_t_2;
     v->crs_S_dot_t_3 = crs_S_dot_t_3;
@@ -1781,13 +1791,13 @@ INLINE void stage_crs_A_V_X(size_t w, size_t j, const real *V, values_crs *v)
     /* (crs-S_ddot) acceleration of the connection point */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
-    const real crs_S_ddot_x = v->crs_a_p_x + v->crs_S_dot_t_3*omega_y -
-        v->crs_S_dot_t_2*omega_z;
+    const real crs_S_ddot_x = v->crs_S_dot_t_3*omega_y - v->crs_S_dot_t_2*omega_z +
+        v->crs_a_p_x;
     const real omega_x = V[3*w + j];
-    const real crs_S_ddot_y = v->crs_a_p_y + v->crs_S_dot_t*omega_z -
-        v->crs_S_dot_t_3*omega_x;
-    const real crs_S_ddot_z = v->crs_a_p_z + v->crs_S_dot_t_2*omega_x -
-        v->crs_S_dot_t*omega_y;
+    const real crs_S_ddot_y = v->crs_S_dot_t*omega_z - v->crs_S_dot_t_3*omega_x +
+        v->crs_a_p_y;
+    const real crs_S_ddot_z = v->crs_S_dot_t_2*omega_x - v->crs_S_dot_t*omega_y +
+        v->crs_a_p_z;
     v->crs_S_ddot_x = crs_S_ddot_x;
     v->crs_S_ddot_y = crs_S_ddot_y;
     v->crs_S_ddot_z = crs_S_ddot_z;
@@ -1846,8 +1856,8 @@ INLINE void stage_crs_M_dynamics(const prepared *m, size_t i, values_crs *v)
         m->crs_link2_mass[i]*v->crs_s_3;
     /* (crs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
-    const real crs_d_Gamma_1_in_axes1_y = v->crs_c_3*m->crs_h_3_in_spec3_y[i] +
-        m->crs_h_3_in_spec3_x[i]*v->crs_s_3 + v->crs_w_1_in_axes3_z*(m->crs_J_2_in_spec1_xx[i]
+    const real crs_d_Gamma_1_in_axes1_y = m->crs_h_3_in_spec3_x[i]*v->crs_s_3 +
+        v->crs_c_3*m->crs_h_3_in_spec3_y[i] + v->crs_w_1_in_axes3_z*(m->crs_J_2_in_spec1_xx[i]
         + v->crs_c_3*(m->crs_J_3_in_spec3_xx[i]*v->crs_c_3 -
         m->crs_J_3_in_spec3_xy[i]*v->crs_s_3) -
         v->crs_s_3*(m->crs_J_3_in_spec3_xy[i]*v->crs_c_3 -
@@ -1906,9 +1916,8 @@ INLINE void stage_crs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real crs_mu_3_o_t_3 = v->crs_qd_2_t*v->crs_qd_2_t;
     /* (crs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
-    const real crs_mu_1_o_in_axes1_z = m->crs_J_2_in_spec1_xx[i]*crs_qdd_1_o +
-        v->crs_g_in_axes1_x*m->crs_h_2_in_spec1_z[i] -
-        v->crs_g_in_axes1_y*m->crs_h_2_in_spec1_y[i];
+    const real crs_mu_1_o_in_axes1_z = v->crs_g_in_axes1_x*m->crs_h_2_in_spec1_z[i] -
+        v->crs_g_in_axes1_y*m->crs_h_2_in_spec1_y[i] + m->crs_J_2_in_spec1_xx[i]*crs_qdd_1_o;
     v->crs_u_1_x = crs_u_1_x;
     v->crs_u_1_y = crs_u_1_y;
     v->crs_u_1_z = crs_u_1_z;
@@ -1931,23 +1940,20 @@ INLINE void stage_crs_inverse_kinematics_potential(const prepared *m, size_t w, 
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
     const real t_x = X[0*w + j];
-    const real crs_S_x = t_x + R_xx*m->crs_platform_point_x[i] +
-        R_xy*m->crs_platform_point_y[i] + R_xz*m->crs_platform_point_z[i] -
-        m->crs_base_point_x[i];
+    const real crs_S_x = t_x - m->crs_base_point_x[i] + R_xy*m->crs_platform_point_y[i] +
+        R_xz*m->crs_platform_point_z[i] + R_xx*m->crs_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real t_y = X[1*w + j];
-    const real crs_S_y = t_y + R_yx*m->crs_platform_point_x[i] +
-        R_yy*m->crs_platform_point_y[i] + R_yz*m->crs_platform_point_z[i] -
-        m->crs_base_point_y[i];
+    const real crs_S_y = t_y - m->crs_base_point_y[i] + R_yx*m->crs_platform_point_x[i] +
+        R_yz*m->crs_platform_point_z[i] + R_yy*m->crs_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real t_z = X[2*w + j];
-    const real crs_S_z = t_z + R_zx*m->crs_platform_point_x[i] +
-        R_zy*m->crs_platform_point_y[i] + R_zz*m->crs_platform_point_z[i] -
-        m->crs_base_point_z[i];
+    const real crs_S_z = t_z - m->crs_base_point_z[i] + R_zx*m->crs_platform_point_x[i] +
+        R_zy*m->crs_platform_point_y[i] + R_zz*m->crs_platform_point_z[i];
     const real crs_S_in_turn1_x = crs_S_x*m->crs_base_frame_xy[i] +
         crs_S_y*m->crs_base_frame_yy[i] + crs_S_z*m->crs_base_frame_zy[i];
     const real crs_S_in_turn1_y = crs_S_x*m->crs_base_frame_xz[i] +
@@ -2009,61 +2015,58 @@ INLINE void stage_crs_legs_required(const prepared *m, size_t i, values_crs *v)
     const real crs_B_3_in_axes3_zx = v->crs_W_3_in_axes3_xz - crs_alpha_3_in_axes3_y;
     const real crs_B_3_in_axes3_zy = v->crs_W_3_in_axes3_yz + crs_alpha_3_in_axes3_x;
     /* (crs-acc_2) acceleration of the reference point of link 2, less gravity */
-    const real crs_acc_2_in_axes1_z = v->crs_c_3*crs_rel_in_axes3_x +
-        crs_qdd_3*v->crs_r_1_in_axes1_x - m->crs_g_in_axes1_z[i] -
-        crs_rel_in_axes3_y*v->crs_s_3;
+    const real crs_acc_2_in_axes1_z = v->crs_c_3*crs_rel_in_axes3_x - m->crs_g_in_axes1_z[i] -
+        crs_rel_in_axes3_y*v->crs_s_3 + crs_qdd_3*v->crs_r_1_in_axes1_x;
     /* (crs-f_2) inertia force of link 2 less its weight */
     const real crs_f_2_in_axes1_z = crs_acc_2_in_axes1_z*m->crs_link2_mass[i];
     /* (crs-acc_3) acceleration of the reference point of link 3, less gravity */
-    const real crs_acc_3_in_axes3_x = crs_S_ddot_in_axes3_x -
-        v->crs_c_3*m->crs_g_in_axes1_z[i] - v->crs_g_in_axes1_x*v->crs_s_3;
-    const real crs_acc_3_in_axes3_y = crs_S_ddot_in_axes3_y +
-        m->crs_g_in_axes1_z[i]*v->crs_s_3 - v->crs_c_3*v->crs_g_in_axes1_x;
+    const real crs_acc_3_in_axes3_x = crs_S_ddot_in_axes3_x - v->crs_g_in_axes1_x*v->crs_s_3 -
+        v->crs_c_3*m->crs_g_in_axes1_z[i];
+    const real crs_acc_3_in_axes3_y = m->crs_g_in_axes1_z[i]*v->crs_s_3 -
+        v->crs_c_3*v->crs_g_in_axes1_x + crs_S_ddot_in_axes3_y;
     const real crs_acc_3_in_axes3_z = crs_S_ddot_in_axes3_z - v->crs_g_in_axes1_y;
     /* (crs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
     const real crs_mu_3_t = v->crs_omega_1_in_axes3_x*v->crs_omega_1_in_axes3_x;
     const real crs_mu_3_t_2 = v->crs_omega_1_in_axes3_y*v->crs_omega_1_in_axes3_y;
     const real crs_mu_3_t_3 = v->crs_qd_2_t*v->crs_qd_2_t;
-    const real crs_mu_3_in_axes3_x = crs_B_3_in_axes3_yx*m->crs_J_3_in_spec3_xz[i] +
-        crs_B_3_in_axes3_zy*m->crs_Sigma_3_in_axes3_yy[i] +
+    const real crs_mu_3_in_axes3_x = crs_acc_3_in_axes3_z*m->crs_h_3_in_spec3_y[i] -
+        crs_acc_3_in_axes3_y*m->crs_h_3_in_spec3_z[i] +
         m->crs_J_3_in_spec3_yz[i]*(crs_mu_3_t_2 - crs_mu_3_t_3) +
         m->crs_Sigma_3_in_axes3_zz[i]*crs_alpha_1_in_axes3_x +
-        crs_acc_3_in_axes3_z*m->crs_h_3_in_spec3_y[i] -
-        crs_B_3_in_axes3_zx*m->crs_J_3_in_spec3_xy[i] -
-        crs_acc_3_in_axes3_y*m->crs_h_3_in_spec3_z[i];
-    const real crs_mu_3_in_axes3_y = crs_B_3_in_axes3_zy*m->crs_J_3_in_spec3_xy[i] +
-        m->crs_Sigma_3_in_axes3_zz[i]*crs_alpha_1_in_axes3_y +
-        crs_acc_3_in_axes3_x*m->crs_h_3_in_spec3_z[i] -
-        crs_B_3_in_axes3_xy*m->crs_J_3_in_spec3_yz[i] -
-        crs_B_3_in_axes3_zx*m->crs_Sigma_3_in_axes3_xx[i] -
-        m->crs_J_3_in_spec3_xz[i]*(crs_mu_3_t - crs_mu_3_t_3) -
-        crs_acc_3_in_axes3_z*m->crs_h_3_in_spec3_x[i];
-    const real crs_mu_3_in_axes3_z = crs_B_3_in_axes3_yx*m->crs_Sigma_3_in_axes3_xx[i] +
-        m->crs_J_3_in_spec3_xy[i]*(crs_mu_3_t - crs_mu_3_t_2) +
-        m->crs_J_3_in_spec3_xz[i]*crs_alpha_1_in_axes3_x +
+        crs_B_3_in_axes3_yx*m->crs_J_3_in_spec3_xz[i] +
+        crs_B_3_in_axes3_zy*m->crs_Sigma_3_in_axes3_yy[i] -
+        crs_B_3_in_axes3_zx*m->crs_J_3_in_spec3_xy[i];
+    const real crs_mu_3_in_axes3_y = crs_acc_3_in_axes3_x*m->crs_h_3_in_spec3_z[i] -
+        crs_acc_3_in_axes3_z*m->crs_h_3_in_spec3_x[i] - m->crs_J_3_in_spec3_xz[i]*(crs_mu_3_t
+        - crs_mu_3_t_3) + m->crs_Sigma_3_in_axes3_zz[i]*crs_alpha_1_in_axes3_y -
+        crs_B_3_in_axes3_xy*m->crs_J_3_in_spec3_yz[i] +
+        crs_B_3_in_axes3_zy*m->crs_J_3_in_spec3_xy[i] -
+        crs_B_3_in_axes3_zx*m->crs_Sigma_3_in_axes3_xx[i];
+    const real crs_mu_3_in_axes3_z = crs_acc_3_in_axes3_y*m->crs_h_3_in_spec3_x[i] -
+        crs_acc_3_in_axes3_x*m->crs_h_3_in_spec3_y[i] + m->crs_J_3_in_spec3_xy[i]*(crs_mu_3_t
+        - crs_mu_3_t_2) + m->crs_J_3_in_spec3_xz[i]*crs_alpha_1_in_axes3_x +
         m->crs_J_3_in_spec3_yz[i]*crs_alpha_1_in_axes3_y +
-        crs_acc_3_in_axes3_y*m->crs_h_3_in_spec3_x[i] -
-        crs_B_3_in_axes3_xy*m->crs_Sigma_3_in_axes3_yy[i] -
-        crs_acc_3_in_axes3_x*m->crs_h_3_in_spec3_y[i];
+        crs_B_3_in_axes3_yx*m->crs_Sigma_3_in_axes3_xx[i] -
+        crs_B_3_in_axes3_xy*m->crs_Sigma_3_in_axes3_yy[i];
     /* (crs-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-    const real crs_mu_1_in_axes1_z = m->crs_J_2_in_spec1_xx[i]*crs_qdd_1 +
-        v->crs_g_in_axes1_x*m->crs_h_2_in_spec1_z[i] -
-        v->crs_g_in_axes1_y*m->crs_h_2_in_spec1_y[i];
+    const real crs_mu_1_in_axes1_z = v->crs_g_in_axes1_x*m->crs_h_2_in_spec1_z[i] -
+        v->crs_g_in_axes1_y*m->crs_h_2_in_spec1_y[i] + m->crs_J_2_in_spec1_xx[i]*crs_qdd_1;
     /* (crs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real crs_N_1_in_axes1_z = crs_mu_1_in_axes1_z + v->crs_c_3*crs_mu_3_in_axes3_x -
         crs_mu_3_in_axes3_y*v->crs_s_3;
     /* (crs-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real crs_c_t = v->inv_crs_d_4_in_axes1_z*(crs_mu_3_in_axes3_z +
-        crs_f_2_in_axes1_z*v->crs_r_1_in_axes1_x);
-    const real crs_c_in_axes3_x = m->crs_h_3_in_spec3_x[i]*(crs_mu_3_t_2 + crs_mu_3_t_3) -
-        crs_B_3_in_axes3_xy*m->crs_h_3_in_spec3_y[i] -
-        crs_alpha_1_in_axes3_y*m->crs_h_3_in_spec3_z[i] - v->crs_c_3*crs_f_2_in_axes1_z -
+    const real crs_c_t = v->inv_crs_d_4_in_axes1_z*(crs_f_2_in_axes1_z*v->crs_r_1_in_axes1_x +
+        crs_mu_3_in_axes3_z);
+    const real crs_c_in_axes3_x = m->crs_h_3_in_spec3_x[i]*(crs_mu_3_t_3 + crs_mu_3_t_2) -
+        crs_alpha_1_in_axes3_y*m->crs_h_3_in_spec3_z[i] -
+        crs_B_3_in_axes3_xy*m->crs_h_3_in_spec3_y[i] - v->crs_c_3*crs_f_2_in_axes1_z -
         crs_c_t*v->crs_s_3;
-    const real crs_c_in_axes3_y = crs_alpha_1_in_axes3_x*m->crs_h_3_in_spec3_z[i] +
-        crs_f_2_in_axes1_z*v->crs_s_3 + m->crs_h_3_in_spec3_y[i]*(crs_mu_3_t + crs_mu_3_t_3) -
-        crs_B_3_in_axes3_yx*m->crs_h_3_in_spec3_x[i] - v->crs_c_3*crs_c_t;
+    const real crs_c_in_axes3_y = m->crs_h_3_in_spec3_y[i]*(crs_mu_3_t_3 + crs_mu_3_t) +
+        crs_alpha_1_in_axes3_x*m->crs_h_3_in_spec3_z[i] -
+        crs_B_3_in_axes3_yx*m->crs_h_3_in_spec3_x[i] + crs_f_2_in_axes1_z*v->crs_s_3 -
+        v->crs_c_3*crs_c_t;
     const real crs_c_in_axes3_z = m->crs_h_3_in_spec3_z[i]*(crs_mu_3_t + crs_mu_3_t_2) -
         crs_B_3_in_axes3_zx*m->crs_h_3_in_spec3_x[i] -
         crs_B_3_in_axes3_zy*m->crs_h_3_in_spec3_y[i] -
@@ -2079,39 +2082,43 @@ INLINE void stage_crs_legs_required(const prepared *m, size_t i, values_crs *v)
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    real *s, verdict *t)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_M_dynamics(m, &v);
-    stage_Z_dynamics(m, w, k, V, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.h_star_x;
-    s[10*w + k] = v.h_star_y;
-    s[11*w + k] = v.h_star_z;
-    s[12*w + k] = v.J_star_xx;
-    s[13*w + k] = v.J_star_xy;
-    s[14*w + k] = v.J_star_xz;
-    s[15*w + k] = v.J_star_yy;
-    s[16*w + k] = v.J_star_yz;
-    s[17*w + k] = v.J_star_zz;
-    s[18*w + k] = v.Z_p_x;
-    s[19*w + k] = v.Z_p_y;
-    s[20*w + k] = v.Z_p_z;
-    s[21*w + k] = v.Z_q_x;
-    s[22*w + k] = v.Z_q_y;
-    s[23*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->h_star_x;
+    s[10*w + k] = v->h_star_y;
+    s[11*w + k] = v->h_star_z;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
+    *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_M_dynamics(m, v);
+    stage_Z_dynamics(m, w, k, V, v);
+    s[12*w + k] = v->J_star_xx;
+    s[13*w + k] = v->J_star_xy;
+    s[14*w + k] = v->J_star_xz;
+    s[15*w + k] = v->J_star_yy;
+    s[16*w + k] = v->J_star_yz;
+    s[17*w + k] = v->J_star_zz;
+    s[18*w + k] = v->Z_p_x;
+    s[19*w + k] = v->Z_p_y;
+    s[20*w + k] = v->Z_p_z;
+    s[21*w + k] = v->Z_q_x;
+    s[22*w + k] = v->Z_q_y;
+    s[23*w + k] = v->Z_q_z;
 }
 
 INLINE void dynamics_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2138,39 +2145,39 @@ INLINE void dynamics_legs_crs(const prepared *m, size_t w, size_t i, size_t j, s
     const real crs_B_3_o_in_axes3_xy = v.crs_W_3_in_axes3_xy - crs_qdd_3_o;
     const real crs_B_3_o_in_axes3_yx = v.crs_W_3_in_axes3_xy + crs_qdd_3_o;
     /* (crs-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real crs_acc_2_o_in_axes1_z = v.crs_c_3*crs_rel_o_in_axes3_x +
-        crs_qdd_3_o*v.crs_r_1_in_axes1_x - m->crs_g_in_axes1_z[i] -
-        crs_rel_o_in_axes3_y*v.crs_s_3;
+    const real crs_acc_2_o_in_axes1_z = v.crs_c_3*crs_rel_o_in_axes3_x -
+        m->crs_g_in_axes1_z[i] - crs_rel_o_in_axes3_y*v.crs_s_3 +
+        crs_qdd_3_o*v.crs_r_1_in_axes1_x;
     /* (crs-f_2_o) remainder of: inertia force of link 2 less its weight */
     const real crs_f_2_o_in_axes1_z = crs_acc_2_o_in_axes1_z*m->crs_link2_mass[i];
     /* (crs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real crs_acc_3_o_in_axes3_x = crs_u_1_in_axes3_x - v.crs_c_3*m->crs_g_in_axes1_z[i]
-        - v.crs_g_in_axes1_x*v.crs_s_3;
-    const real crs_acc_3_o_in_axes3_y = crs_u_1_in_axes3_y + m->crs_g_in_axes1_z[i]*v.crs_s_3
-        - v.crs_c_3*v.crs_g_in_axes1_x;
+    const real crs_acc_3_o_in_axes3_x = crs_u_1_in_axes3_x - v.crs_g_in_axes1_x*v.crs_s_3 -
+        v.crs_c_3*m->crs_g_in_axes1_z[i];
+    const real crs_acc_3_o_in_axes3_y = m->crs_g_in_axes1_z[i]*v.crs_s_3 -
+        v.crs_c_3*v.crs_g_in_axes1_x + crs_u_1_in_axes3_y;
     /* (crs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
        reference points */
-    const real crs_mu_3_o_in_axes3_x = crs_B_3_o_in_axes3_yx*m->crs_J_3_in_spec3_xz[i] +
-        v.crs_B_3_o_in_axes3_zy*m->crs_Sigma_3_in_axes3_yy[i] +
+    const real crs_mu_3_o_in_axes3_x = v.crs_acc_3_o_in_axes3_z*m->crs_h_3_in_spec3_y[i] -
+        crs_acc_3_o_in_axes3_y*m->crs_h_3_in_spec3_z[i] +
         m->crs_J_3_in_spec3_yz[i]*(v.crs_mu_3_o_t_2 - v.crs_mu_3_o_t_3) +
         m->crs_Sigma_3_in_axes3_zz[i]*v.crs_alpha_1_o_in_axes3_x +
-        v.crs_acc_3_o_in_axes3_z*m->crs_h_3_in_spec3_y[i] -
-        v.crs_B_3_o_in_axes3_zx*m->crs_J_3_in_spec3_xy[i] -
-        crs_acc_3_o_in_axes3_y*m->crs_h_3_in_spec3_z[i];
-    const real crs_mu_3_o_in_axes3_y = v.crs_B_3_o_in_axes3_zy*m->crs_J_3_in_spec3_xy[i] +
-        m->crs_Sigma_3_in_axes3_zz[i]*v.crs_alpha_1_o_in_axes3_y +
-        crs_acc_3_o_in_axes3_x*m->crs_h_3_in_spec3_z[i] -
-        crs_B_3_o_in_axes3_xy*m->crs_J_3_in_spec3_yz[i] -
-        v.crs_B_3_o_in_axes3_zx*m->crs_Sigma_3_in_axes3_xx[i] -
-        m->crs_J_3_in_spec3_xz[i]*(v.crs_mu_3_o_t - v.crs_mu_3_o_t_3) -
-        v.crs_acc_3_o_in_axes3_z*m->crs_h_3_in_spec3_x[i];
-    const real crs_mu_3_o_in_axes3_z = crs_B_3_o_in_axes3_yx*m->crs_Sigma_3_in_axes3_xx[i] +
+        crs_B_3_o_in_axes3_yx*m->crs_J_3_in_spec3_xz[i] +
+        v.crs_B_3_o_in_axes3_zy*m->crs_Sigma_3_in_axes3_yy[i] -
+        v.crs_B_3_o_in_axes3_zx*m->crs_J_3_in_spec3_xy[i];
+    const real crs_mu_3_o_in_axes3_y = crs_acc_3_o_in_axes3_x*m->crs_h_3_in_spec3_z[i] -
+        v.crs_acc_3_o_in_axes3_z*m->crs_h_3_in_spec3_x[i] -
+        m->crs_J_3_in_spec3_xz[i]*(v.crs_mu_3_o_t - v.crs_mu_3_o_t_3) +
+        m->crs_Sigma_3_in_axes3_zz[i]*v.crs_alpha_1_o_in_axes3_y -
+        crs_B_3_o_in_axes3_xy*m->crs_J_3_in_spec3_yz[i] +
+        v.crs_B_3_o_in_axes3_zy*m->crs_J_3_in_spec3_xy[i] -
+        v.crs_B_3_o_in_axes3_zx*m->crs_Sigma_3_in_axes3_xx[i];
+    const real crs_mu_3_o_in_axes3_z = crs_acc_3_o_in_axes3_y*m->crs_h_3_in_spec3_x[i] -
+        crs_acc_3_o_in_axes3_x*m->crs_h_3_in_spec3_y[i] +
         m->crs_J_3_in_spec3_xy[i]*(v.crs_mu_3_o_t - v.crs_mu_3_o_t_2) +
         m->crs_J_3_in_spec3_xz[i]*v.crs_alpha_1_o_in_axes3_x +
         m->crs_J_3_in_spec3_yz[i]*v.crs_alpha_1_o_in_axes3_y +
-        crs_acc_3_o_in_axes3_y*m->crs_h_3_in_spec3_x[i] -
-        crs_B_3_o_in_axes3_xy*m->crs_Sigma_3_in_axes3_yy[i] -
-        crs_acc_3_o_in_axes3_x*m->crs_h_3_in_spec3_y[i];
+        crs_B_3_o_in_axes3_yx*m->crs_Sigma_3_in_axes3_xx[i] -
+        crs_B_3_o_in_axes3_xy*m->crs_Sigma_3_in_axes3_yy[i];
     /* (crs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
        connection point left out */
     const real crs_N_1_o_in_axes1_z = v.crs_mu_1_o_in_axes1_z +
@@ -2181,28 +2188,28 @@ INLINE void dynamics_legs_crs(const prepared *m, size_t w, size_t i, size_t j, s
         v.crs_d_Gamma_3_in_axes3_x*v.crs_w_3_in_axes3_x -
         v.crs_w_2_in_axes3_x*(v.crs_c_3*m->crs_link2_mass[i] + v.crs_d_Gamma_2_t*v.crs_s_3);
     const real crs_d_c_in_axes3_xy = m->crs_h_3_in_spec3_y[i]*v.crs_w_3_in_axes3_y -
-        v.crs_d_Gamma_2_in_axes3_y*v.crs_w_2_in_axes3_x -
-        v.crs_d_Gamma_3_in_axes3_y*v.crs_w_3_in_axes3_x;
+        v.crs_d_Gamma_3_in_axes3_y*v.crs_w_3_in_axes3_x -
+        v.crs_d_Gamma_2_in_axes3_y*v.crs_w_2_in_axes3_x;
     /* (crs-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
-    const real crs_c_o_t = v.inv_crs_d_4_in_axes1_z*(crs_mu_3_o_in_axes3_z +
-        crs_f_2_o_in_axes1_z*v.crs_r_1_in_axes1_x);
-    const real crs_c_o_in_axes3_x = m->crs_h_3_in_spec3_x[i]*(v.crs_mu_3_o_t_2 +
-        v.crs_mu_3_o_t_3) - crs_B_3_o_in_axes3_xy*m->crs_h_3_in_spec3_y[i] -
-        v.crs_alpha_1_o_in_axes3_y*m->crs_h_3_in_spec3_z[i] - v.crs_c_3*crs_f_2_o_in_axes1_z -
+    const real crs_c_o_t = v.inv_crs_d_4_in_axes1_z*(crs_f_2_o_in_axes1_z*v.crs_r_1_in_axes1_x
+        + crs_mu_3_o_in_axes3_z);
+    const real crs_c_o_in_axes3_x = m->crs_h_3_in_spec3_x[i]*(v.crs_mu_3_o_t_3 +
+        v.crs_mu_3_o_t_2) - v.crs_alpha_1_o_in_axes3_y*m->crs_h_3_in_spec3_z[i] -
+        crs_B_3_o_in_axes3_xy*m->crs_h_3_in_spec3_y[i] - v.crs_c_3*crs_f_2_o_in_axes1_z -
         crs_c_o_t*v.crs_s_3;
-    const real crs_c_o_in_axes3_y = v.crs_alpha_1_o_in_axes3_x*m->crs_h_3_in_spec3_z[i] +
-        crs_f_2_o_in_axes1_z*v.crs_s_3 + m->crs_h_3_in_spec3_y[i]*(v.crs_mu_3_o_t +
-        v.crs_mu_3_o_t_3) - crs_B_3_o_in_axes3_yx*m->crs_h_3_in_spec3_x[i] -
+    const real crs_c_o_in_axes3_y = m->crs_h_3_in_spec3_y[i]*(v.crs_mu_3_o_t_3 +
+        v.crs_mu_3_o_t) + v.crs_alpha_1_o_in_axes3_x*m->crs_h_3_in_spec3_z[i] -
+        crs_B_3_o_in_axes3_yx*m->crs_h_3_in_spec3_x[i] + crs_f_2_o_in_axes1_z*v.crs_s_3 -
         v.crs_c_3*crs_c_o_t;
     const real crs_c_o_in_axes3_z = m->crs_h_3_in_spec3_z[i]*(v.crs_mu_3_o_t +
         v.crs_mu_3_o_t_2) - v.crs_B_3_o_in_axes3_zx*m->crs_h_3_in_spec3_x[i] -
         v.crs_B_3_o_in_axes3_zy*m->crs_h_3_in_spec3_y[i] -
         crs_N_1_o_in_axes1_z*v.crs_w_1_in_axes3_z;
     /* (crs-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real crs_Q_t = crs_d_c_in_axes3_xx + v.crs_d_Gamma_2_in_axes3_y*v.crs_w_2_in_axes3_y
-        + v.crs_d_Gamma_3_in_axes3_y*v.crs_w_3_in_axes3_y +
-        m->crs_h_3_in_spec3_x[i]*v.crs_w_3_in_axes3_y;
+    const real crs_Q_t = m->crs_h_3_in_spec3_x[i]*v.crs_w_3_in_axes3_y +
+        v.crs_d_Gamma_3_in_axes3_y*v.crs_w_3_in_axes3_y +
+        v.crs_d_Gamma_2_in_axes3_y*v.crs_w_2_in_axes3_y + crs_d_c_in_axes3_xx;
     const real crs_Q_t_2 = R(0.5)*crs_Q_t;
     const real crs_Q_t_3 = crs_d_c_in_axes3_xx +
         v.crs_d_Gamma_1_in_axes1_y*v.crs_w_1_in_axes3_z +
@@ -2222,17 +2229,17 @@ INLINE void dynamics_legs_crs(const prepared *m, size_t w, size_t i, size_t j, s
     const real crs_Q_t_10 = v.axis_z_crs_axes3_z*crs_Q_t_4 -
         v.axis_x_crs_axes3_z*v.crs_d_c_in_axes3_xz;
     const real crs_Q_t_11 = v.axis_y_crs_axes3_x*crs_Q_t_5 - v.axis_z_crs_axes3_x*crs_Q_t_8;
-    const real crs_Q_xx = -2*crs_Q_t_11 - crs_d_c_in_axes3_xx;
-    const real crs_Q_xy = v.axis_z_crs_axes3_x*crs_Q_t_9 + v.axis_z_crs_axes3_y*crs_Q_t_8 -
-        v.axis_y_crs_axes3_x*crs_Q_t_6 - v.axis_y_crs_axes3_y*crs_Q_t_5;
-    const real crs_Q_xz = v.axis_z_crs_axes3_x*crs_Q_t_10 + v.axis_z_crs_axes3_z*crs_Q_t_8 -
-        v.axis_y_crs_axes3_x*crs_Q_t_7 - v.axis_y_crs_axes3_z*crs_Q_t_5;
+    const real crs_Q_xx = -crs_d_c_in_axes3_xx - 2*crs_Q_t_11;
+    const real crs_Q_xy = v.axis_z_crs_axes3_x*crs_Q_t_9 - v.axis_y_crs_axes3_x*crs_Q_t_6 -
+        v.axis_y_crs_axes3_y*crs_Q_t_5 + v.axis_z_crs_axes3_y*crs_Q_t_8;
+    const real crs_Q_xz = v.axis_z_crs_axes3_x*crs_Q_t_10 - v.axis_y_crs_axes3_x*crs_Q_t_7 -
+        v.axis_y_crs_axes3_z*crs_Q_t_5 + v.axis_z_crs_axes3_z*crs_Q_t_8;
     const real crs_Q_t_12 = v.axis_y_crs_axes3_y*crs_Q_t_6 - v.axis_z_crs_axes3_y*crs_Q_t_9;
-    const real crs_Q_yy = -2*crs_Q_t_12 - crs_d_c_in_axes3_xx;
-    const real crs_Q_yz = v.axis_z_crs_axes3_y*crs_Q_t_10 + v.axis_z_crs_axes3_z*crs_Q_t_9 -
-        v.axis_y_crs_axes3_y*crs_Q_t_7 - v.axis_y_crs_axes3_z*crs_Q_t_6;
+    const real crs_Q_yy = -crs_d_c_in_axes3_xx - 2*crs_Q_t_12;
+    const real crs_Q_yz = v.axis_z_crs_axes3_y*crs_Q_t_10 - v.axis_y_crs_axes3_y*crs_Q_t_7 -
+        v.axis_y_crs_axes3_z*crs_Q_t_6 + v.axis_z_crs_axes3_z*crs_Q_t_9;
     const real crs_Q_t_13 = v.axis_y_crs_axes3_z*crs_Q_t_7 - v.axis_z_crs_axes3_z*crs_Q_t_10;
-    const real crs_Q_zz = -2*crs_Q_t_13 - crs_d_c_in_axes3_xx;
+    const real crs_Q_zz = -crs_d_c_in_axes3_xx - 2*crs_Q_t_13;
     /* (crs-U) velocity and gravity terms of the leg force */
     const real crs_U_x = -v.axis_x_crs_axes3_x*crs_c_o_in_axes3_x -
         v.axis_y_crs_axes3_x*crs_c_o_in_axes3_y - v.axis_z_crs_axes3_x*crs_c_o_in_axes3_z;
@@ -2350,15 +2357,15 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[11*w + k];
-    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
     const real h_star_y = s[10*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -2366,9 +2373,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[9*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
@@ -2403,13 +2410,13 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[24*w + k];
     const real Z_q_x = s[21*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[25*w + k];
     const real Z_q_y = s[22*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[26*w + k];
     const real Z_q_z = s[23*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
     const real M_tt_xy = sums[1*w + k];
@@ -2474,7 +2481,8 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 {
     real s[24] = {0}, sums[27] = {0};
     real terms_crs[27*LEGS(LEGS_OF_crs)] = {0}, o_crs[15*LEGS(LEGS_OF_crs)] = {0};
-    dynamics_before(m, 1, 0, X, V, s, t);
+    values v;
+    dynamics_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_crs); ++k) {
         dynamics_legs_crs(m, 1, k, 0, k, LEGS(LEGS_OF_crs), 0, s, X, V, terms_crs, o_crs);
     }
@@ -2484,6 +2492,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t n = 0; n < 27; ++n) {
         sums[n] = total(terms_crs + n*LEGS(LEGS_OF_crs), LEGS_OF_crs);
     }
+    dynamics_between(m, 1, 0, V, &v, s);
     dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
@@ -2493,7 +2502,9 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real s[24*LANES], sums[27*LANES];
     real o_crs[15*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        dynamics_before(m, LANES, k, X, V, s, t);
+        values v;
+        dynamics_before(m, LANES, k, X, &v, s, t);
+        dynamics_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 27*LANES);
     for (size_t i = 0; i < LEGS_OF_crs; ++i) {
@@ -2510,30 +2521,34 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_M_dynamics(m, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.h_star_x;
-    s[10*w + k] = v.h_star_y;
-    s[11*w + k] = v.h_star_z;
-    s[12*w + k] = v.J_star_xx;
-    s[13*w + k] = v.J_star_xy;
-    s[14*w + k] = v.J_star_xz;
-    s[15*w + k] = v.J_star_yy;
-    s[16*w + k] = v.J_star_yz;
-    s[17*w + k] = v.J_star_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->h_star_x;
+    s[10*w + k] = v->h_star_y;
+    s[11*w + k] = v->h_star_z;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void M_between(const prepared *m, size_t w, size_t k, values *v, real *s)
+{
+    stage_M_dynamics(m, v);
+    s[12*w + k] = v->J_star_xx;
+    s[13*w + k] = v->J_star_xy;
+    s[14*w + k] = v->J_star_xz;
+    s[15*w + k] = v->J_star_yy;
+    s[16*w + k] = v->J_star_yz;
+    s[17*w + k] = v->J_star_zz;
 }
 
 INLINE void M_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2551,27 +2566,26 @@ INLINE void M_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t k
         v.crs_d_Gamma_3_in_axes3_x*v.crs_w_3_in_axes3_x -
         crs_w_2_in_axes3_x*(v.crs_c_3*m->crs_link2_mass[i] + v.crs_d_Gamma_2_t*v.crs_s_3);
     const real crs_d_c_in_axes3_xy = m->crs_h_3_in_spec3_y[i]*v.crs_w_3_in_axes3_y -
-        v.crs_d_Gamma_2_in_axes3_y*crs_w_2_in_axes3_x -
-        v.crs_d_Gamma_3_in_axes3_y*v.crs_w_3_in_axes3_x;
+        v.crs_d_Gamma_3_in_axes3_y*v.crs_w_3_in_axes3_x -
+        v.crs_d_Gamma_2_in_axes3_y*crs_w_2_in_axes3_x;
     /* (crs-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real crs_Q_t = v.crs_c_1*v.crs_c_3;
     const real crs_Q_t_2 = v.crs_c_3*v.crs_s_1;
-    const real axis_y_crs_axes3_x = crs_Q_t*m->crs_base_frame_xy[i] +
-        crs_Q_t_2*m->crs_base_frame_xz[i] - m->crs_base_frame_xx[i]*v.crs_s_3;
-    const real axis_y_crs_axes3_y = crs_Q_t*m->crs_base_frame_yy[i] +
-        crs_Q_t_2*m->crs_base_frame_yz[i] - m->crs_base_frame_yx[i]*v.crs_s_3;
-    const real axis_y_crs_axes3_z = crs_Q_t*m->crs_base_frame_zy[i] +
-        crs_Q_t_2*m->crs_base_frame_zz[i] - m->crs_base_frame_zx[i]*v.crs_s_3;
+    const real axis_y_crs_axes3_x = crs_Q_t*m->crs_base_frame_xy[i] -
+        m->crs_base_frame_xx[i]*v.crs_s_3 + crs_Q_t_2*m->crs_base_frame_xz[i];
+    const real axis_y_crs_axes3_y = crs_Q_t*m->crs_base_frame_yy[i] -
+        m->crs_base_frame_yx[i]*v.crs_s_3 + crs_Q_t_2*m->crs_base_frame_yz[i];
+    const real axis_y_crs_axes3_z = crs_Q_t*m->crs_base_frame_zy[i] -
+        m->crs_base_frame_zx[i]*v.crs_s_3 + crs_Q_t_2*m->crs_base_frame_zz[i];
     const real axis_x_crs_axes3_x = axis_y_crs_axes3_y*v.axis_z_crs_axes3_z -
         axis_y_crs_axes3_z*v.axis_z_crs_axes3_y;
     const real axis_x_crs_axes3_y = axis_y_crs_axes3_z*v.axis_z_crs_axes3_x -
         axis_y_crs_axes3_x*v.axis_z_crs_axes3_z;
     const real axis_x_crs_axes3_z = axis_y_crs_axes3_x*v.axis_z_crs_axes3_y -
         axis_y_crs_axes3_y*v.axis_z_crs_axes3_x;
-    const real crs_Q_t_3 = crs_d_c_in_axes3_xx +
-        v.crs_d_Gamma_2_in_axes3_y*(v.crs_c_3*crs_w_2_t - v.crs_s_3) +
+    const real crs_Q_t_3 = m->crs_h_3_in_spec3_x[i]*v.crs_w_3_in_axes3_y +
         v.crs_d_Gamma_3_in_axes3_y*v.crs_w_3_in_axes3_y +
-        m->crs_h_3_in_spec3_x[i]*v.crs_w_3_in_axes3_y;
+        v.crs_d_Gamma_2_in_axes3_y*(v.crs_c_3*crs_w_2_t - v.crs_s_3) + crs_d_c_in_axes3_xx;
     const real crs_Q_t_4 = R(0.5)*crs_Q_t_3;
     const real crs_Q_t_5 = crs_d_c_in_axes3_xx +
         v.crs_d_Gamma_1_in_axes1_y*v.crs_w_1_in_axes3_z +
@@ -2591,17 +2605,17 @@ INLINE void M_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real crs_Q_t_12 = v.axis_z_crs_axes3_z*crs_Q_t_6 -
         axis_x_crs_axes3_z*v.crs_d_c_in_axes3_xz;
     const real crs_Q_t_13 = axis_y_crs_axes3_x*crs_Q_t_7 - v.axis_z_crs_axes3_x*crs_Q_t_10;
-    const real crs_Q_xx = -2*crs_Q_t_13 - crs_d_c_in_axes3_xx;
-    const real crs_Q_xy = v.axis_z_crs_axes3_x*crs_Q_t_11 + v.axis_z_crs_axes3_y*crs_Q_t_10 -
-        axis_y_crs_axes3_x*crs_Q_t_8 - axis_y_crs_axes3_y*crs_Q_t_7;
-    const real crs_Q_xz = v.axis_z_crs_axes3_x*crs_Q_t_12 + v.axis_z_crs_axes3_z*crs_Q_t_10 -
-        axis_y_crs_axes3_x*crs_Q_t_9 - axis_y_crs_axes3_z*crs_Q_t_7;
+    const real crs_Q_xx = -crs_d_c_in_axes3_xx - 2*crs_Q_t_13;
+    const real crs_Q_xy = v.axis_z_crs_axes3_x*crs_Q_t_11 - axis_y_crs_axes3_x*crs_Q_t_8 -
+        axis_y_crs_axes3_y*crs_Q_t_7 + v.axis_z_crs_axes3_y*crs_Q_t_10;
+    const real crs_Q_xz = v.axis_z_crs_axes3_x*crs_Q_t_12 - axis_y_crs_axes3_x*crs_Q_t_9 -
+        axis_y_crs_axes3_z*crs_Q_t_7 + v.axis_z_crs_axes3_z*crs_Q_t_10;
     const real crs_Q_t_14 = axis_y_crs_axes3_y*crs_Q_t_8 - v.axis_z_crs_axes3_y*crs_Q_t_11;
-    const real crs_Q_yy = -2*crs_Q_t_14 - crs_d_c_in_axes3_xx;
-    const real crs_Q_yz = v.axis_z_crs_axes3_y*crs_Q_t_12 + v.axis_z_crs_axes3_z*crs_Q_t_11 -
-        axis_y_crs_axes3_y*crs_Q_t_9 - axis_y_crs_axes3_z*crs_Q_t_8;
+    const real crs_Q_yy = -crs_d_c_in_axes3_xx - 2*crs_Q_t_14;
+    const real crs_Q_yz = v.axis_z_crs_axes3_y*crs_Q_t_12 - axis_y_crs_axes3_y*crs_Q_t_9 -
+        axis_y_crs_axes3_z*crs_Q_t_8 + v.axis_z_crs_axes3_z*crs_Q_t_11;
     const real crs_Q_t_15 = axis_y_crs_axes3_z*crs_Q_t_9 - v.axis_z_crs_axes3_z*crs_Q_t_12;
-    const real crs_Q_zz = -2*crs_Q_t_15 - crs_d_c_in_axes3_xx;
+    const real crs_Q_zz = -crs_d_c_in_axes3_xx - 2*crs_Q_t_15;
     /* (M_ta) coupling block of M */
     const real crs_M_ta_t = -crs_Q_xy*v.crs_q_z;
     const real crs_M_ta_t_2 = crs_Q_xz*v.crs_q_y;
@@ -2663,15 +2677,15 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[11*w + k];
-    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
     const real h_star_y = s[10*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -2679,9 +2693,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[9*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
@@ -2758,7 +2772,8 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
     real s[18] = {0}, sums[21] = {0};
     real terms_crs[21*LEGS(LEGS_OF_crs)] = {0}, o_crs[2*LEGS(LEGS_OF_crs)] = {0};
-    M_before(m, 1, 0, X, s, t);
+    values v;
+    M_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_crs); ++k) {
         M_legs_crs(m, 1, k, 0, k, LEGS(LEGS_OF_crs), 0, s, X, terms_crs, o_crs);
     }
@@ -2768,6 +2783,7 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     for (size_t n = 0; n < 21; ++n) {
         sums[n] = total(terms_crs + n*LEGS(LEGS_OF_crs), LEGS_OF_crs);
     }
+    M_between(m, 1, 0, &v, s);
     M_after(m, 1, 0, s, sums, M, t);
 }
 
@@ -2776,7 +2792,9 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
     real s[18*LANES], sums[21*LANES];
     real o_crs[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        M_before(m, LANES, k, X, s, t);
+        values v;
+        M_before(m, LANES, k, X, &v, s, t);
+        M_between(m, LANES, k, &v, s);
     }
     clear(sums, 21*LANES);
     for (size_t i = 0; i < LEGS_OF_crs; ++i) {
@@ -2793,29 +2811,32 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s,
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
     verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_Z_dynamics(m, w, k, V, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.Z_p_x;
-    s[10*w + k] = v.Z_p_y;
-    s[11*w + k] = v.Z_p_z;
-    s[12*w + k] = v.Z_q_x;
-    s[13*w + k] = v.Z_q_y;
-    s[14*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_Z_dynamics(m, w, k, V, v);
+    s[9*w + k] = v->Z_p_x;
+    s[10*w + k] = v->Z_p_y;
+    s[11*w + k] = v->Z_p_z;
+    s[12*w + k] = v->Z_q_x;
+    s[13*w + k] = v->Z_q_y;
+    s[14*w + k] = v->Z_q_z;
 }
 
 INLINE void Z_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2828,12 +2849,12 @@ INLINE void Z_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t k
     /* (crs-u_1) centripetal acceleration of the connection point */
     const real crs_u_1_t = v.crs_c_1*v.crs_c_3;
     const real crs_u_1_t_2 = v.crs_c_3*v.crs_s_1;
-    const real axis_y_crs_axes3_x = m->crs_base_frame_xy[i]*crs_u_1_t +
-        m->crs_base_frame_xz[i]*crs_u_1_t_2 - m->crs_base_frame_xx[i]*v.crs_s_3;
-    const real axis_y_crs_axes3_y = m->crs_base_frame_yy[i]*crs_u_1_t +
-        m->crs_base_frame_yz[i]*crs_u_1_t_2 - m->crs_base_frame_yx[i]*v.crs_s_3;
-    const real axis_y_crs_axes3_z = m->crs_base_frame_zy[i]*crs_u_1_t +
-        m->crs_base_frame_zz[i]*crs_u_1_t_2 - m->crs_base_frame_zx[i]*v.crs_s_3;
+    const real axis_y_crs_axes3_x = m->crs_base_frame_xy[i]*crs_u_1_t -
+        m->crs_base_frame_xx[i]*v.crs_s_3 + m->crs_base_frame_xz[i]*crs_u_1_t_2;
+    const real axis_y_crs_axes3_y = m->crs_base_frame_yy[i]*crs_u_1_t -
+        m->crs_base_frame_yx[i]*v.crs_s_3 + m->crs_base_frame_yz[i]*crs_u_1_t_2;
+    const real axis_y_crs_axes3_z = m->crs_base_frame_zy[i]*crs_u_1_t -
+        m->crs_base_frame_zx[i]*v.crs_s_3 + m->crs_base_frame_zz[i]*crs_u_1_t_2;
     const real axis_x_crs_axes3_x = axis_y_crs_axes3_y*v.axis_z_crs_axes3_z -
         axis_y_crs_axes3_z*v.axis_z_crs_axes3_y;
     const real axis_x_crs_axes3_y = axis_y_crs_axes3_z*v.axis_z_crs_axes3_x -
@@ -2855,54 +2876,54 @@ INLINE void Z_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real crs_B_3_o_in_axes3_xy = v.crs_W_3_in_axes3_xy - crs_qdd_3_o;
     const real crs_B_3_o_in_axes3_yx = v.crs_W_3_in_axes3_xy + crs_qdd_3_o;
     /* (crs-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real crs_acc_2_o_in_axes1_z = v.crs_c_3*crs_rel_o_in_axes3_x +
-        crs_qdd_3_o*v.crs_r_1_in_axes1_x - m->crs_g_in_axes1_z[i] -
-        crs_rel_o_in_axes3_y*v.crs_s_3;
+    const real crs_acc_2_o_in_axes1_z = v.crs_c_3*crs_rel_o_in_axes3_x -
+        m->crs_g_in_axes1_z[i] - crs_rel_o_in_axes3_y*v.crs_s_3 +
+        crs_qdd_3_o*v.crs_r_1_in_axes1_x;
     /* (crs-f_2_o) remainder of: inertia force of link 2 less its weight */
     const real crs_f_2_o_in_axes1_z = crs_acc_2_o_in_axes1_z*m->crs_link2_mass[i];
     /* (crs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real crs_acc_3_o_in_axes3_x = crs_u_1_in_axes3_x - v.crs_c_3*m->crs_g_in_axes1_z[i]
-        - v.crs_g_in_axes1_x*v.crs_s_3;
-    const real crs_acc_3_o_in_axes3_y = crs_u_1_in_axes3_y + m->crs_g_in_axes1_z[i]*v.crs_s_3
-        - v.crs_c_3*v.crs_g_in_axes1_x;
+    const real crs_acc_3_o_in_axes3_x = crs_u_1_in_axes3_x - v.crs_g_in_axes1_x*v.crs_s_3 -
+        v.crs_c_3*m->crs_g_in_axes1_z[i];
+    const real crs_acc_3_o_in_axes3_y = m->crs_g_in_axes1_z[i]*v.crs_s_3 -
+        v.crs_c_3*v.crs_g_in_axes1_x + crs_u_1_in_axes3_y;
     /* (crs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
        reference points */
-    const real crs_mu_3_o_in_axes3_x = crs_B_3_o_in_axes3_yx*m->crs_J_3_in_spec3_xz[i] +
-        v.crs_B_3_o_in_axes3_zy*m->crs_Sigma_3_in_axes3_yy[i] +
+    const real crs_mu_3_o_in_axes3_x = v.crs_acc_3_o_in_axes3_z*m->crs_h_3_in_spec3_y[i] -
+        crs_acc_3_o_in_axes3_y*m->crs_h_3_in_spec3_z[i] +
         m->crs_J_3_in_spec3_yz[i]*(v.crs_mu_3_o_t_2 - v.crs_mu_3_o_t_3) +
         m->crs_Sigma_3_in_axes3_zz[i]*v.crs_alpha_1_o_in_axes3_x +
-        v.crs_acc_3_o_in_axes3_z*m->crs_h_3_in_spec3_y[i] -
-        v.crs_B_3_o_in_axes3_zx*m->crs_J_3_in_spec3_xy[i] -
-        crs_acc_3_o_in_axes3_y*m->crs_h_3_in_spec3_z[i];
-    const real crs_mu_3_o_in_axes3_y = v.crs_B_3_o_in_axes3_zy*m->crs_J_3_in_spec3_xy[i] +
-        m->crs_Sigma_3_in_axes3_zz[i]*v.crs_alpha_1_o_in_axes3_y +
-        crs_acc_3_o_in_axes3_x*m->crs_h_3_in_spec3_z[i] -
-        crs_B_3_o_in_axes3_xy*m->crs_J_3_in_spec3_yz[i] -
-        v.crs_B_3_o_in_axes3_zx*m->crs_Sigma_3_in_axes3_xx[i] -
-        m->crs_J_3_in_spec3_xz[i]*(v.crs_mu_3_o_t - v.crs_mu_3_o_t_3) -
-        v.crs_acc_3_o_in_axes3_z*m->crs_h_3_in_spec3_x[i];
-    const real crs_mu_3_o_in_axes3_z = crs_B_3_o_in_axes3_yx*m->crs_Sigma_3_in_axes3_xx[i] +
+        crs_B_3_o_in_axes3_yx*m->crs_J_3_in_spec3_xz[i] +
+        v.crs_B_3_o_in_axes3_zy*m->crs_Sigma_3_in_axes3_yy[i] -
+        v.crs_B_3_o_in_axes3_zx*m->crs_J_3_in_spec3_xy[i];
+    const real crs_mu_3_o_in_axes3_y = crs_acc_3_o_in_axes3_x*m->crs_h_3_in_spec3_z[i] -
+        v.crs_acc_3_o_in_axes3_z*m->crs_h_3_in_spec3_x[i] -
+        m->crs_J_3_in_spec3_xz[i]*(v.crs_mu_3_o_t - v.crs_mu_3_o_t_3) +
+        m->crs_Sigma_3_in_axes3_zz[i]*v.crs_alpha_1_o_in_axes3_y -
+        crs_B_3_o_in_axes3_xy*m->crs_J_3_in_spec3_yz[i] +
+        v.crs_B_3_o_in_axes3_zy*m->crs_J_3_in_spec3_xy[i] -
+        v.crs_B_3_o_in_axes3_zx*m->crs_Sigma_3_in_axes3_xx[i];
+    const real crs_mu_3_o_in_axes3_z = crs_acc_3_o_in_axes3_y*m->crs_h_3_in_spec3_x[i] -
+        crs_acc_3_o_in_axes3_x*m->crs_h_3_in_spec3_y[i] +
         m->crs_J_3_in_spec3_xy[i]*(v.crs_mu_3_o_t - v.crs_mu_3_o_t_2) +
         m->crs_J_3_in_spec3_xz[i]*v.crs_alpha_1_o_in_axes3_x +
         m->crs_J_3_in_spec3_yz[i]*v.crs_alpha_1_o_in_axes3_y +
-        crs_acc_3_o_in_axes3_y*m->crs_h_3_in_spec3_x[i] -
-        crs_B_3_o_in_axes3_xy*m->crs_Sigma_3_in_axes3_yy[i] -
-        crs_acc_3_o_in_axes3_x*m->crs_h_3_in_spec3_y[i];
+        crs_B_3_o_in_axes3_yx*m->crs_Sigma_3_in_axes3_xx[i] -
+        crs_B_3_o_in_axes3_xy*m->crs_Sigma_3_in_axes3_yy[i];
     /* (crs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
        connection point left out */
     const real crs_N_1_o_in_axes1_z = v.crs_mu_1_o_in_axes1_z +
         v.crs_c_3*crs_mu_3_o_in_axes3_x - crs_mu_3_o_in_axes3_y*v.crs_s_3;
     /* (crs-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
-    const real crs_c_o_t = v.inv_crs_d_4_in_axes1_z*(crs_mu_3_o_in_axes3_z +
-        crs_f_2_o_in_axes1_z*v.crs_r_1_in_axes1_x);
-    const real crs_c_o_in_axes3_x = m->crs_h_3_in_spec3_x[i]*(v.crs_mu_3_o_t_2 +
-        v.crs_mu_3_o_t_3) - crs_B_3_o_in_axes3_xy*m->crs_h_3_in_spec3_y[i] -
-        v.crs_alpha_1_o_in_axes3_y*m->crs_h_3_in_spec3_z[i] - v.crs_c_3*crs_f_2_o_in_axes1_z -
+    const real crs_c_o_t = v.inv_crs_d_4_in_axes1_z*(crs_f_2_o_in_axes1_z*v.crs_r_1_in_axes1_x
+        + crs_mu_3_o_in_axes3_z);
+    const real crs_c_o_in_axes3_x = m->crs_h_3_in_spec3_x[i]*(v.crs_mu_3_o_t_3 +
+        v.crs_mu_3_o_t_2) - v.crs_alpha_1_o_in_axes3_y*m->crs_h_3_in_spec3_z[i] -
+        crs_B_3_o_in_axes3_xy*m->crs_h_3_in_spec3_y[i] - v.crs_c_3*crs_f_2_o_in_axes1_z -
         crs_c_o_t*v.crs_s_3;
-    const real crs_c_o_in_axes3_y = v.crs_alpha_1_o_in_axes3_x*m->crs_h_3_in_spec3_z[i] +
-        crs_f_2_o_in_axes1_z*v.crs_s_3 + m->crs_h_3_in_spec3_y[i]*(v.crs_mu_3_o_t +
-        v.crs_mu_3_o_t_3) - crs_B_3_o_in_axes3_yx*m->crs_h_3_in_spec3_x[i] -
+    const real crs_c_o_in_axes3_y = m->crs_h_3_in_spec3_y[i]*(v.crs_mu_3_o_t_3 +
+        v.crs_mu_3_o_t) + v.crs_alpha_1_o_in_axes3_x*m->crs_h_3_in_spec3_z[i] -
+        crs_B_3_o_in_axes3_yx*m->crs_h_3_in_spec3_x[i] + crs_f_2_o_in_axes1_z*v.crs_s_3 -
         v.crs_c_3*crs_c_o_t;
     const real crs_c_o_in_axes3_z = m->crs_h_3_in_spec3_z[i]*(v.crs_mu_3_o_t +
         v.crs_mu_3_o_t_2) - v.crs_B_3_o_in_axes3_zx*m->crs_h_3_in_spec3_x[i] -
@@ -2954,13 +2975,13 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[3*w + k];
     const real Z_q_x = s[12*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[4*w + k];
     const real Z_q_y = s[13*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[5*w + k];
     const real Z_q_z = s[14*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
     Z[1*w + k] = Z_t_y;
@@ -2976,7 +2997,8 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_crs[6*LEGS(LEGS_OF_crs)] = {0}, o_crs[2*LEGS(LEGS_OF_crs)] = {0};
-    Z_before(m, 1, 0, X, V, s, t);
+    values v;
+    Z_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_crs); ++k) {
         Z_legs_crs(m, 1, k, 0, k, LEGS(LEGS_OF_crs), 0, s, X, V, terms_crs, o_crs);
     }
@@ -2986,6 +3008,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_crs + n*LEGS(LEGS_OF_crs), LEGS_OF_crs);
     }
+    Z_between(m, 1, 0, V, &v, s);
     Z_after(1, 0, s, sums, Z, t);
 }
 
@@ -2995,7 +3018,9 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real s[15*LANES], sums[6*LANES];
     real o_crs[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        Z_before(m, LANES, k, X, V, s, t);
+        values v;
+        Z_before(m, LANES, k, X, &v, s, t);
+        Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_crs; ++i) {
@@ -3012,20 +3037,20 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void H_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3083,7 +3108,8 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
     real s[9] = {0};
     real o_crs[15*LEGS(LEGS_OF_crs)] = {0};
-    H_before(m, 1, 0, X, s, t);
+    values v;
+    H_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_crs); ++k) {
         H_legs_crs(m, 1, k, 0, k, LEGS(LEGS_OF_crs), s, X, o_crs);
     }
@@ -3097,7 +3123,8 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
     real s[9*LANES];
     real o_crs[15*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        H_before(m, LANES, k, X, s, t);
+        values v;
+        H_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_crs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3110,12 +3137,26 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, real *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
+    values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
     /* (W_p) centripetal tensor of the platform */
     const real omega_x = V[3*w + k];
     const real omega_y = V[4*w + k];
@@ -3130,72 +3171,62 @@ INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X
     const real a_t_y = t_ddot_y - m->gravity_y;
     const real t_ddot_z = A[2*w + k];
     const real a_t_z = t_ddot_z - m->gravity_z;
-    const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
-    const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
-    const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
+    const real a_t_in_platform_x = v->R_yx*a_t_y + v->R_zx*a_t_z + v->R_xx*a_t_x;
+    const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
+    const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
     const real f_p_t = omega_x*omega_x;
     const real f_p_t_2 = omega_y*omega_y;
     const real f_p_t_3 = omega_z*omega_z;
     const real alpha_y = A[4*w + k];
     const real alpha_z = A[5*w + k];
-    const real f_p_x = a_t_x*m->m_star + v.h_star_y*(W_p_xy - alpha_z) + v.h_star_z*(W_p_xz +
-        alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+    const real f_p_x = a_t_x*m->m_star + v->h_star_y*(W_p_xy - alpha_z) + v->h_star_z*(alpha_y
+        + W_p_xz) - v->h_star_x*(f_p_t_2 + f_p_t_3);
     const real alpha_x = A[3*w + k];
-    const real f_p_y = a_t_y*m->m_star + v.h_star_x*(W_p_xy + alpha_z) + v.h_star_z*(W_p_yz -
-        alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
-    const real f_p_z = a_t_z*m->m_star + v.h_star_x*(W_p_xz - alpha_y) + v.h_star_y*(W_p_yz +
-        alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
+    const real f_p_y = a_t_y*m->m_star + v->h_star_x*(alpha_z + W_p_xy) + v->h_star_z*(W_p_yz
+        - alpha_x) - v->h_star_y*(f_p_t + f_p_t_3);
+    const real f_p_z = a_t_z*m->m_star + v->h_star_x*(W_p_xz - alpha_y) + v->h_star_y*(alpha_x
+        + W_p_yz) - v->h_star_z*(f_p_t + f_p_t_2);
     /* (mu_p) inertia moment of the platform less that of its weight */
-    const real mu_p_t = m->J_star_in_platform_xx*v.omega_in_platform_x +
-        m->J_star_in_platform_xy*v.omega_in_platform_y +
-        m->J_star_in_platform_xz*v.omega_in_platform_z;
-    const real mu_p_t_2 = m->J_star_in_platform_xy*v.omega_in_platform_x +
-        m->J_star_in_platform_yy*v.omega_in_platform_y +
-        m->J_star_in_platform_yz*v.omega_in_platform_z;
-    const real mu_p_t_3 = m->J_star_in_platform_xz*v.omega_in_platform_x +
-        m->J_star_in_platform_yz*v.omega_in_platform_y +
-        m->J_star_in_platform_zz*v.omega_in_platform_z;
-    const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
-    const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
-    const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+    const real mu_p_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
+        m->J_star_in_platform_xy*v->omega_in_platform_y +
+        m->J_star_in_platform_xz*v->omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
+        m->J_star_in_platform_yy*v->omega_in_platform_y +
+        m->J_star_in_platform_yz*v->omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
+        m->J_star_in_platform_yz*v->omega_in_platform_y +
+        m->J_star_in_platform_zz*v->omega_in_platform_z;
+    const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
+    const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
+    const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
     const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
         m->J_star_in_platform_xy*alpha_in_platform_y +
         m->J_star_in_platform_xz*alpha_in_platform_z +
-        a_t_in_platform_z*m->h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
-        a_t_in_platform_y*m->h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+        a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
+        + mu_p_t_3*v->omega_in_platform_y - mu_p_t_2*v->omega_in_platform_z;
     const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
         m->J_star_in_platform_yz*alpha_in_platform_z +
-        a_t_in_platform_x*m->h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
-        a_t_in_platform_z*m->h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
+        a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
+        + mu_p_t*v->omega_in_platform_z - mu_p_t_3*v->omega_in_platform_x;
     const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
         m->J_star_in_platform_zz*alpha_in_platform_z +
-        a_t_in_platform_y*m->h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
-        a_t_in_platform_x*m->h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
-    const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
-        v.R_xz*mu_p_in_platform_z;
-    const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
-        v.R_yz*mu_p_in_platform_z;
-    const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
-        v.R_zz*mu_p_in_platform_z;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+        a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
+        + mu_p_t_2*v->omega_in_platform_x - mu_p_t*v->omega_in_platform_y;
+    const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
+        v->R_xz*mu_p_in_platform_z;
+    const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
+        v->R_yz*mu_p_in_platform_z;
+    const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
+        v->R_zz*mu_p_in_platform_z;
     s[9*w + k] = f_p_x;
     s[10*w + k] = f_p_y;
     s[11*w + k] = f_p_z;
     s[12*w + k] = mu_p_x;
     s[13*w + k] = mu_p_y;
     s[14*w + k] = mu_p_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void required_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3288,13 +3319,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[12*w + k];
-    const real R_a_x = R_a_x_of_legs + mu_p_x;
+    const real R_a_x = mu_p_x + R_a_x_of_legs;
     const real R_a_y_of_legs = sums[4*w + k];
     const real mu_p_y = s[13*w + k];
-    const real R_a_y = R_a_y_of_legs + mu_p_y;
+    const real R_a_y = mu_p_y + R_a_y_of_legs;
     const real R_a_z_of_legs = sums[5*w + k];
     const real mu_p_z = s[14*w + k];
-    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
     required[1*w + k] = R_t_y;
@@ -3305,12 +3336,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[5*w + k] = R_a_z;
 }
 
-APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_crs[6*LEGS(LEGS_OF_crs)] = {0}, o_crs[14*LEGS(LEGS_OF_crs)] = {0};
-    required_before(m, 1, 0, X, V, A, s, t);
+    values v;
+    required_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_crs); ++k) {
         required_legs_crs(m, 1, k, 0, k, LEGS(LEGS_OF_crs), 0, s, X, V, A, terms_crs, o_crs);
     }
@@ -3320,6 +3352,7 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_crs + n*LEGS(LEGS_OF_crs), LEGS_OF_crs);
     }
+    required_between(m, 1, 0, V, A, &v, s);
     required_after(1, 0, s, sums, required);
 }
 
@@ -3329,7 +3362,9 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real s[15*LANES], sums[6*LANES];
     real o_crs[14*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        required_before(m, LANES, k, X, V, A, s, t);
+        values v;
+        required_before(m, LANES, k, X, &v, s, t);
+        required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_crs; ++i) {
@@ -3346,21 +3381,20 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s, verdict *t)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
+    *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void inverse_kinematics_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t k,
@@ -3401,7 +3435,8 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 {
     real s[9] = {0};
     real o_crs[6*LEGS(LEGS_OF_crs)] = {0};
-    inverse_kinematics_before(m, 1, 0, X, s, t);
+    values v;
+    inverse_kinematics_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_crs); ++k) {
         inverse_kinematics_legs_crs(m, 1, k, 0, k, LEGS(LEGS_OF_crs), s, X, o_crs);
     }
@@ -3416,7 +3451,8 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real s[9*LANES];
     real o_crs[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        inverse_kinematics_before(m, LANES, k, X, s, t);
+        values v;
+        inverse_kinematics_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_crs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3429,21 +3465,20 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_rates_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3502,7 +3537,8 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 {
     real s[9] = {0};
     real o_crs[6*LEGS(LEGS_OF_crs)] = {0};
-    joint_rates_before(m, 1, 0, X, s, t);
+    values v;
+    joint_rates_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_crs); ++k) {
         joint_rates_legs_crs(m, 1, k, 0, k, LEGS(LEGS_OF_crs), s, X, V, o_crs);
     }
@@ -3517,7 +3553,8 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real s[9*LANES];
     real o_crs[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_rates_before(m, LANES, k, X, s, t);
+        values v;
+        joint_rates_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_crs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3530,21 +3567,20 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
+    values *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_accelerations_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t
@@ -3563,12 +3599,12 @@ INLINE void joint_accelerations_legs_crs(const prepared *m, size_t w, size_t i, 
     /* (crs-rel) acceleration of the connection point left to the joint accelerations */
     const real crs_rel_t = v.crs_c_1*v.crs_c_3;
     const real crs_rel_t_2 = v.crs_c_3*v.crs_s_1;
-    const real axis_y_crs_axes3_x = m->crs_base_frame_xy[i]*crs_rel_t +
-        m->crs_base_frame_xz[i]*crs_rel_t_2 - m->crs_base_frame_xx[i]*v.crs_s_3;
-    const real axis_y_crs_axes3_y = m->crs_base_frame_yy[i]*crs_rel_t +
-        m->crs_base_frame_yz[i]*crs_rel_t_2 - m->crs_base_frame_yx[i]*v.crs_s_3;
-    const real axis_y_crs_axes3_z = m->crs_base_frame_zy[i]*crs_rel_t +
-        m->crs_base_frame_zz[i]*crs_rel_t_2 - m->crs_base_frame_zx[i]*v.crs_s_3;
+    const real axis_y_crs_axes3_x = m->crs_base_frame_xy[i]*crs_rel_t -
+        m->crs_base_frame_xx[i]*v.crs_s_3 + m->crs_base_frame_xz[i]*crs_rel_t_2;
+    const real axis_y_crs_axes3_y = m->crs_base_frame_yy[i]*crs_rel_t -
+        m->crs_base_frame_yx[i]*v.crs_s_3 + m->crs_base_frame_yz[i]*crs_rel_t_2;
+    const real axis_y_crs_axes3_z = m->crs_base_frame_zy[i]*crs_rel_t -
+        m->crs_base_frame_zx[i]*v.crs_s_3 + m->crs_base_frame_zz[i]*crs_rel_t_2;
     const real crs_rel_in_axes3_x = v.crs_S_ddot_x*(axis_y_crs_axes3_y*v.axis_z_crs_axes3_z -
         axis_y_crs_axes3_z*v.axis_z_crs_axes3_y) +
         v.crs_S_ddot_y*(axis_y_crs_axes3_z*v.axis_z_crs_axes3_x -
@@ -3586,8 +3622,8 @@ INLINE void joint_accelerations_legs_crs(const prepared *m, size_t w, size_t i, 
     /* (crs-qdd_2) acceleration of joint 2 */
     const real crs_qdd_2_t = v.inv_crs_d_4_in_axes1_z*(v.crs_c_3*crs_rel_in_axes3_y +
         crs_rel_in_axes3_x*v.crs_s_3);
-    const real crs_qdd_2 = v.crs_c_3*crs_rel_in_axes3_x + crs_qdd_2_t*v.crs_r_1_in_axes1_x -
-        crs_rel_in_axes3_y*v.crs_s_3;
+    const real crs_qdd_2 = v.crs_c_3*crs_rel_in_axes3_x - crs_rel_in_axes3_y*v.crs_s_3 +
+        crs_qdd_2_t*v.crs_r_1_in_axes1_x;
     /* (crs-qdd_1) */
     o[0*count + k] = crs_qdd_1;
     /* (crs-qdd_2) */
@@ -3617,7 +3653,8 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 {
     real s[9] = {0};
     real o_crs[6*LEGS(LEGS_OF_crs)] = {0};
-    joint_accelerations_before(m, 1, 0, X, s, t);
+    values v;
+    joint_accelerations_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_crs); ++k) {
         joint_accelerations_legs_crs(m, 1, k, 0, k, LEGS(LEGS_OF_crs), s, X, V, A, o_crs);
     }
@@ -3632,7 +3669,8 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real s[9*LANES];
     real o_crs[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_accelerations_before(m, LANES, k, X, s, t);
+        values v;
+        joint_accelerations_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_crs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3645,20 +3683,20 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void legs_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3725,7 +3763,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 {
     real s[9] = {0};
     real o_crs[11*LEGS(LEGS_OF_crs)] = {0};
-    legs_before(m, 1, 0, X, s, t);
+    values v;
+    legs_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_crs); ++k) {
         legs_legs_crs(m, 1, k, 0, k, LEGS(LEGS_OF_crs), s, X, V, A, o_crs);
     }
@@ -3735,32 +3774,36 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s)
+{
     /* (potential) potential energy */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
-    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x +
-        v.R_xy*m->h_star_in_platform_y + v.R_xz*m->h_star_in_platform_z + m->m_star*t_x) +
-        m->gravity_y*(v.R_yx*m->h_star_in_platform_x + v.R_yy*m->h_star_in_platform_y +
-        v.R_yz*m->h_star_in_platform_z + m->m_star*t_y) +
-        m->gravity_z*(v.R_zx*m->h_star_in_platform_x + v.R_zy*m->h_star_in_platform_y +
-        v.R_zz*m->h_star_in_platform_z + m->m_star*t_z);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+    const real potential_t = m->gravity_x*(m->m_star*t_x + v->R_xy*m->h_star_in_platform_y +
+        v->R_xz*m->h_star_in_platform_z + v->R_xx*m->h_star_in_platform_x) +
+        m->gravity_y*(m->m_star*t_y + v->R_yx*m->h_star_in_platform_x +
+        v->R_yz*m->h_star_in_platform_z + v->R_yy*m->h_star_in_platform_y) +
+        m->gravity_z*(m->m_star*t_z + v->R_zx*m->h_star_in_platform_x +
+        v->R_zy*m->h_star_in_platform_y + v->R_zz*m->h_star_in_platform_z);
     s[9*w + k] = potential_t;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void potential_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3778,16 +3821,15 @@ INLINE void potential_legs_crs(const prepared *m, size_t w, size_t i, size_t j, 
     /* (crs-s_3) sine of the angle of joint 3 from its reference direction */
     const real crs_s_3 = m->crs_platform_joint_offset_x[i]*v.crs_root_1*m->inv_crs_size_t[i];
     /* (potential) */
-    const real crs_potential_t_3 = m->crs_g_in_axes1_z[i]*(m->crs_h_2_in_spec1_x[i] +
-        crs_c_3*m->crs_h_3_in_spec3_x[i] + m->crs_link2_mass[i]*(m->crs_b_in_axes1_z[i] +
-        v.crs_q_2) - m->crs_h_3_in_spec3_y[i]*crs_s_3) + (m->crs_acc_3_t[i]*crs_c_1 +
-        m->crs_acc_3_t_2[i]*crs_s_1)*(m->crs_h_2_in_spec1_y[i] +
-        crs_c_3*m->crs_h_3_in_spec3_y[i] + m->crs_h_3_in_spec3_x[i]*crs_s_3 +
-        m->crs_link2_mass[i]*(crs_c_1*m->crs_potential_t[i] +
-        m->crs_potential_t_2[i]*crs_s_1)) + (m->crs_acc_3_t_2[i]*crs_c_1 -
+    const real crs_potential_t_3 = (m->crs_acc_3_t_2[i]*crs_c_1 -
         m->crs_acc_3_t[i]*crs_s_1)*(m->crs_h_2_in_spec1_z[i] + m->crs_h_3_in_spec3_z[i] +
         m->crs_link2_mass[i]*(crs_c_1*m->crs_potential_t_2[i] -
-        m->crs_potential_t[i]*crs_s_1));
+        m->crs_potential_t[i]*crs_s_1)) + m->crs_g_in_axes1_z[i]*(m->crs_h_2_in_spec1_x[i] +
+        m->crs_link2_mass[i]*(m->crs_b_in_axes1_z[i] + v.crs_q_2) -
+        m->crs_h_3_in_spec3_y[i]*crs_s_3 + crs_c_3*m->crs_h_3_in_spec3_x[i]) +
+        (m->crs_acc_3_t[i]*crs_c_1 + m->crs_acc_3_t_2[i]*crs_s_1)*(m->crs_h_2_in_spec1_y[i] +
+        m->crs_h_3_in_spec3_x[i]*crs_s_3 + m->crs_link2_mass[i]*(crs_c_1*m->crs_potential_t[i]
+        + m->crs_potential_t_2[i]*crs_s_1) + crs_c_3*m->crs_h_3_in_spec3_y[i]);
     /* (potential) */
     gather(&terms[0*count + k], add, crs_potential_t_3);  /* potential_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.crs_rho2_1) > TOLERANCE*TOLERANCE*m->crs_size_t_2[i]);
@@ -3805,7 +3847,7 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     /* (potential) */
     const real potential_of_legs = sums[0*w + k];
     const real potential_t = s[9*w + k];
-    const real potential_ = -potential_of_legs - potential_t;
+    const real potential_ = -potential_t - potential_of_legs;
     /* (potential) */
     potential[0*w + k] = potential_;
 }
@@ -3814,7 +3856,8 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 {
     real s[10] = {0}, sums[1] = {0};
     real terms_crs[LEGS(LEGS_OF_crs)] = {0}, o_crs[2*LEGS(LEGS_OF_crs)] = {0};
-    potential_before(m, 1, 0, X, s, t);
+    values v;
+    potential_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_crs); ++k) {
         potential_legs_crs(m, 1, k, 0, k, LEGS(LEGS_OF_crs), 0, s, X, terms_crs, o_crs);
     }
@@ -3824,28 +3867,28 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_crs + n*LEGS(LEGS_OF_crs), LEGS_OF_crs);
     }
+    potential_between(m, 1, 0, X, &v, s);
     potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
-    *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, real *lengths, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void condition_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3936,7 +3979,8 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 {
     real s[9] = {0}, sums[1] = {0};
     real terms_crs[LEGS(LEGS_OF_crs)] = {0}, o_crs[17*LEGS(LEGS_OF_crs)] = {0};
-    condition_before(m, 1, 0, X, s, lengths, t);
+    values v;
+    condition_before(m, 1, 0, X, &v, s, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_crs); ++k) {
         condition_legs_crs(m, 1, k, 0, k, LEGS(LEGS_OF_crs), 0, s, X, terms_crs, o_crs);
     }
@@ -3960,11 +4004,7 @@ int hybrid_3crs_M(const prepared *m, const real *X, real *M_out)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-    }
-    return code;
+    return settled(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -3991,11 +4031,7 @@ int hybrid_3crs_Z(const prepared *m, const real *X, const real *V, real *Z_out)
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, Z_out);
-    }
-    return code;
+    return settled(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -4019,11 +4055,7 @@ int hybrid_3crs_H(const prepared *m, const real *X, real *H_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -4046,11 +4078,7 @@ int hybrid_3crs_inverse_kinematics(const prepared *m, const real *X, real *q_out
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, q_out);
-    }
-    return code;
+    return settled(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -4077,11 +4105,7 @@ int hybrid_3crs_joint_rates(const prepared *m, const real *X, const real *V, rea
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qd_out);
-    }
-    return code;
+    return settled(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -4112,11 +4136,7 @@ int hybrid_3crs_joint_accelerations(const prepared *m, const real *X, const real
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qdd_out);
-    }
-    return code;
+    return settled(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4149,13 +4169,9 @@ int hybrid_3crs_dynamics(const prepared *m, const real *X, const real *V, real *
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-        refuse(NV, Z_out);
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    settled(&why, NV*NV, M_out);
+    settled(&why, NV, Z_out);
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -4349,7 +4365,8 @@ static const real sizes_tau[] = {4.0, 0.25, 1.0, 0.25, 4.0, 1.0};
 int hybrid_3crs_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out)
 {
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    static const real no_wrench[NW] = {0};
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
@@ -4359,7 +4376,7 @@ int hybrid_3crs_inverse_dynamics(const prepared *m, const real *X, const real *V
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -4373,11 +4390,7 @@ int hybrid_3crs_inverse_dynamics(const prepared *m, const real *X, const real *V
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, tau_out);
-    }
-    return code;
+    return settled(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -4406,8 +4419,9 @@ static const real sizes_A[] = {16.0, 16.0, 16.0, 1.0, 1.0, 1.0};
 int hybrid_3crs_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau,
     const real *wrench, real *A_out)
 {
-    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] =
-        {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    static const real no_wrench[NW] = {0};
+    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
+        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
@@ -4416,7 +4430,7 @@ int hybrid_3crs_forward_dynamics(const prepared *m, const real *X, const real *V
         check(NV, 1, V, why.invalid);
         check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     for (size_t i = 0; i < NV; ++i) {
@@ -4434,11 +4448,7 @@ int hybrid_3crs_forward_dynamics(const prepared *m, const real *X, const real *V
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, A_out);
-    }
-    return code;
+    return settled(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4479,18 +4489,15 @@ int hybrid_3crs_complete_acceleration(const prepared *m, const real *X, const re
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, completed_out);
-    }
-    return code;
+    return settled(&why, NV, completed_out);
 }
 
 int hybrid_3crs_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out)
 {
+    static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 0, 1, 1, 2, 2};
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
         unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[18] = {0}, forces[NL*NL] = {0},
         work[NV*PADDED(NV)];
     verdict why;
@@ -4501,7 +4508,7 @@ int hybrid_3crs_leg_reactions(const prepared *m, const real *X, const real *V, c
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -4519,11 +4526,7 @@ int hybrid_3crs_leg_reactions(const prepared *m, const real *X, const real *V, c
     add_forces(NV, 3, 1, places_forces, solve_1, actuator, forces);
     check(NL*NL, 1, forces, why.overflow);
     copy(NL*NL, forces, forces_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NL*NL, forces_out);
-    }
-    return code;
+    return settled(&why, NL*NL, forces_out);
 }
 
 int hybrid_3crs_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
@@ -4545,25 +4548,22 @@ int hybrid_3crs_energy(const prepared *m, const real *X, const real *V, real *ki
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, kinetic_out);
-        refuse(1, potential_out);
-    }
-    return code;
+    settled(&why, 1, kinetic_out);
+    return settled(&why, 1, potential_out);
 }
 
 int hybrid_3crs_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
     const real *length = NULL;
+    static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real length_in[1], H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
+        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, length, 0, length_in, why.invalid);
+    length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
@@ -4581,12 +4581,8 @@ int hybrid_3crs_condition(const prepared *m, const real *X, real *sigma_out, rea
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, sigma_out);
-        refuse(NL, legs_out);
-    }
-    return code;
+    settled(&why, NV, sigma_out);
+    return settled(&why, NL, legs_out);
 }
 
 int hybrid_3crs_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -4620,12 +4616,8 @@ int hybrid_3crs_manipulability(const prepared *m, const real *X, real *measure_o
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, measure_out);
-        refuse(1, isotropy_out);
-    }
-    return code;
+    settled(&why, 1, measure_out);
+    return settled(&why, 1, isotropy_out);
 }
 
 int hybrid_3crs_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
@@ -4659,12 +4651,8 @@ int hybrid_3crs_singularity_distance(const prepared *m, const real *X, real *act
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, actuators_out);
-        refuse(1, legs_out);
-    }
-    return code;
+    settled(&why, 1, actuators_out);
+    return settled(&why, 1, legs_out);
 }
 
 static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
@@ -4689,11 +4677,7 @@ static int mismatch_one(const prepared *m, const real *X, const real *q_actuated
     wrap_turns(3, 1, places_gap, gap);
     check(NU, 1, gap, why.overflow);
     copy(NU, gap, gap_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, gap_out);
-    }
-    return code;
+    return settled(&why, NU, gap_out);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
@@ -4705,11 +4689,7 @@ static int slope_one(const prepared *m, const real *X, real *slope_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, slope_out);
-    }
-    return code;
+    return settled(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -4771,11 +4751,7 @@ int hybrid_3crs_forward_kinematics(const prepared *m, const real *q_actuated, co
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int hybrid_3crs_dissipation(const prepared *m, const real *X, const real *V, real
@@ -4793,11 +4769,7 @@ int hybrid_3crs_dissipation(const prepared *m, const real *X, const real *V, rea
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, dissipation_out);
-    }
-    return code;
+    return settled(&why, 1, dissipation_out);
 }
 
 int hybrid_3crs_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
@@ -4814,11 +4786,7 @@ int hybrid_3crs_momentum(const prepared *m, const real *X, const real *V, real *
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, momentum_out);
-    }
-    return code;
+    return settled(&why, NV, momentum_out);
 }
 
 int hybrid_3crs_joint_margins(const prepared *m, const real *X, real *margins_out)
@@ -4834,11 +4802,7 @@ int hybrid_3crs_joint_margins(const prepared *m, const real *X, real *margins_ou
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, margins_out);
-    }
-    return code;
+    return settled(&why, NJ, margins_out);
 }
 
 int hybrid_3crs_within_limits(const prepared *m, const real *X, real *within_out)
@@ -4854,11 +4818,7 @@ int hybrid_3crs_within_limits(const prepared *m, const real *X, real *within_out
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, within_out);
-    }
-    return code;
+    return settled(&why, 1, within_out);
 }
 
 int hybrid_3crs_actuator_positions(const prepared *m, const real *X, real *q_out)
@@ -4871,11 +4831,7 @@ int hybrid_3crs_actuator_positions(const prepared *m, const real *X, real *q_out
     take(NU, 1, hybrid_3crs_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, q_out);
-    }
-    return code;
+    return settled(&why, NU, q_out);
 }
 
 int hybrid_3crs_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
@@ -4892,11 +4848,7 @@ int hybrid_3crs_actuator_rates(const prepared *m, const real *X, const real *V, 
     take(NU, 1, hybrid_3crs_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qd_out);
-    }
-    return code;
+    return settled(&why, NU, qd_out);
 }
 
 int hybrid_3crs_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
@@ -4915,11 +4867,7 @@ int hybrid_3crs_actuator_accelerations(const prepared *m, const real *X, const r
     take(NU, 1, hybrid_3crs_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qdd_out);
-    }
-    return code;
+    return settled(&why, NU, qdd_out);
 }
 
 int hybrid_3crs_power(const prepared *m, const real *X, const real *V, const real *tau, real
@@ -4939,11 +4887,7 @@ int hybrid_3crs_power(const prepared *m, const real *X, const real *V, const rea
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, power_out);
-    }
-    return code;
+    return settled(&why, 1, power_out);
 }
 
 int hybrid_3crs_rotation(const real *X, real *R_out)
@@ -4956,11 +4900,7 @@ int hybrid_3crs_rotation(const real *X, real *R_out)
     rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     copy(9, R, R_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(9, R_out);
-    }
-    return code;
+    return settled(&why, 9, R_out);
 }
 
 int hybrid_3crs_pose(const real *t, const real *R, real *X_out)
@@ -4978,11 +4918,7 @@ int hybrid_3crs_pose(const real *t, const real *R, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int hybrid_3crs_X_dot(const real *X, const real *V, real *X_dot_out)
@@ -5002,11 +4938,7 @@ int hybrid_3crs_X_dot(const real *X, const real *V, real *X_dot_out)
     beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_dot_out);
-    }
-    return code;
+    return settled(&why, NQ, X_dot_out);
 }
 
 int hybrid_3crs_pose_from_rpy(const real *t, const real *rpy, real *X_out)
@@ -5024,11 +4956,7 @@ int hybrid_3crs_pose_from_rpy(const real *t, const real *rpy, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int hybrid_3crs_retract(const real *X, const real *step, real *X_moved_out)
@@ -5052,11 +4980,7 @@ int hybrid_3crs_retract(const real *X, const real *step, real *X_moved_out)
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_moved_out);
-    }
-    return code;
+    return settled(&why, NQ, X_moved_out);
 }
 
 int hybrid_3crs_difference(const real *X0, const real *X1, real *step_out)
@@ -5080,11 +5004,7 @@ int hybrid_3crs_difference(const real *X0, const real *X1, real *step_out)
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, step_out);
-    }
-    return code;
+    return settled(&why, NV, step_out);
 }
 
 int hybrid_3crs_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
@@ -5122,11 +5042,7 @@ int hybrid_3crs_interpolate(const real *X0, const real *X1, const real *s, real 
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 /* ---- one state, and batches ---- */

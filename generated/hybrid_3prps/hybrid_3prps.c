@@ -234,15 +234,12 @@ INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *t
 }
 
 /* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
-INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+INLINE const real *optional(size_t size, const real *x, const real *none, real *flags)
 {
-    for (size_t e = 0; e < size && !x; ++e) {
-        own[e] = none;
-    }
     if (x) {
         check(size, 1, x, flags);
     }
-    return x ? x : own;
+    return x ? x : none;
 }
 
 INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
@@ -299,6 +296,16 @@ APART void refuse(size_t size, real *out)
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
     }
+}
+
+/* The status of a state; an output is refused where it is impossible. */
+INLINE int settled(const verdict *t, size_t size, real *out)
+{
+    const int code = judge(t);
+    if (code != OK) {
+        refuse(size, out);
+    }
+    return code;
 }
 
 /* Outputs of a state where the user wants them, and of states side by side, state by state. */
@@ -419,19 +426,19 @@ INLINE int all_rotations(const real *x, size_t n)
 /* ---- parameters ---- */
 
 const hybrid_3prps_params hybrid_3prps_default_params = {
-    {R(0.0), R(0.0), R(-9.81)},  /* gravity */
+    {0, 0, R(-9.81)},  /* gravity */
     R(12.0),  /* platform_mass */
-    {R(0.0), R(0.0), R(0.04)},  /* platform_centre_of_mass */
-    {{R(0.35), R(0.0), R(0.0)}, {R(0.0), R(0.35), R(0.0)}, {R(0.0), R(0.0), R(0.6)}},  /* platform_inertia */
+    {0, 0, R(0.04)},  /* platform_centre_of_mass */
+    {{R(0.35), 0, 0}, {0, R(0.35), 0}, {0, 0, R(0.6)}},  /* platform_inertia */
     {  /* prps_base_point */
         {R(0.5659339169584754), R(0.01268659990809539), R(0.025470465364465844)},
         {R(-0.29395387628729763), R(0.48376984899522496), R(0.025470465364465844)},
         {R(-0.271980040671178), R(-0.4964564489033203), R(0.025470465364465844)},
     },
     {  /* prps_base_frame */
-        {{R(0.0), R(0.9800665778412416), R(-0.19866933079506122)}, {R(0.0), R(0.19866933079506122), R(0.9800665778412416)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.6620859763419978), R(-0.7494278884130636)}, {R(0.0), R(0.7494278884130636), R(-0.6620859763419978)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.317980601499244), R(0.9480972192081247)}, {R(0.0), R(-0.9480972192081247), R(-0.317980601499244)}, {R(1.0), R(0.0), R(0.0)}},
+        {{0, R(0.9800665778412416), R(-0.19866933079506122)}, {0, R(0.19866933079506122), R(0.9800665778412416)}, {1, 0, 0}},
+        {{0, R(-0.6620859763419978), R(-0.7494278884130636)}, {0, R(0.7494278884130636), R(-0.6620859763419978)}, {1, 0, 0}},
+        {{0, R(-0.317980601499244), R(0.9480972192081247)}, {0, R(-0.9480972192081247), R(-0.317980601499244)}, {1, 0, 0}},
     },
     {  /* prps_platform_point */
         {R(0.29401997335237245), R(0.05960079923851836), R(-0.02)},
@@ -444,14 +451,14 @@ const hybrid_3prps_params hybrid_3prps_default_params = {
         R(2.0),
     },
     {  /* prps_link1_centre_of_mass */
-        {R(0.0), R(0.0), R(0.0)},
-        {R(0.0), R(0.0), R(0.0)},
-        {R(0.0), R(0.0), R(0.0)},
+        {0, 0, 0},
+        {0, 0, 0},
+        {0, 0, 0},
     },
     {  /* prps_link1_inertia */
-        {{R(0.004), R(0.0), R(0.0)}, {R(0.0), R(0.004), R(0.0)}, {R(0.0), R(0.0), R(0.004)}},
-        {{R(0.004), R(0.0), R(0.0)}, {R(0.0), R(0.004), R(0.0)}, {R(0.0), R(0.0), R(0.004)}},
-        {{R(0.004), R(0.0), R(0.0)}, {R(0.0), R(0.004), R(0.0)}, {R(0.0), R(0.0), R(0.004)}},
+        {{R(0.004), 0, 0}, {0, R(0.004), 0}, {0, 0, R(0.004)}},
+        {{R(0.004), 0, 0}, {0, R(0.004), 0}, {0, 0, R(0.004)}},
+        {{R(0.004), 0, 0}, {0, R(0.004), 0}, {0, 0, R(0.004)}},
     },
     {  /* prps_link2_mass */
         R(2.4),
@@ -459,14 +466,14 @@ const hybrid_3prps_params hybrid_3prps_default_params = {
         R(2.4),
     },
     {  /* prps_link2_centre_of_mass */
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
     },
     {  /* prps_link2_inertia */
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
     },
     {  /* prps_link3_mass */
         R(1.1),
@@ -474,18 +481,18 @@ const hybrid_3prps_params hybrid_3prps_default_params = {
         R(1.1),
     },
     {  /* prps_link3_centre_of_mass */
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
     },
     {  /* prps_link3_inertia */
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
     },
 };
 
-const hybrid_3prps_real hybrid_3prps_HOME_X[HYBRID_3PRPS_NQ] = {R(0.0), R(0.0), R(0.75), R(0.0), R(0.0), R(0.0), R(1.0)};
+const hybrid_3prps_real hybrid_3prps_HOME_X[HYBRID_3PRPS_NQ] = {0, 0, R(0.75), 0, 0, 0, 1};
 const hybrid_3prps_real hybrid_3prps_HOME_Q[HYBRID_3PRPS_NJ] = {R(0.09999999999999999), R(-0.3499999999999998), R(0.75), R(0.10000000000000005), R(-0.3499999999999999), R(0.75), R(0.10000000000000002), R(-0.3499999999999999), R(0.75)};
 const size_t hybrid_3prps_ACTUATED[HYBRID_3PRPS_NU] = {0, 2, 3, 5, 6, 8};
 const char *const hybrid_3prps_ACTUATOR_NAMES[HYBRID_3PRPS_NU] = {
@@ -527,6 +534,9 @@ static int acceptable(const hybrid_3prps_params *p)
     ok &= all_inertias(&p->prps_link3_inertia[0][0][0], LEGS_OF_prps);
     return ok;
 }
+
+#define KEEP(name) model->name = name
+#define KEEP_OF_LEG(name) model->name[leg] = name
 
 int hybrid_3prps_prepare(const hybrid_3prps_params *params, hybrid_3prps_model *model)
 {
@@ -579,11 +589,11 @@ int hybrid_3prps_prepare(const hybrid_3prps_params *params, hybrid_3prps_model *
     const real spread_t = R(0.3333333333333333)*root(3);
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = R(1.299038105676658)*spread_t;
-    model->gravity_x = gravity_x;
-    model->gravity_y = gravity_y;
-    model->gravity_z = gravity_z;
-    model->legs_size = legs_size;
-    model->spread_t = spread_t;
+    KEEP(gravity_x);
+    KEEP(gravity_y);
+    KEEP(gravity_z);
+    KEEP(legs_size);
+    KEEP(spread_t);
     for (size_t leg = 0; leg < FILLED(LEGS_OF_prps); ++leg) {
         const size_t own = leg < LEGS_OF_prps ? leg : 0;
         const real prps_base_point_x = params->prps_base_point[own][0];
@@ -692,52 +702,52 @@ int hybrid_3prps_prepare(const hybrid_3prps_params *params, hybrid_3prps_model *
         const real prps_potential_t_2 = prps_b_in_axes0_y*prps_link1_mass;
         const real prps_potential_t_3 = prps_b_in_axes0_x*prps_link2_mass;
         const real prps_potential_t_4 = prps_b_in_axes0_y*prps_link2_mass;
-        model->prps_Jc_2_in_axes2_zz[leg] = prps_Jc_2_in_axes2_zz;
-        model->prps_Q_t_10[leg] = prps_Q_t_10;
-        model->prps_Q_t_11[leg] = prps_Q_t_11;
-        model->prps_Q_t_12[leg] = prps_Q_t_12;
-        model->prps_Q_t_13[leg] = prps_Q_t_13;
-        model->prps_Q_t_5[leg] = prps_Q_t_5;
-        model->prps_Q_t_6[leg] = prps_Q_t_6;
-        model->prps_Q_t_7[leg] = prps_Q_t_7;
-        model->prps_Q_t_8[leg] = prps_Q_t_8;
-        model->prps_Q_t_9[leg] = prps_Q_t_9;
-        model->prps_b_in_axes0_z[leg] = prps_b_in_axes0_z;
-        model->prps_base_frame_xx[leg] = prps_base_frame_xx;
-        model->prps_base_frame_xy[leg] = prps_base_frame_xy;
-        model->prps_base_frame_xz[leg] = prps_base_frame_xz;
-        model->prps_base_frame_yx[leg] = prps_base_frame_yx;
-        model->prps_base_frame_yy[leg] = prps_base_frame_yy;
-        model->prps_base_frame_yz[leg] = prps_base_frame_yz;
-        model->prps_base_frame_zx[leg] = prps_base_frame_zx;
-        model->prps_base_frame_zy[leg] = prps_base_frame_zy;
-        model->prps_base_frame_zz[leg] = prps_base_frame_zz;
-        model->prps_base_point_x[leg] = prps_base_point_x;
-        model->prps_base_point_y[leg] = prps_base_point_y;
-        model->prps_base_point_z[leg] = prps_base_point_z;
-        model->prps_branch_2[leg] = prps_branch_2;
-        model->prps_g_in_axes0_x[leg] = prps_g_in_axes0_x;
-        model->prps_g_in_axes0_y[leg] = prps_g_in_axes0_y;
-        model->prps_g_in_axes0_z[leg] = prps_g_in_axes0_z;
-        model->prps_h_1_in_spec0_x[leg] = prps_h_1_in_spec0_x;
-        model->prps_h_1_in_spec0_y[leg] = prps_h_1_in_spec0_y;
-        model->prps_h_1_in_spec0_z[leg] = prps_h_1_in_spec0_z;
-        model->prps_h_2_in_spec2_x[leg] = prps_h_2_in_spec2_x;
-        model->prps_h_2_in_spec2_y[leg] = prps_h_2_in_spec2_y;
-        model->prps_h_2_in_spec2_z[leg] = prps_h_2_in_spec2_z;
-        model->prps_h_3_in_spec2_x[leg] = prps_h_3_in_spec2_x;
-        model->prps_h_3_in_spec2_y[leg] = prps_h_3_in_spec2_y;
-        model->prps_h_3_in_spec2_z[leg] = prps_h_3_in_spec2_z;
-        model->prps_link1_mass[leg] = prps_link1_mass;
-        model->prps_link2_mass[leg] = prps_link2_mass;
-        model->prps_link3_mass[leg] = prps_link3_mass;
-        model->prps_platform_point_x[leg] = prps_platform_point_x;
-        model->prps_platform_point_y[leg] = prps_platform_point_y;
-        model->prps_platform_point_z[leg] = prps_platform_point_z;
-        model->prps_potential_t[leg] = prps_potential_t;
-        model->prps_potential_t_2[leg] = prps_potential_t_2;
-        model->prps_potential_t_3[leg] = prps_potential_t_3;
-        model->prps_potential_t_4[leg] = prps_potential_t_4;
+        KEEP_OF_LEG(prps_Jc_2_in_axes2_zz);
+        KEEP_OF_LEG(prps_Q_t_10);
+        KEEP_OF_LEG(prps_Q_t_11);
+        KEEP_OF_LEG(prps_Q_t_12);
+        KEEP_OF_LEG(prps_Q_t_13);
+        KEEP_OF_LEG(prps_Q_t_5);
+        KEEP_OF_LEG(prps_Q_t_6);
+        KEEP_OF_LEG(prps_Q_t_7);
+        KEEP_OF_LEG(prps_Q_t_8);
+        KEEP_OF_LEG(prps_Q_t_9);
+        KEEP_OF_LEG(prps_b_in_axes0_z);
+        KEEP_OF_LEG(prps_base_frame_xx);
+        KEEP_OF_LEG(prps_base_frame_xy);
+        KEEP_OF_LEG(prps_base_frame_xz);
+        KEEP_OF_LEG(prps_base_frame_yx);
+        KEEP_OF_LEG(prps_base_frame_yy);
+        KEEP_OF_LEG(prps_base_frame_yz);
+        KEEP_OF_LEG(prps_base_frame_zx);
+        KEEP_OF_LEG(prps_base_frame_zy);
+        KEEP_OF_LEG(prps_base_frame_zz);
+        KEEP_OF_LEG(prps_base_point_x);
+        KEEP_OF_LEG(prps_base_point_y);
+        KEEP_OF_LEG(prps_base_point_z);
+        KEEP_OF_LEG(prps_branch_2);
+        KEEP_OF_LEG(prps_g_in_axes0_x);
+        KEEP_OF_LEG(prps_g_in_axes0_y);
+        KEEP_OF_LEG(prps_g_in_axes0_z);
+        KEEP_OF_LEG(prps_h_1_in_spec0_x);
+        KEEP_OF_LEG(prps_h_1_in_spec0_y);
+        KEEP_OF_LEG(prps_h_1_in_spec0_z);
+        KEEP_OF_LEG(prps_h_2_in_spec2_x);
+        KEEP_OF_LEG(prps_h_2_in_spec2_y);
+        KEEP_OF_LEG(prps_h_2_in_spec2_z);
+        KEEP_OF_LEG(prps_h_3_in_spec2_x);
+        KEEP_OF_LEG(prps_h_3_in_spec2_y);
+        KEEP_OF_LEG(prps_h_3_in_spec2_z);
+        KEEP_OF_LEG(prps_link1_mass);
+        KEEP_OF_LEG(prps_link2_mass);
+        KEEP_OF_LEG(prps_link3_mass);
+        KEEP_OF_LEG(prps_platform_point_x);
+        KEEP_OF_LEG(prps_platform_point_y);
+        KEEP_OF_LEG(prps_platform_point_z);
+        KEEP_OF_LEG(prps_potential_t);
+        KEEP_OF_LEG(prps_potential_t_2);
+        KEEP_OF_LEG(prps_potential_t_3);
+        KEEP_OF_LEG(prps_potential_t_4);
         m_star_of_legs += leg < LEGS_OF_prps ? prps_link3_mass : 0;
         h_star_in_platform_x_of_legs += leg < LEGS_OF_prps ? prps_h_star_t : 0;
         h_star_in_platform_y_of_legs += leg < LEGS_OF_prps ? prps_h_star_t_2 : 0;
@@ -783,24 +793,24 @@ int hybrid_3prps_prepare(const hybrid_3prps_params *params, hybrid_3prps_model *
     const real b_c_in_platform_x = R(0.3333333333333333)*b_c_prps_in_platform_x;
     const real b_c_in_platform_y = R(0.3333333333333333)*b_c_prps_in_platform_y;
     const real b_c_in_platform_z = R(0.3333333333333333)*b_c_prps_in_platform_z;
-    model->J_star_in_platform_xx = J_star_in_platform_xx;
-    model->J_star_in_platform_xy = J_star_in_platform_xy;
-    model->J_star_in_platform_xz = J_star_in_platform_xz;
-    model->J_star_in_platform_yy = J_star_in_platform_yy;
-    model->J_star_in_platform_yz = J_star_in_platform_yz;
-    model->J_star_in_platform_zz = J_star_in_platform_zz;
-    model->J_star_t_12 = J_star_t_12;
-    model->J_star_t_14 = J_star_t_14;
-    model->Z_p_t = Z_p_t;
-    model->Z_p_t_2 = Z_p_t_2;
-    model->Z_p_t_3 = Z_p_t_3;
-    model->b_c_in_platform_x = b_c_in_platform_x;
-    model->b_c_in_platform_y = b_c_in_platform_y;
-    model->b_c_in_platform_z = b_c_in_platform_z;
-    model->h_star_in_platform_x = h_star_in_platform_x;
-    model->h_star_in_platform_y = h_star_in_platform_y;
-    model->h_star_in_platform_z = h_star_in_platform_z;
-    model->m_star = m_star;
+    KEEP(J_star_in_platform_xx);
+    KEEP(J_star_in_platform_xy);
+    KEEP(J_star_in_platform_xz);
+    KEEP(J_star_in_platform_yy);
+    KEEP(J_star_in_platform_yz);
+    KEEP(J_star_in_platform_zz);
+    KEEP(J_star_t_12);
+    KEEP(J_star_t_14);
+    KEEP(Z_p_t);
+    KEEP(Z_p_t_2);
+    KEEP(Z_p_t_3);
+    KEEP(b_c_in_platform_x);
+    KEEP(b_c_in_platform_y);
+    KEEP(b_c_in_platform_z);
+    KEEP(h_star_in_platform_x);
+    KEEP(h_star_in_platform_y);
+    KEEP(h_star_in_platform_z);
+    KEEP(m_star);
     return OK;
 }
 
@@ -1379,10 +1389,10 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real R_zy = quaternion_wx + quaternion_yz;
     const real R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = R_xx*m->h_star_in_platform_x + R_xy*m->h_star_in_platform_y +
-        R_xz*m->h_star_in_platform_z;
-    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yy*m->h_star_in_platform_y +
-        R_yz*m->h_star_in_platform_z;
+    const real h_star_x = R_xy*m->h_star_in_platform_y + R_xz*m->h_star_in_platform_z +
+        R_xx*m->h_star_in_platform_x;
+    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yz*m->h_star_in_platform_z +
+        R_yy*m->h_star_in_platform_y;
     const real h_star_z = R_zx*m->h_star_in_platform_x + R_zy*m->h_star_in_platform_y +
         R_zz*m->h_star_in_platform_z;
     v->quaternion_scale = quaternion_scale;
@@ -1406,8 +1416,8 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
     const real omega_x = V[3*w + k];
     const real omega_y = V[4*w + k];
     const real omega_z = V[5*w + k];
-    const real omega_in_platform_x = v->R_xx*omega_x + v->R_yx*omega_y + v->R_zx*omega_z;
-    const real omega_in_platform_y = v->R_xy*omega_x + v->R_yy*omega_y + v->R_zy*omega_z;
+    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
     const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
     v->omega_in_platform_x = omega_in_platform_x;
     v->omega_in_platform_y = omega_in_platform_y;
@@ -1417,24 +1427,24 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
 INLINE void stage_M_dynamics(const prepared *m, values *v)
 {
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_t = m->J_star_in_platform_xy*v->R_xx + m->J_star_in_platform_yz*v->R_xz
-        - m->J_star_t_12*v->R_xy;
+    const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
+        m->J_star_in_platform_xy*v->R_xx;
     const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
         m->J_star_in_platform_yz*v->R_yz - m->J_star_t_12*v->R_yy;
-    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx +
-        m->J_star_in_platform_yz*v->R_zz - m->J_star_t_12*v->R_zy;
+    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx - m->J_star_t_12*v->R_zy +
+        m->J_star_in_platform_yz*v->R_zz;
     const real J_star_t_4 = m->J_star_t_14*v->R_xz - m->J_star_in_platform_xz*v->R_xx;
     const real J_star_t_5 = m->J_star_t_14*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
     const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
-    const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
-        J_star_t_5*v->R_xz;
+    const real J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
+        J_star_t_4*v->R_yz;
     const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
     const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
     const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
-    const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
+    const real J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
     const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
     const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
@@ -1459,10 +1469,10 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
     const real Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real g_in_platform_x = v->R_xx*m->gravity_x + v->R_yx*m->gravity_y +
-        v->R_zx*m->gravity_z;
-    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_yy*m->gravity_y +
-        v->R_zy*m->gravity_z;
+    const real g_in_platform_x = v->R_yx*m->gravity_y + v->R_zx*m->gravity_z +
+        v->R_xx*m->gravity_x;
+    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_zy*m->gravity_z +
+        v->R_yy*m->gravity_y;
     const real g_in_platform_z = v->R_xz*m->gravity_x + v->R_yz*m->gravity_y +
         v->R_zz*m->gravity_z;
     const real Z_q_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
@@ -1474,15 +1484,15 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
         m->J_star_in_platform_yz*v->omega_in_platform_y +
         m->J_star_in_platform_zz*v->omega_in_platform_z;
-    const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
-        g_in_platform_y*m->h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
-        g_in_platform_z*m->h_star_in_platform_y;
-    const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
-        g_in_platform_z*m->h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
-        g_in_platform_x*m->h_star_in_platform_z;
-    const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
-        g_in_platform_x*m->h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
-        g_in_platform_y*m->h_star_in_platform_x;
+    const real Z_q_in_platform_x = g_in_platform_y*m->h_star_in_platform_z -
+        g_in_platform_z*m->h_star_in_platform_y + Z_q_t_3*v->omega_in_platform_y -
+        Z_q_t_2*v->omega_in_platform_z;
+    const real Z_q_in_platform_y = g_in_platform_z*m->h_star_in_platform_x -
+        g_in_platform_x*m->h_star_in_platform_z + Z_q_t*v->omega_in_platform_z -
+        Z_q_t_3*v->omega_in_platform_x;
+    const real Z_q_in_platform_z = g_in_platform_x*m->h_star_in_platform_y -
+        g_in_platform_y*m->h_star_in_platform_x + Z_q_t_2*v->omega_in_platform_x -
+        Z_q_t*v->omega_in_platform_y;
     const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
         v->R_xz*Z_q_in_platform_z;
     const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
@@ -1517,24 +1527,24 @@ INLINE void stage_prps_X(const prepared *m, size_t w, size_t i, size_t j, const 
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real prps_q_x = R_xx*m->prps_platform_point_x[i] + R_xy*m->prps_platform_point_y[i]
-        + R_xz*m->prps_platform_point_z[i];
+    const real prps_q_x = R_xy*m->prps_platform_point_y[i] + R_xz*m->prps_platform_point_z[i]
+        + R_xx*m->prps_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real prps_q_y = R_yx*m->prps_platform_point_x[i] + R_yy*m->prps_platform_point_y[i]
-        + R_yz*m->prps_platform_point_z[i];
+    const real prps_q_y = R_yx*m->prps_platform_point_x[i] + R_yz*m->prps_platform_point_z[i]
+        + R_yy*m->prps_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real prps_q_z = R_zx*m->prps_platform_point_x[i] + R_zy*m->prps_platform_point_y[i]
         + R_zz*m->prps_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real prps_S_x = prps_q_x + t_x - m->prps_base_point_x[i];
+    const real prps_S_x = t_x - m->prps_base_point_x[i] + prps_q_x;
     const real t_y = X[1*w + j];
-    const real prps_S_y = prps_q_y + t_y - m->prps_base_point_y[i];
+    const real prps_S_y = t_y - m->prps_base_point_y[i] + prps_q_y;
     const real t_z = X[2*w + j];
-    const real prps_S_z = prps_q_z + t_z - m->prps_base_point_z[i];
+    const real prps_S_z = t_z - m->prps_base_point_z[i] + prps_q_z;
     const real prps_S_in_axes0_x = prps_S_x*m->prps_base_frame_xx[i] +
         prps_S_y*m->prps_base_frame_yx[i] + prps_S_z*m->prps_base_frame_zx[i];
     const real prps_S_in_axes0_y = prps_S_x*m->prps_base_frame_xy[i] +
@@ -1622,11 +1632,11 @@ INLINE void stage_prps_V_X(size_t w, size_t j, const real *V, values_prps *v)
     const real prps_S_dot_t_2 = omega_z*v->prps_q_x - omega_x*v->prps_q_z;
     const real prps_S_dot_t_3 = omega_x*v->prps_q_y - omega_y*v->prps_q_x;
     const real t_dot_x = V[0*w + j];
-    const real prps_S_dot_x = prps_S_dot_t + t_dot_x;
+    const real prps_S_dot_x = t_dot_x + prps_S_dot_t;
     const real t_dot_y = V[1*w + j];
-    const real prps_S_dot_y = prps_S_dot_t_2 + t_dot_y;
+    const real prps_S_dot_y = t_dot_y + prps_S_dot_t_2;
     const real t_dot_z = V[2*w + j];
-    const real prps_S_dot_z = prps_S_dot_t_3 + t_dot_z;
+    const real prps_S_dot_z = t_dot_z + prps_S_dot_t_3;
     const real prps_S_dot_in_axes2_x = v->axis_x_prps_axes2_x*prps_S_dot_x +
         v->axis_x_prps_axes2_y*prps_S_dot_y + v->axis_x_prps_axes2_z*prps_S_dot_z;
     /* (prps-qd_2) rate of joint 2 */
@@ -1647,13 +1657,13 @@ INLINE void stage_prps_A_V_X(size_t w, size_t j, const real *V, values_prps *v)
     /* (prps-S_ddot) acceleration of the connection point */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
-    const real prps_S_ddot_x = v->prps_a_p_x + omega_y*v->prps_S_dot_t_3 -
-        omega_z*v->prps_S_dot_t_2;
+    const real prps_S_ddot_x = omega_y*v->prps_S_dot_t_3 - omega_z*v->prps_S_dot_t_2 +
+        v->prps_a_p_x;
     const real omega_x = V[3*w + j];
-    const real prps_S_ddot_y = v->prps_a_p_y + omega_z*v->prps_S_dot_t -
-        omega_x*v->prps_S_dot_t_3;
-    const real prps_S_ddot_z = v->prps_a_p_z + omega_x*v->prps_S_dot_t_2 -
-        omega_y*v->prps_S_dot_t;
+    const real prps_S_ddot_y = omega_z*v->prps_S_dot_t - omega_x*v->prps_S_dot_t_3 +
+        v->prps_a_p_y;
+    const real prps_S_ddot_z = omega_x*v->prps_S_dot_t_2 - omega_y*v->prps_S_dot_t +
+        v->prps_a_p_z;
     v->prps_S_ddot_x = prps_S_ddot_x;
     v->prps_S_ddot_y = prps_S_ddot_y;
     v->prps_S_ddot_z = prps_S_ddot_z;
@@ -1689,8 +1699,8 @@ INLINE void stage_prps_M_dynamics(const prepared *m, size_t i, values_prps *v)
     /* (prps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
        without the mass at the connection point */
     const real prps_d_c_in_axes2_xy = v->inv_prps_q_3*m->prps_h_3_in_spec2_y[i];
-    const real prps_d_c_in_axes2_yy = -v->inv_prps_q_3*prps_d_Gamma_2_in_axes2_y -
-        v->inv_prps_q_3*m->prps_h_3_in_spec2_x[i];
+    const real prps_d_c_in_axes2_yy = -v->inv_prps_q_3*m->prps_h_3_in_spec2_x[i] -
+        v->inv_prps_q_3*prps_d_Gamma_2_in_axes2_y;
     /* (prps-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real prps_Q_t = R(0.5)*prps_d_c_in_axes2_yy;
     v->prps_d_c_in_axes2_xy = prps_d_c_in_axes2_xy;
@@ -1716,9 +1726,9 @@ INLINE void stage_prps_Z_dynamics(const prepared *m, size_t w, size_t i, size_t 
     /* (prps-qdd_2_o) remainder of: acceleration of joint 2 */
     const real prps_qdd_2_o = v->inv_prps_q_3*prps_rel_o_in_axes2_y;
     /* (prps-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
-    const real prps_acc_1_o_in_axes0_z = m->prps_base_frame_xz[i]*prps_u_1_x +
-        m->prps_base_frame_yz[i]*prps_u_1_y + m->prps_base_frame_zz[i]*prps_u_1_z -
-        m->prps_g_in_axes0_z[i];
+    const real prps_acc_1_o_in_axes0_z = m->prps_base_frame_xz[i]*prps_u_1_x -
+        m->prps_g_in_axes0_z[i] + m->prps_base_frame_yz[i]*prps_u_1_y +
+        m->prps_base_frame_zz[i]*prps_u_1_z;
     /* (prps-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
     const real prps_acc_3_o_in_axes2_x = v->axis_x_prps_axes2_x*prps_u_1_x +
         v->axis_x_prps_axes2_y*prps_u_1_y + v->axis_x_prps_axes2_z*prps_u_1_z -
@@ -1730,29 +1740,28 @@ INLINE void stage_prps_Z_dynamics(const prepared *m, size_t w, size_t i, size_t 
         m->prps_h_3_in_spec2_y[i]*prps_qdd_2_o;
     /* (prps-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
-    const real prps_mu_2_o_in_axes2_z = m->prps_Jc_2_in_axes2_zz[i]*prps_qdd_2_o +
-        prps_acc_3_o_in_axes2_y*m->prps_h_3_in_spec2_x[i] +
-        v->prps_g_in_axes2_x*m->prps_h_2_in_spec2_y[i] -
-        prps_acc_3_o_in_axes2_x*m->prps_h_3_in_spec2_y[i] -
-        v->prps_g_in_axes2_y*m->prps_h_2_in_spec2_x[i];
+    const real prps_mu_2_o_in_axes2_z = v->prps_g_in_axes2_x*m->prps_h_2_in_spec2_y[i] -
+        v->prps_g_in_axes2_y*m->prps_h_2_in_spec2_x[i] +
+        prps_acc_3_o_in_axes2_y*m->prps_h_3_in_spec2_x[i] -
+        prps_acc_3_o_in_axes2_x*m->prps_h_3_in_spec2_y[i] +
+        m->prps_Jc_2_in_axes2_zz[i]*prps_qdd_2_o;
     /* (prps-T_1_o) remainder of: inertia force of the links from 1 outwards, the last link left out
        */
     const real prps_T_1_o_in_axes0_z = prps_acc_1_o_in_axes0_z*m->prps_link1_mass[i] +
         prps_acc_1_o_in_axes0_z*m->prps_link2_mass[i];
     /* (prps-c_o) remainder of: leg force on the platform without actuation and without the mass at
        the connection point */
-    const real prps_c_o_in_axes2_y = -v->inv_prps_q_3*prps_mu_2_o_in_axes2_z -
-        v->prps_W_2_in_axes2_xx*m->prps_h_3_in_spec2_y[i] -
-        m->prps_h_3_in_spec2_x[i]*prps_qdd_2_o;
+    const real prps_c_o_in_axes2_y = -v->prps_W_2_in_axes2_xx*m->prps_h_3_in_spec2_y[i] -
+        m->prps_h_3_in_spec2_x[i]*prps_qdd_2_o - v->inv_prps_q_3*prps_mu_2_o_in_axes2_z;
     /* (prps-U) velocity and gravity terms of the leg force */
-    const real prps_U_x = v->axis_x_prps_axes2_x*prps_phi_3_o_in_axes2_x +
-        prps_T_1_o_in_axes0_z*m->prps_base_frame_xz[i] -
+    const real prps_U_x = prps_T_1_o_in_axes0_z*m->prps_base_frame_xz[i] +
+        v->axis_x_prps_axes2_x*prps_phi_3_o_in_axes2_x -
         v->axis_y_prps_axes2_x*prps_c_o_in_axes2_y;
-    const real prps_U_y = v->axis_x_prps_axes2_y*prps_phi_3_o_in_axes2_x +
-        prps_T_1_o_in_axes0_z*m->prps_base_frame_yz[i] -
+    const real prps_U_y = prps_T_1_o_in_axes0_z*m->prps_base_frame_yz[i] +
+        v->axis_x_prps_axes2_y*prps_phi_3_o_in_axes2_x -
         v->axis_y_prps_axes2_y*prps_c_o_in_axes2_y;
-    const real prps_U_z = v->axis_x_prps_axes2_z*prps_phi_3_o_in_axes2_x +
-        prps_T_1_o_in_axes0_z*m->prps_base_frame_zz[i] -
+    const real prps_U_z = prps_T_1_o_in_axes0_z*m->prps_base_frame_zz[i] +
+        v->axis_x_prps_axes2_z*prps_phi_3_o_in_axes2_x -
         v->axis_y_prps_axes2_z*prps_c_o_in_axes2_y;
     /* (Z_a) rotational part of Z */
     const real prps_Z_a_t = prps_U_z*v->prps_q_y - prps_U_y*v->prps_q_z;
@@ -1774,23 +1783,20 @@ INLINE void stage_prps_inverse_kinematics_potential(const prepared *m, size_t w,
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
     const real t_x = X[0*w + j];
-    const real prps_S_x = t_x + R_xx*m->prps_platform_point_x[i] +
-        R_xy*m->prps_platform_point_y[i] + R_xz*m->prps_platform_point_z[i] -
-        m->prps_base_point_x[i];
+    const real prps_S_x = t_x - m->prps_base_point_x[i] + R_xy*m->prps_platform_point_y[i] +
+        R_xz*m->prps_platform_point_z[i] + R_xx*m->prps_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real t_y = X[1*w + j];
-    const real prps_S_y = t_y + R_yx*m->prps_platform_point_x[i] +
-        R_yy*m->prps_platform_point_y[i] + R_yz*m->prps_platform_point_z[i] -
-        m->prps_base_point_y[i];
+    const real prps_S_y = t_y - m->prps_base_point_y[i] + R_yx*m->prps_platform_point_x[i] +
+        R_yz*m->prps_platform_point_z[i] + R_yy*m->prps_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real t_z = X[2*w + j];
-    const real prps_S_z = t_z + R_zx*m->prps_platform_point_x[i] +
-        R_zy*m->prps_platform_point_y[i] + R_zz*m->prps_platform_point_z[i] -
-        m->prps_base_point_z[i];
+    const real prps_S_z = t_z - m->prps_base_point_z[i] + R_zx*m->prps_platform_point_x[i] +
+        R_zy*m->prps_platform_point_y[i] + R_zz*m->prps_platform_point_z[i];
     const real prps_S_in_axes0_z = prps_S_x*m->prps_base_frame_xz[i] +
         prps_S_y*m->prps_base_frame_yz[i] + prps_S_z*m->prps_base_frame_zz[i];
     const real prps_S_in_axes0_x = prps_S_x*m->prps_base_frame_xx[i] +
@@ -1822,28 +1828,27 @@ INLINE void stage_prps_legs_required(const prepared *m, size_t i, values_prps *v
     /* (prps-qdd_2) acceleration of joint 2 */
     const real prps_qdd_2 = v->inv_prps_q_3*prps_rel_in_axes2_y;
     /* (prps-acc_1) acceleration of the reference point of link 1, less gravity */
-    const real prps_acc_1_in_axes0_z = v->prps_S_ddot_x*m->prps_base_frame_xz[i] +
-        v->prps_S_ddot_y*m->prps_base_frame_yz[i] + v->prps_S_ddot_z*m->prps_base_frame_zz[i]
-        - m->prps_g_in_axes0_z[i];
+    const real prps_acc_1_in_axes0_z = v->prps_S_ddot_x*m->prps_base_frame_xz[i] -
+        m->prps_g_in_axes0_z[i] + v->prps_S_ddot_y*m->prps_base_frame_yz[i] +
+        v->prps_S_ddot_z*m->prps_base_frame_zz[i];
     /* (prps-acc_3) acceleration of the reference point of link 3, less gravity */
     const real prps_acc_3_in_axes2_x = v->axis_x_prps_axes2_x*v->prps_S_ddot_x +
         v->axis_x_prps_axes2_y*v->prps_S_ddot_y + v->axis_x_prps_axes2_z*v->prps_S_ddot_z -
         v->prps_g_in_axes2_x;
     const real prps_acc_3_in_axes2_y = prps_S_ddot_in_axes2_y - v->prps_g_in_axes2_y;
     /* (prps-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real prps_mu_2_in_axes2_z = m->prps_Jc_2_in_axes2_zz[i]*prps_qdd_2 +
-        prps_acc_3_in_axes2_y*m->prps_h_3_in_spec2_x[i] +
-        v->prps_g_in_axes2_x*m->prps_h_2_in_spec2_y[i] -
-        prps_acc_3_in_axes2_x*m->prps_h_3_in_spec2_y[i] -
-        v->prps_g_in_axes2_y*m->prps_h_2_in_spec2_x[i];
+    const real prps_mu_2_in_axes2_z = v->prps_g_in_axes2_x*m->prps_h_2_in_spec2_y[i] -
+        v->prps_g_in_axes2_y*m->prps_h_2_in_spec2_x[i] +
+        prps_acc_3_in_axes2_y*m->prps_h_3_in_spec2_x[i] -
+        prps_acc_3_in_axes2_x*m->prps_h_3_in_spec2_y[i] +
+        m->prps_Jc_2_in_axes2_zz[i]*prps_qdd_2;
     /* (prps-T_1) inertia force of the links from 1 outwards, the last link left out */
     const real prps_T_1_in_axes0_z = prps_acc_1_in_axes0_z*m->prps_link1_mass[i] +
         prps_acc_1_in_axes0_z*m->prps_link2_mass[i];
     /* (prps-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real prps_c_in_axes2_y = -v->inv_prps_q_3*prps_mu_2_in_axes2_z -
-        v->prps_W_2_in_axes2_xx*m->prps_h_3_in_spec2_y[i] -
-        m->prps_h_3_in_spec2_x[i]*prps_qdd_2;
+    const real prps_c_in_axes2_y = -v->prps_W_2_in_axes2_xx*m->prps_h_3_in_spec2_y[i] -
+        m->prps_h_3_in_spec2_x[i]*prps_qdd_2 - v->inv_prps_q_3*prps_mu_2_in_axes2_z;
     v->prps_qdd_2 = prps_qdd_2;
     v->prps_acc_1_in_axes0_z = prps_acc_1_in_axes0_z;
     v->prps_acc_3_in_axes2_x = prps_acc_3_in_axes2_x;
@@ -1855,39 +1860,43 @@ INLINE void stage_prps_legs_required(const prepared *m, size_t i, values_prps *v
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    real *s, verdict *t)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_M_dynamics(m, &v);
-    stage_Z_dynamics(m, w, k, V, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.h_star_x;
-    s[10*w + k] = v.h_star_y;
-    s[11*w + k] = v.h_star_z;
-    s[12*w + k] = v.J_star_xx;
-    s[13*w + k] = v.J_star_xy;
-    s[14*w + k] = v.J_star_xz;
-    s[15*w + k] = v.J_star_yy;
-    s[16*w + k] = v.J_star_yz;
-    s[17*w + k] = v.J_star_zz;
-    s[18*w + k] = v.Z_p_x;
-    s[19*w + k] = v.Z_p_y;
-    s[20*w + k] = v.Z_p_z;
-    s[21*w + k] = v.Z_q_x;
-    s[22*w + k] = v.Z_q_y;
-    s[23*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->h_star_x;
+    s[10*w + k] = v->h_star_y;
+    s[11*w + k] = v->h_star_z;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
+    *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_M_dynamics(m, v);
+    stage_Z_dynamics(m, w, k, V, v);
+    s[12*w + k] = v->J_star_xx;
+    s[13*w + k] = v->J_star_xy;
+    s[14*w + k] = v->J_star_xz;
+    s[15*w + k] = v->J_star_yy;
+    s[16*w + k] = v->J_star_yz;
+    s[17*w + k] = v->J_star_zz;
+    s[18*w + k] = v->Z_p_x;
+    s[19*w + k] = v->Z_p_y;
+    s[20*w + k] = v->Z_p_z;
+    s[21*w + k] = v->Z_q_x;
+    s[22*w + k] = v->Z_q_y;
+    s[23*w + k] = v->Z_q_z;
 }
 
 INLINE void dynamics_legs_prps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2024,15 +2033,15 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[11*w + k];
-    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
     const real h_star_y = s[10*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -2040,9 +2049,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[9*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
@@ -2077,13 +2086,13 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[24*w + k];
     const real Z_q_x = s[21*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[25*w + k];
     const real Z_q_y = s[22*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[26*w + k];
     const real Z_q_z = s[23*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
     const real M_tt_xy = sums[1*w + k];
@@ -2148,7 +2157,8 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 {
     real s[24] = {0}, sums[27] = {0};
     real terms_prps[27*LEGS(LEGS_OF_prps)] = {0}, o_prps[14*LEGS(LEGS_OF_prps)] = {0};
-    dynamics_before(m, 1, 0, X, V, s, t);
+    values v;
+    dynamics_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prps); ++k) {
         dynamics_legs_prps(m, 1, k, 0, k, LEGS(LEGS_OF_prps), 0, s, X, V, terms_prps, o_prps);
     }
@@ -2158,6 +2168,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t n = 0; n < 27; ++n) {
         sums[n] = total(terms_prps + n*LEGS(LEGS_OF_prps), LEGS_OF_prps);
     }
+    dynamics_between(m, 1, 0, V, &v, s);
     dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
@@ -2167,7 +2178,9 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real s[24*LANES], sums[27*LANES];
     real o_prps[14*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        dynamics_before(m, LANES, k, X, V, s, t);
+        values v;
+        dynamics_before(m, LANES, k, X, &v, s, t);
+        dynamics_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 27*LANES);
     for (size_t i = 0; i < LEGS_OF_prps; ++i) {
@@ -2184,30 +2197,34 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_M_dynamics(m, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.h_star_x;
-    s[10*w + k] = v.h_star_y;
-    s[11*w + k] = v.h_star_z;
-    s[12*w + k] = v.J_star_xx;
-    s[13*w + k] = v.J_star_xy;
-    s[14*w + k] = v.J_star_xz;
-    s[15*w + k] = v.J_star_yy;
-    s[16*w + k] = v.J_star_yz;
-    s[17*w + k] = v.J_star_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->h_star_x;
+    s[10*w + k] = v->h_star_y;
+    s[11*w + k] = v->h_star_z;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void M_between(const prepared *m, size_t w, size_t k, values *v, real *s)
+{
+    stage_M_dynamics(m, v);
+    s[12*w + k] = v->J_star_xx;
+    s[13*w + k] = v->J_star_xy;
+    s[14*w + k] = v->J_star_xz;
+    s[15*w + k] = v->J_star_yy;
+    s[16*w + k] = v->J_star_yz;
+    s[17*w + k] = v->J_star_zz;
 }
 
 INLINE void M_legs_prps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2296,15 +2313,15 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[11*w + k];
-    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
     const real h_star_y = s[10*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -2312,9 +2329,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[9*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
@@ -2391,7 +2408,8 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
     real s[18] = {0}, sums[21] = {0};
     real terms_prps[21*LEGS(LEGS_OF_prps)] = {0}, o_prps[LEGS(LEGS_OF_prps)] = {0};
-    M_before(m, 1, 0, X, s, t);
+    values v;
+    M_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prps); ++k) {
         M_legs_prps(m, 1, k, 0, k, LEGS(LEGS_OF_prps), 0, s, X, terms_prps, o_prps);
     }
@@ -2401,6 +2419,7 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     for (size_t n = 0; n < 21; ++n) {
         sums[n] = total(terms_prps + n*LEGS(LEGS_OF_prps), LEGS_OF_prps);
     }
+    M_between(m, 1, 0, &v, s);
     M_after(m, 1, 0, s, sums, M, t);
 }
 
@@ -2409,7 +2428,9 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
     real s[18*LANES], sums[21*LANES];
     real o_prps[LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        M_before(m, LANES, k, X, s, t);
+        values v;
+        M_before(m, LANES, k, X, &v, s, t);
+        M_between(m, LANES, k, &v, s);
     }
     clear(sums, 21*LANES);
     for (size_t i = 0; i < LEGS_OF_prps; ++i) {
@@ -2426,29 +2447,32 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s,
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
     verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_Z_dynamics(m, w, k, V, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.Z_p_x;
-    s[10*w + k] = v.Z_p_y;
-    s[11*w + k] = v.Z_p_z;
-    s[12*w + k] = v.Z_q_x;
-    s[13*w + k] = v.Z_q_y;
-    s[14*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_Z_dynamics(m, w, k, V, v);
+    s[9*w + k] = v->Z_p_x;
+    s[10*w + k] = v->Z_p_y;
+    s[11*w + k] = v->Z_p_z;
+    s[12*w + k] = v->Z_q_x;
+    s[13*w + k] = v->Z_q_y;
+    s[14*w + k] = v->Z_q_z;
 }
 
 INLINE void Z_legs_prps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2490,13 +2514,13 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[3*w + k];
     const real Z_q_x = s[12*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[4*w + k];
     const real Z_q_y = s[13*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[5*w + k];
     const real Z_q_z = s[14*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
     Z[1*w + k] = Z_t_y;
@@ -2512,7 +2536,8 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_prps[6*LEGS(LEGS_OF_prps)] = {0}, o_prps[LEGS(LEGS_OF_prps)] = {0};
-    Z_before(m, 1, 0, X, V, s, t);
+    values v;
+    Z_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prps); ++k) {
         Z_legs_prps(m, 1, k, 0, k, LEGS(LEGS_OF_prps), 0, s, X, V, terms_prps, o_prps);
     }
@@ -2522,6 +2547,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_prps + n*LEGS(LEGS_OF_prps), LEGS_OF_prps);
     }
+    Z_between(m, 1, 0, V, &v, s);
     Z_after(1, 0, s, sums, Z, t);
 }
 
@@ -2531,7 +2557,9 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real s[15*LANES], sums[6*LANES];
     real o_prps[LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        Z_before(m, LANES, k, X, V, s, t);
+        values v;
+        Z_before(m, LANES, k, X, &v, s, t);
+        Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_prps; ++i) {
@@ -2548,20 +2576,20 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void H_legs_prps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2617,7 +2645,8 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
     real s[9] = {0};
     real o_prps[14*LEGS(LEGS_OF_prps)] = {0};
-    H_before(m, 1, 0, X, s, t);
+    values v;
+    H_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prps); ++k) {
         H_legs_prps(m, 1, k, 0, k, LEGS(LEGS_OF_prps), s, X, o_prps);
     }
@@ -2631,7 +2660,8 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
     real s[9*LANES];
     real o_prps[14*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        H_before(m, LANES, k, X, s, t);
+        values v;
+        H_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prps; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2644,12 +2674,26 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, real *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
+    values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
     /* (W_p) centripetal tensor of the platform */
     const real omega_x = V[3*w + k];
     const real omega_y = V[4*w + k];
@@ -2664,72 +2708,62 @@ INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X
     const real a_t_y = t_ddot_y - m->gravity_y;
     const real t_ddot_z = A[2*w + k];
     const real a_t_z = t_ddot_z - m->gravity_z;
-    const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
-    const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
-    const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
+    const real a_t_in_platform_x = v->R_yx*a_t_y + v->R_zx*a_t_z + v->R_xx*a_t_x;
+    const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
+    const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
     const real f_p_t = omega_x*omega_x;
     const real f_p_t_2 = omega_y*omega_y;
     const real f_p_t_3 = omega_z*omega_z;
     const real alpha_y = A[4*w + k];
     const real alpha_z = A[5*w + k];
-    const real f_p_x = a_t_x*m->m_star + v.h_star_y*(W_p_xy - alpha_z) + v.h_star_z*(W_p_xz +
-        alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+    const real f_p_x = a_t_x*m->m_star + v->h_star_y*(W_p_xy - alpha_z) + v->h_star_z*(alpha_y
+        + W_p_xz) - v->h_star_x*(f_p_t_2 + f_p_t_3);
     const real alpha_x = A[3*w + k];
-    const real f_p_y = a_t_y*m->m_star + v.h_star_x*(W_p_xy + alpha_z) + v.h_star_z*(W_p_yz -
-        alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
-    const real f_p_z = a_t_z*m->m_star + v.h_star_x*(W_p_xz - alpha_y) + v.h_star_y*(W_p_yz +
-        alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
+    const real f_p_y = a_t_y*m->m_star + v->h_star_x*(alpha_z + W_p_xy) + v->h_star_z*(W_p_yz
+        - alpha_x) - v->h_star_y*(f_p_t + f_p_t_3);
+    const real f_p_z = a_t_z*m->m_star + v->h_star_x*(W_p_xz - alpha_y) + v->h_star_y*(alpha_x
+        + W_p_yz) - v->h_star_z*(f_p_t + f_p_t_2);
     /* (mu_p) inertia moment of the platform less that of its weight */
-    const real mu_p_t = m->J_star_in_platform_xx*v.omega_in_platform_x +
-        m->J_star_in_platform_xy*v.omega_in_platform_y +
-        m->J_star_in_platform_xz*v.omega_in_platform_z;
-    const real mu_p_t_2 = m->J_star_in_platform_xy*v.omega_in_platform_x +
-        m->J_star_in_platform_yy*v.omega_in_platform_y +
-        m->J_star_in_platform_yz*v.omega_in_platform_z;
-    const real mu_p_t_3 = m->J_star_in_platform_xz*v.omega_in_platform_x +
-        m->J_star_in_platform_yz*v.omega_in_platform_y +
-        m->J_star_in_platform_zz*v.omega_in_platform_z;
-    const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
-    const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
-    const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+    const real mu_p_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
+        m->J_star_in_platform_xy*v->omega_in_platform_y +
+        m->J_star_in_platform_xz*v->omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
+        m->J_star_in_platform_yy*v->omega_in_platform_y +
+        m->J_star_in_platform_yz*v->omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
+        m->J_star_in_platform_yz*v->omega_in_platform_y +
+        m->J_star_in_platform_zz*v->omega_in_platform_z;
+    const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
+    const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
+    const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
     const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
         m->J_star_in_platform_xy*alpha_in_platform_y +
         m->J_star_in_platform_xz*alpha_in_platform_z +
-        a_t_in_platform_z*m->h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
-        a_t_in_platform_y*m->h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+        a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
+        + mu_p_t_3*v->omega_in_platform_y - mu_p_t_2*v->omega_in_platform_z;
     const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
         m->J_star_in_platform_yz*alpha_in_platform_z +
-        a_t_in_platform_x*m->h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
-        a_t_in_platform_z*m->h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
+        a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
+        + mu_p_t*v->omega_in_platform_z - mu_p_t_3*v->omega_in_platform_x;
     const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
         m->J_star_in_platform_zz*alpha_in_platform_z +
-        a_t_in_platform_y*m->h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
-        a_t_in_platform_x*m->h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
-    const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
-        v.R_xz*mu_p_in_platform_z;
-    const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
-        v.R_yz*mu_p_in_platform_z;
-    const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
-        v.R_zz*mu_p_in_platform_z;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+        a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
+        + mu_p_t_2*v->omega_in_platform_x - mu_p_t*v->omega_in_platform_y;
+    const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
+        v->R_xz*mu_p_in_platform_z;
+    const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
+        v->R_yz*mu_p_in_platform_z;
+    const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
+        v->R_zz*mu_p_in_platform_z;
     s[9*w + k] = f_p_x;
     s[10*w + k] = f_p_y;
     s[11*w + k] = f_p_z;
     s[12*w + k] = mu_p_x;
     s[13*w + k] = mu_p_y;
     s[14*w + k] = mu_p_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void required_legs_prps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2748,14 +2782,14 @@ INLINE void required_legs_prps(const prepared *m, size_t w, size_t i, size_t j, 
     /* (prps-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real prps_c_x = v.axis_y_prps_axes2_x*v.prps_c_in_axes2_y -
-        v.axis_x_prps_axes2_x*prps_phi_3_in_axes2_x -
-        v.prps_T_1_in_axes0_z*m->prps_base_frame_xz[i];
+        v.prps_T_1_in_axes0_z*m->prps_base_frame_xz[i] -
+        v.axis_x_prps_axes2_x*prps_phi_3_in_axes2_x;
     const real prps_c_y = v.axis_y_prps_axes2_y*v.prps_c_in_axes2_y -
-        v.axis_x_prps_axes2_y*prps_phi_3_in_axes2_x -
-        v.prps_T_1_in_axes0_z*m->prps_base_frame_yz[i];
+        v.prps_T_1_in_axes0_z*m->prps_base_frame_yz[i] -
+        v.axis_x_prps_axes2_y*prps_phi_3_in_axes2_x;
     const real prps_c_z = v.axis_y_prps_axes2_z*v.prps_c_in_axes2_y -
-        v.axis_x_prps_axes2_z*prps_phi_3_in_axes2_x -
-        v.prps_T_1_in_axes0_z*m->prps_base_frame_zz[i];
+        v.prps_T_1_in_axes0_z*m->prps_base_frame_zz[i] -
+        v.axis_x_prps_axes2_z*prps_phi_3_in_axes2_x;
     /* (R_a) moment that actuators and external wrench must give */
     const real prps_R_a_t = prps_c_y*v.prps_q_z - prps_c_z*v.prps_q_y;
     const real prps_R_a_t_2 = prps_c_z*v.prps_q_x - prps_c_x*v.prps_q_z;
@@ -2828,13 +2862,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[12*w + k];
-    const real R_a_x = R_a_x_of_legs + mu_p_x;
+    const real R_a_x = mu_p_x + R_a_x_of_legs;
     const real R_a_y_of_legs = sums[4*w + k];
     const real mu_p_y = s[13*w + k];
-    const real R_a_y = R_a_y_of_legs + mu_p_y;
+    const real R_a_y = mu_p_y + R_a_y_of_legs;
     const real R_a_z_of_legs = sums[5*w + k];
     const real mu_p_z = s[14*w + k];
-    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
     required[1*w + k] = R_t_y;
@@ -2845,12 +2879,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[5*w + k] = R_a_z;
 }
 
-APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_prps[6*LEGS(LEGS_OF_prps)] = {0}, o_prps[13*LEGS(LEGS_OF_prps)] = {0};
-    required_before(m, 1, 0, X, V, A, s, t);
+    values v;
+    required_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prps); ++k) {
         required_legs_prps(m, 1, k, 0, k, LEGS(LEGS_OF_prps), 0, s, X, V, A, terms_prps, o_prps);
     }
@@ -2860,6 +2895,7 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_prps + n*LEGS(LEGS_OF_prps), LEGS_OF_prps);
     }
+    required_between(m, 1, 0, V, A, &v, s);
     required_after(1, 0, s, sums, required);
 }
 
@@ -2869,7 +2905,9 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real s[15*LANES], sums[6*LANES];
     real o_prps[13*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        required_before(m, LANES, k, X, V, A, s, t);
+        values v;
+        required_before(m, LANES, k, X, &v, s, t);
+        required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_prps; ++i) {
@@ -2886,21 +2924,20 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s, verdict *t)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
+    *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void inverse_kinematics_legs_prps(const prepared *m, size_t w, size_t i, size_t j, size_t
@@ -2936,7 +2973,8 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 {
     real s[9] = {0};
     real o_prps[5*LEGS(LEGS_OF_prps)] = {0};
-    inverse_kinematics_before(m, 1, 0, X, s, t);
+    values v;
+    inverse_kinematics_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prps); ++k) {
         inverse_kinematics_legs_prps(m, 1, k, 0, k, LEGS(LEGS_OF_prps), s, X, o_prps);
     }
@@ -2951,7 +2989,8 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real s[9*LANES];
     real o_prps[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        inverse_kinematics_before(m, LANES, k, X, s, t);
+        values v;
+        inverse_kinematics_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prps; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2964,21 +3003,20 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_rates_legs_prps(const prepared *m, size_t w, size_t i, size_t j, size_t k,
@@ -3036,7 +3074,8 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 {
     real s[9] = {0};
     real o_prps[5*LEGS(LEGS_OF_prps)] = {0};
-    joint_rates_before(m, 1, 0, X, s, t);
+    values v;
+    joint_rates_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prps); ++k) {
         joint_rates_legs_prps(m, 1, k, 0, k, LEGS(LEGS_OF_prps), s, X, V, o_prps);
     }
@@ -3051,7 +3090,8 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real s[9*LANES];
     real o_prps[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_rates_before(m, LANES, k, X, s, t);
+        values v;
+        joint_rates_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prps; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3064,21 +3104,20 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
+    values *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_accelerations_legs_prps(const prepared *m, size_t w, size_t i, size_t j, size_t
@@ -3127,7 +3166,8 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 {
     real s[9] = {0};
     real o_prps[5*LEGS(LEGS_OF_prps)] = {0};
-    joint_accelerations_before(m, 1, 0, X, s, t);
+    values v;
+    joint_accelerations_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prps); ++k) {
         joint_accelerations_legs_prps(m, 1, k, 0, k, LEGS(LEGS_OF_prps), s, X, V, A, o_prps);
     }
@@ -3142,7 +3182,8 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real s[9*LANES];
     real o_prps[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_accelerations_before(m, LANES, k, X, s, t);
+        values v;
+        joint_accelerations_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prps; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3155,20 +3196,20 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void legs_legs_prps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3182,21 +3223,21 @@ INLINE void legs_legs_prps(const prepared *m, size_t w, size_t i, size_t j, size
     stage_prps_legs_required(m, i, &v);
     /* (prps-c_true) leg force on the platform without actuation, the last link's mass included */
     const real prps_c_true_in_axes2_x = m->prps_h_3_in_spec2_y[i]*v.prps_qdd_2 -
-        v.prps_W_2_in_axes2_xx*m->prps_h_3_in_spec2_x[i] -
-        v.prps_acc_3_in_axes2_x*m->prps_link3_mass[i];
+        v.prps_acc_3_in_axes2_x*m->prps_link3_mass[i] -
+        v.prps_W_2_in_axes2_xx*m->prps_h_3_in_spec2_x[i];
     const real prps_c_true_in_axes2_y = v.prps_c_in_axes2_y -
         v.prps_acc_3_in_axes2_y*m->prps_link3_mass[i];
-    const real prps_c_true_in_axes2_z = -v.prps_T_1_in_axes0_z -
-        v.prps_acc_1_in_axes0_z*m->prps_link3_mass[i];
-    const real prps_c_true_x = v.axis_x_prps_axes2_x*prps_c_true_in_axes2_x +
-        v.axis_y_prps_axes2_x*prps_c_true_in_axes2_y +
-        m->prps_base_frame_xz[i]*prps_c_true_in_axes2_z;
-    const real prps_c_true_y = v.axis_x_prps_axes2_y*prps_c_true_in_axes2_x +
-        v.axis_y_prps_axes2_y*prps_c_true_in_axes2_y +
-        m->prps_base_frame_yz[i]*prps_c_true_in_axes2_z;
-    const real prps_c_true_z = v.axis_x_prps_axes2_z*prps_c_true_in_axes2_x +
-        v.axis_y_prps_axes2_z*prps_c_true_in_axes2_y +
-        m->prps_base_frame_zz[i]*prps_c_true_in_axes2_z;
+    const real prps_c_true_in_axes2_z = -v.prps_acc_1_in_axes0_z*m->prps_link3_mass[i] -
+        v.prps_T_1_in_axes0_z;
+    const real prps_c_true_x = m->prps_base_frame_xz[i]*prps_c_true_in_axes2_z +
+        v.axis_x_prps_axes2_x*prps_c_true_in_axes2_x +
+        v.axis_y_prps_axes2_x*prps_c_true_in_axes2_y;
+    const real prps_c_true_y = m->prps_base_frame_yz[i]*prps_c_true_in_axes2_z +
+        v.axis_x_prps_axes2_y*prps_c_true_in_axes2_x +
+        v.axis_y_prps_axes2_y*prps_c_true_in_axes2_y;
+    const real prps_c_true_z = m->prps_base_frame_zz[i]*prps_c_true_in_axes2_z +
+        v.axis_x_prps_axes2_z*prps_c_true_in_axes2_x +
+        v.axis_y_prps_axes2_z*prps_c_true_in_axes2_y;
     /* (prps-c_true) */
     o[0*count + k] = prps_c_true_x;
     o[1*count + k] = prps_c_true_y;
@@ -3233,7 +3274,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 {
     real s[9] = {0};
     real o_prps[10*LEGS(LEGS_OF_prps)] = {0};
-    legs_before(m, 1, 0, X, s, t);
+    values v;
+    legs_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prps); ++k) {
         legs_legs_prps(m, 1, k, 0, k, LEGS(LEGS_OF_prps), s, X, V, A, o_prps);
     }
@@ -3243,32 +3285,36 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s)
+{
     /* (potential) potential energy */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
-    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x +
-        v.R_xy*m->h_star_in_platform_y + v.R_xz*m->h_star_in_platform_z + m->m_star*t_x) +
-        m->gravity_y*(v.R_yx*m->h_star_in_platform_x + v.R_yy*m->h_star_in_platform_y +
-        v.R_yz*m->h_star_in_platform_z + m->m_star*t_y) +
-        m->gravity_z*(v.R_zx*m->h_star_in_platform_x + v.R_zy*m->h_star_in_platform_y +
-        v.R_zz*m->h_star_in_platform_z + m->m_star*t_z);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+    const real potential_t = m->gravity_x*(m->m_star*t_x + v->R_xy*m->h_star_in_platform_y +
+        v->R_xz*m->h_star_in_platform_z + v->R_xx*m->h_star_in_platform_x) +
+        m->gravity_y*(m->m_star*t_y + v->R_yx*m->h_star_in_platform_x +
+        v->R_yz*m->h_star_in_platform_z + v->R_yy*m->h_star_in_platform_y) +
+        m->gravity_z*(m->m_star*t_z + v->R_zx*m->h_star_in_platform_x +
+        v->R_zy*m->h_star_in_platform_y + v->R_zz*m->h_star_in_platform_z);
     s[9*w + k] = potential_t;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void potential_legs_prps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3281,18 +3327,18 @@ INLINE void potential_legs_prps(const prepared *m, size_t w, size_t i, size_t j,
     /* (prps-s_2) sine of the angle of joint 2 from its reference direction */
     const real prps_s_2 = v.inv_prps_q_3*v.prps_S_in_axes0_y;
     /* (potential) */
-    const real prps_potential_t_5 = v.prps_S_in_axes0_z + m->prps_b_in_axes0_z[i];
-    const real prps_potential_t_6 = m->prps_g_in_axes0_x[i]*(m->prps_h_1_in_spec0_x[i] +
-        m->prps_potential_t[i] + m->prps_potential_t_3[i] + prps_c_2*m->prps_h_2_in_spec2_x[i]
-        + prps_c_2*m->prps_h_3_in_spec2_x[i] - m->prps_h_2_in_spec2_y[i]*prps_s_2 -
+    const real prps_potential_t_5 = m->prps_b_in_axes0_z[i] + v.prps_S_in_axes0_z;
+    const real prps_potential_t_6 = m->prps_g_in_axes0_z[i]*(m->prps_h_1_in_spec0_z[i] +
+        m->prps_h_2_in_spec2_z[i] + m->prps_h_3_in_spec2_z[i] +
+        m->prps_link1_mass[i]*prps_potential_t_5 + m->prps_link2_mass[i]*prps_potential_t_5) +
+        m->prps_g_in_axes0_x[i]*(m->prps_h_1_in_spec0_x[i] + m->prps_potential_t[i] +
+        m->prps_potential_t_3[i] + prps_c_2*m->prps_h_2_in_spec2_x[i] +
+        prps_c_2*m->prps_h_3_in_spec2_x[i] - m->prps_h_2_in_spec2_y[i]*prps_s_2 -
         m->prps_h_3_in_spec2_y[i]*prps_s_2) +
         m->prps_g_in_axes0_y[i]*(m->prps_h_1_in_spec0_y[i] + m->prps_potential_t_2[i] +
         m->prps_potential_t_4[i] + prps_c_2*m->prps_h_2_in_spec2_y[i] +
         prps_c_2*m->prps_h_3_in_spec2_y[i] + m->prps_h_2_in_spec2_x[i]*prps_s_2 +
-        m->prps_h_3_in_spec2_x[i]*prps_s_2) +
-        m->prps_g_in_axes0_z[i]*(m->prps_h_1_in_spec0_z[i] + m->prps_h_2_in_spec2_z[i] +
-        m->prps_h_3_in_spec2_z[i] + m->prps_link1_mass[i]*prps_potential_t_5 +
-        m->prps_link2_mass[i]*prps_potential_t_5);
+        m->prps_h_3_in_spec2_x[i]*prps_s_2);
     /* (potential) */
     gather(&terms[0*count + k], add, prps_potential_t_6);  /* potential_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.prps_q_3_t) > LEAST_1) + UNLESS(magnitude(v.prps_q_3)
@@ -3309,7 +3355,7 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     /* (potential) */
     const real potential_of_legs = sums[0*w + k];
     const real potential_t = s[9*w + k];
-    const real potential_ = -potential_of_legs - potential_t;
+    const real potential_ = -potential_t - potential_of_legs;
     /* (potential) */
     potential[0*w + k] = potential_;
 }
@@ -3318,7 +3364,8 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 {
     real s[10] = {0}, sums[1] = {0};
     real terms_prps[LEGS(LEGS_OF_prps)] = {0}, o_prps[LEGS(LEGS_OF_prps)] = {0};
-    potential_before(m, 1, 0, X, s, t);
+    values v;
+    potential_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prps); ++k) {
         potential_legs_prps(m, 1, k, 0, k, LEGS(LEGS_OF_prps), 0, s, X, terms_prps, o_prps);
     }
@@ -3328,28 +3375,28 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_prps + n*LEGS(LEGS_OF_prps), LEGS_OF_prps);
     }
+    potential_between(m, 1, 0, X, &v, s);
     potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
-    *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, real *lengths, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void condition_legs_prps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3435,7 +3482,8 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     real s[9] = {0}, sums[1] = {0};
     real terms_prps[LEGS(LEGS_OF_prps)] = {0}, o_prps[15*LEGS(LEGS_OF_prps)] = {0};
     clear(reach, NL);
-    condition_before(m, 1, 0, X, s, lengths, t);
+    values v;
+    condition_before(m, 1, 0, X, &v, s, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prps); ++k) {
         condition_legs_prps(m, 1, k, 0, k, LEGS(LEGS_OF_prps), 0, s, X, terms_prps, o_prps);
     }
@@ -3459,11 +3507,7 @@ int hybrid_3prps_M(const prepared *m, const real *X, real *M_out)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-    }
-    return code;
+    return settled(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -3490,11 +3534,7 @@ int hybrid_3prps_Z(const prepared *m, const real *X, const real *V, real *Z_out)
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, Z_out);
-    }
-    return code;
+    return settled(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -3518,11 +3558,7 @@ int hybrid_3prps_H(const prepared *m, const real *X, real *H_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -3545,11 +3581,7 @@ int hybrid_3prps_inverse_kinematics(const prepared *m, const real *X, real *q_ou
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, q_out);
-    }
-    return code;
+    return settled(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -3576,11 +3608,7 @@ int hybrid_3prps_joint_rates(const prepared *m, const real *X, const real *V, re
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qd_out);
-    }
-    return code;
+    return settled(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -3611,11 +3639,7 @@ int hybrid_3prps_joint_accelerations(const prepared *m, const real *X, const rea
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qdd_out);
-    }
-    return code;
+    return settled(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -3648,13 +3672,9 @@ int hybrid_3prps_dynamics(const prepared *m, const real *X, const real *V, real 
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-        refuse(NV, Z_out);
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    settled(&why, NV*NV, M_out);
+    settled(&why, NV, Z_out);
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -3848,7 +3868,8 @@ static const real sizes_tau[] = {1.0, 1.0, 1.0, 0.25, 0.25, 0.25};
 int hybrid_3prps_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out)
 {
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    static const real no_wrench[NW] = {0};
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
@@ -3858,7 +3879,7 @@ int hybrid_3prps_inverse_dynamics(const prepared *m, const real *X, const real *
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -3872,11 +3893,7 @@ int hybrid_3prps_inverse_dynamics(const prepared *m, const real *X, const real *
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, tau_out);
-    }
-    return code;
+    return settled(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -3905,8 +3922,9 @@ static const real sizes_A[] = {16.0, 16.0, 16.0, 1.0, 1.0, 4.0};
 int hybrid_3prps_forward_dynamics(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out)
 {
-    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] =
-        {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    static const real no_wrench[NW] = {0};
+    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
+        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
@@ -3915,7 +3933,7 @@ int hybrid_3prps_forward_dynamics(const prepared *m, const real *X, const real *
         check(NV, 1, V, why.invalid);
         check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     for (size_t i = 0; i < NV; ++i) {
@@ -3933,11 +3951,7 @@ int hybrid_3prps_forward_dynamics(const prepared *m, const real *X, const real *
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, A_out);
-    }
-    return code;
+    return settled(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -3978,18 +3992,15 @@ int hybrid_3prps_complete_acceleration(const prepared *m, const real *X, const r
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, completed_out);
-    }
-    return code;
+    return settled(&why, NV, completed_out);
 }
 
 int hybrid_3prps_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out)
 {
+    static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 0, 1, 1, 2, 2};
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
         unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[18] = {0}, forces[NL*NL] = {0},
         work[NV*PADDED(NV)];
     verdict why;
@@ -4000,7 +4011,7 @@ int hybrid_3prps_leg_reactions(const prepared *m, const real *X, const real *V, 
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -4018,11 +4029,7 @@ int hybrid_3prps_leg_reactions(const prepared *m, const real *X, const real *V, 
     add_forces(NV, 3, 1, places_forces, solve_1, actuator, forces);
     check(NL*NL, 1, forces, why.overflow);
     copy(NL*NL, forces, forces_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NL*NL, forces_out);
-    }
-    return code;
+    return settled(&why, NL*NL, forces_out);
 }
 
 int hybrid_3prps_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
@@ -4044,25 +4051,22 @@ int hybrid_3prps_energy(const prepared *m, const real *X, const real *V, real *k
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, kinetic_out);
-        refuse(1, potential_out);
-    }
-    return code;
+    settled(&why, 1, kinetic_out);
+    return settled(&why, 1, potential_out);
 }
 
 int hybrid_3prps_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
     const real *length = NULL;
+    static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real length_in[1], H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
+        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, length, 0, length_in, why.invalid);
+    length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
@@ -4080,12 +4084,8 @@ int hybrid_3prps_condition(const prepared *m, const real *X, real *sigma_out, re
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, sigma_out);
-        refuse(NL, legs_out);
-    }
-    return code;
+    settled(&why, NV, sigma_out);
+    return settled(&why, NL, legs_out);
 }
 
 int hybrid_3prps_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -4119,12 +4119,8 @@ int hybrid_3prps_manipulability(const prepared *m, const real *X, real *measure_
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, measure_out);
-        refuse(1, isotropy_out);
-    }
-    return code;
+    settled(&why, 1, measure_out);
+    return settled(&why, 1, isotropy_out);
 }
 
 int hybrid_3prps_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
@@ -4158,12 +4154,8 @@ int hybrid_3prps_singularity_distance(const prepared *m, const real *X, real *ac
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, actuators_out);
-        refuse(1, legs_out);
-    }
-    return code;
+    settled(&why, 1, actuators_out);
+    return settled(&why, 1, legs_out);
 }
 
 static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
@@ -4183,11 +4175,7 @@ static int mismatch_one(const prepared *m, const real *X, const real *q_actuated
     }
     check(NU, 1, gap, why.overflow);
     copy(NU, gap, gap_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, gap_out);
-    }
-    return code;
+    return settled(&why, NU, gap_out);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
@@ -4199,11 +4187,7 @@ static int slope_one(const prepared *m, const real *X, real *slope_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, slope_out);
-    }
-    return code;
+    return settled(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -4265,11 +4249,7 @@ int hybrid_3prps_forward_kinematics(const prepared *m, const real *q_actuated, c
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int hybrid_3prps_dissipation(const prepared *m, const real *X, const real *V, real
@@ -4287,11 +4267,7 @@ int hybrid_3prps_dissipation(const prepared *m, const real *X, const real *V, re
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, dissipation_out);
-    }
-    return code;
+    return settled(&why, 1, dissipation_out);
 }
 
 int hybrid_3prps_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
@@ -4308,11 +4284,7 @@ int hybrid_3prps_momentum(const prepared *m, const real *X, const real *V, real 
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, momentum_out);
-    }
-    return code;
+    return settled(&why, NV, momentum_out);
 }
 
 int hybrid_3prps_joint_margins(const prepared *m, const real *X, real *margins_out)
@@ -4328,11 +4300,7 @@ int hybrid_3prps_joint_margins(const prepared *m, const real *X, real *margins_o
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, margins_out);
-    }
-    return code;
+    return settled(&why, NJ, margins_out);
 }
 
 int hybrid_3prps_within_limits(const prepared *m, const real *X, real *within_out)
@@ -4348,11 +4316,7 @@ int hybrid_3prps_within_limits(const prepared *m, const real *X, real *within_ou
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, within_out);
-    }
-    return code;
+    return settled(&why, 1, within_out);
 }
 
 int hybrid_3prps_actuator_positions(const prepared *m, const real *X, real *q_out)
@@ -4365,11 +4329,7 @@ int hybrid_3prps_actuator_positions(const prepared *m, const real *X, real *q_ou
     take(NU, 1, hybrid_3prps_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, q_out);
-    }
-    return code;
+    return settled(&why, NU, q_out);
 }
 
 int hybrid_3prps_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
@@ -4386,11 +4346,7 @@ int hybrid_3prps_actuator_rates(const prepared *m, const real *X, const real *V,
     take(NU, 1, hybrid_3prps_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qd_out);
-    }
-    return code;
+    return settled(&why, NU, qd_out);
 }
 
 int hybrid_3prps_actuator_accelerations(const prepared *m, const real *X, const real *V, const
@@ -4409,11 +4365,7 @@ int hybrid_3prps_actuator_accelerations(const prepared *m, const real *X, const 
     take(NU, 1, hybrid_3prps_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qdd_out);
-    }
-    return code;
+    return settled(&why, NU, qdd_out);
 }
 
 int hybrid_3prps_power(const prepared *m, const real *X, const real *V, const real *tau, real
@@ -4433,11 +4385,7 @@ int hybrid_3prps_power(const prepared *m, const real *X, const real *V, const re
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, power_out);
-    }
-    return code;
+    return settled(&why, 1, power_out);
 }
 
 int hybrid_3prps_rotation(const real *X, real *R_out)
@@ -4450,11 +4398,7 @@ int hybrid_3prps_rotation(const real *X, real *R_out)
     rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     copy(9, R, R_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(9, R_out);
-    }
-    return code;
+    return settled(&why, 9, R_out);
 }
 
 int hybrid_3prps_pose(const real *t, const real *R, real *X_out)
@@ -4472,11 +4416,7 @@ int hybrid_3prps_pose(const real *t, const real *R, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int hybrid_3prps_X_dot(const real *X, const real *V, real *X_dot_out)
@@ -4496,11 +4436,7 @@ int hybrid_3prps_X_dot(const real *X, const real *V, real *X_dot_out)
     beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_dot_out);
-    }
-    return code;
+    return settled(&why, NQ, X_dot_out);
 }
 
 int hybrid_3prps_pose_from_rpy(const real *t, const real *rpy, real *X_out)
@@ -4518,11 +4454,7 @@ int hybrid_3prps_pose_from_rpy(const real *t, const real *rpy, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int hybrid_3prps_retract(const real *X, const real *step, real *X_moved_out)
@@ -4546,11 +4478,7 @@ int hybrid_3prps_retract(const real *X, const real *step, real *X_moved_out)
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_moved_out);
-    }
-    return code;
+    return settled(&why, NQ, X_moved_out);
 }
 
 int hybrid_3prps_difference(const real *X0, const real *X1, real *step_out)
@@ -4574,11 +4502,7 @@ int hybrid_3prps_difference(const real *X0, const real *X1, real *step_out)
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, step_out);
-    }
-    return code;
+    return settled(&why, NV, step_out);
 }
 
 int hybrid_3prps_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
@@ -4616,11 +4540,7 @@ int hybrid_3prps_interpolate(const real *X0, const real *X1, const real *s, real
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 /* ---- one state, and batches ---- */

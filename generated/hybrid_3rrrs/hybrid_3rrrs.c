@@ -231,15 +231,12 @@ INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *t
 }
 
 /* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
-INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+INLINE const real *optional(size_t size, const real *x, const real *none, real *flags)
 {
-    for (size_t e = 0; e < size && !x; ++e) {
-        own[e] = none;
-    }
     if (x) {
         check(size, 1, x, flags);
     }
-    return x ? x : own;
+    return x ? x : none;
 }
 
 INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
@@ -296,6 +293,16 @@ APART void refuse(size_t size, real *out)
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
     }
+}
+
+/* The status of a state; an output is refused where it is impossible. */
+INLINE int settled(const verdict *t, size_t size, real *out)
+{
+    const int code = judge(t);
+    if (code != OK) {
+        refuse(size, out);
+    }
+    return code;
 }
 
 /* Outputs of a state where the user wants them, and of states side by side, state by state. */
@@ -425,19 +432,19 @@ INLINE int all_rotations(const real *x, size_t n)
 /* ---- parameters ---- */
 
 const hybrid_3rrrs_params hybrid_3rrrs_default_params = {
-    {R(0.0), R(0.0), R(-9.81)},  /* gravity */
+    {0, 0, R(-9.81)},  /* gravity */
     R(12.0),  /* platform_mass */
-    {R(0.0), R(0.0), R(0.04)},  /* platform_centre_of_mass */
-    {{R(0.35), R(0.0), R(0.0)}, {R(0.0), R(0.35), R(0.0)}, {R(0.0), R(0.0), R(0.6)}},  /* platform_inertia */
+    {0, 0, R(0.04)},  /* platform_centre_of_mass */
+    {{R(0.35), 0, 0}, {0, R(0.35), 0}, {0, 0, R(0.6)}},  /* platform_inertia */
     {  /* rrrs_base_point */
         {R(0.00509516183072628), R(-0.04586498983039226), R(-0.11747636009691065)},
         {R(0.03717266542207143), R(0.02734503449699799), R(-0.11747636009691065)},
         {R(-0.042267827252797784), R(0.018519955333394233), R(-0.11747636009691065)},
     },
     {  /* rrrs_base_frame */
-        {{R(0.0), R(0.9800665778412416), R(-0.19866933079506122)}, {R(0.0), R(0.19866933079506122), R(0.9800665778412416)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.6620859763419978), R(-0.7494278884130636)}, {R(0.0), R(0.7494278884130636), R(-0.6620859763419978)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.317980601499244), R(0.9480972192081247)}, {R(0.0), R(-0.9480972192081247), R(-0.317980601499244)}, {R(1.0), R(0.0), R(0.0)}},
+        {{0, R(0.9800665778412416), R(-0.19866933079506122)}, {0, R(0.19866933079506122), R(0.9800665778412416)}, {1, 0, 0}},
+        {{0, R(-0.6620859763419978), R(-0.7494278884130636)}, {0, R(0.7494278884130636), R(-0.6620859763419978)}, {1, 0, 0}},
+        {{0, R(-0.317980601499244), R(0.9480972192081247)}, {0, R(-0.9480972192081247), R(-0.317980601499244)}, {1, 0, 0}},
     },
     {  /* rrrs_platform_point */
         {R(0.29401997335237245), R(0.05960079923851836), R(-0.02)},
@@ -445,19 +452,19 @@ const hybrid_3rrrs_params hybrid_3rrrs_default_params = {
         {R(-0.0953941804497732), R(-0.28442916576243743), R(-0.02)},
     },
     {  /* rrrs_joint2_offset */
-        {R(0.12), R(0.0), R(0.0)},
-        {R(0.12), R(0.0), R(0.0)},
-        {R(0.12), R(0.0), R(0.0)},
+        {R(0.12), 0, 0},
+        {R(0.12), 0, 0},
+        {R(0.12), 0, 0},
     },
     {  /* rrrs_joint3_offset */
-        {R(0.45), R(0.0), R(0.0)},
-        {R(0.45), R(0.0), R(0.0)},
-        {R(0.45), R(0.0), R(0.0)},
+        {R(0.45), 0, 0},
+        {R(0.45), 0, 0},
+        {R(0.45), 0, 0},
     },
     {  /* rrrs_platform_joint_offset */
-        {R(0.45), R(0.0), R(0.0)},
-        {R(0.45), R(0.0), R(0.0)},
-        {R(0.45), R(0.0), R(0.0)},
+        {R(0.45), 0, 0},
+        {R(0.45), 0, 0},
+        {R(0.45), 0, 0},
     },
     {  /* rrrs_link1_mass */
         R(3.0),
@@ -465,14 +472,14 @@ const hybrid_3rrrs_params hybrid_3rrrs_default_params = {
         R(3.0),
     },
     {  /* rrrs_link1_centre_of_mass */
-        {R(0.06), R(0.0), R(0.0)},
-        {R(0.06), R(0.0), R(0.0)},
-        {R(0.06), R(0.0), R(0.0)},
+        {R(0.06), 0, 0},
+        {R(0.06), 0, 0},
+        {R(0.06), 0, 0},
     },
     {  /* rrrs_link1_inertia */
-        {{R(0.0006), R(0.0), R(0.0)}, {R(0.0), R(0.0038999999999999994), R(0.0)}, {R(0.0), R(0.0), R(0.0038999999999999994)}},
-        {{R(0.0006), R(0.0), R(0.0)}, {R(0.0), R(0.0038999999999999994), R(0.0)}, {R(0.0), R(0.0), R(0.0038999999999999994)}},
-        {{R(0.0006), R(0.0), R(0.0)}, {R(0.0), R(0.0038999999999999994), R(0.0)}, {R(0.0), R(0.0), R(0.0038999999999999994)}},
+        {{R(0.0006), 0, 0}, {0, R(0.0038999999999999994), 0}, {0, 0, R(0.0038999999999999994)}},
+        {{R(0.0006), 0, 0}, {0, R(0.0038999999999999994), 0}, {0, 0, R(0.0038999999999999994)}},
+        {{R(0.0006), 0, 0}, {0, R(0.0038999999999999994), 0}, {0, 0, R(0.0038999999999999994)}},
     },
     {  /* rrrs_link2_mass */
         R(2.0),
@@ -480,14 +487,14 @@ const hybrid_3rrrs_params hybrid_3rrrs_default_params = {
         R(2.0),
     },
     {  /* rrrs_link2_centre_of_mass */
-        {R(0.225), R(0.0), R(0.0)},
-        {R(0.225), R(0.0), R(0.0)},
-        {R(0.225), R(0.0), R(0.0)},
+        {R(0.225), 0, 0},
+        {R(0.225), 0, 0},
+        {R(0.225), 0, 0},
     },
     {  /* rrrs_link2_inertia */
-        {{R(0.0004), R(0.0), R(0.0)}, {R(0.0), R(0.03395), R(0.0)}, {R(0.0), R(0.0), R(0.03395)}},
-        {{R(0.0004), R(0.0), R(0.0)}, {R(0.0), R(0.03395), R(0.0)}, {R(0.0), R(0.0), R(0.03395)}},
-        {{R(0.0004), R(0.0), R(0.0)}, {R(0.0), R(0.03395), R(0.0)}, {R(0.0), R(0.0), R(0.03395)}},
+        {{R(0.0004), 0, 0}, {0, R(0.03395), 0}, {0, 0, R(0.03395)}},
+        {{R(0.0004), 0, 0}, {0, R(0.03395), 0}, {0, 0, R(0.03395)}},
+        {{R(0.0004), 0, 0}, {0, R(0.03395), 0}, {0, 0, R(0.03395)}},
     },
     {  /* rrrs_link3_mass */
         R(1.2),
@@ -495,18 +502,18 @@ const hybrid_3rrrs_params hybrid_3rrrs_default_params = {
         R(1.2),
     },
     {  /* rrrs_link3_centre_of_mass */
-        {R(0.225), R(0.0), R(0.0)},
-        {R(0.225), R(0.0), R(0.0)},
-        {R(0.225), R(0.0), R(0.0)},
+        {R(0.225), 0, 0},
+        {R(0.225), 0, 0},
+        {R(0.225), 0, 0},
     },
     {  /* rrrs_link3_inertia */
-        {{R(0.00024), R(0.0), R(0.0)}, {R(0.0), R(0.020370000000000003), R(0.0)}, {R(0.0), R(0.0), R(0.020370000000000003)}},
-        {{R(0.00024), R(0.0), R(0.0)}, {R(0.0), R(0.020370000000000003), R(0.0)}, {R(0.0), R(0.0), R(0.020370000000000003)}},
-        {{R(0.00024), R(0.0), R(0.0)}, {R(0.0), R(0.020370000000000003), R(0.0)}, {R(0.0), R(0.0), R(0.020370000000000003)}},
+        {{R(0.00024), 0, 0}, {0, R(0.020370000000000003), 0}, {0, 0, R(0.020370000000000003)}},
+        {{R(0.00024), 0, 0}, {0, R(0.020370000000000003), 0}, {0, 0, R(0.020370000000000003)}},
+        {{R(0.00024), 0, 0}, {0, R(0.020370000000000003), 0}, {0, 0, R(0.020370000000000003)}},
     },
 };
 
-const hybrid_3rrrs_real hybrid_3rrrs_HOME_X[HYBRID_3RRRS_NQ] = {R(0.0), R(0.0), R(0.75), R(0.0), R(0.0), R(0.0), R(1.0)};
+const hybrid_3rrrs_real hybrid_3rrrs_HOME_X[HYBRID_3RRRS_NQ] = {0, 0, R(0.75), 0, 0, 0, 1};
 const hybrid_3rrrs_real hybrid_3rrrs_HOME_Q[HYBRID_3RRRS_NJ] = {R(0.15), R(0.9), R(-1.0), R(0.15), R(0.9), R(-1.0), R(0.15), R(0.9), R(-1.0)};
 const size_t hybrid_3rrrs_ACTUATED[HYBRID_3RRRS_NU] = {0, 1, 3, 4, 6, 7};
 const char *const hybrid_3rrrs_ACTUATOR_NAMES[HYBRID_3RRRS_NU] = {
@@ -558,6 +565,9 @@ static int acceptable(const hybrid_3rrrs_params *p)
     return ok;
 }
 
+#define KEEP(name) model->name = name
+#define KEEP_OF_LEG(name) model->name[leg] = name
+
 int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *model)
 {
     if (!acceptable(params)) {
@@ -608,10 +618,10 @@ int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *
     const real J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4);
     /* (spread) rms distance of the platform points from their centroid */
     const real spread_t = R(0.3333333333333333)*root(3);
-    model->gravity_x = gravity_x;
-    model->gravity_y = gravity_y;
-    model->gravity_z = gravity_z;
-    model->spread_t = spread_t;
+    KEEP(gravity_x);
+    KEEP(gravity_y);
+    KEEP(gravity_z);
+    KEEP(spread_t);
     for (size_t leg = 0; leg < FILLED(LEGS_OF_rrrs); ++leg) {
         const size_t own = leg < LEGS_OF_rrrs ? leg : 0;
         const real rrrs_base_point_x = params->rrrs_base_point[own][0];
@@ -799,79 +809,79 @@ int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *
         const real rrrs_potential_t_3 = rrrs_b_in_spec1_x*rrrs_link1_mass;
         const real rrrs_potential_t_4 = rrrs_link2_mass*(rrrs_b_in_spec1_x +
             rrrs_joint2_offset_x);
-        model->inv_rrrs_rho2_2_t[leg] = inv_rrrs_rho2_2_t;
-        model->inv_rrrs_size[leg] = inv_rrrs_size;
-        model->inv_rrrs_size_t[leg] = inv_rrrs_size_t;
-        model->inv_rrrs_size_t_2[leg] = inv_rrrs_size_t_2;
-        model->inv_rrrs_size_t_3[leg] = inv_rrrs_size_t_3;
-        model->rrrs_J_1_in_spec1_xx[leg] = rrrs_J_1_in_spec1_xx;
-        model->rrrs_J_2_in_spec2_xx[leg] = rrrs_J_2_in_spec2_xx;
-        model->rrrs_J_2_in_spec2_xy[leg] = rrrs_J_2_in_spec2_xy;
-        model->rrrs_J_2_in_spec2_xz[leg] = rrrs_J_2_in_spec2_xz;
-        model->rrrs_J_2_in_spec2_yy[leg] = rrrs_J_2_in_spec2_yy;
-        model->rrrs_J_2_in_spec2_yz[leg] = rrrs_J_2_in_spec2_yz;
-        model->rrrs_J_3_in_spec3_xx[leg] = rrrs_J_3_in_spec3_xx;
-        model->rrrs_J_3_in_spec3_xy[leg] = rrrs_J_3_in_spec3_xy;
-        model->rrrs_J_3_in_spec3_xz[leg] = rrrs_J_3_in_spec3_xz;
-        model->rrrs_J_3_in_spec3_yy[leg] = rrrs_J_3_in_spec3_yy;
-        model->rrrs_J_3_in_spec3_yz[leg] = rrrs_J_3_in_spec3_yz;
-        model->rrrs_J_3_in_spec3_zz[leg] = rrrs_J_3_in_spec3_zz;
-        model->rrrs_Jc_2_in_axes2_zz[leg] = rrrs_Jc_2_in_axes2_zz;
-        model->rrrs_Kd_2_t[leg] = rrrs_Kd_2_t;
-        model->rrrs_Kd_2_t_2[leg] = rrrs_Kd_2_t_2;
-        model->rrrs_Sigma_2_in_axes2_xx[leg] = rrrs_Sigma_2_in_axes2_xx;
-        model->rrrs_Sigma_2_in_axes2_yy[leg] = rrrs_Sigma_2_in_axes2_yy;
-        model->rrrs_Sigma_2_in_axes2_zz[leg] = rrrs_Sigma_2_in_axes2_zz;
-        model->rrrs_Sigma_3_in_axes3_xx[leg] = rrrs_Sigma_3_in_axes3_xx;
-        model->rrrs_Sigma_3_in_axes3_yy[leg] = rrrs_Sigma_3_in_axes3_yy;
-        model->rrrs_Sigma_3_in_axes3_zz[leg] = rrrs_Sigma_3_in_axes3_zz;
-        model->rrrs_base_frame_xx[leg] = rrrs_base_frame_xx;
-        model->rrrs_base_frame_xy[leg] = rrrs_base_frame_xy;
-        model->rrrs_base_frame_xz[leg] = rrrs_base_frame_xz;
-        model->rrrs_base_frame_yx[leg] = rrrs_base_frame_yx;
-        model->rrrs_base_frame_yy[leg] = rrrs_base_frame_yy;
-        model->rrrs_base_frame_yz[leg] = rrrs_base_frame_yz;
-        model->rrrs_base_frame_zx[leg] = rrrs_base_frame_zx;
-        model->rrrs_base_frame_zy[leg] = rrrs_base_frame_zy;
-        model->rrrs_base_frame_zz[leg] = rrrs_base_frame_zz;
-        model->rrrs_base_point_x[leg] = rrrs_base_point_x;
-        model->rrrs_base_point_y[leg] = rrrs_base_point_y;
-        model->rrrs_base_point_z[leg] = rrrs_base_point_z;
-        model->rrrs_branch_1[leg] = rrrs_branch_1;
-        model->rrrs_branch_2[leg] = rrrs_branch_2;
-        model->rrrs_d_Gamma_3_in_axes3_y[leg] = rrrs_d_Gamma_3_in_axes3_y;
-        model->rrrs_d_Gamma_3_t[leg] = rrrs_d_Gamma_3_t;
-        model->rrrs_d_c_in_axes3_yy[leg] = rrrs_d_c_in_axes3_yy;
-        model->rrrs_d_phi_3_t[leg] = rrrs_d_phi_3_t;
-        model->rrrs_g_in_axes1_z[leg] = rrrs_g_in_axes1_z;
-        model->rrrs_h_1_in_spec1_x[leg] = rrrs_h_1_in_spec1_x;
-        model->rrrs_h_1_in_spec1_y[leg] = rrrs_h_1_in_spec1_y;
-        model->rrrs_h_1_in_spec1_z[leg] = rrrs_h_1_in_spec1_z;
-        model->rrrs_h_2_in_spec2_x[leg] = rrrs_h_2_in_spec2_x;
-        model->rrrs_h_2_in_spec2_y[leg] = rrrs_h_2_in_spec2_y;
-        model->rrrs_h_2_in_spec2_z[leg] = rrrs_h_2_in_spec2_z;
-        model->rrrs_h_3_in_spec3_x[leg] = rrrs_h_3_in_spec3_x;
-        model->rrrs_h_3_in_spec3_y[leg] = rrrs_h_3_in_spec3_y;
-        model->rrrs_h_3_in_spec3_z[leg] = rrrs_h_3_in_spec3_z;
-        model->rrrs_joint2_offset_x[leg] = rrrs_joint2_offset_x;
-        model->rrrs_joint3_offset_x[leg] = rrrs_joint3_offset_x;
-        model->rrrs_link1_mass[leg] = rrrs_link1_mass;
-        model->rrrs_link2_mass[leg] = rrrs_link2_mass;
-        model->rrrs_link3_mass[leg] = rrrs_link3_mass;
-        model->rrrs_mu_2_t[leg] = rrrs_mu_2_t;
-        model->rrrs_mu_2_t_2[leg] = rrrs_mu_2_t_2;
-        model->rrrs_platform_joint_offset_x[leg] = rrrs_platform_joint_offset_x;
-        model->rrrs_platform_point_x[leg] = rrrs_platform_point_x;
-        model->rrrs_platform_point_y[leg] = rrrs_platform_point_y;
-        model->rrrs_platform_point_z[leg] = rrrs_platform_point_z;
-        model->rrrs_potential_t[leg] = rrrs_potential_t;
-        model->rrrs_potential_t_2[leg] = rrrs_potential_t_2;
-        model->rrrs_potential_t_3[leg] = rrrs_potential_t_3;
-        model->rrrs_potential_t_4[leg] = rrrs_potential_t_4;
-        model->rrrs_rho2_2_t[leg] = rrrs_rho2_2_t;
-        model->rrrs_size[leg] = rrrs_size;
-        model->rrrs_size_t_3[leg] = rrrs_size_t_3;
-        model->rrrs_w_3_in_axes3_y[leg] = rrrs_w_3_in_axes3_y;
+        KEEP_OF_LEG(inv_rrrs_rho2_2_t);
+        KEEP_OF_LEG(inv_rrrs_size);
+        KEEP_OF_LEG(inv_rrrs_size_t);
+        KEEP_OF_LEG(inv_rrrs_size_t_2);
+        KEEP_OF_LEG(inv_rrrs_size_t_3);
+        KEEP_OF_LEG(rrrs_J_1_in_spec1_xx);
+        KEEP_OF_LEG(rrrs_J_2_in_spec2_xx);
+        KEEP_OF_LEG(rrrs_J_2_in_spec2_xy);
+        KEEP_OF_LEG(rrrs_J_2_in_spec2_xz);
+        KEEP_OF_LEG(rrrs_J_2_in_spec2_yy);
+        KEEP_OF_LEG(rrrs_J_2_in_spec2_yz);
+        KEEP_OF_LEG(rrrs_J_3_in_spec3_xx);
+        KEEP_OF_LEG(rrrs_J_3_in_spec3_xy);
+        KEEP_OF_LEG(rrrs_J_3_in_spec3_xz);
+        KEEP_OF_LEG(rrrs_J_3_in_spec3_yy);
+        KEEP_OF_LEG(rrrs_J_3_in_spec3_yz);
+        KEEP_OF_LEG(rrrs_J_3_in_spec3_zz);
+        KEEP_OF_LEG(rrrs_Jc_2_in_axes2_zz);
+        KEEP_OF_LEG(rrrs_Kd_2_t);
+        KEEP_OF_LEG(rrrs_Kd_2_t_2);
+        KEEP_OF_LEG(rrrs_Sigma_2_in_axes2_xx);
+        KEEP_OF_LEG(rrrs_Sigma_2_in_axes2_yy);
+        KEEP_OF_LEG(rrrs_Sigma_2_in_axes2_zz);
+        KEEP_OF_LEG(rrrs_Sigma_3_in_axes3_xx);
+        KEEP_OF_LEG(rrrs_Sigma_3_in_axes3_yy);
+        KEEP_OF_LEG(rrrs_Sigma_3_in_axes3_zz);
+        KEEP_OF_LEG(rrrs_base_frame_xx);
+        KEEP_OF_LEG(rrrs_base_frame_xy);
+        KEEP_OF_LEG(rrrs_base_frame_xz);
+        KEEP_OF_LEG(rrrs_base_frame_yx);
+        KEEP_OF_LEG(rrrs_base_frame_yy);
+        KEEP_OF_LEG(rrrs_base_frame_yz);
+        KEEP_OF_LEG(rrrs_base_frame_zx);
+        KEEP_OF_LEG(rrrs_base_frame_zy);
+        KEEP_OF_LEG(rrrs_base_frame_zz);
+        KEEP_OF_LEG(rrrs_base_point_x);
+        KEEP_OF_LEG(rrrs_base_point_y);
+        KEEP_OF_LEG(rrrs_base_point_z);
+        KEEP_OF_LEG(rrrs_branch_1);
+        KEEP_OF_LEG(rrrs_branch_2);
+        KEEP_OF_LEG(rrrs_d_Gamma_3_in_axes3_y);
+        KEEP_OF_LEG(rrrs_d_Gamma_3_t);
+        KEEP_OF_LEG(rrrs_d_c_in_axes3_yy);
+        KEEP_OF_LEG(rrrs_d_phi_3_t);
+        KEEP_OF_LEG(rrrs_g_in_axes1_z);
+        KEEP_OF_LEG(rrrs_h_1_in_spec1_x);
+        KEEP_OF_LEG(rrrs_h_1_in_spec1_y);
+        KEEP_OF_LEG(rrrs_h_1_in_spec1_z);
+        KEEP_OF_LEG(rrrs_h_2_in_spec2_x);
+        KEEP_OF_LEG(rrrs_h_2_in_spec2_y);
+        KEEP_OF_LEG(rrrs_h_2_in_spec2_z);
+        KEEP_OF_LEG(rrrs_h_3_in_spec3_x);
+        KEEP_OF_LEG(rrrs_h_3_in_spec3_y);
+        KEEP_OF_LEG(rrrs_h_3_in_spec3_z);
+        KEEP_OF_LEG(rrrs_joint2_offset_x);
+        KEEP_OF_LEG(rrrs_joint3_offset_x);
+        KEEP_OF_LEG(rrrs_link1_mass);
+        KEEP_OF_LEG(rrrs_link2_mass);
+        KEEP_OF_LEG(rrrs_link3_mass);
+        KEEP_OF_LEG(rrrs_mu_2_t);
+        KEEP_OF_LEG(rrrs_mu_2_t_2);
+        KEEP_OF_LEG(rrrs_platform_joint_offset_x);
+        KEEP_OF_LEG(rrrs_platform_point_x);
+        KEEP_OF_LEG(rrrs_platform_point_y);
+        KEEP_OF_LEG(rrrs_platform_point_z);
+        KEEP_OF_LEG(rrrs_potential_t);
+        KEEP_OF_LEG(rrrs_potential_t_2);
+        KEEP_OF_LEG(rrrs_potential_t_3);
+        KEEP_OF_LEG(rrrs_potential_t_4);
+        KEEP_OF_LEG(rrrs_rho2_2_t);
+        KEEP_OF_LEG(rrrs_size);
+        KEEP_OF_LEG(rrrs_size_t_3);
+        KEEP_OF_LEG(rrrs_w_3_in_axes3_y);
         m_star_of_legs += leg < LEGS_OF_rrrs ? rrrs_link3_mass : 0;
         h_star_in_platform_x_of_legs += leg < LEGS_OF_rrrs ? rrrs_h_star_t : 0;
         h_star_in_platform_y_of_legs += leg < LEGS_OF_rrrs ? rrrs_h_star_t_2 : 0;
@@ -920,25 +930,25 @@ int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *
     const real b_c_in_platform_z = R(0.3333333333333333)*b_c_rrrs_in_platform_z;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = root(legs_size_rrrs)*spread_t;
-    model->J_star_in_platform_xx = J_star_in_platform_xx;
-    model->J_star_in_platform_xy = J_star_in_platform_xy;
-    model->J_star_in_platform_xz = J_star_in_platform_xz;
-    model->J_star_in_platform_yy = J_star_in_platform_yy;
-    model->J_star_in_platform_yz = J_star_in_platform_yz;
-    model->J_star_in_platform_zz = J_star_in_platform_zz;
-    model->J_star_t_12 = J_star_t_12;
-    model->J_star_t_14 = J_star_t_14;
-    model->Z_p_t = Z_p_t;
-    model->Z_p_t_2 = Z_p_t_2;
-    model->Z_p_t_3 = Z_p_t_3;
-    model->b_c_in_platform_x = b_c_in_platform_x;
-    model->b_c_in_platform_y = b_c_in_platform_y;
-    model->b_c_in_platform_z = b_c_in_platform_z;
-    model->h_star_in_platform_x = h_star_in_platform_x;
-    model->h_star_in_platform_y = h_star_in_platform_y;
-    model->h_star_in_platform_z = h_star_in_platform_z;
-    model->legs_size = legs_size;
-    model->m_star = m_star;
+    KEEP(J_star_in_platform_xx);
+    KEEP(J_star_in_platform_xy);
+    KEEP(J_star_in_platform_xz);
+    KEEP(J_star_in_platform_yy);
+    KEEP(J_star_in_platform_yz);
+    KEEP(J_star_in_platform_zz);
+    KEEP(J_star_t_12);
+    KEEP(J_star_t_14);
+    KEEP(Z_p_t);
+    KEEP(Z_p_t_2);
+    KEEP(Z_p_t_3);
+    KEEP(b_c_in_platform_x);
+    KEEP(b_c_in_platform_y);
+    KEEP(b_c_in_platform_z);
+    KEEP(h_star_in_platform_x);
+    KEEP(h_star_in_platform_y);
+    KEEP(h_star_in_platform_z);
+    KEEP(legs_size);
+    KEEP(m_star);
     return OK;
 }
 
@@ -1530,10 +1540,10 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real R_zy = quaternion_wx + quaternion_yz;
     const real R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = R_xx*m->h_star_in_platform_x + R_xy*m->h_star_in_platform_y +
-        R_xz*m->h_star_in_platform_z;
-    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yy*m->h_star_in_platform_y +
-        R_yz*m->h_star_in_platform_z;
+    const real h_star_x = R_xy*m->h_star_in_platform_y + R_xz*m->h_star_in_platform_z +
+        R_xx*m->h_star_in_platform_x;
+    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yz*m->h_star_in_platform_z +
+        R_yy*m->h_star_in_platform_y;
     const real h_star_z = R_zx*m->h_star_in_platform_x + R_zy*m->h_star_in_platform_y +
         R_zz*m->h_star_in_platform_z;
     v->quaternion_scale = quaternion_scale;
@@ -1557,8 +1567,8 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
     const real omega_x = V[3*w + k];
     const real omega_y = V[4*w + k];
     const real omega_z = V[5*w + k];
-    const real omega_in_platform_x = v->R_xx*omega_x + v->R_yx*omega_y + v->R_zx*omega_z;
-    const real omega_in_platform_y = v->R_xy*omega_x + v->R_yy*omega_y + v->R_zy*omega_z;
+    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
     const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
     v->omega_in_platform_x = omega_in_platform_x;
     v->omega_in_platform_y = omega_in_platform_y;
@@ -1568,24 +1578,24 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
 INLINE void stage_M_dynamics(const prepared *m, values *v)
 {
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_t = m->J_star_in_platform_xy*v->R_xx + m->J_star_in_platform_yz*v->R_xz
-        - m->J_star_t_12*v->R_xy;
+    const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
+        m->J_star_in_platform_xy*v->R_xx;
     const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
         m->J_star_in_platform_yz*v->R_yz - m->J_star_t_12*v->R_yy;
-    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx +
-        m->J_star_in_platform_yz*v->R_zz - m->J_star_t_12*v->R_zy;
+    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx - m->J_star_t_12*v->R_zy +
+        m->J_star_in_platform_yz*v->R_zz;
     const real J_star_t_4 = m->J_star_t_14*v->R_xz - m->J_star_in_platform_xz*v->R_xx;
     const real J_star_t_5 = m->J_star_t_14*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
     const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
-    const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
-        J_star_t_5*v->R_xz;
+    const real J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
+        J_star_t_4*v->R_yz;
     const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
     const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
     const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
-    const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
+    const real J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
     const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
     const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
@@ -1610,10 +1620,10 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
     const real Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real g_in_platform_x = v->R_xx*m->gravity_x + v->R_yx*m->gravity_y +
-        v->R_zx*m->gravity_z;
-    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_yy*m->gravity_y +
-        v->R_zy*m->gravity_z;
+    const real g_in_platform_x = v->R_yx*m->gravity_y + v->R_zx*m->gravity_z +
+        v->R_xx*m->gravity_x;
+    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_zy*m->gravity_z +
+        v->R_yy*m->gravity_y;
     const real g_in_platform_z = v->R_xz*m->gravity_x + v->R_yz*m->gravity_y +
         v->R_zz*m->gravity_z;
     const real Z_q_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
@@ -1625,15 +1635,15 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
         m->J_star_in_platform_yz*v->omega_in_platform_y +
         m->J_star_in_platform_zz*v->omega_in_platform_z;
-    const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
-        g_in_platform_y*m->h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
-        g_in_platform_z*m->h_star_in_platform_y;
-    const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
-        g_in_platform_z*m->h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
-        g_in_platform_x*m->h_star_in_platform_z;
-    const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
-        g_in_platform_x*m->h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
-        g_in_platform_y*m->h_star_in_platform_x;
+    const real Z_q_in_platform_x = g_in_platform_y*m->h_star_in_platform_z -
+        g_in_platform_z*m->h_star_in_platform_y + Z_q_t_3*v->omega_in_platform_y -
+        Z_q_t_2*v->omega_in_platform_z;
+    const real Z_q_in_platform_y = g_in_platform_z*m->h_star_in_platform_x -
+        g_in_platform_x*m->h_star_in_platform_z + Z_q_t*v->omega_in_platform_z -
+        Z_q_t_3*v->omega_in_platform_x;
+    const real Z_q_in_platform_z = g_in_platform_x*m->h_star_in_platform_y -
+        g_in_platform_y*m->h_star_in_platform_x + Z_q_t_2*v->omega_in_platform_x -
+        Z_q_t*v->omega_in_platform_y;
     const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
         v->R_xz*Z_q_in_platform_z;
     const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
@@ -1681,24 +1691,24 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real rrrs_q_x = R_xx*m->rrrs_platform_point_x[i] + R_xy*m->rrrs_platform_point_y[i]
-        + R_xz*m->rrrs_platform_point_z[i];
+    const real rrrs_q_x = R_xy*m->rrrs_platform_point_y[i] + R_xz*m->rrrs_platform_point_z[i]
+        + R_xx*m->rrrs_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real rrrs_q_y = R_yx*m->rrrs_platform_point_x[i] + R_yy*m->rrrs_platform_point_y[i]
-        + R_yz*m->rrrs_platform_point_z[i];
+    const real rrrs_q_y = R_yx*m->rrrs_platform_point_x[i] + R_yz*m->rrrs_platform_point_z[i]
+        + R_yy*m->rrrs_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real rrrs_q_z = R_zx*m->rrrs_platform_point_x[i] + R_zy*m->rrrs_platform_point_y[i]
         + R_zz*m->rrrs_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real rrrs_S_x = rrrs_q_x + t_x - m->rrrs_base_point_x[i];
+    const real rrrs_S_x = t_x - m->rrrs_base_point_x[i] + rrrs_q_x;
     const real t_y = X[1*w + j];
-    const real rrrs_S_y = rrrs_q_y + t_y - m->rrrs_base_point_y[i];
+    const real rrrs_S_y = t_y - m->rrrs_base_point_y[i] + rrrs_q_y;
     const real t_z = X[2*w + j];
-    const real rrrs_S_z = rrrs_q_z + t_z - m->rrrs_base_point_z[i];
+    const real rrrs_S_z = t_z - m->rrrs_base_point_z[i] + rrrs_q_z;
     const real rrrs_S_in_turn1_x = rrrs_S_x*m->rrrs_base_frame_xy[i] +
         rrrs_S_y*m->rrrs_base_frame_yy[i] + rrrs_S_z*m->rrrs_base_frame_zy[i];
     const real rrrs_S_in_turn1_y = rrrs_S_x*m->rrrs_base_frame_xz[i] +
@@ -1720,7 +1730,7 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
     /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 2 */
     const real rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
-    const real rrrs_Kd_2 = m->rrrs_Kd_2_t[i] + R(0.5)*rrrs_Kd_2_t_3 - m->rrrs_Kd_2_t_2[i];
+    const real rrrs_Kd_2 = m->rrrs_Kd_2_t[i] - m->rrrs_Kd_2_t_2[i] + R(0.5)*rrrs_Kd_2_t_3;
     /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
     const real rrrs_Kc_2 = m->rrrs_joint3_offset_x[i]*rrrs_x_2_in_axes1_z;
     /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
@@ -1735,7 +1745,7 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
     const real inv_rrrs_rho2_2 = 1/rrrs_rho2_2;
     const real rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2);
     /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
-    const real rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2);
+    const real rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kd_2*rrrs_Ks_2 + rrrs_Kc_2*rrrs_root_2);
     /* (rrrs-x_3) from the origin of joint 3 to the connection point */
     const real rrrs_x_3_in_axes2_x =
         m->inv_rrrs_size_t[i]*rrrs_Kd_2*m->rrrs_joint3_offset_x[i] -
@@ -1887,11 +1897,11 @@ INLINE void stage_rrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
     const real rrrs_S_dot_t_2 = omega_z*v->rrrs_q_x - omega_x*v->rrrs_q_z;
     const real rrrs_S_dot_t_3 = omega_x*v->rrrs_q_y - omega_y*v->rrrs_q_x;
     const real t_dot_x = V[0*w + j];
-    const real rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x;
+    const real rrrs_S_dot_x = t_dot_x + rrrs_S_dot_t;
     const real t_dot_y = V[1*w + j];
-    const real rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y;
+    const real rrrs_S_dot_y = t_dot_y + rrrs_S_dot_t_2;
     const real t_dot_z = V[2*w + j];
-    const real rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z;
+    const real rrrs_S_dot_z = t_dot_z + rrrs_S_dot_t_3;
     /* (rrrs-qd_1) rate of joint 1 */
     const real rrrs_qd_1 = v->rrrs_w_1_in_axes3_z*(v->axis_z_rrrs_axes3_x*rrrs_S_dot_x +
         v->axis_z_rrrs_axes3_y*rrrs_S_dot_y + v->axis_z_rrrs_axes3_z*rrrs_S_dot_z);
@@ -1936,18 +1946,17 @@ INLINE void stage_rrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
         v->rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y;
     const real rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*m->rrrs_platform_joint_offset_x[i];
     const real rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*m->rrrs_platform_joint_offset_x[i];
-    const real rrrs_bias_in_axes3_x = rrrs_bias_t_3*rrrs_omega_1_in_axes3_y +
-        rrrs_bias_t_6*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_qd_2_t -
-        rrrs_bias_t_7*rrrs_omega_3_in_axes3_z - rrrs_bias_t_8*rrrs_omega_1_in_axes3_y;
+    const real rrrs_bias_in_axes3_x = rrrs_bias_t_3*rrrs_omega_1_in_axes3_y -
+        rrrs_bias_t_5*rrrs_qd_2_t + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
+        rrrs_bias_t_8*rrrs_omega_1_in_axes3_y - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z;
     const real rrrs_bias_in_axes3_y = rrrs_bias_t_8*rrrs_omega_1_in_axes3_x -
-        rrrs_bias_t_3*rrrs_omega_1_in_axes3_x - rrrs_bias_t_4*rrrs_qd_2_t -
+        rrrs_bias_t_4*rrrs_qd_2_t - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
         rrrs_bias_t_6*rrrs_omega_1_in_axes3_x;
-    const real rrrs_bias_in_axes3_z = rrrs_bias_t_7*rrrs_omega_1_in_axes3_x +
-        v->rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*v->rrrs_c_3 -
-        v->rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) -
-        rrrs_beta_3_in_axes3_y*m->rrrs_platform_joint_offset_x[i] -
-        rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
-        v->rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y;
+    const real rrrs_bias_in_axes3_z = v->rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*v->rrrs_c_3
+        - v->rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) - rrrs_bias_t_4*rrrs_omega_1_in_axes3_y -
+        rrrs_bias_t_5*rrrs_omega_1_in_axes3_x - v->rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
+        + rrrs_bias_t_7*rrrs_omega_1_in_axes3_x -
+        rrrs_beta_3_in_axes3_y*m->rrrs_platform_joint_offset_x[i];
     v->rrrs_S_dot_t = rrrs_S_dot_t;
     v->rrrs_S_dot_t_2 = rrrs_S_dot_t_2;
     v->rrrs_S_dot_t_3 = rrrs_S_dot_t_3;
@@ -1981,13 +1990,13 @@ INLINE void stage_rrrs_A_V_X(size_t w, size_t j, const real *V, values_rrrs *v)
     /* (rrrs-S_ddot) acceleration of the connection point */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
-    const real rrrs_S_ddot_x = v->rrrs_a_p_x + omega_y*v->rrrs_S_dot_t_3 -
-        omega_z*v->rrrs_S_dot_t_2;
+    const real rrrs_S_ddot_x = omega_y*v->rrrs_S_dot_t_3 - omega_z*v->rrrs_S_dot_t_2 +
+        v->rrrs_a_p_x;
     const real omega_x = V[3*w + j];
-    const real rrrs_S_ddot_y = v->rrrs_a_p_y + omega_z*v->rrrs_S_dot_t -
-        omega_x*v->rrrs_S_dot_t_3;
-    const real rrrs_S_ddot_z = v->rrrs_a_p_z + omega_x*v->rrrs_S_dot_t_2 -
-        omega_y*v->rrrs_S_dot_t;
+    const real rrrs_S_ddot_y = omega_z*v->rrrs_S_dot_t - omega_x*v->rrrs_S_dot_t_3 +
+        v->rrrs_a_p_y;
+    const real rrrs_S_ddot_z = omega_x*v->rrrs_S_dot_t_2 - omega_y*v->rrrs_S_dot_t +
+        v->rrrs_a_p_z;
     v->rrrs_S_ddot_x = rrrs_S_ddot_x;
     v->rrrs_S_ddot_y = rrrs_S_ddot_y;
     v->rrrs_S_ddot_z = rrrs_S_ddot_z;
@@ -2033,17 +2042,17 @@ INLINE void stage_rrrs_M_dynamics(const prepared *m, size_t i, values_rrrs *v)
     /* (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
        about the connection point */
     const real rrrs_Jc_2_t = m->rrrs_J_3_in_spec3_xy[i]*v->rrrs_s_3_t;
-    const real rrrs_Jc_2_t_2 = rrrs_Jc_2_t + m->rrrs_J_3_in_spec3_xx[i]*v->rrrs_c_3;
+    const real rrrs_Jc_2_t_2 = m->rrrs_J_3_in_spec3_xx[i]*v->rrrs_c_3 + rrrs_Jc_2_t;
     const real rrrs_Jc_2_t_3 = m->rrrs_J_3_in_spec3_xy[i]*v->rrrs_c_3;
     const real rrrs_Jc_2_t_4 = rrrs_Jc_2_t_3 + m->rrrs_J_3_in_spec3_yy[i]*v->rrrs_s_3_t;
     const real rrrs_Jc_2_in_axes2_xy = m->rrrs_J_2_in_spec2_xy[i] + rrrs_Jc_2_t_4*v->rrrs_c_3
         - rrrs_Jc_2_t_2*v->rrrs_s_3_t;
     const real rrrs_Jc_2_in_axes1_zz = v->rrrs_c_2*(v->rrrs_c_2*(m->rrrs_J_2_in_spec2_xx[i] +
-        rrrs_Jc_2_t_2*v->rrrs_c_3 + rrrs_Jc_2_t_4*v->rrrs_s_3_t) -
+        rrrs_Jc_2_t_4*v->rrrs_s_3_t + rrrs_Jc_2_t_2*v->rrrs_c_3) -
         rrrs_Jc_2_in_axes2_xy*v->rrrs_s_2) - v->rrrs_s_2*(rrrs_Jc_2_in_axes2_xy*v->rrrs_c_2 -
-        v->rrrs_s_2*(m->rrrs_J_2_in_spec2_yy[i] +
-        v->rrrs_c_3*(m->rrrs_J_3_in_spec3_yy[i]*v->rrrs_c_3 - rrrs_Jc_2_t) -
-        v->rrrs_s_3_t*(rrrs_Jc_2_t_3 - m->rrrs_J_3_in_spec3_xx[i]*v->rrrs_s_3_t)));
+        v->rrrs_s_2*(m->rrrs_J_2_in_spec2_yy[i] - v->rrrs_s_3_t*(rrrs_Jc_2_t_3 -
+        m->rrrs_J_3_in_spec3_xx[i]*v->rrrs_s_3_t) +
+        v->rrrs_c_3*(m->rrrs_J_3_in_spec3_yy[i]*v->rrrs_c_3 - rrrs_Jc_2_t)));
     /* (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
        inertia and weight */
     const real rrrs_d_Gamma_3_in_axes3_z = rrrs_D_1_3*v->rrrs_w_1_in_axes3_z;
@@ -2056,16 +2065,17 @@ INLINE void stage_rrrs_M_dynamics(const prepared *m, size_t i, values_rrrs *v)
         - rrrs_d_Gamma_3_t_2) - m->rrrs_h_3_in_spec3_y[i];
     /* (rrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
-    const real rrrs_d_Gamma_1_in_axes3_z = v->rrrs_e_1_in_axes3_x*m->rrrs_h_3_in_spec3_y[i] +
-        v->rrrs_w_1_in_axes3_z*(m->rrrs_J_1_in_spec1_xx[i] + rrrs_Jc_2_in_axes1_zz) -
-        v->rrrs_e_1_in_axes3_y*m->rrrs_h_3_in_spec3_x[i];
+    const real rrrs_d_Gamma_1_in_axes3_z = v->rrrs_e_1_in_axes3_x*m->rrrs_h_3_in_spec3_y[i] -
+        v->rrrs_e_1_in_axes3_y*m->rrrs_h_3_in_spec3_x[i] +
+        v->rrrs_w_1_in_axes3_z*(m->rrrs_J_1_in_spec1_xx[i] + rrrs_Jc_2_in_axes1_zz);
     /* (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the
        leg's inertia and weight along all degrees of freedom */
-    const real rrrs_d_G_in_axes3_xz = rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_x +
+    const real rrrs_d_G_in_axes3_xz =
         v->rrrs_w_1_in_axes3_z*v->rrrs_w_2_in_axes3_x*(v->rrrs_c_2*(m->rrrs_J_2_in_spec2_xz[i]
         + m->rrrs_J_3_in_spec3_xz[i]*v->rrrs_c_3 + m->rrrs_J_3_in_spec3_yz[i]*v->rrrs_s_3_t) -
         v->rrrs_s_2*(m->rrrs_J_2_in_spec2_yz[i] + m->rrrs_J_3_in_spec3_yz[i]*v->rrrs_c_3 -
-        m->rrrs_J_3_in_spec3_xz[i]*v->rrrs_s_3_t));
+        m->rrrs_J_3_in_spec3_xz[i]*v->rrrs_s_3_t)) +
+        rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_x;
     /* (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
        without the mass at the connection point */
     const real rrrs_d_c_in_axes3_xx = m->rrrs_h_3_in_spec3_y[i]*(v->rrrs_w_2_in_axes3_x +
@@ -2074,8 +2084,8 @@ INLINE void stage_rrrs_M_dynamics(const prepared *m, size_t i, values_rrrs *v)
     const real rrrs_d_c_in_axes3_xy = m->rrrs_d_phi_3_t[i] -
         m->rrrs_d_Gamma_3_in_axes3_y[i]*v->rrrs_w_2_in_axes3_x -
         m->rrrs_d_Gamma_3_in_axes3_y[i]*rrrs_w_3_in_axes3_x;
-    const real rrrs_d_c_in_axes3_xz = -rrrs_d_G_in_axes3_xz -
-        rrrs_d_alpha_3_in_axes3_yz*m->rrrs_h_3_in_spec3_z[i];
+    const real rrrs_d_c_in_axes3_xz = -rrrs_d_alpha_3_in_axes3_yz*m->rrrs_h_3_in_spec3_z[i] -
+        rrrs_d_G_in_axes3_xz;
     const real rrrs_d_c_in_axes3_yz = rrrs_d_alpha_3_in_axes3_xz*m->rrrs_h_3_in_spec3_z[i] -
         rrrs_d_Gamma_3_in_axes3_z*m->rrrs_w_3_in_axes3_y[i];
     v->rrrs_d_alpha_3_in_axes3_xz = rrrs_d_alpha_3_in_axes3_xz;
@@ -2130,23 +2140,20 @@ INLINE void stage_rrrs_inverse_kinematics_potential(const prepared *m, size_t w,
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
     const real t_x = X[0*w + j];
-    const real rrrs_S_x = t_x + R_xx*m->rrrs_platform_point_x[i] +
-        R_xy*m->rrrs_platform_point_y[i] + R_xz*m->rrrs_platform_point_z[i] -
-        m->rrrs_base_point_x[i];
+    const real rrrs_S_x = t_x - m->rrrs_base_point_x[i] + R_xy*m->rrrs_platform_point_y[i] +
+        R_xz*m->rrrs_platform_point_z[i] + R_xx*m->rrrs_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real t_y = X[1*w + j];
-    const real rrrs_S_y = t_y + R_yx*m->rrrs_platform_point_x[i] +
-        R_yy*m->rrrs_platform_point_y[i] + R_yz*m->rrrs_platform_point_z[i] -
-        m->rrrs_base_point_y[i];
+    const real rrrs_S_y = t_y - m->rrrs_base_point_y[i] + R_yx*m->rrrs_platform_point_x[i] +
+        R_yz*m->rrrs_platform_point_z[i] + R_yy*m->rrrs_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real t_z = X[2*w + j];
-    const real rrrs_S_z = t_z + R_zx*m->rrrs_platform_point_x[i] +
-        R_zy*m->rrrs_platform_point_y[i] + R_zz*m->rrrs_platform_point_z[i] -
-        m->rrrs_base_point_z[i];
+    const real rrrs_S_z = t_z - m->rrrs_base_point_z[i] + R_zx*m->rrrs_platform_point_x[i] +
+        R_zy*m->rrrs_platform_point_y[i] + R_zz*m->rrrs_platform_point_z[i];
     const real rrrs_S_in_turn1_x = rrrs_S_x*m->rrrs_base_frame_xy[i] +
         rrrs_S_y*m->rrrs_base_frame_yy[i] + rrrs_S_z*m->rrrs_base_frame_zy[i];
     const real rrrs_S_in_turn1_y = rrrs_S_x*m->rrrs_base_frame_xz[i] +
@@ -2159,13 +2166,13 @@ INLINE void stage_rrrs_inverse_kinematics_potential(const prepared *m, size_t w,
     /* (rrrs-q_1) displacement of joint 1 */
     const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
     /* (rrrs-x_2) from the origin of joint 2 to the connection point */
-    const real rrrs_x_2_in_axes1_z = rrrs_S_x*m->rrrs_base_frame_xx[i] +
-        rrrs_S_y*m->rrrs_base_frame_yx[i] + rrrs_S_z*m->rrrs_base_frame_zx[i] -
-        m->rrrs_joint2_offset_x[i];
+    const real rrrs_x_2_in_axes1_z = rrrs_S_x*m->rrrs_base_frame_xx[i] -
+        m->rrrs_joint2_offset_x[i] + rrrs_S_y*m->rrrs_base_frame_yx[i] +
+        rrrs_S_z*m->rrrs_base_frame_zx[i];
     /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 2 */
     const real rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
-    const real rrrs_Kd_2 = m->rrrs_Kd_2_t[i] + R(0.5)*rrrs_Kd_2_t_3 - m->rrrs_Kd_2_t_2[i];
+    const real rrrs_Kd_2 = m->rrrs_Kd_2_t[i] - m->rrrs_Kd_2_t_2[i] + R(0.5)*rrrs_Kd_2_t_3;
     /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
     const real rrrs_Kc_2 = m->rrrs_joint3_offset_x[i]*rrrs_x_2_in_axes1_z;
     /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
@@ -2223,13 +2230,13 @@ INLINE void stage_rrrs_legs_required(const prepared *m, size_t i, values_rrrs *v
     /* (rrrs-B_2) acceleration tensor of link 2 */
     const real rrrs_B_2_in_axes2_xy = v->rrrs_W_2_in_axes2_xy - rrrs_qdd_2;
     const real rrrs_B_2_in_axes2_yx = v->rrrs_W_2_in_axes2_xy + rrrs_qdd_2;
-    const real rrrs_B_2_in_axes2_zx = -rrrs_alpha_2_in_axes2_y - v->rrrs_zeta_2_in_axes2_y;
+    const real rrrs_B_2_in_axes2_zx = -v->rrrs_zeta_2_in_axes2_y - rrrs_alpha_2_in_axes2_y;
     const real rrrs_B_2_in_axes2_zy = v->rrrs_W_2_in_axes2_yz + rrrs_alpha_2_in_axes2_x;
     /* (rrrs-alpha_3) angular acceleration of link 3 */
-    const real rrrs_alpha_3_in_axes3_x = rrrs_alpha_2_in_axes2_x*v->rrrs_c_3 +
-        v->rrrs_omega_1_in_axes3_y*v->rrrs_qd_3 - rrrs_alpha_2_in_axes2_y*v->rrrs_s_3_t;
-    const real rrrs_alpha_3_in_axes3_y = rrrs_alpha_2_in_axes2_x*v->rrrs_s_3_t +
-        rrrs_alpha_2_in_axes2_y*v->rrrs_c_3 - v->rrrs_zeta_3_t;
+    const real rrrs_alpha_3_in_axes3_x = v->rrrs_omega_1_in_axes3_y*v->rrrs_qd_3 +
+        rrrs_alpha_2_in_axes2_x*v->rrrs_c_3 - rrrs_alpha_2_in_axes2_y*v->rrrs_s_3_t;
+    const real rrrs_alpha_3_in_axes3_y = rrrs_alpha_2_in_axes2_x*v->rrrs_s_3_t -
+        v->rrrs_zeta_3_t + rrrs_alpha_2_in_axes2_y*v->rrrs_c_3;
     const real rrrs_alpha_3_in_axes3_z = rrrs_qdd_2 +
         m->rrrs_w_3_in_axes3_y[i]*(rrrs_rel_in_axes3_y - rrrs_qdd_2*v->rrrs_r_2_in_axes3_x);
     /* (rrrs-B_3) acceleration tensor of link 3 */
@@ -2253,52 +2260,52 @@ INLINE void stage_rrrs_legs_required(const prepared *m, size_t i, values_rrrs *v
     const real rrrs_mu_3_t = v->rrrs_omega_1_in_axes3_x*v->rrrs_omega_1_in_axes3_x;
     const real rrrs_mu_3_t_2 = v->rrrs_omega_1_in_axes3_y*v->rrrs_omega_1_in_axes3_y;
     const real rrrs_mu_3_t_3 = v->rrrs_omega_3_in_axes3_z*v->rrrs_omega_3_in_axes3_z;
-    const real rrrs_mu_3_in_axes3_x = rrrs_B_3_in_axes3_yx*m->rrrs_J_3_in_spec3_xz[i] +
-        rrrs_B_3_in_axes3_zy*m->rrrs_Sigma_3_in_axes3_yy[i] +
+    const real rrrs_mu_3_in_axes3_x = rrrs_acc_3_in_axes3_z*m->rrrs_h_3_in_spec3_y[i] -
+        rrrs_acc_3_in_axes3_y*m->rrrs_h_3_in_spec3_z[i] +
         m->rrrs_J_3_in_spec3_yz[i]*(rrrs_mu_3_t_2 - rrrs_mu_3_t_3) +
-        rrrs_acc_3_in_axes3_z*m->rrrs_h_3_in_spec3_y[i] -
+        rrrs_B_3_in_axes3_yx*m->rrrs_J_3_in_spec3_xz[i] +
+        rrrs_B_3_in_axes3_zy*m->rrrs_Sigma_3_in_axes3_yy[i] -
         rrrs_B_3_in_axes3_yz*m->rrrs_Sigma_3_in_axes3_zz[i] -
-        rrrs_B_3_in_axes3_zx*m->rrrs_J_3_in_spec3_xy[i] -
-        rrrs_acc_3_in_axes3_y*m->rrrs_h_3_in_spec3_z[i];
-    const real rrrs_mu_3_in_axes3_y = rrrs_B_3_in_axes3_xz*m->rrrs_Sigma_3_in_axes3_zz[i] +
-        rrrs_B_3_in_axes3_zy*m->rrrs_J_3_in_spec3_xy[i] +
-        rrrs_acc_3_in_axes3_x*m->rrrs_h_3_in_spec3_z[i] -
-        rrrs_B_3_in_axes3_xy*m->rrrs_J_3_in_spec3_yz[i] -
-        rrrs_B_3_in_axes3_zx*m->rrrs_Sigma_3_in_axes3_xx[i] -
+        rrrs_B_3_in_axes3_zx*m->rrrs_J_3_in_spec3_xy[i];
+    const real rrrs_mu_3_in_axes3_y = rrrs_acc_3_in_axes3_x*m->rrrs_h_3_in_spec3_z[i] -
+        rrrs_acc_3_in_axes3_z*m->rrrs_h_3_in_spec3_x[i] -
         m->rrrs_J_3_in_spec3_xz[i]*(rrrs_mu_3_t - rrrs_mu_3_t_3) -
-        rrrs_acc_3_in_axes3_z*m->rrrs_h_3_in_spec3_x[i];
-    const real rrrs_mu_3_in_axes3_z = rrrs_B_3_in_axes3_xz*m->rrrs_J_3_in_spec3_yz[i] +
-        rrrs_B_3_in_axes3_yx*m->rrrs_Sigma_3_in_axes3_xx[i] +
+        rrrs_B_3_in_axes3_xy*m->rrrs_J_3_in_spec3_yz[i] +
+        rrrs_B_3_in_axes3_xz*m->rrrs_Sigma_3_in_axes3_zz[i] +
+        rrrs_B_3_in_axes3_zy*m->rrrs_J_3_in_spec3_xy[i] -
+        rrrs_B_3_in_axes3_zx*m->rrrs_Sigma_3_in_axes3_xx[i];
+    const real rrrs_mu_3_in_axes3_z = rrrs_acc_3_in_axes3_y*m->rrrs_h_3_in_spec3_x[i] -
+        rrrs_acc_3_in_axes3_x*m->rrrs_h_3_in_spec3_y[i] +
         m->rrrs_J_3_in_spec3_xy[i]*(rrrs_mu_3_t - rrrs_mu_3_t_2) +
-        rrrs_acc_3_in_axes3_y*m->rrrs_h_3_in_spec3_x[i] -
-        rrrs_B_3_in_axes3_xy*m->rrrs_Sigma_3_in_axes3_yy[i] -
-        rrrs_B_3_in_axes3_yz*m->rrrs_J_3_in_spec3_xz[i] -
-        rrrs_acc_3_in_axes3_x*m->rrrs_h_3_in_spec3_y[i];
+        rrrs_B_3_in_axes3_yx*m->rrrs_Sigma_3_in_axes3_xx[i] -
+        rrrs_B_3_in_axes3_xy*m->rrrs_Sigma_3_in_axes3_yy[i] +
+        rrrs_B_3_in_axes3_xz*m->rrrs_J_3_in_spec3_yz[i] -
+        rrrs_B_3_in_axes3_yz*m->rrrs_J_3_in_spec3_xz[i];
     /* (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real rrrs_mu_2_t_3 = v->rrrs_omega_1_in_axes2_x*v->rrrs_omega_1_in_axes2_x;
     const real rrrs_mu_2_t_4 = v->rrrs_omega_1_t*v->rrrs_omega_1_t;
     const real rrrs_mu_2_t_5 = v->rrrs_qd_2_t*v->rrrs_qd_2_t;
-    const real rrrs_mu_2_in_axes2_x = rrrs_B_2_in_axes2_yx*m->rrrs_J_2_in_spec2_xz[i] +
-        rrrs_B_2_in_axes2_zy*m->rrrs_Sigma_2_in_axes2_yy[i] +
+    const real rrrs_mu_2_in_axes2_x = v->rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_z[i] -
+        v->rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_y[i] +
         m->rrrs_J_2_in_spec2_yz[i]*(rrrs_mu_2_t_4 - rrrs_mu_2_t_5) +
+        rrrs_B_2_in_axes2_yx*m->rrrs_J_2_in_spec2_xz[i] +
         m->rrrs_Sigma_2_in_axes2_zz[i]*rrrs_alpha_1_in_axes2_x +
-        v->rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_z[i] -
-        rrrs_B_2_in_axes2_zx*m->rrrs_J_2_in_spec2_xy[i] -
-        v->rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_y[i];
-    const real rrrs_mu_2_in_axes2_y = rrrs_B_2_in_axes2_zy*m->rrrs_J_2_in_spec2_xy[i] +
-        v->rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_x[i] -
-        rrrs_B_2_in_axes2_xy*m->rrrs_J_2_in_spec2_yz[i] -
-        rrrs_B_2_in_axes2_zx*m->rrrs_Sigma_2_in_axes2_xx[i] -
+        rrrs_B_2_in_axes2_zy*m->rrrs_Sigma_2_in_axes2_yy[i] -
+        rrrs_B_2_in_axes2_zx*m->rrrs_J_2_in_spec2_xy[i];
+    const real rrrs_mu_2_in_axes2_y = v->rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_x[i] -
+        v->rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_z[i] -
         m->rrrs_J_2_in_spec2_xz[i]*(rrrs_mu_2_t_3 - rrrs_mu_2_t_5) -
-        m->rrrs_Sigma_2_in_axes2_zz[i]*rrrs_alpha_1_t -
-        v->rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_z[i];
-    const real rrrs_mu_2_in_axes2_z = rrrs_B_2_in_axes2_yx*m->rrrs_Sigma_2_in_axes2_xx[i] +
+        rrrs_B_2_in_axes2_xy*m->rrrs_J_2_in_spec2_yz[i] -
+        m->rrrs_Sigma_2_in_axes2_zz[i]*rrrs_alpha_1_t +
+        rrrs_B_2_in_axes2_zy*m->rrrs_J_2_in_spec2_xy[i] -
+        rrrs_B_2_in_axes2_zx*m->rrrs_Sigma_2_in_axes2_xx[i];
+    const real rrrs_mu_2_in_axes2_z = v->rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_y[i] -
+        v->rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_x[i] +
         m->rrrs_J_2_in_spec2_xy[i]*(rrrs_mu_2_t_3 - rrrs_mu_2_t_4) +
-        m->rrrs_J_2_in_spec2_xz[i]*rrrs_alpha_1_in_axes2_x +
-        v->rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_y[i] -
+        rrrs_B_2_in_axes2_yx*m->rrrs_Sigma_2_in_axes2_xx[i] +
+        m->rrrs_J_2_in_spec2_xz[i]*rrrs_alpha_1_in_axes2_x -
         rrrs_B_2_in_axes2_xy*m->rrrs_Sigma_2_in_axes2_yy[i] -
-        m->rrrs_J_2_in_spec2_yz[i]*rrrs_alpha_1_t -
-        v->rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_x[i];
+        m->rrrs_J_2_in_spec2_yz[i]*rrrs_alpha_1_t;
     /* (rrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
        left out */
     const real rrrs_N_2_in_axes2_x = rrrs_mu_2_in_axes2_x + v->rrrs_c_3*rrrs_mu_3_in_axes3_x +
@@ -2307,9 +2314,9 @@ INLINE void stage_rrrs_legs_required(const prepared *m, size_t i, values_rrrs *v
         rrrs_mu_3_in_axes3_x*v->rrrs_s_3_t;
     const real rrrs_N_2_in_axes2_z = rrrs_mu_2_in_axes2_z + rrrs_mu_3_in_axes3_z;
     /* (rrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-    const real rrrs_mu_1_in_axes1_z = m->rrrs_J_1_in_spec1_xx[i]*rrrs_qdd_1 +
-        v->rrrs_g_in_axes1_x*m->rrrs_h_1_in_spec1_z[i] -
-        v->rrrs_g_in_axes1_y*m->rrrs_h_1_in_spec1_y[i];
+    const real rrrs_mu_1_in_axes1_z = v->rrrs_g_in_axes1_x*m->rrrs_h_1_in_spec1_z[i] -
+        v->rrrs_g_in_axes1_y*m->rrrs_h_1_in_spec1_y[i] +
+        m->rrrs_J_1_in_spec1_xx[i]*rrrs_qdd_1;
     /* (rrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real rrrs_N_1_in_axes1_z = rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*v->rrrs_c_2 -
@@ -2319,13 +2326,14 @@ INLINE void stage_rrrs_legs_required(const prepared *m, size_t i, values_rrrs *v
     const real rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*m->rrrs_w_3_in_axes3_y[i];
     /* (rrrs-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rrrs_c_in_axes3_x = m->rrrs_h_3_in_spec3_x[i]*(rrrs_mu_3_t_2 + rrrs_mu_3_t_3) +
+    const real rrrs_c_in_axes3_x = m->rrrs_h_3_in_spec3_x[i]*(rrrs_mu_3_t_2 + rrrs_mu_3_t_3) -
+        rrrs_B_3_in_axes3_xy*m->rrrs_h_3_in_spec3_y[i] -
+        rrrs_B_3_in_axes3_xz*m->rrrs_h_3_in_spec3_z[i] +
         v->rrrs_w_2_in_axes3_x*(rrrs_G_in_axes3_y*v->rrrs_r_2_in_axes3_x -
-        rrrs_N_2_in_axes2_z) - rrrs_B_3_in_axes3_xy*m->rrrs_h_3_in_spec3_y[i] -
-        rrrs_B_3_in_axes3_xz*m->rrrs_h_3_in_spec3_z[i];
+        rrrs_N_2_in_axes2_z);
     const real rrrs_c_in_axes3_y = m->rrrs_h_3_in_spec3_y[i]*(rrrs_mu_3_t + rrrs_mu_3_t_3) -
-        rrrs_G_in_axes3_y - rrrs_B_3_in_axes3_yx*m->rrrs_h_3_in_spec3_x[i] -
-        rrrs_B_3_in_axes3_yz*m->rrrs_h_3_in_spec3_z[i];
+        rrrs_B_3_in_axes3_yx*m->rrrs_h_3_in_spec3_x[i] -
+        rrrs_B_3_in_axes3_yz*m->rrrs_h_3_in_spec3_z[i] - rrrs_G_in_axes3_y;
     const real rrrs_c_in_axes3_z = m->rrrs_h_3_in_spec3_z[i]*(rrrs_mu_3_t + rrrs_mu_3_t_2) -
         rrrs_B_3_in_axes3_zx*m->rrrs_h_3_in_spec3_x[i] -
         rrrs_B_3_in_axes3_zy*m->rrrs_h_3_in_spec3_y[i] -
@@ -2341,39 +2349,43 @@ INLINE void stage_rrrs_legs_required(const prepared *m, size_t i, values_rrrs *v
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    real *s, verdict *t)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_M_dynamics(m, &v);
-    stage_Z_dynamics(m, w, k, V, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.h_star_x;
-    s[10*w + k] = v.h_star_y;
-    s[11*w + k] = v.h_star_z;
-    s[12*w + k] = v.J_star_xx;
-    s[13*w + k] = v.J_star_xy;
-    s[14*w + k] = v.J_star_xz;
-    s[15*w + k] = v.J_star_yy;
-    s[16*w + k] = v.J_star_yz;
-    s[17*w + k] = v.J_star_zz;
-    s[18*w + k] = v.Z_p_x;
-    s[19*w + k] = v.Z_p_y;
-    s[20*w + k] = v.Z_p_z;
-    s[21*w + k] = v.Z_q_x;
-    s[22*w + k] = v.Z_q_y;
-    s[23*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->h_star_x;
+    s[10*w + k] = v->h_star_y;
+    s[11*w + k] = v->h_star_z;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
+    *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_M_dynamics(m, v);
+    stage_Z_dynamics(m, w, k, V, v);
+    s[12*w + k] = v->J_star_xx;
+    s[13*w + k] = v->J_star_xy;
+    s[14*w + k] = v->J_star_xz;
+    s[15*w + k] = v->J_star_yy;
+    s[16*w + k] = v->J_star_yz;
+    s[17*w + k] = v->J_star_zz;
+    s[18*w + k] = v->Z_p_x;
+    s[19*w + k] = v->Z_p_y;
+    s[20*w + k] = v->Z_p_z;
+    s[21*w + k] = v->Z_q_x;
+    s[22*w + k] = v->Z_q_y;
+    s[23*w + k] = v->Z_q_z;
 }
 
 INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2407,13 +2419,13 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
     /* (rrrs-B_2_o) remainder of the acceleration tensor of link 2 */
     const real rrrs_B_2_o_in_axes2_xy = v.rrrs_W_2_in_axes2_xy - rrrs_qdd_2_o;
     const real rrrs_B_2_o_in_axes2_yx = v.rrrs_W_2_in_axes2_xy + rrrs_qdd_2_o;
-    const real rrrs_B_2_o_in_axes2_zx = -rrrs_alpha_2_o_in_axes2_y - v.rrrs_zeta_2_in_axes2_y;
+    const real rrrs_B_2_o_in_axes2_zx = -v.rrrs_zeta_2_in_axes2_y - rrrs_alpha_2_o_in_axes2_y;
     const real rrrs_B_2_o_in_axes2_zy = v.rrrs_W_2_in_axes2_yz + rrrs_alpha_2_o_in_axes2_x;
     /* (rrrs-alpha_3_o) remainder of: angular acceleration of link 3 */
-    const real rrrs_alpha_3_o_in_axes3_x = rrrs_alpha_2_o_in_axes2_x*v.rrrs_c_3 +
-        v.rrrs_omega_1_in_axes3_y*v.rrrs_qd_3 - rrrs_alpha_2_o_in_axes2_y*v.rrrs_s_3_t;
-    const real rrrs_alpha_3_o_in_axes3_y = rrrs_alpha_2_o_in_axes2_x*v.rrrs_s_3_t +
-        rrrs_alpha_2_o_in_axes2_y*v.rrrs_c_3 - v.rrrs_zeta_3_t;
+    const real rrrs_alpha_3_o_in_axes3_x = v.rrrs_omega_1_in_axes3_y*v.rrrs_qd_3 +
+        rrrs_alpha_2_o_in_axes2_x*v.rrrs_c_3 - rrrs_alpha_2_o_in_axes2_y*v.rrrs_s_3_t;
+    const real rrrs_alpha_3_o_in_axes3_y = rrrs_alpha_2_o_in_axes2_x*v.rrrs_s_3_t -
+        v.rrrs_zeta_3_t + rrrs_alpha_2_o_in_axes2_y*v.rrrs_c_3;
     const real rrrs_alpha_3_o_in_axes3_z = rrrs_qdd_2_o +
         m->rrrs_w_3_in_axes3_y[i]*(rrrs_rel_o_in_axes3_y -
         rrrs_qdd_2_o*v.rrrs_r_2_in_axes3_x);
@@ -2434,51 +2446,51 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
     /* (rrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
        reference points */
     const real rrrs_mu_3_o_t_3 = v.rrrs_omega_3_in_axes3_z*v.rrrs_omega_3_in_axes3_z;
-    const real rrrs_mu_3_o_in_axes3_x = rrrs_B_3_o_in_axes3_yx*m->rrrs_J_3_in_spec3_xz[i] +
-        rrrs_B_3_o_in_axes3_zy*m->rrrs_Sigma_3_in_axes3_yy[i] +
+    const real rrrs_mu_3_o_in_axes3_x = v.rrrs_acc_3_o_in_axes3_z*m->rrrs_h_3_in_spec3_y[i] -
+        rrrs_acc_3_o_in_axes3_y*m->rrrs_h_3_in_spec3_z[i] +
         m->rrrs_J_3_in_spec3_yz[i]*(v.rrrs_mu_3_o_t_2 - rrrs_mu_3_o_t_3) +
-        v.rrrs_acc_3_o_in_axes3_z*m->rrrs_h_3_in_spec3_y[i] -
+        rrrs_B_3_o_in_axes3_yx*m->rrrs_J_3_in_spec3_xz[i] +
+        rrrs_B_3_o_in_axes3_zy*m->rrrs_Sigma_3_in_axes3_yy[i] -
         rrrs_B_3_o_in_axes3_yz*m->rrrs_Sigma_3_in_axes3_zz[i] -
-        rrrs_B_3_o_in_axes3_zx*m->rrrs_J_3_in_spec3_xy[i] -
-        rrrs_acc_3_o_in_axes3_y*m->rrrs_h_3_in_spec3_z[i];
-    const real rrrs_mu_3_o_in_axes3_y = rrrs_B_3_o_in_axes3_xz*m->rrrs_Sigma_3_in_axes3_zz[i]
-        + rrrs_B_3_o_in_axes3_zy*m->rrrs_J_3_in_spec3_xy[i] +
-        rrrs_acc_3_o_in_axes3_x*m->rrrs_h_3_in_spec3_z[i] -
-        rrrs_B_3_o_in_axes3_xy*m->rrrs_J_3_in_spec3_yz[i] -
-        rrrs_B_3_o_in_axes3_zx*m->rrrs_Sigma_3_in_axes3_xx[i] -
+        rrrs_B_3_o_in_axes3_zx*m->rrrs_J_3_in_spec3_xy[i];
+    const real rrrs_mu_3_o_in_axes3_y = rrrs_acc_3_o_in_axes3_x*m->rrrs_h_3_in_spec3_z[i] -
+        v.rrrs_acc_3_o_in_axes3_z*m->rrrs_h_3_in_spec3_x[i] -
         m->rrrs_J_3_in_spec3_xz[i]*(v.rrrs_mu_3_o_t - rrrs_mu_3_o_t_3) -
-        v.rrrs_acc_3_o_in_axes3_z*m->rrrs_h_3_in_spec3_x[i];
-    const real rrrs_mu_3_o_in_axes3_z = rrrs_B_3_o_in_axes3_xz*m->rrrs_J_3_in_spec3_yz[i] +
-        rrrs_B_3_o_in_axes3_yx*m->rrrs_Sigma_3_in_axes3_xx[i] +
+        rrrs_B_3_o_in_axes3_xy*m->rrrs_J_3_in_spec3_yz[i] +
+        rrrs_B_3_o_in_axes3_xz*m->rrrs_Sigma_3_in_axes3_zz[i] +
+        rrrs_B_3_o_in_axes3_zy*m->rrrs_J_3_in_spec3_xy[i] -
+        rrrs_B_3_o_in_axes3_zx*m->rrrs_Sigma_3_in_axes3_xx[i];
+    const real rrrs_mu_3_o_in_axes3_z = rrrs_acc_3_o_in_axes3_y*m->rrrs_h_3_in_spec3_x[i] -
+        rrrs_acc_3_o_in_axes3_x*m->rrrs_h_3_in_spec3_y[i] +
         m->rrrs_J_3_in_spec3_xy[i]*(v.rrrs_mu_3_o_t - v.rrrs_mu_3_o_t_2) +
-        rrrs_acc_3_o_in_axes3_y*m->rrrs_h_3_in_spec3_x[i] -
-        rrrs_B_3_o_in_axes3_xy*m->rrrs_Sigma_3_in_axes3_yy[i] -
-        rrrs_B_3_o_in_axes3_yz*m->rrrs_J_3_in_spec3_xz[i] -
-        rrrs_acc_3_o_in_axes3_x*m->rrrs_h_3_in_spec3_y[i];
+        rrrs_B_3_o_in_axes3_yx*m->rrrs_Sigma_3_in_axes3_xx[i] -
+        rrrs_B_3_o_in_axes3_xy*m->rrrs_Sigma_3_in_axes3_yy[i] +
+        rrrs_B_3_o_in_axes3_xz*m->rrrs_J_3_in_spec3_yz[i] -
+        rrrs_B_3_o_in_axes3_yz*m->rrrs_J_3_in_spec3_xz[i];
     /* (rrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real rrrs_mu_2_o_t_3 = v.rrrs_qd_2_t*v.rrrs_qd_2_t;
-    const real rrrs_mu_2_o_in_axes2_x = rrrs_B_2_o_in_axes2_yx*m->rrrs_J_2_in_spec2_xz[i] +
-        rrrs_B_2_o_in_axes2_zy*m->rrrs_Sigma_2_in_axes2_yy[i] +
+    const real rrrs_mu_2_o_in_axes2_x = v.rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_z[i] -
+        v.rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_y[i] +
         m->rrrs_J_2_in_spec2_yz[i]*(v.rrrs_mu_2_o_t_2 - rrrs_mu_2_o_t_3) +
+        rrrs_B_2_o_in_axes2_yx*m->rrrs_J_2_in_spec2_xz[i] +
         m->rrrs_Sigma_2_in_axes2_zz[i]*rrrs_alpha_1_o_in_axes2_x +
-        v.rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_z[i] -
-        rrrs_B_2_o_in_axes2_zx*m->rrrs_J_2_in_spec2_xy[i] -
-        v.rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_y[i];
-    const real rrrs_mu_2_o_in_axes2_y = rrrs_B_2_o_in_axes2_zy*m->rrrs_J_2_in_spec2_xy[i] +
-        v.rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_x[i] -
-        rrrs_B_2_o_in_axes2_xy*m->rrrs_J_2_in_spec2_yz[i] -
-        rrrs_B_2_o_in_axes2_zx*m->rrrs_Sigma_2_in_axes2_xx[i] -
+        rrrs_B_2_o_in_axes2_zy*m->rrrs_Sigma_2_in_axes2_yy[i] -
+        rrrs_B_2_o_in_axes2_zx*m->rrrs_J_2_in_spec2_xy[i];
+    const real rrrs_mu_2_o_in_axes2_y = v.rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_x[i] -
+        v.rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_z[i] -
         m->rrrs_J_2_in_spec2_xz[i]*(v.rrrs_mu_2_o_t - rrrs_mu_2_o_t_3) -
-        m->rrrs_Sigma_2_in_axes2_zz[i]*rrrs_alpha_1_o_t -
-        v.rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_z[i];
-    const real rrrs_mu_2_o_in_axes2_z = rrrs_B_2_o_in_axes2_yx*m->rrrs_Sigma_2_in_axes2_xx[i]
-        + m->rrrs_J_2_in_spec2_xy[i]*(v.rrrs_mu_2_o_t - v.rrrs_mu_2_o_t_2) +
-        m->rrrs_J_2_in_spec2_xz[i]*rrrs_alpha_1_o_in_axes2_x +
-        v.rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_y[i] -
+        rrrs_B_2_o_in_axes2_xy*m->rrrs_J_2_in_spec2_yz[i] -
+        m->rrrs_Sigma_2_in_axes2_zz[i]*rrrs_alpha_1_o_t +
+        rrrs_B_2_o_in_axes2_zy*m->rrrs_J_2_in_spec2_xy[i] -
+        rrrs_B_2_o_in_axes2_zx*m->rrrs_Sigma_2_in_axes2_xx[i];
+    const real rrrs_mu_2_o_in_axes2_z = v.rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_y[i] -
+        v.rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_x[i] +
+        m->rrrs_J_2_in_spec2_xy[i]*(v.rrrs_mu_2_o_t - v.rrrs_mu_2_o_t_2) +
+        rrrs_B_2_o_in_axes2_yx*m->rrrs_Sigma_2_in_axes2_xx[i] +
+        m->rrrs_J_2_in_spec2_xz[i]*rrrs_alpha_1_o_in_axes2_x -
         rrrs_B_2_o_in_axes2_xy*m->rrrs_Sigma_2_in_axes2_yy[i] -
-        m->rrrs_J_2_in_spec2_yz[i]*rrrs_alpha_1_o_t -
-        v.rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_x[i];
+        m->rrrs_J_2_in_spec2_yz[i]*rrrs_alpha_1_o_t;
     /* (rrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
        connection point left out */
     const real rrrs_N_2_o_in_axes2_x = rrrs_mu_2_o_in_axes2_x +
@@ -2488,9 +2500,9 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
     const real rrrs_N_2_o_in_axes2_z = rrrs_mu_2_o_in_axes2_z + rrrs_mu_3_o_in_axes3_z;
     /* (rrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
-    const real rrrs_mu_1_o_in_axes1_z = m->rrrs_J_1_in_spec1_xx[i]*rrrs_qdd_1_o +
-        v.rrrs_g_in_axes1_x*m->rrrs_h_1_in_spec1_z[i] -
-        v.rrrs_g_in_axes1_y*m->rrrs_h_1_in_spec1_y[i];
+    const real rrrs_mu_1_o_in_axes1_z = v.rrrs_g_in_axes1_x*m->rrrs_h_1_in_spec1_z[i] -
+        v.rrrs_g_in_axes1_y*m->rrrs_h_1_in_spec1_y[i] +
+        m->rrrs_J_1_in_spec1_xx[i]*rrrs_qdd_1_o;
     /* (rrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
        connection point left out */
     const real rrrs_N_1_o_in_axes1_z = rrrs_mu_1_o_in_axes1_z +
@@ -2501,13 +2513,13 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
     /* (rrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at
        the connection point */
     const real rrrs_c_o_in_axes3_x = m->rrrs_h_3_in_spec3_x[i]*(v.rrrs_mu_3_o_t_2 +
-        rrrs_mu_3_o_t_3) + v.rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*v.rrrs_r_2_in_axes3_x -
-        rrrs_N_2_o_in_axes2_z) - rrrs_B_3_o_in_axes3_xy*m->rrrs_h_3_in_spec3_y[i] -
-        rrrs_B_3_o_in_axes3_xz*m->rrrs_h_3_in_spec3_z[i];
+        rrrs_mu_3_o_t_3) - rrrs_B_3_o_in_axes3_xy*m->rrrs_h_3_in_spec3_y[i] -
+        rrrs_B_3_o_in_axes3_xz*m->rrrs_h_3_in_spec3_z[i] +
+        v.rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*v.rrrs_r_2_in_axes3_x -
+        rrrs_N_2_o_in_axes2_z);
     const real rrrs_c_o_in_axes3_y = m->rrrs_h_3_in_spec3_y[i]*(v.rrrs_mu_3_o_t +
-        rrrs_mu_3_o_t_3) - rrrs_G_o_in_axes3_y -
-        rrrs_B_3_o_in_axes3_yx*m->rrrs_h_3_in_spec3_x[i] -
-        rrrs_B_3_o_in_axes3_yz*m->rrrs_h_3_in_spec3_z[i];
+        rrrs_mu_3_o_t_3) - rrrs_B_3_o_in_axes3_yx*m->rrrs_h_3_in_spec3_x[i] -
+        rrrs_B_3_o_in_axes3_yz*m->rrrs_h_3_in_spec3_z[i] - rrrs_G_o_in_axes3_y;
     const real rrrs_c_o_in_axes3_z = m->rrrs_h_3_in_spec3_z[i]*(v.rrrs_mu_3_o_t +
         v.rrrs_mu_3_o_t_2) - rrrs_B_3_o_in_axes3_zx*m->rrrs_h_3_in_spec3_x[i] -
         rrrs_B_3_o_in_axes3_zy*m->rrrs_h_3_in_spec3_y[i] -
@@ -2515,17 +2527,16 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
     /* (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real rrrs_Q_t = v.rrrs_d_c_in_axes3_xx - m->rrrs_d_c_in_axes3_yy[i];
     const real rrrs_Q_t_2 = R(0.5)*rrrs_Q_t;
-    const real rrrs_Q_t_3 = v.rrrs_d_c_in_axes3_xx +
-        v.rrrs_d_Gamma_1_in_axes3_z*v.rrrs_w_1_in_axes3_z +
+    const real rrrs_Q_t_3 = v.rrrs_d_Gamma_1_in_axes3_z*v.rrrs_w_1_in_axes3_z +
         v.rrrs_d_alpha_3_in_axes3_xz*m->rrrs_h_3_in_spec3_y[i] -
-        v.rrrs_d_alpha_3_in_axes3_yz*m->rrrs_h_3_in_spec3_x[i];
+        v.rrrs_d_alpha_3_in_axes3_yz*m->rrrs_h_3_in_spec3_x[i] + v.rrrs_d_c_in_axes3_xx;
     const real rrrs_Q_t_4 = R(0.5)*rrrs_Q_t_3;
-    const real rrrs_Q_t_5 = v.axis_x_rrrs_axes3_x*v.rrrs_d_c_in_axes3_xy +
-        v.axis_z_rrrs_axes3_x*v.rrrs_d_c_in_axes3_yz - v.axis_y_rrrs_axes3_x*rrrs_Q_t_2;
-    const real rrrs_Q_t_6 = v.axis_x_rrrs_axes3_y*v.rrrs_d_c_in_axes3_xy +
-        v.axis_z_rrrs_axes3_y*v.rrrs_d_c_in_axes3_yz - v.axis_y_rrrs_axes3_y*rrrs_Q_t_2;
-    const real rrrs_Q_t_7 = v.axis_x_rrrs_axes3_z*v.rrrs_d_c_in_axes3_xy +
-        v.axis_z_rrrs_axes3_z*v.rrrs_d_c_in_axes3_yz - v.axis_y_rrrs_axes3_z*rrrs_Q_t_2;
+    const real rrrs_Q_t_5 = v.axis_z_rrrs_axes3_x*v.rrrs_d_c_in_axes3_yz +
+        v.axis_x_rrrs_axes3_x*v.rrrs_d_c_in_axes3_xy - v.axis_y_rrrs_axes3_x*rrrs_Q_t_2;
+    const real rrrs_Q_t_6 = v.axis_z_rrrs_axes3_y*v.rrrs_d_c_in_axes3_yz +
+        v.axis_x_rrrs_axes3_y*v.rrrs_d_c_in_axes3_xy - v.axis_y_rrrs_axes3_y*rrrs_Q_t_2;
+    const real rrrs_Q_t_7 = v.axis_z_rrrs_axes3_z*v.rrrs_d_c_in_axes3_yz +
+        v.axis_x_rrrs_axes3_z*v.rrrs_d_c_in_axes3_xy - v.axis_y_rrrs_axes3_z*rrrs_Q_t_2;
     const real rrrs_Q_t_8 = v.axis_z_rrrs_axes3_x*rrrs_Q_t_4 -
         v.axis_x_rrrs_axes3_x*v.rrrs_d_c_in_axes3_xz;
     const real rrrs_Q_t_9 = v.axis_z_rrrs_axes3_y*rrrs_Q_t_4 -
@@ -2534,7 +2545,7 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
         v.axis_x_rrrs_axes3_z*v.rrrs_d_c_in_axes3_xz;
     const real rrrs_Q_t_11 = v.axis_y_rrrs_axes3_x*rrrs_Q_t_5 -
         v.axis_z_rrrs_axes3_x*rrrs_Q_t_8;
-    const real rrrs_Q_xx = -2*rrrs_Q_t_11 - v.rrrs_d_c_in_axes3_xx;
+    const real rrrs_Q_xx = -v.rrrs_d_c_in_axes3_xx - 2*rrrs_Q_t_11;
     const real rrrs_Q_xy = v.axis_z_rrrs_axes3_x*rrrs_Q_t_9 + v.axis_z_rrrs_axes3_y*rrrs_Q_t_8
         - v.axis_y_rrrs_axes3_x*rrrs_Q_t_6 - v.axis_y_rrrs_axes3_y*rrrs_Q_t_5;
     const real rrrs_Q_xz = v.axis_z_rrrs_axes3_x*rrrs_Q_t_10 +
@@ -2542,20 +2553,20 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
         v.axis_y_rrrs_axes3_z*rrrs_Q_t_5;
     const real rrrs_Q_t_12 = v.axis_y_rrrs_axes3_y*rrrs_Q_t_6 -
         v.axis_z_rrrs_axes3_y*rrrs_Q_t_9;
-    const real rrrs_Q_yy = -2*rrrs_Q_t_12 - v.rrrs_d_c_in_axes3_xx;
+    const real rrrs_Q_yy = -v.rrrs_d_c_in_axes3_xx - 2*rrrs_Q_t_12;
     const real rrrs_Q_yz = v.axis_z_rrrs_axes3_y*rrrs_Q_t_10 +
         v.axis_z_rrrs_axes3_z*rrrs_Q_t_9 - v.axis_y_rrrs_axes3_y*rrrs_Q_t_7 -
         v.axis_y_rrrs_axes3_z*rrrs_Q_t_6;
     const real rrrs_Q_t_13 = v.axis_y_rrrs_axes3_z*rrrs_Q_t_7 -
         v.axis_z_rrrs_axes3_z*rrrs_Q_t_10;
-    const real rrrs_Q_zz = -2*rrrs_Q_t_13 - v.rrrs_d_c_in_axes3_xx;
+    const real rrrs_Q_zz = -v.rrrs_d_c_in_axes3_xx - 2*rrrs_Q_t_13;
     /* (rrrs-U) velocity and gravity terms of the leg force */
-    const real rrrs_U_x = -v.axis_x_rrrs_axes3_x*rrrs_c_o_in_axes3_x -
-        v.axis_y_rrrs_axes3_x*rrrs_c_o_in_axes3_y - v.axis_z_rrrs_axes3_x*rrrs_c_o_in_axes3_z;
-    const real rrrs_U_y = -v.axis_x_rrrs_axes3_y*rrrs_c_o_in_axes3_x -
-        v.axis_y_rrrs_axes3_y*rrrs_c_o_in_axes3_y - v.axis_z_rrrs_axes3_y*rrrs_c_o_in_axes3_z;
-    const real rrrs_U_z = -v.axis_x_rrrs_axes3_z*rrrs_c_o_in_axes3_x -
-        v.axis_y_rrrs_axes3_z*rrrs_c_o_in_axes3_y - v.axis_z_rrrs_axes3_z*rrrs_c_o_in_axes3_z;
+    const real rrrs_U_x = -v.axis_y_rrrs_axes3_x*rrrs_c_o_in_axes3_y -
+        v.axis_x_rrrs_axes3_x*rrrs_c_o_in_axes3_x - v.axis_z_rrrs_axes3_x*rrrs_c_o_in_axes3_z;
+    const real rrrs_U_y = -v.axis_y_rrrs_axes3_y*rrrs_c_o_in_axes3_y -
+        v.axis_x_rrrs_axes3_y*rrrs_c_o_in_axes3_x - v.axis_z_rrrs_axes3_y*rrrs_c_o_in_axes3_z;
+    const real rrrs_U_z = -v.axis_y_rrrs_axes3_z*rrrs_c_o_in_axes3_y -
+        v.axis_x_rrrs_axes3_z*rrrs_c_o_in_axes3_x - v.axis_z_rrrs_axes3_z*rrrs_c_o_in_axes3_z;
     /* (M_ta) coupling block of M */
     const real rrrs_M_ta_t = -rrrs_Q_xy*v.rrrs_q_z;
     const real rrrs_M_ta_t_2 = rrrs_Q_xz*v.rrrs_q_y;
@@ -2668,15 +2679,15 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[11*w + k];
-    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
     const real h_star_y = s[10*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -2684,9 +2695,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[9*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
@@ -2721,13 +2732,13 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[24*w + k];
     const real Z_q_x = s[21*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[25*w + k];
     const real Z_q_y = s[22*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[26*w + k];
     const real Z_q_z = s[23*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
     const real M_tt_xy = sums[1*w + k];
@@ -2792,7 +2803,8 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 {
     real s[24] = {0}, sums[27] = {0};
     real terms_rrrs[27*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[15*LEGS(LEGS_OF_rrrs)] = {0};
-    dynamics_before(m, 1, 0, X, V, s, t);
+    values v;
+    dynamics_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         dynamics_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), 0, s, X, V, terms_rrrs, o_rrrs);
     }
@@ -2802,6 +2814,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t n = 0; n < 27; ++n) {
         sums[n] = total(terms_rrrs + n*LEGS(LEGS_OF_rrrs), LEGS_OF_rrrs);
     }
+    dynamics_between(m, 1, 0, V, &v, s);
     dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
@@ -2811,7 +2824,9 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real s[24*LANES], sums[27*LANES];
     real o_rrrs[15*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        dynamics_before(m, LANES, k, X, V, s, t);
+        values v;
+        dynamics_before(m, LANES, k, X, &v, s, t);
+        dynamics_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 27*LANES);
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
@@ -2828,30 +2843,34 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_M_dynamics(m, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.h_star_x;
-    s[10*w + k] = v.h_star_y;
-    s[11*w + k] = v.h_star_z;
-    s[12*w + k] = v.J_star_xx;
-    s[13*w + k] = v.J_star_xy;
-    s[14*w + k] = v.J_star_xz;
-    s[15*w + k] = v.J_star_yy;
-    s[16*w + k] = v.J_star_yz;
-    s[17*w + k] = v.J_star_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->h_star_x;
+    s[10*w + k] = v->h_star_y;
+    s[11*w + k] = v->h_star_z;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void M_between(const prepared *m, size_t w, size_t k, values *v, real *s)
+{
+    stage_M_dynamics(m, v);
+    s[12*w + k] = v->J_star_xx;
+    s[13*w + k] = v->J_star_xy;
+    s[14*w + k] = v->J_star_xz;
+    s[15*w + k] = v->J_star_yy;
+    s[16*w + k] = v->J_star_yz;
+    s[17*w + k] = v->J_star_zz;
 }
 
 INLINE void M_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2863,12 +2882,12 @@ INLINE void M_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
     /* (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real rrrs_Q_t = v.rrrs_c_1*v.rrrs_e_1_in_axes3_x;
     const real rrrs_Q_t_2 = v.rrrs_e_1_in_axes3_x*v.rrrs_s_1;
-    const real axis_y_rrrs_axes3_x = rrrs_Q_t*m->rrrs_base_frame_xy[i] +
-        rrrs_Q_t_2*m->rrrs_base_frame_xz[i] + m->rrrs_base_frame_xx[i]*v.rrrs_e_1_in_axes3_y;
-    const real axis_y_rrrs_axes3_y = rrrs_Q_t*m->rrrs_base_frame_yy[i] +
-        rrrs_Q_t_2*m->rrrs_base_frame_yz[i] + m->rrrs_base_frame_yx[i]*v.rrrs_e_1_in_axes3_y;
-    const real axis_y_rrrs_axes3_z = rrrs_Q_t*m->rrrs_base_frame_zy[i] +
-        rrrs_Q_t_2*m->rrrs_base_frame_zz[i] + m->rrrs_base_frame_zx[i]*v.rrrs_e_1_in_axes3_y;
+    const real axis_y_rrrs_axes3_x = m->rrrs_base_frame_xx[i]*v.rrrs_e_1_in_axes3_y +
+        rrrs_Q_t*m->rrrs_base_frame_xy[i] + rrrs_Q_t_2*m->rrrs_base_frame_xz[i];
+    const real axis_y_rrrs_axes3_y = m->rrrs_base_frame_yx[i]*v.rrrs_e_1_in_axes3_y +
+        rrrs_Q_t*m->rrrs_base_frame_yy[i] + rrrs_Q_t_2*m->rrrs_base_frame_yz[i];
+    const real axis_y_rrrs_axes3_z = m->rrrs_base_frame_zx[i]*v.rrrs_e_1_in_axes3_y +
+        rrrs_Q_t*m->rrrs_base_frame_zy[i] + rrrs_Q_t_2*m->rrrs_base_frame_zz[i];
     const real axis_x_rrrs_axes3_x = axis_y_rrrs_axes3_y*v.axis_z_rrrs_axes3_z -
         axis_y_rrrs_axes3_z*v.axis_z_rrrs_axes3_y;
     const real axis_x_rrrs_axes3_y = axis_y_rrrs_axes3_z*v.axis_z_rrrs_axes3_x -
@@ -2877,17 +2896,16 @@ INLINE void M_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
         axis_y_rrrs_axes3_y*v.axis_z_rrrs_axes3_x;
     const real rrrs_Q_t_3 = v.rrrs_d_c_in_axes3_xx - m->rrrs_d_c_in_axes3_yy[i];
     const real rrrs_Q_t_4 = R(0.5)*rrrs_Q_t_3;
-    const real rrrs_Q_t_5 = v.rrrs_d_c_in_axes3_xx +
-        v.rrrs_d_Gamma_1_in_axes3_z*v.rrrs_w_1_in_axes3_z +
+    const real rrrs_Q_t_5 = v.rrrs_d_Gamma_1_in_axes3_z*v.rrrs_w_1_in_axes3_z +
         v.rrrs_d_alpha_3_in_axes3_xz*m->rrrs_h_3_in_spec3_y[i] -
-        v.rrrs_d_alpha_3_in_axes3_yz*m->rrrs_h_3_in_spec3_x[i];
+        v.rrrs_d_alpha_3_in_axes3_yz*m->rrrs_h_3_in_spec3_x[i] + v.rrrs_d_c_in_axes3_xx;
     const real rrrs_Q_t_6 = R(0.5)*rrrs_Q_t_5;
-    const real rrrs_Q_t_7 = axis_x_rrrs_axes3_x*v.rrrs_d_c_in_axes3_xy +
-        v.axis_z_rrrs_axes3_x*v.rrrs_d_c_in_axes3_yz - axis_y_rrrs_axes3_x*rrrs_Q_t_4;
-    const real rrrs_Q_t_8 = axis_x_rrrs_axes3_y*v.rrrs_d_c_in_axes3_xy +
-        v.axis_z_rrrs_axes3_y*v.rrrs_d_c_in_axes3_yz - axis_y_rrrs_axes3_y*rrrs_Q_t_4;
-    const real rrrs_Q_t_9 = axis_x_rrrs_axes3_z*v.rrrs_d_c_in_axes3_xy +
-        v.axis_z_rrrs_axes3_z*v.rrrs_d_c_in_axes3_yz - axis_y_rrrs_axes3_z*rrrs_Q_t_4;
+    const real rrrs_Q_t_7 = v.axis_z_rrrs_axes3_x*v.rrrs_d_c_in_axes3_yz +
+        axis_x_rrrs_axes3_x*v.rrrs_d_c_in_axes3_xy - axis_y_rrrs_axes3_x*rrrs_Q_t_4;
+    const real rrrs_Q_t_8 = v.axis_z_rrrs_axes3_y*v.rrrs_d_c_in_axes3_yz +
+        axis_x_rrrs_axes3_y*v.rrrs_d_c_in_axes3_xy - axis_y_rrrs_axes3_y*rrrs_Q_t_4;
+    const real rrrs_Q_t_9 = v.axis_z_rrrs_axes3_z*v.rrrs_d_c_in_axes3_yz +
+        axis_x_rrrs_axes3_z*v.rrrs_d_c_in_axes3_xy - axis_y_rrrs_axes3_z*rrrs_Q_t_4;
     const real rrrs_Q_t_10 = v.axis_z_rrrs_axes3_x*rrrs_Q_t_6 -
         axis_x_rrrs_axes3_x*v.rrrs_d_c_in_axes3_xz;
     const real rrrs_Q_t_11 = v.axis_z_rrrs_axes3_y*rrrs_Q_t_6 -
@@ -2896,7 +2914,7 @@ INLINE void M_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
         axis_x_rrrs_axes3_z*v.rrrs_d_c_in_axes3_xz;
     const real rrrs_Q_t_13 = axis_y_rrrs_axes3_x*rrrs_Q_t_7 -
         v.axis_z_rrrs_axes3_x*rrrs_Q_t_10;
-    const real rrrs_Q_xx = -2*rrrs_Q_t_13 - v.rrrs_d_c_in_axes3_xx;
+    const real rrrs_Q_xx = -v.rrrs_d_c_in_axes3_xx - 2*rrrs_Q_t_13;
     const real rrrs_Q_xy = v.axis_z_rrrs_axes3_x*rrrs_Q_t_11 +
         v.axis_z_rrrs_axes3_y*rrrs_Q_t_10 - axis_y_rrrs_axes3_x*rrrs_Q_t_8 -
         axis_y_rrrs_axes3_y*rrrs_Q_t_7;
@@ -2905,13 +2923,13 @@ INLINE void M_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
         axis_y_rrrs_axes3_z*rrrs_Q_t_7;
     const real rrrs_Q_t_14 = axis_y_rrrs_axes3_y*rrrs_Q_t_8 -
         v.axis_z_rrrs_axes3_y*rrrs_Q_t_11;
-    const real rrrs_Q_yy = -2*rrrs_Q_t_14 - v.rrrs_d_c_in_axes3_xx;
+    const real rrrs_Q_yy = -v.rrrs_d_c_in_axes3_xx - 2*rrrs_Q_t_14;
     const real rrrs_Q_yz = v.axis_z_rrrs_axes3_y*rrrs_Q_t_12 +
         v.axis_z_rrrs_axes3_z*rrrs_Q_t_11 - axis_y_rrrs_axes3_y*rrrs_Q_t_9 -
         axis_y_rrrs_axes3_z*rrrs_Q_t_8;
     const real rrrs_Q_t_15 = axis_y_rrrs_axes3_z*rrrs_Q_t_9 -
         v.axis_z_rrrs_axes3_z*rrrs_Q_t_12;
-    const real rrrs_Q_zz = -2*rrrs_Q_t_15 - v.rrrs_d_c_in_axes3_xx;
+    const real rrrs_Q_zz = -v.rrrs_d_c_in_axes3_xx - 2*rrrs_Q_t_15;
     /* (M_ta) coupling block of M */
     const real rrrs_M_ta_t = -rrrs_Q_xy*v.rrrs_q_z;
     const real rrrs_M_ta_t_2 = rrrs_Q_xz*v.rrrs_q_y;
@@ -2975,15 +2993,15 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[11*w + k];
-    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
     const real h_star_y = s[10*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -2991,9 +3009,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[9*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
@@ -3070,7 +3088,8 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
     real s[18] = {0}, sums[21] = {0};
     real terms_rrrs[21*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0};
-    M_before(m, 1, 0, X, s, t);
+    values v;
+    M_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         M_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), 0, s, X, terms_rrrs, o_rrrs);
     }
@@ -3080,6 +3099,7 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     for (size_t n = 0; n < 21; ++n) {
         sums[n] = total(terms_rrrs + n*LEGS(LEGS_OF_rrrs), LEGS_OF_rrrs);
     }
+    M_between(m, 1, 0, &v, s);
     M_after(m, 1, 0, s, sums, M, t);
 }
 
@@ -3088,7 +3108,9 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
     real s[18*LANES], sums[21*LANES];
     real o_rrrs[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        M_before(m, LANES, k, X, s, t);
+        values v;
+        M_before(m, LANES, k, X, &v, s, t);
+        M_between(m, LANES, k, &v, s);
     }
     clear(sums, 21*LANES);
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
@@ -3105,29 +3127,32 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s,
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
     verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_Z_dynamics(m, w, k, V, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.Z_p_x;
-    s[10*w + k] = v.Z_p_y;
-    s[11*w + k] = v.Z_p_z;
-    s[12*w + k] = v.Z_q_x;
-    s[13*w + k] = v.Z_q_y;
-    s[14*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_Z_dynamics(m, w, k, V, v);
+    s[9*w + k] = v->Z_p_x;
+    s[10*w + k] = v->Z_p_y;
+    s[11*w + k] = v->Z_p_z;
+    s[12*w + k] = v->Z_q_x;
+    s[13*w + k] = v->Z_q_y;
+    s[14*w + k] = v->Z_q_z;
 }
 
 INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3181,18 +3206,17 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
     const real rrrs_bias_t_4 = v.rrrs_d_3_in_axes3_y*rrrs_qd_2_t_3;
     const real rrrs_bias_t_5 = v.rrrs_d_3_in_axes3_x*rrrs_qd_2_t_3;
     const real rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*m->rrrs_platform_joint_offset_x[i];
-    const real rrrs_bias_in_axes3_x = v.rrrs_bias_t_3*v.rrrs_omega_1_in_axes3_y +
-        v.rrrs_bias_t_6*v.rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_qd_2_t_3 -
-        rrrs_bias_t_7*rrrs_omega_3_in_axes3_z - v.rrrs_bias_t_8*v.rrrs_omega_1_in_axes3_y;
+    const real rrrs_bias_in_axes3_x = v.rrrs_bias_t_3*v.rrrs_omega_1_in_axes3_y -
+        rrrs_bias_t_5*rrrs_qd_2_t_3 + v.rrrs_bias_t_6*v.rrrs_omega_1_in_axes3_y -
+        v.rrrs_bias_t_8*v.rrrs_omega_1_in_axes3_y - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z;
     const real rrrs_bias_in_axes3_y = v.rrrs_bias_t_8*v.rrrs_omega_1_in_axes3_x -
-        v.rrrs_bias_t_3*v.rrrs_omega_1_in_axes3_x - rrrs_bias_t_4*rrrs_qd_2_t_3 -
+        rrrs_bias_t_4*rrrs_qd_2_t_3 - v.rrrs_bias_t_3*v.rrrs_omega_1_in_axes3_x -
         v.rrrs_bias_t_6*v.rrrs_omega_1_in_axes3_x;
-    const real rrrs_bias_in_axes3_z = rrrs_bias_t_7*v.rrrs_omega_1_in_axes3_x +
-        v.rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*v.rrrs_c_3 -
-        v.rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) -
-        rrrs_beta_3_in_axes3_y*m->rrrs_platform_joint_offset_x[i] -
-        rrrs_bias_t_4*v.rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*v.rrrs_omega_1_in_axes3_x -
-        v.rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y;
+    const real rrrs_bias_in_axes3_z = v.rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*v.rrrs_c_3 -
+        v.rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) - rrrs_bias_t_4*v.rrrs_omega_1_in_axes3_y -
+        rrrs_bias_t_5*v.rrrs_omega_1_in_axes3_x - v.rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
+        + rrrs_bias_t_7*v.rrrs_omega_1_in_axes3_x -
+        rrrs_beta_3_in_axes3_y*m->rrrs_platform_joint_offset_x[i];
     /* (rrrs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
        */
     const real rrrs_rel_o_in_axes3_x = rrrs_u_1_in_axes3_x - rrrs_bias_in_axes3_x;
@@ -3211,13 +3235,13 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
     /* (rrrs-B_2_o) remainder of the acceleration tensor of link 2 */
     const real rrrs_B_2_o_in_axes2_xy = v.rrrs_W_2_in_axes2_xy - rrrs_qdd_2_o;
     const real rrrs_B_2_o_in_axes2_yx = v.rrrs_W_2_in_axes2_xy + rrrs_qdd_2_o;
-    const real rrrs_B_2_o_in_axes2_zx = -rrrs_alpha_2_o_in_axes2_y - rrrs_zeta_2_in_axes2_y;
+    const real rrrs_B_2_o_in_axes2_zx = -rrrs_zeta_2_in_axes2_y - rrrs_alpha_2_o_in_axes2_y;
     const real rrrs_B_2_o_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_o_in_axes2_x;
     /* (rrrs-alpha_3_o) remainder of: angular acceleration of link 3 */
-    const real rrrs_alpha_3_o_in_axes3_x = rrrs_alpha_2_o_in_axes2_x*v.rrrs_c_3 +
-        v.rrrs_omega_1_in_axes3_y*rrrs_qd_3 - rrrs_alpha_2_o_in_axes2_y*v.rrrs_s_3_t;
-    const real rrrs_alpha_3_o_in_axes3_y = rrrs_alpha_2_o_in_axes2_x*v.rrrs_s_3_t +
-        rrrs_alpha_2_o_in_axes2_y*v.rrrs_c_3 - rrrs_zeta_3_t;
+    const real rrrs_alpha_3_o_in_axes3_x = v.rrrs_omega_1_in_axes3_y*rrrs_qd_3 +
+        rrrs_alpha_2_o_in_axes2_x*v.rrrs_c_3 - rrrs_alpha_2_o_in_axes2_y*v.rrrs_s_3_t;
+    const real rrrs_alpha_3_o_in_axes3_y = rrrs_alpha_2_o_in_axes2_x*v.rrrs_s_3_t -
+        rrrs_zeta_3_t + rrrs_alpha_2_o_in_axes2_y*v.rrrs_c_3;
     const real rrrs_alpha_3_o_in_axes3_z = rrrs_qdd_2_o +
         m->rrrs_w_3_in_axes3_y[i]*(rrrs_rel_o_in_axes3_y -
         rrrs_qdd_2_o*v.rrrs_r_2_in_axes3_x);
@@ -3238,51 +3262,51 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
     /* (rrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
        reference points */
     const real rrrs_mu_3_o_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z;
-    const real rrrs_mu_3_o_in_axes3_x = rrrs_B_3_o_in_axes3_yx*m->rrrs_J_3_in_spec3_xz[i] +
-        rrrs_B_3_o_in_axes3_zy*m->rrrs_Sigma_3_in_axes3_yy[i] +
+    const real rrrs_mu_3_o_in_axes3_x = v.rrrs_acc_3_o_in_axes3_z*m->rrrs_h_3_in_spec3_y[i] -
+        rrrs_acc_3_o_in_axes3_y*m->rrrs_h_3_in_spec3_z[i] +
         m->rrrs_J_3_in_spec3_yz[i]*(v.rrrs_mu_3_o_t_2 - rrrs_mu_3_o_t_3) +
-        v.rrrs_acc_3_o_in_axes3_z*m->rrrs_h_3_in_spec3_y[i] -
+        rrrs_B_3_o_in_axes3_yx*m->rrrs_J_3_in_spec3_xz[i] +
+        rrrs_B_3_o_in_axes3_zy*m->rrrs_Sigma_3_in_axes3_yy[i] -
         rrrs_B_3_o_in_axes3_yz*m->rrrs_Sigma_3_in_axes3_zz[i] -
-        rrrs_B_3_o_in_axes3_zx*m->rrrs_J_3_in_spec3_xy[i] -
-        rrrs_acc_3_o_in_axes3_y*m->rrrs_h_3_in_spec3_z[i];
-    const real rrrs_mu_3_o_in_axes3_y = rrrs_B_3_o_in_axes3_xz*m->rrrs_Sigma_3_in_axes3_zz[i]
-        + rrrs_B_3_o_in_axes3_zy*m->rrrs_J_3_in_spec3_xy[i] +
-        rrrs_acc_3_o_in_axes3_x*m->rrrs_h_3_in_spec3_z[i] -
-        rrrs_B_3_o_in_axes3_xy*m->rrrs_J_3_in_spec3_yz[i] -
-        rrrs_B_3_o_in_axes3_zx*m->rrrs_Sigma_3_in_axes3_xx[i] -
+        rrrs_B_3_o_in_axes3_zx*m->rrrs_J_3_in_spec3_xy[i];
+    const real rrrs_mu_3_o_in_axes3_y = rrrs_acc_3_o_in_axes3_x*m->rrrs_h_3_in_spec3_z[i] -
+        v.rrrs_acc_3_o_in_axes3_z*m->rrrs_h_3_in_spec3_x[i] -
         m->rrrs_J_3_in_spec3_xz[i]*(v.rrrs_mu_3_o_t - rrrs_mu_3_o_t_3) -
-        v.rrrs_acc_3_o_in_axes3_z*m->rrrs_h_3_in_spec3_x[i];
-    const real rrrs_mu_3_o_in_axes3_z = rrrs_B_3_o_in_axes3_xz*m->rrrs_J_3_in_spec3_yz[i] +
-        rrrs_B_3_o_in_axes3_yx*m->rrrs_Sigma_3_in_axes3_xx[i] +
+        rrrs_B_3_o_in_axes3_xy*m->rrrs_J_3_in_spec3_yz[i] +
+        rrrs_B_3_o_in_axes3_xz*m->rrrs_Sigma_3_in_axes3_zz[i] +
+        rrrs_B_3_o_in_axes3_zy*m->rrrs_J_3_in_spec3_xy[i] -
+        rrrs_B_3_o_in_axes3_zx*m->rrrs_Sigma_3_in_axes3_xx[i];
+    const real rrrs_mu_3_o_in_axes3_z = rrrs_acc_3_o_in_axes3_y*m->rrrs_h_3_in_spec3_x[i] -
+        rrrs_acc_3_o_in_axes3_x*m->rrrs_h_3_in_spec3_y[i] +
         m->rrrs_J_3_in_spec3_xy[i]*(v.rrrs_mu_3_o_t - v.rrrs_mu_3_o_t_2) +
-        rrrs_acc_3_o_in_axes3_y*m->rrrs_h_3_in_spec3_x[i] -
-        rrrs_B_3_o_in_axes3_xy*m->rrrs_Sigma_3_in_axes3_yy[i] -
-        rrrs_B_3_o_in_axes3_yz*m->rrrs_J_3_in_spec3_xz[i] -
-        rrrs_acc_3_o_in_axes3_x*m->rrrs_h_3_in_spec3_y[i];
+        rrrs_B_3_o_in_axes3_yx*m->rrrs_Sigma_3_in_axes3_xx[i] -
+        rrrs_B_3_o_in_axes3_xy*m->rrrs_Sigma_3_in_axes3_yy[i] +
+        rrrs_B_3_o_in_axes3_xz*m->rrrs_J_3_in_spec3_yz[i] -
+        rrrs_B_3_o_in_axes3_yz*m->rrrs_J_3_in_spec3_xz[i];
     /* (rrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real rrrs_mu_2_o_t_3 = rrrs_qd_2_t_3*rrrs_qd_2_t_3;
-    const real rrrs_mu_2_o_in_axes2_x = rrrs_B_2_o_in_axes2_yx*m->rrrs_J_2_in_spec2_xz[i] +
-        rrrs_B_2_o_in_axes2_zy*m->rrrs_Sigma_2_in_axes2_yy[i] +
+    const real rrrs_mu_2_o_in_axes2_x = v.rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_z[i] -
+        v.rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_y[i] +
         m->rrrs_J_2_in_spec2_yz[i]*(v.rrrs_mu_2_o_t_2 - rrrs_mu_2_o_t_3) +
+        rrrs_B_2_o_in_axes2_yx*m->rrrs_J_2_in_spec2_xz[i] +
         m->rrrs_Sigma_2_in_axes2_zz[i]*rrrs_alpha_1_o_in_axes2_x +
-        v.rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_z[i] -
-        rrrs_B_2_o_in_axes2_zx*m->rrrs_J_2_in_spec2_xy[i] -
-        v.rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_y[i];
-    const real rrrs_mu_2_o_in_axes2_y = rrrs_B_2_o_in_axes2_zy*m->rrrs_J_2_in_spec2_xy[i] +
-        v.rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_x[i] -
-        rrrs_B_2_o_in_axes2_xy*m->rrrs_J_2_in_spec2_yz[i] -
-        rrrs_B_2_o_in_axes2_zx*m->rrrs_Sigma_2_in_axes2_xx[i] -
+        rrrs_B_2_o_in_axes2_zy*m->rrrs_Sigma_2_in_axes2_yy[i] -
+        rrrs_B_2_o_in_axes2_zx*m->rrrs_J_2_in_spec2_xy[i];
+    const real rrrs_mu_2_o_in_axes2_y = v.rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_x[i] -
+        v.rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_z[i] -
         m->rrrs_J_2_in_spec2_xz[i]*(v.rrrs_mu_2_o_t - rrrs_mu_2_o_t_3) -
-        m->rrrs_Sigma_2_in_axes2_zz[i]*rrrs_alpha_1_o_t -
-        v.rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_z[i];
-    const real rrrs_mu_2_o_in_axes2_z = rrrs_B_2_o_in_axes2_yx*m->rrrs_Sigma_2_in_axes2_xx[i]
-        + m->rrrs_J_2_in_spec2_xy[i]*(v.rrrs_mu_2_o_t - v.rrrs_mu_2_o_t_2) +
-        m->rrrs_J_2_in_spec2_xz[i]*rrrs_alpha_1_o_in_axes2_x +
-        v.rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_y[i] -
+        rrrs_B_2_o_in_axes2_xy*m->rrrs_J_2_in_spec2_yz[i] -
+        m->rrrs_Sigma_2_in_axes2_zz[i]*rrrs_alpha_1_o_t +
+        rrrs_B_2_o_in_axes2_zy*m->rrrs_J_2_in_spec2_xy[i] -
+        rrrs_B_2_o_in_axes2_zx*m->rrrs_Sigma_2_in_axes2_xx[i];
+    const real rrrs_mu_2_o_in_axes2_z = v.rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_y[i] -
+        v.rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_x[i] +
+        m->rrrs_J_2_in_spec2_xy[i]*(v.rrrs_mu_2_o_t - v.rrrs_mu_2_o_t_2) +
+        rrrs_B_2_o_in_axes2_yx*m->rrrs_Sigma_2_in_axes2_xx[i] +
+        m->rrrs_J_2_in_spec2_xz[i]*rrrs_alpha_1_o_in_axes2_x -
         rrrs_B_2_o_in_axes2_xy*m->rrrs_Sigma_2_in_axes2_yy[i] -
-        m->rrrs_J_2_in_spec2_yz[i]*rrrs_alpha_1_o_t -
-        v.rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_x[i];
+        m->rrrs_J_2_in_spec2_yz[i]*rrrs_alpha_1_o_t;
     /* (rrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
        connection point left out */
     const real rrrs_N_2_o_in_axes2_x = rrrs_mu_2_o_in_axes2_x +
@@ -3292,9 +3316,9 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
     const real rrrs_N_2_o_in_axes2_z = rrrs_mu_2_o_in_axes2_z + rrrs_mu_3_o_in_axes3_z;
     /* (rrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
-    const real rrrs_mu_1_o_in_axes1_z = m->rrrs_J_1_in_spec1_xx[i]*rrrs_qdd_1_o +
-        v.rrrs_g_in_axes1_x*m->rrrs_h_1_in_spec1_z[i] -
-        v.rrrs_g_in_axes1_y*m->rrrs_h_1_in_spec1_y[i];
+    const real rrrs_mu_1_o_in_axes1_z = v.rrrs_g_in_axes1_x*m->rrrs_h_1_in_spec1_z[i] -
+        v.rrrs_g_in_axes1_y*m->rrrs_h_1_in_spec1_y[i] +
+        m->rrrs_J_1_in_spec1_xx[i]*rrrs_qdd_1_o;
     /* (rrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
        connection point left out */
     const real rrrs_N_1_o_in_axes1_z = rrrs_mu_1_o_in_axes1_z +
@@ -3305,24 +3329,24 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
     /* (rrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at
        the connection point */
     const real rrrs_c_o_in_axes3_x = m->rrrs_h_3_in_spec3_x[i]*(v.rrrs_mu_3_o_t_2 +
-        rrrs_mu_3_o_t_3) + v.rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*v.rrrs_r_2_in_axes3_x -
-        rrrs_N_2_o_in_axes2_z) - rrrs_B_3_o_in_axes3_xy*m->rrrs_h_3_in_spec3_y[i] -
-        rrrs_B_3_o_in_axes3_xz*m->rrrs_h_3_in_spec3_z[i];
+        rrrs_mu_3_o_t_3) - rrrs_B_3_o_in_axes3_xy*m->rrrs_h_3_in_spec3_y[i] -
+        rrrs_B_3_o_in_axes3_xz*m->rrrs_h_3_in_spec3_z[i] +
+        v.rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*v.rrrs_r_2_in_axes3_x -
+        rrrs_N_2_o_in_axes2_z);
     const real rrrs_c_o_in_axes3_y = m->rrrs_h_3_in_spec3_y[i]*(v.rrrs_mu_3_o_t +
-        rrrs_mu_3_o_t_3) - rrrs_G_o_in_axes3_y -
-        rrrs_B_3_o_in_axes3_yx*m->rrrs_h_3_in_spec3_x[i] -
-        rrrs_B_3_o_in_axes3_yz*m->rrrs_h_3_in_spec3_z[i];
+        rrrs_mu_3_o_t_3) - rrrs_B_3_o_in_axes3_yx*m->rrrs_h_3_in_spec3_x[i] -
+        rrrs_B_3_o_in_axes3_yz*m->rrrs_h_3_in_spec3_z[i] - rrrs_G_o_in_axes3_y;
     const real rrrs_c_o_in_axes3_z = m->rrrs_h_3_in_spec3_z[i]*(v.rrrs_mu_3_o_t +
         v.rrrs_mu_3_o_t_2) - rrrs_B_3_o_in_axes3_zx*m->rrrs_h_3_in_spec3_x[i] -
         rrrs_B_3_o_in_axes3_zy*m->rrrs_h_3_in_spec3_y[i] -
         rrrs_N_1_o_in_axes1_z*v.rrrs_w_1_in_axes3_z;
     /* (rrrs-U) velocity and gravity terms of the leg force */
-    const real rrrs_U_x = -axis_x_rrrs_axes3_x*rrrs_c_o_in_axes3_x -
-        axis_y_rrrs_axes3_x*rrrs_c_o_in_axes3_y - v.axis_z_rrrs_axes3_x*rrrs_c_o_in_axes3_z;
-    const real rrrs_U_y = -axis_x_rrrs_axes3_y*rrrs_c_o_in_axes3_x -
-        axis_y_rrrs_axes3_y*rrrs_c_o_in_axes3_y - v.axis_z_rrrs_axes3_y*rrrs_c_o_in_axes3_z;
-    const real rrrs_U_z = -axis_x_rrrs_axes3_z*rrrs_c_o_in_axes3_x -
-        axis_y_rrrs_axes3_z*rrrs_c_o_in_axes3_y - v.axis_z_rrrs_axes3_z*rrrs_c_o_in_axes3_z;
+    const real rrrs_U_x = -axis_y_rrrs_axes3_x*rrrs_c_o_in_axes3_y -
+        axis_x_rrrs_axes3_x*rrrs_c_o_in_axes3_x - v.axis_z_rrrs_axes3_x*rrrs_c_o_in_axes3_z;
+    const real rrrs_U_y = -axis_y_rrrs_axes3_y*rrrs_c_o_in_axes3_y -
+        axis_x_rrrs_axes3_y*rrrs_c_o_in_axes3_x - v.axis_z_rrrs_axes3_y*rrrs_c_o_in_axes3_z;
+    const real rrrs_U_z = -axis_y_rrrs_axes3_z*rrrs_c_o_in_axes3_y -
+        axis_x_rrrs_axes3_z*rrrs_c_o_in_axes3_x - v.axis_z_rrrs_axes3_z*rrrs_c_o_in_axes3_z;
     /* (Z_a) rotational part of Z */
     const real rrrs_Z_a_t = rrrs_U_z*v.rrrs_q_y - rrrs_U_y*v.rrrs_q_z;
     const real rrrs_Z_a_t_2 = rrrs_U_x*v.rrrs_q_z - rrrs_U_z*v.rrrs_q_x;
@@ -3364,13 +3388,13 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[3*w + k];
     const real Z_q_x = s[12*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[4*w + k];
     const real Z_q_y = s[13*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[5*w + k];
     const real Z_q_z = s[14*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
     Z[1*w + k] = Z_t_y;
@@ -3386,7 +3410,8 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0};
-    Z_before(m, 1, 0, X, V, s, t);
+    values v;
+    Z_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         Z_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), 0, s, X, V, terms_rrrs, o_rrrs);
     }
@@ -3396,6 +3421,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_rrrs + n*LEGS(LEGS_OF_rrrs), LEGS_OF_rrrs);
     }
+    Z_between(m, 1, 0, V, &v, s);
     Z_after(1, 0, s, sums, Z, t);
 }
 
@@ -3405,7 +3431,9 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real s[15*LANES], sums[6*LANES];
     real o_rrrs[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        Z_before(m, LANES, k, X, V, s, t);
+        values v;
+        Z_before(m, LANES, k, X, &v, s, t);
+        Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
@@ -3422,20 +3450,20 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void H_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3495,7 +3523,8 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
     real s[9] = {0};
     real o_rrrs[15*LEGS(LEGS_OF_rrrs)] = {0};
-    H_before(m, 1, 0, X, s, t);
+    values v;
+    H_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         H_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), s, X, o_rrrs);
     }
@@ -3509,7 +3538,8 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
     real s[9*LANES];
     real o_rrrs[15*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        H_before(m, LANES, k, X, s, t);
+        values v;
+        H_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3522,12 +3552,26 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, real *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
+    values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
     /* (W_p) centripetal tensor of the platform */
     const real omega_x = V[3*w + k];
     const real omega_y = V[4*w + k];
@@ -3542,72 +3586,62 @@ INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X
     const real a_t_y = t_ddot_y - m->gravity_y;
     const real t_ddot_z = A[2*w + k];
     const real a_t_z = t_ddot_z - m->gravity_z;
-    const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
-    const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
-    const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
+    const real a_t_in_platform_x = v->R_yx*a_t_y + v->R_zx*a_t_z + v->R_xx*a_t_x;
+    const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
+    const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
     const real f_p_t = omega_x*omega_x;
     const real f_p_t_2 = omega_y*omega_y;
     const real f_p_t_3 = omega_z*omega_z;
     const real alpha_y = A[4*w + k];
     const real alpha_z = A[5*w + k];
-    const real f_p_x = a_t_x*m->m_star + v.h_star_y*(W_p_xy - alpha_z) + v.h_star_z*(W_p_xz +
-        alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+    const real f_p_x = a_t_x*m->m_star + v->h_star_y*(W_p_xy - alpha_z) + v->h_star_z*(alpha_y
+        + W_p_xz) - v->h_star_x*(f_p_t_2 + f_p_t_3);
     const real alpha_x = A[3*w + k];
-    const real f_p_y = a_t_y*m->m_star + v.h_star_x*(W_p_xy + alpha_z) + v.h_star_z*(W_p_yz -
-        alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
-    const real f_p_z = a_t_z*m->m_star + v.h_star_x*(W_p_xz - alpha_y) + v.h_star_y*(W_p_yz +
-        alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
+    const real f_p_y = a_t_y*m->m_star + v->h_star_x*(alpha_z + W_p_xy) + v->h_star_z*(W_p_yz
+        - alpha_x) - v->h_star_y*(f_p_t + f_p_t_3);
+    const real f_p_z = a_t_z*m->m_star + v->h_star_x*(W_p_xz - alpha_y) + v->h_star_y*(alpha_x
+        + W_p_yz) - v->h_star_z*(f_p_t + f_p_t_2);
     /* (mu_p) inertia moment of the platform less that of its weight */
-    const real mu_p_t = m->J_star_in_platform_xx*v.omega_in_platform_x +
-        m->J_star_in_platform_xy*v.omega_in_platform_y +
-        m->J_star_in_platform_xz*v.omega_in_platform_z;
-    const real mu_p_t_2 = m->J_star_in_platform_xy*v.omega_in_platform_x +
-        m->J_star_in_platform_yy*v.omega_in_platform_y +
-        m->J_star_in_platform_yz*v.omega_in_platform_z;
-    const real mu_p_t_3 = m->J_star_in_platform_xz*v.omega_in_platform_x +
-        m->J_star_in_platform_yz*v.omega_in_platform_y +
-        m->J_star_in_platform_zz*v.omega_in_platform_z;
-    const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
-    const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
-    const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+    const real mu_p_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
+        m->J_star_in_platform_xy*v->omega_in_platform_y +
+        m->J_star_in_platform_xz*v->omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
+        m->J_star_in_platform_yy*v->omega_in_platform_y +
+        m->J_star_in_platform_yz*v->omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
+        m->J_star_in_platform_yz*v->omega_in_platform_y +
+        m->J_star_in_platform_zz*v->omega_in_platform_z;
+    const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
+    const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
+    const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
     const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
         m->J_star_in_platform_xy*alpha_in_platform_y +
         m->J_star_in_platform_xz*alpha_in_platform_z +
-        a_t_in_platform_z*m->h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
-        a_t_in_platform_y*m->h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+        a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
+        + mu_p_t_3*v->omega_in_platform_y - mu_p_t_2*v->omega_in_platform_z;
     const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
         m->J_star_in_platform_yz*alpha_in_platform_z +
-        a_t_in_platform_x*m->h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
-        a_t_in_platform_z*m->h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
+        a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
+        + mu_p_t*v->omega_in_platform_z - mu_p_t_3*v->omega_in_platform_x;
     const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
         m->J_star_in_platform_zz*alpha_in_platform_z +
-        a_t_in_platform_y*m->h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
-        a_t_in_platform_x*m->h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
-    const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
-        v.R_xz*mu_p_in_platform_z;
-    const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
-        v.R_yz*mu_p_in_platform_z;
-    const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
-        v.R_zz*mu_p_in_platform_z;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+        a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
+        + mu_p_t_2*v->omega_in_platform_x - mu_p_t*v->omega_in_platform_y;
+    const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
+        v->R_xz*mu_p_in_platform_z;
+    const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
+        v->R_yz*mu_p_in_platform_z;
+    const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
+        v->R_zz*mu_p_in_platform_z;
     s[9*w + k] = f_p_x;
     s[10*w + k] = f_p_y;
     s[11*w + k] = f_p_z;
     s[12*w + k] = mu_p_x;
     s[13*w + k] = mu_p_y;
     s[14*w + k] = mu_p_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void required_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3622,12 +3656,12 @@ INLINE void required_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
     stage_rrrs_legs_required(m, i, &v);
     /* (rrrs-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rrrs_c_x = v.axis_x_rrrs_axes3_x*v.rrrs_c_in_axes3_x +
-        v.axis_y_rrrs_axes3_x*v.rrrs_c_in_axes3_y + v.axis_z_rrrs_axes3_x*v.rrrs_c_in_axes3_z;
-    const real rrrs_c_y = v.axis_x_rrrs_axes3_y*v.rrrs_c_in_axes3_x +
-        v.axis_y_rrrs_axes3_y*v.rrrs_c_in_axes3_y + v.axis_z_rrrs_axes3_y*v.rrrs_c_in_axes3_z;
-    const real rrrs_c_z = v.axis_x_rrrs_axes3_z*v.rrrs_c_in_axes3_x +
-        v.axis_y_rrrs_axes3_z*v.rrrs_c_in_axes3_y + v.axis_z_rrrs_axes3_z*v.rrrs_c_in_axes3_z;
+    const real rrrs_c_x = v.axis_y_rrrs_axes3_x*v.rrrs_c_in_axes3_y +
+        v.axis_x_rrrs_axes3_x*v.rrrs_c_in_axes3_x + v.axis_z_rrrs_axes3_x*v.rrrs_c_in_axes3_z;
+    const real rrrs_c_y = v.axis_y_rrrs_axes3_y*v.rrrs_c_in_axes3_y +
+        v.axis_x_rrrs_axes3_y*v.rrrs_c_in_axes3_x + v.axis_z_rrrs_axes3_y*v.rrrs_c_in_axes3_z;
+    const real rrrs_c_z = v.axis_y_rrrs_axes3_z*v.rrrs_c_in_axes3_y +
+        v.axis_x_rrrs_axes3_z*v.rrrs_c_in_axes3_x + v.axis_z_rrrs_axes3_z*v.rrrs_c_in_axes3_z;
     /* (R_a) moment that actuators and external wrench must give */
     const real rrrs_R_a_t = rrrs_c_y*v.rrrs_q_z - rrrs_c_z*v.rrrs_q_y;
     const real rrrs_R_a_t_2 = rrrs_c_z*v.rrrs_q_x - rrrs_c_x*v.rrrs_q_z;
@@ -3702,13 +3736,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[12*w + k];
-    const real R_a_x = R_a_x_of_legs + mu_p_x;
+    const real R_a_x = mu_p_x + R_a_x_of_legs;
     const real R_a_y_of_legs = sums[4*w + k];
     const real mu_p_y = s[13*w + k];
-    const real R_a_y = R_a_y_of_legs + mu_p_y;
+    const real R_a_y = mu_p_y + R_a_y_of_legs;
     const real R_a_z_of_legs = sums[5*w + k];
     const real mu_p_z = s[14*w + k];
-    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
     required[1*w + k] = R_t_y;
@@ -3719,12 +3753,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[5*w + k] = R_a_z;
 }
 
-APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[14*LEGS(LEGS_OF_rrrs)] = {0};
-    required_before(m, 1, 0, X, V, A, s, t);
+    values v;
+    required_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         required_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), 0, s, X, V, A, terms_rrrs, o_rrrs);
     }
@@ -3734,6 +3769,7 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_rrrs + n*LEGS(LEGS_OF_rrrs), LEGS_OF_rrrs);
     }
+    required_between(m, 1, 0, V, A, &v, s);
     required_after(1, 0, s, sums, required);
 }
 
@@ -3743,7 +3779,9 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real s[15*LANES], sums[6*LANES];
     real o_rrrs[14*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        required_before(m, LANES, k, X, V, A, s, t);
+        values v;
+        required_before(m, LANES, k, X, &v, s, t);
+        required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
@@ -3760,21 +3798,20 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s, verdict *t)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
+    *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void inverse_kinematics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
@@ -3786,8 +3823,8 @@ INLINE void inverse_kinematics_legs_rrrs(const prepared *m, size_t w, size_t i, 
     const real rrrs_q_1 = angle(v.inv_rrrs_rho2_1*v.rrrs_S_in_turn1_y*v.rrrs_root_1,
         v.inv_rrrs_rho2_1*v.rrrs_S_in_turn1_x*v.rrrs_root_1);
     /* (rrrs-q_2) displacement of joint 2 */
-    const real rrrs_q_2 = angle(v.inv_rrrs_rho2_2*(v.rrrs_Kc_2*v.rrrs_root_2 +
-        v.rrrs_Kd_2*v.rrrs_Ks_2), v.inv_rrrs_rho2_2*(v.rrrs_Kc_2*v.rrrs_Kd_2 -
+    const real rrrs_q_2 = angle(v.inv_rrrs_rho2_2*(v.rrrs_Kd_2*v.rrrs_Ks_2 +
+        v.rrrs_Kc_2*v.rrrs_root_2), v.inv_rrrs_rho2_2*(v.rrrs_Kc_2*v.rrrs_Kd_2 -
         v.rrrs_Ks_2*v.rrrs_root_2));
     /* (rrrs-q_3) displacement of joint 3 */
     const real rrrs_q_3 =
@@ -3821,7 +3858,8 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 {
     real s[9] = {0};
     real o_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0};
-    inverse_kinematics_before(m, 1, 0, X, s, t);
+    values v;
+    inverse_kinematics_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         inverse_kinematics_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), s, X, o_rrrs);
     }
@@ -3836,7 +3874,8 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real s[9*LANES];
     real o_rrrs[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        inverse_kinematics_before(m, LANES, k, X, s, t);
+        values v;
+        inverse_kinematics_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3849,21 +3888,20 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_rates_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k,
@@ -3933,7 +3971,8 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 {
     real s[9] = {0};
     real o_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0};
-    joint_rates_before(m, 1, 0, X, s, t);
+    values v;
+    joint_rates_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         joint_rates_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), s, X, V, o_rrrs);
     }
@@ -3948,7 +3987,8 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real s[9*LANES];
     real o_rrrs[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_rates_before(m, LANES, k, X, s, t);
+        values v;
+        joint_rates_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3961,21 +4001,20 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
+    values *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_accelerations_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
@@ -4021,18 +4060,17 @@ INLINE void joint_accelerations_legs_rrrs(const prepared *m, size_t w, size_t i,
     const real rrrs_bias_t_4 = v.rrrs_d_3_in_axes3_y*rrrs_qd_2_t_3;
     const real rrrs_bias_t_5 = v.rrrs_d_3_in_axes3_x*rrrs_qd_2_t_3;
     const real rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*m->rrrs_platform_joint_offset_x[i];
-    const real rrrs_bias_in_axes3_x = v.rrrs_bias_t_3*v.rrrs_omega_1_in_axes3_y +
-        v.rrrs_bias_t_6*v.rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_qd_2_t_3 -
-        rrrs_bias_t_7*rrrs_omega_3_in_axes3_z - v.rrrs_bias_t_8*v.rrrs_omega_1_in_axes3_y;
+    const real rrrs_bias_in_axes3_x = v.rrrs_bias_t_3*v.rrrs_omega_1_in_axes3_y -
+        rrrs_bias_t_5*rrrs_qd_2_t_3 + v.rrrs_bias_t_6*v.rrrs_omega_1_in_axes3_y -
+        v.rrrs_bias_t_8*v.rrrs_omega_1_in_axes3_y - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z;
     const real rrrs_bias_in_axes3_y = v.rrrs_bias_t_8*v.rrrs_omega_1_in_axes3_x -
-        v.rrrs_bias_t_3*v.rrrs_omega_1_in_axes3_x - rrrs_bias_t_4*rrrs_qd_2_t_3 -
+        rrrs_bias_t_4*rrrs_qd_2_t_3 - v.rrrs_bias_t_3*v.rrrs_omega_1_in_axes3_x -
         v.rrrs_bias_t_6*v.rrrs_omega_1_in_axes3_x;
-    const real rrrs_bias_in_axes3_z = rrrs_bias_t_7*v.rrrs_omega_1_in_axes3_x +
-        v.rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*v.rrrs_c_3 -
-        v.rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) -
-        rrrs_beta_3_in_axes3_y*m->rrrs_platform_joint_offset_x[i] -
-        rrrs_bias_t_4*v.rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*v.rrrs_omega_1_in_axes3_x -
-        v.rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y;
+    const real rrrs_bias_in_axes3_z = v.rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*v.rrrs_c_3 -
+        v.rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) - rrrs_bias_t_4*v.rrrs_omega_1_in_axes3_y -
+        rrrs_bias_t_5*v.rrrs_omega_1_in_axes3_x - v.rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
+        - rrrs_beta_3_in_axes3_y*m->rrrs_platform_joint_offset_x[i] +
+        rrrs_bias_t_7*v.rrrs_omega_1_in_axes3_x;
     /* (rrrs-rel) acceleration of the connection point left to the joint accelerations */
     const real rrrs_rel_in_axes3_x = axis_x_rrrs_axes3_x*v.rrrs_S_ddot_x +
         axis_x_rrrs_axes3_y*v.rrrs_S_ddot_y + axis_x_rrrs_axes3_z*v.rrrs_S_ddot_z -
@@ -4081,7 +4119,8 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 {
     real s[9] = {0};
     real o_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0};
-    joint_accelerations_before(m, 1, 0, X, s, t);
+    values v;
+    joint_accelerations_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         joint_accelerations_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), s, X, V, A, o_rrrs);
     }
@@ -4096,7 +4135,8 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real s[9*LANES];
     real o_rrrs[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_accelerations_before(m, LANES, k, X, s, t);
+        values v;
+        joint_accelerations_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -4109,20 +4149,20 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void legs_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -4141,14 +4181,14 @@ INLINE void legs_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size
         v.rrrs_acc_3_in_axes3_y*m->rrrs_link3_mass[i];
     const real rrrs_c_true_in_axes3_z = v.rrrs_c_in_axes3_z -
         v.rrrs_acc_3_in_axes3_z*m->rrrs_link3_mass[i];
-    const real rrrs_c_true_x = v.axis_x_rrrs_axes3_x*rrrs_c_true_in_axes3_x +
-        v.axis_y_rrrs_axes3_x*rrrs_c_true_in_axes3_y +
+    const real rrrs_c_true_x = v.axis_y_rrrs_axes3_x*rrrs_c_true_in_axes3_y +
+        v.axis_x_rrrs_axes3_x*rrrs_c_true_in_axes3_x +
         v.axis_z_rrrs_axes3_x*rrrs_c_true_in_axes3_z;
-    const real rrrs_c_true_y = v.axis_x_rrrs_axes3_y*rrrs_c_true_in_axes3_x +
-        v.axis_y_rrrs_axes3_y*rrrs_c_true_in_axes3_y +
+    const real rrrs_c_true_y = v.axis_y_rrrs_axes3_y*rrrs_c_true_in_axes3_y +
+        v.axis_x_rrrs_axes3_y*rrrs_c_true_in_axes3_x +
         v.axis_z_rrrs_axes3_y*rrrs_c_true_in_axes3_z;
-    const real rrrs_c_true_z = v.axis_x_rrrs_axes3_z*rrrs_c_true_in_axes3_x +
-        v.axis_y_rrrs_axes3_z*rrrs_c_true_in_axes3_y +
+    const real rrrs_c_true_z = v.axis_y_rrrs_axes3_z*rrrs_c_true_in_axes3_y +
+        v.axis_x_rrrs_axes3_z*rrrs_c_true_in_axes3_x +
         v.axis_z_rrrs_axes3_z*rrrs_c_true_in_axes3_z;
     /* (rrrs-c_true) */
     o[0*count + k] = rrrs_c_true_x;
@@ -4191,7 +4231,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 {
     real s[9] = {0};
     real o_rrrs[11*LEGS(LEGS_OF_rrrs)] = {0};
-    legs_before(m, 1, 0, X, s, t);
+    values v;
+    legs_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         legs_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), s, X, V, A, o_rrrs);
     }
@@ -4201,32 +4242,36 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s)
+{
     /* (potential) potential energy */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
-    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x +
-        v.R_xy*m->h_star_in_platform_y + v.R_xz*m->h_star_in_platform_z + m->m_star*t_x) +
-        m->gravity_y*(v.R_yx*m->h_star_in_platform_x + v.R_yy*m->h_star_in_platform_y +
-        v.R_yz*m->h_star_in_platform_z + m->m_star*t_y) +
-        m->gravity_z*(v.R_zx*m->h_star_in_platform_x + v.R_zy*m->h_star_in_platform_y +
-        v.R_zz*m->h_star_in_platform_z + m->m_star*t_z);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+    const real potential_t = m->gravity_x*(m->m_star*t_x + v->R_xy*m->h_star_in_platform_y +
+        v->R_xz*m->h_star_in_platform_z + v->R_xx*m->h_star_in_platform_x) +
+        m->gravity_y*(m->m_star*t_y + v->R_yx*m->h_star_in_platform_x +
+        v->R_yz*m->h_star_in_platform_z + v->R_yy*m->h_star_in_platform_y) +
+        m->gravity_z*(m->m_star*t_z + v->R_zx*m->h_star_in_platform_x +
+        v->R_zy*m->h_star_in_platform_y + v->R_zz*m->h_star_in_platform_z);
     s[9*w + k] = potential_t;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void potential_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -4242,8 +4287,8 @@ INLINE void potential_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j,
     const real rrrs_c_2 = v.inv_rrrs_rho2_2*(v.rrrs_Kc_2*v.rrrs_Kd_2 -
         v.rrrs_Ks_2*v.rrrs_root_2);
     /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
-    const real rrrs_s_2 = v.inv_rrrs_rho2_2*(v.rrrs_Kc_2*v.rrrs_root_2 +
-        v.rrrs_Kd_2*v.rrrs_Ks_2);
+    const real rrrs_s_2 = v.inv_rrrs_rho2_2*(v.rrrs_Kd_2*v.rrrs_Ks_2 +
+        v.rrrs_Kc_2*v.rrrs_root_2);
     /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
     const real rrrs_c_3 =
         m->inv_rrrs_size_t_2[i]*m->rrrs_platform_joint_offset_x[i]*v.rrrs_x_3_in_axes2_x;
@@ -4262,16 +4307,16 @@ INLINE void potential_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j,
     const real rrrs_potential_t_7 = (rrrs_c_1*m->rrrs_mu_2_t[i] +
         m->rrrs_mu_2_t_2[i]*rrrs_s_1)*(m->rrrs_h_1_in_spec1_y[i] +
         rrrs_b_in_spec1_y*m->rrrs_link1_mass[i] + rrrs_b_in_spec1_y*m->rrrs_link2_mass[i] +
-        rrrs_c_2*m->rrrs_h_2_in_spec2_y[i] + rrrs_c_2*rrrs_potential_t_6 +
-        m->rrrs_h_2_in_spec2_x[i]*rrrs_s_2 + rrrs_potential_t_5*rrrs_s_2);
-    const real rrrs_potential_t_8 = rrrs_potential_t_7 +
-        m->rrrs_g_in_axes1_z[i]*(m->rrrs_h_1_in_spec1_x[i] + m->rrrs_potential_t_3[i] +
-        m->rrrs_potential_t_4[i] + rrrs_c_2*m->rrrs_h_2_in_spec2_x[i] +
-        rrrs_c_2*rrrs_potential_t_5 - m->rrrs_h_2_in_spec2_y[i]*rrrs_s_2 -
-        rrrs_potential_t_6*rrrs_s_2) + (rrrs_c_1*m->rrrs_mu_2_t_2[i] -
+        rrrs_c_2*m->rrrs_h_2_in_spec2_y[i] + m->rrrs_h_2_in_spec2_x[i]*rrrs_s_2 +
+        rrrs_c_2*rrrs_potential_t_6 + rrrs_potential_t_5*rrrs_s_2);
+    const real rrrs_potential_t_8 = (rrrs_c_1*m->rrrs_mu_2_t_2[i] -
         m->rrrs_mu_2_t[i]*rrrs_s_1)*(m->rrrs_h_1_in_spec1_z[i] + m->rrrs_h_2_in_spec2_z[i] +
         m->rrrs_h_3_in_spec3_z[i] + rrrs_b_in_spec1_z*m->rrrs_link1_mass[i] +
-        rrrs_b_in_spec1_z*m->rrrs_link2_mass[i]);
+        rrrs_b_in_spec1_z*m->rrrs_link2_mass[i]) +
+        m->rrrs_g_in_axes1_z[i]*(m->rrrs_h_1_in_spec1_x[i] + m->rrrs_potential_t_3[i] +
+        m->rrrs_potential_t_4[i] + rrrs_c_2*m->rrrs_h_2_in_spec2_x[i] -
+        m->rrrs_h_2_in_spec2_y[i]*rrrs_s_2 + rrrs_c_2*rrrs_potential_t_5 -
+        rrrs_potential_t_6*rrrs_s_2) + rrrs_potential_t_7;
     /* (potential) */
     gather(&terms[0*count + k], add, rrrs_potential_t_8);  /* potential_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) >
@@ -4291,7 +4336,7 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     /* (potential) */
     const real potential_of_legs = sums[0*w + k];
     const real potential_t = s[9*w + k];
-    const real potential_ = -potential_of_legs - potential_t;
+    const real potential_ = -potential_t - potential_of_legs;
     /* (potential) */
     potential[0*w + k] = potential_;
 }
@@ -4300,7 +4345,8 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 {
     real s[10] = {0}, sums[1] = {0};
     real terms_rrrs[LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0};
-    potential_before(m, 1, 0, X, s, t);
+    values v;
+    potential_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         potential_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), 0, s, X, terms_rrrs, o_rrrs);
     }
@@ -4310,28 +4356,28 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_rrrs + n*LEGS(LEGS_OF_rrrs), LEGS_OF_rrrs);
     }
+    potential_between(m, 1, 0, X, &v, s);
     potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
-    *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, real *lengths, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void condition_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -4427,7 +4473,8 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 {
     real s[9] = {0}, sums[1] = {0};
     real terms_rrrs[LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[17*LEGS(LEGS_OF_rrrs)] = {0};
-    condition_before(m, 1, 0, X, s, lengths, t);
+    values v;
+    condition_before(m, 1, 0, X, &v, s, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         condition_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), 0, s, X, terms_rrrs, o_rrrs);
     }
@@ -4451,11 +4498,7 @@ int hybrid_3rrrs_M(const prepared *m, const real *X, real *M_out)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-    }
-    return code;
+    return settled(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -4482,11 +4525,7 @@ int hybrid_3rrrs_Z(const prepared *m, const real *X, const real *V, real *Z_out)
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, Z_out);
-    }
-    return code;
+    return settled(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -4510,11 +4549,7 @@ int hybrid_3rrrs_H(const prepared *m, const real *X, real *H_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -4537,11 +4572,7 @@ int hybrid_3rrrs_inverse_kinematics(const prepared *m, const real *X, real *q_ou
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, q_out);
-    }
-    return code;
+    return settled(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -4568,11 +4599,7 @@ int hybrid_3rrrs_joint_rates(const prepared *m, const real *X, const real *V, re
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qd_out);
-    }
-    return code;
+    return settled(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -4603,11 +4630,7 @@ int hybrid_3rrrs_joint_accelerations(const prepared *m, const real *X, const rea
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qdd_out);
-    }
-    return code;
+    return settled(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4640,13 +4663,9 @@ int hybrid_3rrrs_dynamics(const prepared *m, const real *X, const real *V, real 
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-        refuse(NV, Z_out);
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    settled(&why, NV*NV, M_out);
+    settled(&why, NV, Z_out);
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -4840,7 +4859,8 @@ static const real sizes_tau[] = {4.0, 4.0, 4.0, 1.0, 1.0, 1.0};
 int hybrid_3rrrs_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out)
 {
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    static const real no_wrench[NW] = {0};
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
@@ -4850,7 +4870,7 @@ int hybrid_3rrrs_inverse_dynamics(const prepared *m, const real *X, const real *
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -4864,11 +4884,7 @@ int hybrid_3rrrs_inverse_dynamics(const prepared *m, const real *X, const real *
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, tau_out);
-    }
-    return code;
+    return settled(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -4897,8 +4913,9 @@ static const real sizes_A[] = {16.0, 16.0, 16.0, 1.0, 1.0, 1.0};
 int hybrid_3rrrs_forward_dynamics(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out)
 {
-    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] =
-        {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    static const real no_wrench[NW] = {0};
+    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
+        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
@@ -4907,7 +4924,7 @@ int hybrid_3rrrs_forward_dynamics(const prepared *m, const real *X, const real *
         check(NV, 1, V, why.invalid);
         check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     for (size_t i = 0; i < NV; ++i) {
@@ -4925,11 +4942,7 @@ int hybrid_3rrrs_forward_dynamics(const prepared *m, const real *X, const real *
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, A_out);
-    }
-    return code;
+    return settled(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4970,18 +4983,15 @@ int hybrid_3rrrs_complete_acceleration(const prepared *m, const real *X, const r
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, completed_out);
-    }
-    return code;
+    return settled(&why, NV, completed_out);
 }
 
 int hybrid_3rrrs_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out)
 {
+    static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 0, 1, 1, 2, 2};
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
         unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[18] = {0}, forces[NL*NL] = {0},
         work[NV*PADDED(NV)];
     verdict why;
@@ -4992,7 +5002,7 @@ int hybrid_3rrrs_leg_reactions(const prepared *m, const real *X, const real *V, 
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -5010,11 +5020,7 @@ int hybrid_3rrrs_leg_reactions(const prepared *m, const real *X, const real *V, 
     add_forces(NV, 3, 1, places_forces, solve_1, actuator, forces);
     check(NL*NL, 1, forces, why.overflow);
     copy(NL*NL, forces, forces_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NL*NL, forces_out);
-    }
-    return code;
+    return settled(&why, NL*NL, forces_out);
 }
 
 int hybrid_3rrrs_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
@@ -5036,25 +5042,22 @@ int hybrid_3rrrs_energy(const prepared *m, const real *X, const real *V, real *k
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, kinetic_out);
-        refuse(1, potential_out);
-    }
-    return code;
+    settled(&why, 1, kinetic_out);
+    return settled(&why, 1, potential_out);
 }
 
 int hybrid_3rrrs_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
     const real *length = NULL;
+    static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real length_in[1], H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
+        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, length, 0, length_in, why.invalid);
+    length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
@@ -5072,12 +5075,8 @@ int hybrid_3rrrs_condition(const prepared *m, const real *X, real *sigma_out, re
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, sigma_out);
-        refuse(NL, legs_out);
-    }
-    return code;
+    settled(&why, NV, sigma_out);
+    return settled(&why, NL, legs_out);
 }
 
 int hybrid_3rrrs_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -5111,12 +5110,8 @@ int hybrid_3rrrs_manipulability(const prepared *m, const real *X, real *measure_
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, measure_out);
-        refuse(1, isotropy_out);
-    }
-    return code;
+    settled(&why, 1, measure_out);
+    return settled(&why, 1, isotropy_out);
 }
 
 int hybrid_3rrrs_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
@@ -5150,12 +5145,8 @@ int hybrid_3rrrs_singularity_distance(const prepared *m, const real *X, real *ac
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, actuators_out);
-        refuse(1, legs_out);
-    }
-    return code;
+    settled(&why, 1, actuators_out);
+    return settled(&why, 1, legs_out);
 }
 
 static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
@@ -5180,11 +5171,7 @@ static int mismatch_one(const prepared *m, const real *X, const real *q_actuated
     wrap_turns(NU, 1, places_gap, gap);
     check(NU, 1, gap, why.overflow);
     copy(NU, gap, gap_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, gap_out);
-    }
-    return code;
+    return settled(&why, NU, gap_out);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
@@ -5196,11 +5183,7 @@ static int slope_one(const prepared *m, const real *X, real *slope_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, slope_out);
-    }
-    return code;
+    return settled(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -5262,11 +5245,7 @@ int hybrid_3rrrs_forward_kinematics(const prepared *m, const real *q_actuated, c
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int hybrid_3rrrs_dissipation(const prepared *m, const real *X, const real *V, real
@@ -5284,11 +5263,7 @@ int hybrid_3rrrs_dissipation(const prepared *m, const real *X, const real *V, re
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, dissipation_out);
-    }
-    return code;
+    return settled(&why, 1, dissipation_out);
 }
 
 int hybrid_3rrrs_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
@@ -5305,11 +5280,7 @@ int hybrid_3rrrs_momentum(const prepared *m, const real *X, const real *V, real 
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, momentum_out);
-    }
-    return code;
+    return settled(&why, NV, momentum_out);
 }
 
 int hybrid_3rrrs_joint_margins(const prepared *m, const real *X, real *margins_out)
@@ -5325,11 +5296,7 @@ int hybrid_3rrrs_joint_margins(const prepared *m, const real *X, real *margins_o
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, margins_out);
-    }
-    return code;
+    return settled(&why, NJ, margins_out);
 }
 
 int hybrid_3rrrs_within_limits(const prepared *m, const real *X, real *within_out)
@@ -5345,11 +5312,7 @@ int hybrid_3rrrs_within_limits(const prepared *m, const real *X, real *within_ou
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, within_out);
-    }
-    return code;
+    return settled(&why, 1, within_out);
 }
 
 int hybrid_3rrrs_actuator_positions(const prepared *m, const real *X, real *q_out)
@@ -5362,11 +5325,7 @@ int hybrid_3rrrs_actuator_positions(const prepared *m, const real *X, real *q_ou
     take(NU, 1, hybrid_3rrrs_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, q_out);
-    }
-    return code;
+    return settled(&why, NU, q_out);
 }
 
 int hybrid_3rrrs_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
@@ -5383,11 +5342,7 @@ int hybrid_3rrrs_actuator_rates(const prepared *m, const real *X, const real *V,
     take(NU, 1, hybrid_3rrrs_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qd_out);
-    }
-    return code;
+    return settled(&why, NU, qd_out);
 }
 
 int hybrid_3rrrs_actuator_accelerations(const prepared *m, const real *X, const real *V, const
@@ -5406,11 +5361,7 @@ int hybrid_3rrrs_actuator_accelerations(const prepared *m, const real *X, const 
     take(NU, 1, hybrid_3rrrs_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qdd_out);
-    }
-    return code;
+    return settled(&why, NU, qdd_out);
 }
 
 int hybrid_3rrrs_power(const prepared *m, const real *X, const real *V, const real *tau, real
@@ -5430,11 +5381,7 @@ int hybrid_3rrrs_power(const prepared *m, const real *X, const real *V, const re
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, power_out);
-    }
-    return code;
+    return settled(&why, 1, power_out);
 }
 
 int hybrid_3rrrs_rotation(const real *X, real *R_out)
@@ -5447,11 +5394,7 @@ int hybrid_3rrrs_rotation(const real *X, real *R_out)
     rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     copy(9, R, R_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(9, R_out);
-    }
-    return code;
+    return settled(&why, 9, R_out);
 }
 
 int hybrid_3rrrs_pose(const real *t, const real *R, real *X_out)
@@ -5469,11 +5412,7 @@ int hybrid_3rrrs_pose(const real *t, const real *R, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int hybrid_3rrrs_X_dot(const real *X, const real *V, real *X_dot_out)
@@ -5493,11 +5432,7 @@ int hybrid_3rrrs_X_dot(const real *X, const real *V, real *X_dot_out)
     beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_dot_out);
-    }
-    return code;
+    return settled(&why, NQ, X_dot_out);
 }
 
 int hybrid_3rrrs_pose_from_rpy(const real *t, const real *rpy, real *X_out)
@@ -5515,11 +5450,7 @@ int hybrid_3rrrs_pose_from_rpy(const real *t, const real *rpy, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int hybrid_3rrrs_retract(const real *X, const real *step, real *X_moved_out)
@@ -5543,11 +5474,7 @@ int hybrid_3rrrs_retract(const real *X, const real *step, real *X_moved_out)
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_moved_out);
-    }
-    return code;
+    return settled(&why, NQ, X_moved_out);
 }
 
 int hybrid_3rrrs_difference(const real *X0, const real *X1, real *step_out)
@@ -5571,11 +5498,7 @@ int hybrid_3rrrs_difference(const real *X0, const real *X1, real *step_out)
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, step_out);
-    }
-    return code;
+    return settled(&why, NV, step_out);
 }
 
 int hybrid_3rrrs_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
@@ -5613,11 +5536,7 @@ int hybrid_3rrrs_interpolate(const real *X0, const real *X1, const real *s, real
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 /* ---- one state, and batches ---- */

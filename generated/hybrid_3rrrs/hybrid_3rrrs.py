@@ -991,8 +991,8 @@ def _prepare(p):
     }
 
 
-_FEW, _MANY = 24, 2048  # one state after another up to here; recorded from here on
-_BLOCK = 4096  # states
+_FEW, _SOME = 4, 256  # states that are done one after another, and by groups of equal steps
+_BLOCK = 4096  # states that are done together
 _SCRATCH = 31 << 20  # bytes
 
 
@@ -1035,8 +1035,11 @@ class _Floats:
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
     least = staticmethod(lambda x, y: y if y < x or y != y else x)
 
-    def __init__(self, p, states, kept=None):
+    def __init__(self, p, states):
         self.p, self.states = p, states
+
+    def release(self):
+        pass
 
     def constants(self, name):
         """Shared values, and (leg, its values) for every leg of each loop."""
@@ -1083,101 +1086,9 @@ class _Single(_Floats):
         return [_Vector(a) for a in arrays]
 
 
-class _Arrays:
-    """Functions of many states at once, in arrays (states,).
-
-    Attributes:
-        kept: replays, by their place among those of a block, for other blocks of the same size;
-            None where there are too few states for it to pay to record.
-    """
-
-    sqrt, sin, cos, atan2, least = np.sqrt, np.sin, np.cos, np.arctan2, np.minimum
-
-    def __init__(self, p, states, kept=None):
-        self.p, self.states, self.kept, self.done = p, states, kept, 0
-
-    def constants(self, name):
-        """Shared values, and (leg, its values) for every leg of each loop.
-
-        As arrays without dimensions: beside arrays they are faster than floats.
-        """
-        if (name, "arrays") not in self.p._cache:
-            shared, loops = _constants(self.p, name)
-            rows = [[(leg, tuple(map(np.array, k))) for leg, k in legs] for legs in loops]
-            self.p._cache[name, "arrays"] = tuple(map(np.array, shared)), rows
-        return self.p._cache[name, "arrays"]
-
-    def zeros(self, name):
-        return np.zeros((math.prod(_SHAPES[name]), self.states))
-
-    def computed(self, function, *vectors):
-        """Flags and arrays (entries, states) of a function."""
-        if self.kept is None:
-            return function(self, *vectors)
-        if self.done not in self.kept:
-            self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
-        self.done += 1
-        return self.kept[self.done - 1].run(vectors)
-
-    def shaped(self, names, arrays):
-        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
-
-    def solved(self, order, a, b):
-        """Solutions, straight through; and which are beyond doubt."""
-        sure, (x,) = self.computed(order, a, b)
-        return sure, np.array(x)
-
-    def run(self, function, names, *vectors):
-        """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        ok, arrays = self.computed(function, *vectors)
-        arrays = self.shaped(names, arrays)
-        ok = np.logical_and(ok, _finite(arrays, self.states))
-        if not np.all(ok):
-            for a in arrays:
-                a[..., ~ok] = np.nan
-        return arrays
-
-
-class _Judged(_Arrays):
-    """The same, and why a state is impossible."""
-
-    def __init__(self, p, states, kept=None):
-        super().__init__(p, states, kept)
-        self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
-
-    def run(self, function, names, *vectors):
-        """Arrays (*shape, states) of a function, also where they are nonsense."""
-        (valid, reached, clear), arrays = self.computed(function, *vectors)
-        for code, good in ((3, valid), (1, reached), (2, clear)):
-            self.failed[code] |= np.logical_not(good)
-        return self.shaped(names, arrays)
-
-    def closed(self, q):
-        """q, noting where the iteration has not converged."""
-        self.failed[4] |= np.isnan(q).any(axis=0)
-        return q
-
-    def status(self, possible):
-        """Status codes; 3 where all is well but some input or result is not finite."""
-        return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
-
-
-_IN_ONE = {}  # by function
-
-
-def _in_one(function):
-    """A function that tells whether a state is possible, of one that tells why not."""
-
-    def run(m, *vectors):
-        (valid, reached, clear), arrays = function(m, *vectors)
-        return valid & reached & clear, arrays
-
-    return _IN_ONE.setdefault(function, run)
-
-
-def _mode(p, states, kept=None):
+def _mode(p, states):
     """The faster way for so many states."""
-    return (_Floats if 0 < states <= _FEW else _Arrays)(p, states, kept)
+    return (_Floats if 0 < states <= _FEW else _Arrays)(p, states)
 
 
 def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=()):
@@ -1241,7 +1152,7 @@ def _few(steps, p, lead, given, shapes, read, plain):
     """Results at a few states, one after another."""
     m, rows = _Single(p, 1), []
     for v, shape in zip(given, shapes):
-        flat = np.broadcast_to(v, lead + shape).reshape(math.prod(lead), -1)
+        flat = _at_each(v, lead, shape).reshape(math.prod(lead), -1)
         rows.append(map(_Vector, flat.tolist()))
     impossible = [[np.nan] * math.prod(shape) for shape in plain]
     found = [_state(m, steps, state, read) or impossible for state in zip(*rows)]
@@ -1263,10 +1174,10 @@ def _one(steps, p, given, shapes, read, unbounded):
 def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block; the last block begins where it is as long as the others."""
     count = math.prod(lead)
-    size, kept = min(count, _BLOCK), {} if count >= _MANY else None
+    size = min(count, _BLOCK)
     # one value for all states stands for itself
     flat = [
-        np.broadcast_to(v, lead + s).reshape(count, *s) if v.ndim > len(s) else v
+        _at_each(v, lead, s).reshape(count, *s) if v.ndim > len(s) else v
         for v, s in zip(given, shapes)
     ]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
@@ -1278,7 +1189,7 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
         for stop in (*range(size, count, max(size, 1)), count):
             block = slice(stop - size, stop)
             states = [_states_last(v, s, block) for v, s in zip(flat, shapes)]
-            m, good = mode(p, size, kept), possible[block]
+            m, good = mode(p, size), possible[block]
             found = steps(m, *states)
             if not outputs:
                 outputs = [np.empty((count, *a.shape[:-1])) for a in found]
@@ -1291,10 +1202,16 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
                 good[:] = status[block] == 0
             for output, a in zip(outputs, found):
                 output[block] = a.transpose(a.ndim - 1, *range(a.ndim - 1))
+            m.release()
     for output in outputs:
         output[~possible] = np.nan
     outputs += [status] if mode is _Judged else []
     return [a.reshape(lead + a.shape[1:])[()] for a in outputs]
+
+
+def _at_each(v, lead, shape):
+    """An argument at every state."""
+    return v if v.shape == lead + shape else np.broadcast_to(v, lead + shape)
 
 
 def _states_last(a, shape, block):
@@ -1307,8 +1224,8 @@ def _states_last(a, shape, block):
 def _finite(arrays, states):
     """In which states all entries of arrays (*shape, states) are finite."""
     flat = [a.reshape(math.prod(a.shape[:-1]), states) for a in arrays]
-    good = np.isfinite(sum(np.einsum("es->s", a) for a in flat))
-    if not np.all(good):  # or the sum is too large
+    good = np.isfinite(sum(map(np.add.reduce, flat)))
+    if not good.all():  # or the sum is too large
         good = np.logical_and.reduce([np.isfinite(a).all(axis=0) for a in flat])
     return good
 
@@ -1322,8 +1239,15 @@ def _both(operation):
     return lambda a, b: a.record.made(operation, a, b), lambda a, b: a.record.made(operation, b, a)
 
 
+def _asked(operation):
+    """A comparison of recorded values."""
+    return lambda a, b: _Flag([a.record.made(operation, a, b).number])
+
+
 class _Recorded:
     """A value of a function that runs to be recorded."""
+
+    __slots__ = ("record", "number")
 
     def __init__(self, record, number):
         self.record, self.number = record, number
@@ -1332,9 +1256,8 @@ class _Recorded:
     __sub__, __rsub__ = _both(np.subtract)
     __mul__, __rmul__ = _both(np.multiply)
     __truediv__, __rtruediv__ = _both(np.divide)
-    __and__, __rand__ = _both(np.logical_and)
-    __gt__, __lt__ = _both(np.greater)
-    __ge__, __le__ = _both(np.greater_equal)
+    __gt__, __ge__ = _asked(np.greater), _asked(np.greater_equal)
+    __lt__, __le__ = _asked(np.less), _asked(np.less_equal)
 
     def __neg__(self):
         return self.record.made(np.negative, self)
@@ -1343,30 +1266,51 @@ class _Recorded:
         return self.record.made(np.absolute, self)
 
 
-class _Record:
-    """The operations of a function, recorded by running it, and where their results stand.
+class _Flag:
+    """Numbers of comparisons that must all hold."""
 
-    Results share arrays: what is read for the last time makes room for the next, so that a few
-    arrays do, which stay in the processor's cache.
+    def __init__(self, numbers):
+        self.numbers = numbers
+
+    def __and__(self, other):
+        return _Flag(self.numbers + _numbers_of(other))
+
+    __rand__ = __and__
+
+
+def _numbers_of(flag):
+    return flag.numbers if isinstance(flag, _Flag) else []  # True where nothing is asked for
+
+
+class _Record:
+    """The operations of a function, recorded by running it; its values are numbered.
 
     Attributes:
-        kinds: of the values, by number: "given", "state", "flag", or "one" for all states.
-        steps: (operation, numbers of its operands and of its result).
-        slots: number of a result -> (kind of array or "out", place).
-        counts: how many arrays there are of every kind.
+        given: how many numbers it takes, which are the first.
+        fixed: numbers of prepared values and literals.
+        steps: (operation, numbers of its operands, number of its result).
+        flags: what must hold, each as numbers of comparisons.
+        results, sizes: numbers of the entries of its arrays, all of them results of steps, and how
+            many entries every array has.
+        layouts: of these, step by step and in groups.
     """
 
     def __init__(self, p, function, sizes):
-        self.p, self.name, self.kinds, self.steps, self.slots = p, None, [], [], {}
-        self.constant, self.literals = [], {}
-        self.inputs = [[self.value("given") for _ in range(size)] for size in sizes]
-        flags, arrays = function(self, *self.inputs)
+        self.p, self.name, self.count, self.prepared = p, None, 0, []
+        self.literals, self.steps, self.layouts = {}, [], {}
+        inputs = [self.values(size) for size in sizes]
+        self.given = self.count
+        flags, arrays = function(self, *inputs)
         self.is_judged = isinstance(flags, tuple)
-        self.flags = [self.number(flag) for flag in (flags if self.is_judged else (flags,))]
-        self.sizes = [len(array) for array in arrays]
-        for place, value in enumerate(v for array in arrays for v in array):
-            self.store(self.number(value), place)
-        self.counts = self.share()
+        self.flags = [_numbers_of(flag) for flag in (flags if self.is_judged else (flags,))]
+        self.sizes, self.results = [len(array) for array in arrays], []
+        made = {result for *_, result in self.steps}
+        for value in (value for array in arrays for value in array):
+            number = self.number(value)
+            if number not in made or number in self.results:
+                number = self.made(np.positive, value).number
+            self.results.append(number)
+        self.fixed = [*self.prepared, *self.literals.values()]
 
     # ---- the mode in which the function runs ----
 
@@ -1390,107 +1334,289 @@ class _Record:
 
     def constants(self, name):
         """Shared values, and (leg, its values) for every leg of each loop."""
-        self.name, (shared, loops) = name, _constants(self.p, name)
-        shared = self.named(shared)
-        return shared, [[(leg, self.named(k)) for leg, k in legs] for legs in loops]
+        self.name, first = name, self.count
+        shared, loops = _constants(self.p, name)
+        found = self.values(len(shared)), [
+            [(leg, self.values(len(k))) for leg, k in legs] for legs in loops
+        ]
+        self.prepared = list(range(first, self.count))
+        return found
 
     # ---- what is recorded ----
 
-    def named(self, values):
-        """Values for constants."""
-        found = [self.value("one") for _ in values]
-        self.constant += [v.number for v in found]
-        return found
-
-    def value(self, kind):
-        self.kinds.append(kind)
-        return _Recorded(self, len(self.kinds) - 1)
+    def values(self, count):
+        """New values."""
+        self.count += count
+        return [_Recorded(self, number) for number in range(self.count - count, self.count)]
 
     def number(self, value):
         """Number of a value, which may be a literal."""
         if isinstance(value, _Recorded):
             return value.number
         if value not in self.literals:
-            self.literals[value] = self.value("one").number
+            self.literals[value] = self.values(1)[0].number
         return self.literals[value]
 
     def made(self, operation, *operands):
         """The result of an operation."""
-        if operation in _WITHOUT and operands[0] is _WITHOUT[operation]:
-            return operands[1]
         numbers = [self.number(operand) for operand in operands]
-        if all(self.kinds[n] == "one" for n in numbers):
-            kind = "one"
-        else:
-            kind = "flag" if operation in _OF_FLAGS else "state"
-        result = self.value(kind)
-        self.steps.append((operation, [*numbers, result.number]))
+        (result,) = self.values(1)
+        self.steps.append((operation, numbers, result.number))
         return result
 
-    def store(self, number, place):
-        """Make a value an entry of the function's arrays: where it is computed, or as a copy."""
-        if self.kinds[number] != "state" or number in self.slots:
-            copy = self.value("state").number
-            self.steps.append((np.positive, [number, copy]))
-            number = copy
-        self.slots[number] = "out", place
+    def values_of(self, p):
+        """What is fixed, for parameters."""
+        shared, loops = _constants(p, self.name) if self.name else ((), ())
+        return [*shared, *(v for legs in loops for _, k in legs for v in k), *self.literals]
 
-    def share(self):
-        """Give results their places; how many there are of each kind."""
-        last = {n: k for k, (_, (*operands, _)) in enumerate(self.steps) for n in operands}
-        last.update(dict.fromkeys(self.flags, len(self.steps)))
-        counts, free = dict.fromkeys(("state", "flag", "one"), 0), {"state": [], "flag": [], "one": []}
-        for k, (_, (*operands, result)) in enumerate(self.steps):
-            for n in dict.fromkeys(operands):
-                kind, place = self.slots.get(n, ("given", 0))
-                if last[n] == k and kind in free:
-                    free[kind].append(place)
-            if result not in self.slots:
-                kind = self.kinds[result]
-                if not free[kind]:
-                    free[kind].append(counts[kind])
-                    counts[kind] += 1
-                self.slots[result] = kind, free[kind].pop()
-        return counts
+    def layout(self, grouped):
+        """How it runs, step by step or in groups, and where."""
+        if grouped not in self.layouts:
+            self.layouts[grouped] = _Layout(self, grouped)
+        return self.layouts[grouped]
 
 
-_WITHOUT = {np.logical_and: True}  # first operands that change nothing
-_OF_FLAGS = {np.logical_and, np.greater, np.greater_equal}
+_COMPARISONS = {np.greater, np.greater_equal, np.less, np.less_equal}
 _RECORDS = {}  # by function
 
 
+def _grouped(steps):
+    """Steps in groups of one operation, none of which needs another; longest ways to the end first."""
+    at = {result: k for k, (*_, result) in enumerate(steps)}
+    users, missing, length = [[] for _ in steps], [0] * len(steps), [0] * len(steps)
+    for k in reversed(range(len(steps))):
+        for i in (at[n] for n in steps[k][1] if n in at):
+            users[i].append(k)
+            missing[k] += 1
+            length[i] = max(length[i], length[k] + 1)
+    groups, ready, new = [], {}, [k for k in range(len(steps)) if not missing[k]]
+    while ready or new:
+        for k in new:
+            ready.setdefault(steps[k][0], []).append(k)
+        group = ready.pop(max(ready, key=lambda operation: max(length[k] for k in ready[operation])))
+        groups.append([steps[k] for k in sorted(group)])
+        new = []
+        for user in (user for k in group for user in users[k]):
+            missing[user] -= 1
+            if not missing[user]:
+                new.append(user)
+    return groups
+
+
+class _Arrays:
+    """Functions of many states at once, in arrays (states,), which are valid until `release`."""
+
+    def __init__(self, p, states):
+        self.p, self.states, self.used = p, states, {}
+
+    def computed(self, function, *vectors):
+        """Flags and arrays (entries, states) of a function."""
+        key, replay = _replay(function, self.p, vectors, self.states)
+        self.used[key] = replay
+        return replay.run(self.p, vectors, self.states)
+
+    def release(self):
+        _keep(self.used)
+
+    def shaped(self, names, arrays):
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+
+    def solved(self, order, a, b):
+        """Solutions, straight through; and which are beyond doubt."""
+        sure, (x,) = self.computed(order, a, b)
+        return sure, x
+
+    def run(self, function, names, *vectors):
+        """Arrays (*shape, states) of a function; NaN where the state is impossible."""
+        ok, arrays = self.computed(function, *vectors)
+        arrays = self.shaped(names, arrays)
+        ok = np.logical_and(ok, _finite(arrays, self.states))
+        if not ok.all():
+            for a in arrays:
+                a[..., ~ok] = np.nan
+        return arrays
+
+
+class _Judged(_Arrays):
+    """The same, and why a state is impossible."""
+
+    def __init__(self, p, states):
+        super().__init__(p, states)
+        self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
+
+    def run(self, function, names, *vectors):
+        """Arrays (*shape, states) of a function, also where they are nonsense."""
+        (valid, reached, clear), arrays = self.computed(function, *vectors)
+        for code, good in ((3, valid), (1, reached), (2, clear)):
+            self.failed[code] |= np.logical_not(good)
+        return self.shaped(names, arrays)
+
+    def closed(self, q):
+        """q, noting where the iteration has not converged."""
+        self.failed[4] |= np.isnan(q).any(axis=0)
+        return q
+
+    def status(self, possible):
+        """Status codes; 3 where all is well but some input or result is not finite."""
+        return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
+
+
+_IN_ONE = {}  # by function
+
+
+def _in_one(function):
+    """A function that tells whether a state is possible, of one that tells why not."""
+
+    def run(m, *vectors):
+        (valid, reached, clear), arrays = function(m, *vectors)
+        return valid & reached & clear, arrays
+
+    return _IN_ONE.setdefault(function, run)
+
+
+class _Layout:
+    """Groups of steps, and the rows in which numbers stand: what is read no more makes room.
+
+    So a few rows do, which stay in the processor's cache.
+
+    Attributes:
+        groups: (operation, rows of its operands, first row of its results, how many there are);
+            ~k stands for a fixed value, where these have no rows.
+        rows, flags: how many there are; results of comparisons are flags.
+        place: rows by number: those that are given, then those that are fixed if steps are
+            grouped, else those of the results.
+    """
+
+    def __init__(self, record, grouped):
+        groups = _grouped(record.steps) if grouped else [[step] for step in record.steps]
+        last = {n: k for k, group in enumerate(groups) for _, operands, _ in group for n in operands}
+        lasting = [*range(record.given), *(record.fixed if grouped else record.results)]
+        self.place, self.rows = {n: row for row, n in enumerate(lasting)}, len(lasting)
+        if not grouped:
+            self.place.update((n, ~k) for k, n in enumerate(record.fixed))
+        lasting, free = {*self.place, *record.results}, []
+        self.groups, self.flags = [], 0
+        for k, group in enumerate(groups):
+            operation, read = group[0][0], [operands for _, operands, _ in group]
+            columns = [[self.place[n] for n in column] for column in zip(*read)]
+            done = dict.fromkeys(n for operands in read for n in operands if last[n] == k)
+            free += [self.place[n] for n in done if n not in lasting]
+            first = self.first(operation, [result for *_, result in group], free)
+            self.groups.append((operation, columns, first, len(group)))
+
+    def first(self, operation, results, free):
+        """The first row of results, all of which get their places."""
+        if results[0] in self.place:
+            return self.place[results[0]]
+        if operation in _COMPARISONS:
+            first = self.flags
+            self.flags += len(results)
+        else:
+            first = self.room(free, len(results))
+        self.place.update((result, first + k) for k, result in enumerate(results))
+        return first
+
+    def room(self, free, count):
+        """The first of so many rows that follow each other: free ones, or new ones."""
+        if count == 1 and free:
+            return free.pop()
+        free.sort()
+        for k in range(len(free) - count + 1):
+            if free[k + count - 1] - free[k] == count - 1:
+                first = free[k]
+                del free[k : k + count]
+                return first
+        self.rows += count
+        return self.rows - count
+
+
 class _Replay:
-    """A record on arrays of so many states, which are made once."""
+    """A record on arrays of so many states, which are made once.
 
-    def __init__(self, p, function, sizes, states):
-        if function not in _RECORDS:
-            _RECORDS[function] = _Record(p, function, sizes)
-        r = _RECORDS[function]
-        rows = _rows(r.counts["state"] + sum(r.sizes) + sum(sizes), states)
-        given, out, state = np.split(rows, np.cumsum((sum(sizes), sum(r.sizes))))
-        made = {"state": state, "out": out, "one": [np.empty(()) for _ in range(r.counts["one"])]}
-        made["flag"] = np.empty((r.counts["flag"], states), dtype=bool)
-        self.inputs = np.split(given, np.cumsum(sizes)[:-1])
-        self.arrays = np.split(out, np.cumsum(r.sizes)[:-1])
-        at = {number: np.array(value) for value, number in r.literals.items()}
-        for values, given in zip(r.inputs, self.inputs):
-            at |= {v.number: row for v, row in zip(values, given)}
-        if r.name is not None:
-            shared, loops = _constants(p, r.name)
-            values = sum((k for legs in loops for _, k in legs), shared)
-            at |= {number: np.array(value) for number, value in zip(r.constant, values)}
-        at |= {number: made[kind][place] for number, (kind, place) in r.slots.items()}
-        self.steps = [(f, tuple([at[n] for n in numbers])) for f, numbers in r.steps]
-        flags = [at[n] for n in r.flags]
-        self.flags = flags if r.is_judged else flags[0]
+    Few states are done in groups of steps, whose operands are put side by side: calls of NumPy
+    cost more than numbers then.  Many are done step by step.
+    """
 
-    def run(self, vectors):
+    def __init__(self, record, states):
+        grouped = states <= _SOME
+        layout = record.layout(grouped)
+        self.record, self.p, self.fixed = record, None, np.zeros(len(record.fixed))
+        self.rows = np.zeros((layout.rows, states)) if grouped else _rows(layout.rows, states)
+        self.flags, self.calls = np.zeros((layout.flags, states), dtype=bool), []
+        widest = max((len(columns) * size for _, columns, _, size in layout.groups), default=0)
+        beside = np.zeros((grouped * widest, states))
+        for operation, columns, first, size in layout.groups:
+            operands, taken = [], []
+            for column in columns:
+                if column[0] < 0:
+                    operands.append(self.fixed[~column[0], ...])
+                elif column == list(range(column[0], column[0] + size)):
+                    operands.append(_some(self.rows, column[0], size))
+                else:
+                    operands.append(_some(beside, len(taken), size))
+                    taken += column
+            if taken:
+                self.take(taken, beside[: len(taken)])
+            made = self.flags if operation in _COMPARISONS else self.rows
+            self.calls.append((operation, (*operands, _some(made, first, size))))
+        behind = self.rows[record.given :]
+        self.of_fixed, self.results = behind[: grouped * len(record.fixed)], behind[: len(record.results)]
+        if grouped:
+            self.results = np.zeros((len(record.results), states))
+            self.take([layout.place[n] for n in record.results], self.results)
+        self.asked = [
+            slice(None) if len(flag) == layout.flags else [layout.place[n] for n in flag]
+            for flag in record.flags
+        ]
+
+    def take(self, places, out):
+        """Put rows side by side."""
+        self.calls.append((self.rows.take, (np.array(places, dtype=int), 0, out, "clip")))
+
+    def run(self, p, vectors, states):
         """Flags and arrays (entries, states) of the function; these are overwritten the next time."""
-        for rows, vector in zip(self.inputs, vectors):
-            rows[:] = vector
-        for operation, operands in self.steps:
-            operation(*operands)
-        return self.flags, self.arrays
+        if p is not self.p:
+            self.p, self.fixed[:] = p, self.record.values_of(p)
+            self.of_fixed[:] = self.fixed[: len(self.of_fixed), None]
+        first, arrays = 0, []
+        for vector in vectors:
+            self.rows[first : first + len(vector), :states] = vector
+            first += len(vector)
+        for call, operands in self.calls:
+            call(*operands)
+        first = 0
+        for size in self.record.sizes:
+            arrays.append(self.results[first : first + size, :states])
+            first += size
+        flags = [np.logical_and.reduce(self.flags[rows])[:states] for rows in self.asked]
+        return flags if self.record.is_judged else flags[0], arrays
+
+
+def _some(rows, first, count):
+    return rows[first] if count == 1 else rows[first : first + count]
+
+
+_KEPT = {}  # replays that nobody uses, by function and number of states
+_MEMORY = 1 << 25  # bytes of theirs
+
+
+def _replay(function, p, vectors, states):
+    """The key of a replay and the replay, which is taken from those that are kept."""
+    if function not in _RECORDS:
+        _RECORDS[function] = _Record(p, function, [len(vector) for vector in vectors])
+    step = 1 << max(0, states.bit_length() - 4)
+    key = function, -(-states // step) * step  # a few sizes serve all numbers of states
+    return key, _KEPT.pop(key, None) or _Replay(_RECORDS[function], key[1])
+
+
+def _keep(replays):
+    """Keep replays for the next time; the oldest are given up where it is too much."""
+    _KEPT.update(replays)
+    size = 0
+    for key, replay in reversed(list(_KEPT.items())):
+        size += max(replay.rows.nbytes, _MEMORY >> 6)
+        if size > _MEMORY:
+            _KEPT.pop(key, None)
 
 
 def _rows(count, states):
@@ -1820,7 +1946,9 @@ def _search(m, residual, slope, X, given, guess, halving):
 def _at(m, function, X, given, at):
     """The array of a function at some of the states."""
     X, given = X[:, at], [v[..., at] for v in given]
-    (found,) = function(_mode(m.p, X.shape[1]), X, *given)
+    m = _mode(m.p, X.shape[1])
+    found = np.array(*function(m, X, *given))
+    m.release()
     return found
 
 

@@ -232,15 +232,12 @@ INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *t
 }
 
 /* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
-INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+INLINE const real *optional(size_t size, const real *x, const real *none, real *flags)
 {
-    for (size_t e = 0; e < size && !x; ++e) {
-        own[e] = none;
-    }
     if (x) {
         check(size, 1, x, flags);
     }
-    return x ? x : own;
+    return x ? x : none;
 }
 
 INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
@@ -297,6 +294,16 @@ APART void refuse(size_t size, real *out)
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
     }
+}
+
+/* The status of a state; an output is refused where it is impossible. */
+INLINE int settled(const verdict *t, size_t size, real *out)
+{
+    const int code = judge(t);
+    if (code != OK) {
+        refuse(size, out);
+    }
+    return code;
 }
 
 /* Outputs of a state where the user wants them, and of states side by side, state by state. */
@@ -426,130 +433,130 @@ INLINE int all_rotations(const real *x, size_t n)
 /* ---- parameters ---- */
 
 const hybrid_3rrrs_redundant_params hybrid_3rrrs_redundant_default_params = {
-    {R(0.0), R(0.0), R(-9.81)},  /* gravity */
+    {0, 0, R(-9.81)},  /* gravity */
     R(12.0),  /* platform_mass */
-    {R(0.0), R(0.0), R(0.04)},  /* platform_centre_of_mass */
-    {{R(0.35), R(0.0), R(0.0)}, {R(0.0), R(0.35), R(0.0)}, {R(0.0), R(0.0), R(0.6)}},  /* platform_inertia */
+    {0, 0, R(0.04)},  /* platform_centre_of_mass */
+    {{R(0.35), 0, 0}, {0, R(0.35), 0}, {0, 0, R(0.6)}},  /* platform_inertia */
     {  /* rrrrs_base_point */
         {R(-0.0015568868208824527), R(-0.04829317713722774), R(-0.14542043687297324)},
     },
     {  /* rrrrs_base_frame */
-        {{R(0.0), R(0.9800665778412416), R(-0.19866933079506122)}, {R(0.0), R(0.19866933079506122), R(0.9800665778412416)}, {R(1.0), R(0.0), R(0.0)}},
+        {{0, R(0.9800665778412416), R(-0.19866933079506122)}, {0, R(0.19866933079506122), R(0.9800665778412416)}, {1, 0, 0}},
     },
     {  /* rrrrs_platform_point */
         {R(0.29401997335237245), R(0.05960079923851836), R(-0.02)},
     },
     {  /* rrrrs_joint2_offset */
-        {R(0.12), R(0.0), R(0.0)},
+        {R(0.12), 0, 0},
     },
     {  /* rrrrs_joint3_offset */
-        {R(0.3), R(0.0), R(0.0)},
+        {R(0.3), 0, 0},
     },
     {  /* rrrrs_joint4_offset */
-        {R(0.3), R(0.0), R(0.0)},
+        {R(0.3), 0, 0},
     },
     {  /* rrrrs_platform_joint_offset */
-        {R(0.35), R(0.0), R(0.0)},
+        {R(0.35), 0, 0},
     },
     {  /* rrrrs_link1_mass */
         R(3.0),
     },
     {  /* rrrrs_link1_centre_of_mass */
-        {R(0.06), R(0.0), R(0.0)},
+        {R(0.06), 0, 0},
     },
     {  /* rrrrs_link1_inertia */
-        {{R(0.0006), R(0.0), R(0.0)}, {R(0.0), R(0.0038999999999999994), R(0.0)}, {R(0.0), R(0.0), R(0.0038999999999999994)}},
+        {{R(0.0006), 0, 0}, {0, R(0.0038999999999999994), 0}, {0, 0, R(0.0038999999999999994)}},
     },
     {  /* rrrrs_link2_mass */
         R(2.0),
     },
     {  /* rrrrs_link2_centre_of_mass */
-        {R(0.15), R(0.0), R(0.0)},
+        {R(0.15), 0, 0},
     },
     {  /* rrrrs_link2_inertia */
-        {{R(0.0004), R(0.0), R(0.0)}, {R(0.0), R(0.0152), R(0.0)}, {R(0.0), R(0.0), R(0.0152)}},
+        {{R(0.0004), 0, 0}, {0, R(0.0152), 0}, {0, 0, R(0.0152)}},
     },
     {  /* rrrrs_link3_mass */
         R(1.2),
     },
     {  /* rrrrs_link3_centre_of_mass */
-        {R(0.15), R(0.0), R(0.0)},
+        {R(0.15), 0, 0},
     },
     {  /* rrrrs_link3_inertia */
-        {{R(0.00024), R(0.0), R(0.0)}, {R(0.0), R(0.00912), R(0.0)}, {R(0.0), R(0.0), R(0.00912)}},
+        {{R(0.00024), 0, 0}, {0, R(0.00912), 0}, {0, 0, R(0.00912)}},
     },
     {  /* rrrrs_link4_mass */
-        R(1.0),
+        1,
     },
     {  /* rrrrs_link4_centre_of_mass */
-        {R(0.175), R(0.0), R(0.0)},
+        {R(0.175), 0, 0},
     },
     {  /* rrrrs_link4_inertia */
-        {{R(0.0002), R(0.0), R(0.0)}, {R(0.0), R(0.010308333333333333), R(0.0)}, {R(0.0), R(0.0), R(0.010308333333333333)}},
+        {{R(0.0002), 0, 0}, {0, R(0.010308333333333333), 0}, {0, 0, R(0.010308333333333333)}},
     },
     {  /* rrrs_base_point */
         {R(0.03717266542207143), R(0.02734503449699799), R(-0.11747636009691065)},
         {R(-0.042267827252797784), R(0.018519955333394233), R(-0.11747636009691065)},
     },
     {  /* rrrs_base_frame */
-        {{R(0.0), R(-0.6620859763419978), R(-0.7494278884130636)}, {R(0.0), R(0.7494278884130636), R(-0.6620859763419978)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.317980601499244), R(0.9480972192081247)}, {R(0.0), R(-0.9480972192081247), R(-0.317980601499244)}, {R(1.0), R(0.0), R(0.0)}},
+        {{0, R(-0.6620859763419978), R(-0.7494278884130636)}, {0, R(0.7494278884130636), R(-0.6620859763419978)}, {1, 0, 0}},
+        {{0, R(-0.317980601499244), R(0.9480972192081247)}, {0, R(-0.9480972192081247), R(-0.317980601499244)}, {1, 0, 0}},
     },
     {  /* rrrs_platform_point */
         {R(-0.19862579290259935), R(0.22482836652391908), R(-0.02)},
         {R(-0.0953941804497732), R(-0.28442916576243743), R(-0.02)},
     },
     {  /* rrrs_joint2_offset */
-        {R(0.12), R(0.0), R(0.0)},
-        {R(0.12), R(0.0), R(0.0)},
+        {R(0.12), 0, 0},
+        {R(0.12), 0, 0},
     },
     {  /* rrrs_joint3_offset */
-        {R(0.45), R(0.0), R(0.0)},
-        {R(0.45), R(0.0), R(0.0)},
+        {R(0.45), 0, 0},
+        {R(0.45), 0, 0},
     },
     {  /* rrrs_platform_joint_offset */
-        {R(0.45), R(0.0), R(0.0)},
-        {R(0.45), R(0.0), R(0.0)},
+        {R(0.45), 0, 0},
+        {R(0.45), 0, 0},
     },
     {  /* rrrs_link1_mass */
         R(3.0),
         R(3.0),
     },
     {  /* rrrs_link1_centre_of_mass */
-        {R(0.06), R(0.0), R(0.0)},
-        {R(0.06), R(0.0), R(0.0)},
+        {R(0.06), 0, 0},
+        {R(0.06), 0, 0},
     },
     {  /* rrrs_link1_inertia */
-        {{R(0.0006), R(0.0), R(0.0)}, {R(0.0), R(0.0038999999999999994), R(0.0)}, {R(0.0), R(0.0), R(0.0038999999999999994)}},
-        {{R(0.0006), R(0.0), R(0.0)}, {R(0.0), R(0.0038999999999999994), R(0.0)}, {R(0.0), R(0.0), R(0.0038999999999999994)}},
+        {{R(0.0006), 0, 0}, {0, R(0.0038999999999999994), 0}, {0, 0, R(0.0038999999999999994)}},
+        {{R(0.0006), 0, 0}, {0, R(0.0038999999999999994), 0}, {0, 0, R(0.0038999999999999994)}},
     },
     {  /* rrrs_link2_mass */
         R(2.0),
         R(2.0),
     },
     {  /* rrrs_link2_centre_of_mass */
-        {R(0.225), R(0.0), R(0.0)},
-        {R(0.225), R(0.0), R(0.0)},
+        {R(0.225), 0, 0},
+        {R(0.225), 0, 0},
     },
     {  /* rrrs_link2_inertia */
-        {{R(0.0004), R(0.0), R(0.0)}, {R(0.0), R(0.03395), R(0.0)}, {R(0.0), R(0.0), R(0.03395)}},
-        {{R(0.0004), R(0.0), R(0.0)}, {R(0.0), R(0.03395), R(0.0)}, {R(0.0), R(0.0), R(0.03395)}},
+        {{R(0.0004), 0, 0}, {0, R(0.03395), 0}, {0, 0, R(0.03395)}},
+        {{R(0.0004), 0, 0}, {0, R(0.03395), 0}, {0, 0, R(0.03395)}},
     },
     {  /* rrrs_link3_mass */
         R(1.2),
         R(1.2),
     },
     {  /* rrrs_link3_centre_of_mass */
-        {R(0.225), R(0.0), R(0.0)},
-        {R(0.225), R(0.0), R(0.0)},
+        {R(0.225), 0, 0},
+        {R(0.225), 0, 0},
     },
     {  /* rrrs_link3_inertia */
-        {{R(0.00024), R(0.0), R(0.0)}, {R(0.0), R(0.020370000000000003), R(0.0)}, {R(0.0), R(0.0), R(0.020370000000000003)}},
-        {{R(0.00024), R(0.0), R(0.0)}, {R(0.0), R(0.020370000000000003), R(0.0)}, {R(0.0), R(0.0), R(0.020370000000000003)}},
+        {{R(0.00024), 0, 0}, {0, R(0.020370000000000003), 0}, {0, 0, R(0.020370000000000003)}},
+        {{R(0.00024), 0, 0}, {0, R(0.020370000000000003), 0}, {0, 0, R(0.020370000000000003)}},
     },
 };
 
-const hybrid_3rrrs_redundant_real hybrid_3rrrs_redundant_HOME_X[HYBRID_3RRRS_REDUNDANT_NQ] = {R(0.0), R(0.0), R(0.75), R(0.0), R(0.0), R(0.0), R(1.0), R(1.1)};
+const hybrid_3rrrs_redundant_real hybrid_3rrrs_redundant_HOME_X[HYBRID_3RRRS_REDUNDANT_NQ] = {0, 0, R(0.75), 0, 0, 0, 1, R(1.1)};
 const hybrid_3rrrs_redundant_real hybrid_3rrrs_redundant_HOME_Q[HYBRID_3RRRS_REDUNDANT_NJ] = {R(0.15), R(1.1), R(-0.7), R(-0.6), R(0.15), R(0.9), R(-1.0), R(0.15), R(0.9), R(-1.0)};
 const size_t hybrid_3rrrs_redundant_ACTUATED[HYBRID_3RRRS_REDUNDANT_NU] = {0, 1, 2, 4, 5, 7, 8};
 const char *const hybrid_3rrrs_redundant_ACTUATOR_NAMES[HYBRID_3RRRS_REDUNDANT_NU] = {
@@ -638,6 +645,9 @@ static int acceptable(const hybrid_3rrrs_redundant_params *p)
     return ok;
 }
 
+#define KEEP(name) model->name = name
+#define KEEP_OF_LEG(name) model->name[leg] = name
+
 int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, hybrid_3rrrs_redundant_model *model)
 {
     if (!acceptable(params)) {
@@ -690,9 +700,9 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
     const real J_star_t_8 = platform_mass*(J_star_t_2 - J_star_t_4);
     const real J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass;
     const real J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4);
-    model->gravity_x = gravity_x;
-    model->gravity_y = gravity_y;
-    model->gravity_z = gravity_z;
+    KEEP(gravity_x);
+    KEEP(gravity_y);
+    KEEP(gravity_z);
     for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
         const size_t own = leg;
         const real rrrrs_base_point_x = params->rrrrs_base_point[own][0];
@@ -930,97 +940,97 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         const real rrrrs_potential_t_3 = rrrrs_b_in_spec1_x*rrrrs_link1_mass;
         const real rrrrs_potential_t_4 = rrrrs_link2_mass*(rrrrs_b_in_spec1_x +
             rrrrs_joint2_offset_x);
-        model->inv_rrrrs_rho2_3_t[leg] = inv_rrrrs_rho2_3_t;
-        model->inv_rrrrs_size[leg] = inv_rrrrs_size;
-        model->inv_rrrrs_size_t[leg] = inv_rrrrs_size_t;
-        model->inv_rrrrs_size_t_2[leg] = inv_rrrrs_size_t_2;
-        model->inv_rrrrs_size_t_3[leg] = inv_rrrrs_size_t_3;
-        model->rrrrs_J_1_in_spec1_xx[leg] = rrrrs_J_1_in_spec1_xx;
-        model->rrrrs_J_2_in_spec2_xx[leg] = rrrrs_J_2_in_spec2_xx;
-        model->rrrrs_J_2_in_spec2_xy[leg] = rrrrs_J_2_in_spec2_xy;
-        model->rrrrs_J_2_in_spec2_xz[leg] = rrrrs_J_2_in_spec2_xz;
-        model->rrrrs_J_2_in_spec2_yy[leg] = rrrrs_J_2_in_spec2_yy;
-        model->rrrrs_J_2_in_spec2_yz[leg] = rrrrs_J_2_in_spec2_yz;
-        model->rrrrs_J_2_in_spec2_zz[leg] = rrrrs_J_2_in_spec2_zz;
-        model->rrrrs_J_3_in_spec3_xx[leg] = rrrrs_J_3_in_spec3_xx;
-        model->rrrrs_J_3_in_spec3_xy[leg] = rrrrs_J_3_in_spec3_xy;
-        model->rrrrs_J_3_in_spec3_xz[leg] = rrrrs_J_3_in_spec3_xz;
-        model->rrrrs_J_3_in_spec3_yy[leg] = rrrrs_J_3_in_spec3_yy;
-        model->rrrrs_J_3_in_spec3_yz[leg] = rrrrs_J_3_in_spec3_yz;
-        model->rrrrs_J_4_in_spec4_xx[leg] = rrrrs_J_4_in_spec4_xx;
-        model->rrrrs_J_4_in_spec4_xy[leg] = rrrrs_J_4_in_spec4_xy;
-        model->rrrrs_J_4_in_spec4_xz[leg] = rrrrs_J_4_in_spec4_xz;
-        model->rrrrs_J_4_in_spec4_yy[leg] = rrrrs_J_4_in_spec4_yy;
-        model->rrrrs_J_4_in_spec4_yz[leg] = rrrrs_J_4_in_spec4_yz;
-        model->rrrrs_J_4_in_spec4_zz[leg] = rrrrs_J_4_in_spec4_zz;
-        model->rrrrs_Jc_2_t[leg] = rrrrs_Jc_2_t;
-        model->rrrrs_Jc_3_in_axes3_zz[leg] = rrrrs_Jc_3_in_axes3_zz;
-        model->rrrrs_Sigma_2_in_axes2_xx[leg] = rrrrs_Sigma_2_in_axes2_xx;
-        model->rrrrs_Sigma_2_in_axes2_yy[leg] = rrrrs_Sigma_2_in_axes2_yy;
-        model->rrrrs_Sigma_2_in_axes2_zz[leg] = rrrrs_Sigma_2_in_axes2_zz;
-        model->rrrrs_Sigma_3_in_axes3_xx[leg] = rrrrs_Sigma_3_in_axes3_xx;
-        model->rrrrs_Sigma_3_in_axes3_yy[leg] = rrrrs_Sigma_3_in_axes3_yy;
-        model->rrrrs_Sigma_3_in_axes3_zz[leg] = rrrrs_Sigma_3_in_axes3_zz;
-        model->rrrrs_Sigma_4_in_axes4_xx[leg] = rrrrs_Sigma_4_in_axes4_xx;
-        model->rrrrs_Sigma_4_in_axes4_yy[leg] = rrrrs_Sigma_4_in_axes4_yy;
-        model->rrrrs_Sigma_4_in_axes4_zz[leg] = rrrrs_Sigma_4_in_axes4_zz;
-        model->rrrrs_acc_3_t[leg] = rrrrs_acc_3_t;
-        model->rrrrs_acc_3_t_2[leg] = rrrrs_acc_3_t_2;
-        model->rrrrs_b_in_spec1_x[leg] = rrrrs_b_in_spec1_x;
-        model->rrrrs_base_frame_xx[leg] = rrrrs_base_frame_xx;
-        model->rrrrs_base_frame_xy[leg] = rrrrs_base_frame_xy;
-        model->rrrrs_base_frame_xz[leg] = rrrrs_base_frame_xz;
-        model->rrrrs_base_frame_yx[leg] = rrrrs_base_frame_yx;
-        model->rrrrs_base_frame_yy[leg] = rrrrs_base_frame_yy;
-        model->rrrrs_base_frame_yz[leg] = rrrrs_base_frame_yz;
-        model->rrrrs_base_frame_zx[leg] = rrrrs_base_frame_zx;
-        model->rrrrs_base_frame_zy[leg] = rrrrs_base_frame_zy;
-        model->rrrrs_base_frame_zz[leg] = rrrrs_base_frame_zz;
-        model->rrrrs_base_point_x[leg] = rrrrs_base_point_x;
-        model->rrrrs_base_point_y[leg] = rrrrs_base_point_y;
-        model->rrrrs_base_point_z[leg] = rrrrs_base_point_z;
-        model->rrrrs_branch_1[leg] = rrrrs_branch_1;
-        model->rrrrs_branch_3[leg] = rrrrs_branch_3;
-        model->rrrrs_d_G_in_axes4_yy[leg] = rrrrs_d_G_in_axes4_yy;
-        model->rrrrs_d_Gamma_4_in_axes4_y[leg] = rrrrs_d_Gamma_4_in_axes4_y;
-        model->rrrrs_d_Gamma_4_t[leg] = rrrrs_d_Gamma_4_t;
-        model->rrrrs_d_P_2_t[leg] = rrrrs_d_P_2_t;
-        model->rrrrs_d_c_in_axes4_yy[leg] = rrrrs_d_c_in_axes4_yy;
-        model->rrrrs_d_phi_4_t[leg] = rrrrs_d_phi_4_t;
-        model->rrrrs_g_in_axes1_z[leg] = rrrrs_g_in_axes1_z;
-        model->rrrrs_h_1_in_spec1_x[leg] = rrrrs_h_1_in_spec1_x;
-        model->rrrrs_h_1_in_spec1_y[leg] = rrrrs_h_1_in_spec1_y;
-        model->rrrrs_h_1_in_spec1_z[leg] = rrrrs_h_1_in_spec1_z;
-        model->rrrrs_h_2_in_spec2_x[leg] = rrrrs_h_2_in_spec2_x;
-        model->rrrrs_h_2_in_spec2_y[leg] = rrrrs_h_2_in_spec2_y;
-        model->rrrrs_h_2_in_spec2_z[leg] = rrrrs_h_2_in_spec2_z;
-        model->rrrrs_h_3_in_spec3_x[leg] = rrrrs_h_3_in_spec3_x;
-        model->rrrrs_h_3_in_spec3_y[leg] = rrrrs_h_3_in_spec3_y;
-        model->rrrrs_h_3_in_spec3_z[leg] = rrrrs_h_3_in_spec3_z;
-        model->rrrrs_h_3_t[leg] = rrrrs_h_3_t;
-        model->rrrrs_h_3_t_2[leg] = rrrrs_h_3_t_2;
-        model->rrrrs_h_4_in_spec4_x[leg] = rrrrs_h_4_in_spec4_x;
-        model->rrrrs_h_4_in_spec4_y[leg] = rrrrs_h_4_in_spec4_y;
-        model->rrrrs_h_4_in_spec4_z[leg] = rrrrs_h_4_in_spec4_z;
-        model->rrrrs_joint2_offset_x[leg] = rrrrs_joint2_offset_x;
-        model->rrrrs_joint3_offset_x[leg] = rrrrs_joint3_offset_x;
-        model->rrrrs_joint4_offset_x[leg] = rrrrs_joint4_offset_x;
-        model->rrrrs_link1_mass[leg] = rrrrs_link1_mass;
-        model->rrrrs_link2_mass[leg] = rrrrs_link2_mass;
-        model->rrrrs_link3_mass[leg] = rrrrs_link3_mass;
-        model->rrrrs_link4_mass[leg] = rrrrs_link4_mass;
-        model->rrrrs_platform_joint_offset_x[leg] = rrrrs_platform_joint_offset_x;
-        model->rrrrs_platform_point_x[leg] = rrrrs_platform_point_x;
-        model->rrrrs_platform_point_y[leg] = rrrrs_platform_point_y;
-        model->rrrrs_platform_point_z[leg] = rrrrs_platform_point_z;
-        model->rrrrs_potential_t[leg] = rrrrs_potential_t;
-        model->rrrrs_potential_t_2[leg] = rrrrs_potential_t_2;
-        model->rrrrs_potential_t_3[leg] = rrrrs_potential_t_3;
-        model->rrrrs_potential_t_4[leg] = rrrrs_potential_t_4;
-        model->rrrrs_rho2_3_t[leg] = rrrrs_rho2_3_t;
-        model->rrrrs_size[leg] = rrrrs_size;
-        model->rrrrs_size_t_3[leg] = rrrrs_size_t_3;
-        model->rrrrs_w_4_in_axes4_y[leg] = rrrrs_w_4_in_axes4_y;
+        KEEP_OF_LEG(inv_rrrrs_rho2_3_t);
+        KEEP_OF_LEG(inv_rrrrs_size);
+        KEEP_OF_LEG(inv_rrrrs_size_t);
+        KEEP_OF_LEG(inv_rrrrs_size_t_2);
+        KEEP_OF_LEG(inv_rrrrs_size_t_3);
+        KEEP_OF_LEG(rrrrs_J_1_in_spec1_xx);
+        KEEP_OF_LEG(rrrrs_J_2_in_spec2_xx);
+        KEEP_OF_LEG(rrrrs_J_2_in_spec2_xy);
+        KEEP_OF_LEG(rrrrs_J_2_in_spec2_xz);
+        KEEP_OF_LEG(rrrrs_J_2_in_spec2_yy);
+        KEEP_OF_LEG(rrrrs_J_2_in_spec2_yz);
+        KEEP_OF_LEG(rrrrs_J_2_in_spec2_zz);
+        KEEP_OF_LEG(rrrrs_J_3_in_spec3_xx);
+        KEEP_OF_LEG(rrrrs_J_3_in_spec3_xy);
+        KEEP_OF_LEG(rrrrs_J_3_in_spec3_xz);
+        KEEP_OF_LEG(rrrrs_J_3_in_spec3_yy);
+        KEEP_OF_LEG(rrrrs_J_3_in_spec3_yz);
+        KEEP_OF_LEG(rrrrs_J_4_in_spec4_xx);
+        KEEP_OF_LEG(rrrrs_J_4_in_spec4_xy);
+        KEEP_OF_LEG(rrrrs_J_4_in_spec4_xz);
+        KEEP_OF_LEG(rrrrs_J_4_in_spec4_yy);
+        KEEP_OF_LEG(rrrrs_J_4_in_spec4_yz);
+        KEEP_OF_LEG(rrrrs_J_4_in_spec4_zz);
+        KEEP_OF_LEG(rrrrs_Jc_2_t);
+        KEEP_OF_LEG(rrrrs_Jc_3_in_axes3_zz);
+        KEEP_OF_LEG(rrrrs_Sigma_2_in_axes2_xx);
+        KEEP_OF_LEG(rrrrs_Sigma_2_in_axes2_yy);
+        KEEP_OF_LEG(rrrrs_Sigma_2_in_axes2_zz);
+        KEEP_OF_LEG(rrrrs_Sigma_3_in_axes3_xx);
+        KEEP_OF_LEG(rrrrs_Sigma_3_in_axes3_yy);
+        KEEP_OF_LEG(rrrrs_Sigma_3_in_axes3_zz);
+        KEEP_OF_LEG(rrrrs_Sigma_4_in_axes4_xx);
+        KEEP_OF_LEG(rrrrs_Sigma_4_in_axes4_yy);
+        KEEP_OF_LEG(rrrrs_Sigma_4_in_axes4_zz);
+        KEEP_OF_LEG(rrrrs_acc_3_t);
+        KEEP_OF_LEG(rrrrs_acc_3_t_2);
+        KEEP_OF_LEG(rrrrs_b_in_spec1_x);
+        KEEP_OF_LEG(rrrrs_base_frame_xx);
+        KEEP_OF_LEG(rrrrs_base_frame_xy);
+        KEEP_OF_LEG(rrrrs_base_frame_xz);
+        KEEP_OF_LEG(rrrrs_base_frame_yx);
+        KEEP_OF_LEG(rrrrs_base_frame_yy);
+        KEEP_OF_LEG(rrrrs_base_frame_yz);
+        KEEP_OF_LEG(rrrrs_base_frame_zx);
+        KEEP_OF_LEG(rrrrs_base_frame_zy);
+        KEEP_OF_LEG(rrrrs_base_frame_zz);
+        KEEP_OF_LEG(rrrrs_base_point_x);
+        KEEP_OF_LEG(rrrrs_base_point_y);
+        KEEP_OF_LEG(rrrrs_base_point_z);
+        KEEP_OF_LEG(rrrrs_branch_1);
+        KEEP_OF_LEG(rrrrs_branch_3);
+        KEEP_OF_LEG(rrrrs_d_G_in_axes4_yy);
+        KEEP_OF_LEG(rrrrs_d_Gamma_4_in_axes4_y);
+        KEEP_OF_LEG(rrrrs_d_Gamma_4_t);
+        KEEP_OF_LEG(rrrrs_d_P_2_t);
+        KEEP_OF_LEG(rrrrs_d_c_in_axes4_yy);
+        KEEP_OF_LEG(rrrrs_d_phi_4_t);
+        KEEP_OF_LEG(rrrrs_g_in_axes1_z);
+        KEEP_OF_LEG(rrrrs_h_1_in_spec1_x);
+        KEEP_OF_LEG(rrrrs_h_1_in_spec1_y);
+        KEEP_OF_LEG(rrrrs_h_1_in_spec1_z);
+        KEEP_OF_LEG(rrrrs_h_2_in_spec2_x);
+        KEEP_OF_LEG(rrrrs_h_2_in_spec2_y);
+        KEEP_OF_LEG(rrrrs_h_2_in_spec2_z);
+        KEEP_OF_LEG(rrrrs_h_3_in_spec3_x);
+        KEEP_OF_LEG(rrrrs_h_3_in_spec3_y);
+        KEEP_OF_LEG(rrrrs_h_3_in_spec3_z);
+        KEEP_OF_LEG(rrrrs_h_3_t);
+        KEEP_OF_LEG(rrrrs_h_3_t_2);
+        KEEP_OF_LEG(rrrrs_h_4_in_spec4_x);
+        KEEP_OF_LEG(rrrrs_h_4_in_spec4_y);
+        KEEP_OF_LEG(rrrrs_h_4_in_spec4_z);
+        KEEP_OF_LEG(rrrrs_joint2_offset_x);
+        KEEP_OF_LEG(rrrrs_joint3_offset_x);
+        KEEP_OF_LEG(rrrrs_joint4_offset_x);
+        KEEP_OF_LEG(rrrrs_link1_mass);
+        KEEP_OF_LEG(rrrrs_link2_mass);
+        KEEP_OF_LEG(rrrrs_link3_mass);
+        KEEP_OF_LEG(rrrrs_link4_mass);
+        KEEP_OF_LEG(rrrrs_platform_joint_offset_x);
+        KEEP_OF_LEG(rrrrs_platform_point_x);
+        KEEP_OF_LEG(rrrrs_platform_point_y);
+        KEEP_OF_LEG(rrrrs_platform_point_z);
+        KEEP_OF_LEG(rrrrs_potential_t);
+        KEEP_OF_LEG(rrrrs_potential_t_2);
+        KEEP_OF_LEG(rrrrs_potential_t_3);
+        KEEP_OF_LEG(rrrrs_potential_t_4);
+        KEEP_OF_LEG(rrrrs_rho2_3_t);
+        KEEP_OF_LEG(rrrrs_size);
+        KEEP_OF_LEG(rrrrs_size_t_3);
+        KEEP_OF_LEG(rrrrs_w_4_in_axes4_y);
         m_star_of_legs += rrrrs_link4_mass;
         h_star_in_platform_x_of_legs += rrrrs_h_star_t;
         h_star_in_platform_y_of_legs += rrrrs_h_star_t_2;
@@ -1223,79 +1233,79 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         const real rrrs_potential_t_3 = rrrs_b_in_spec1_x*rrrs_link1_mass;
         const real rrrs_potential_t_4 = rrrs_link2_mass*(rrrs_b_in_spec1_x +
             rrrs_joint2_offset_x);
-        model->inv_rrrs_rho2_2_t[leg] = inv_rrrs_rho2_2_t;
-        model->inv_rrrs_size[leg] = inv_rrrs_size;
-        model->inv_rrrs_size_t[leg] = inv_rrrs_size_t;
-        model->inv_rrrs_size_t_2[leg] = inv_rrrs_size_t_2;
-        model->inv_rrrs_size_t_3[leg] = inv_rrrs_size_t_3;
-        model->rrrs_J_1_in_spec1_xx[leg] = rrrs_J_1_in_spec1_xx;
-        model->rrrs_J_2_in_spec2_xx[leg] = rrrs_J_2_in_spec2_xx;
-        model->rrrs_J_2_in_spec2_xy[leg] = rrrs_J_2_in_spec2_xy;
-        model->rrrs_J_2_in_spec2_xz[leg] = rrrs_J_2_in_spec2_xz;
-        model->rrrs_J_2_in_spec2_yy[leg] = rrrs_J_2_in_spec2_yy;
-        model->rrrs_J_2_in_spec2_yz[leg] = rrrs_J_2_in_spec2_yz;
-        model->rrrs_J_3_in_spec3_xx[leg] = rrrs_J_3_in_spec3_xx;
-        model->rrrs_J_3_in_spec3_xy[leg] = rrrs_J_3_in_spec3_xy;
-        model->rrrs_J_3_in_spec3_xz[leg] = rrrs_J_3_in_spec3_xz;
-        model->rrrs_J_3_in_spec3_yy[leg] = rrrs_J_3_in_spec3_yy;
-        model->rrrs_J_3_in_spec3_yz[leg] = rrrs_J_3_in_spec3_yz;
-        model->rrrs_J_3_in_spec3_zz[leg] = rrrs_J_3_in_spec3_zz;
-        model->rrrs_Jc_2_in_axes2_zz[leg] = rrrs_Jc_2_in_axes2_zz;
-        model->rrrs_Kd_2_t[leg] = rrrs_Kd_2_t;
-        model->rrrs_Kd_2_t_2[leg] = rrrs_Kd_2_t_2;
-        model->rrrs_Sigma_2_in_axes2_xx[leg] = rrrs_Sigma_2_in_axes2_xx;
-        model->rrrs_Sigma_2_in_axes2_yy[leg] = rrrs_Sigma_2_in_axes2_yy;
-        model->rrrs_Sigma_2_in_axes2_zz[leg] = rrrs_Sigma_2_in_axes2_zz;
-        model->rrrs_Sigma_3_in_axes3_xx[leg] = rrrs_Sigma_3_in_axes3_xx;
-        model->rrrs_Sigma_3_in_axes3_yy[leg] = rrrs_Sigma_3_in_axes3_yy;
-        model->rrrs_Sigma_3_in_axes3_zz[leg] = rrrs_Sigma_3_in_axes3_zz;
-        model->rrrs_base_frame_xx[leg] = rrrs_base_frame_xx;
-        model->rrrs_base_frame_xy[leg] = rrrs_base_frame_xy;
-        model->rrrs_base_frame_xz[leg] = rrrs_base_frame_xz;
-        model->rrrs_base_frame_yx[leg] = rrrs_base_frame_yx;
-        model->rrrs_base_frame_yy[leg] = rrrs_base_frame_yy;
-        model->rrrs_base_frame_yz[leg] = rrrs_base_frame_yz;
-        model->rrrs_base_frame_zx[leg] = rrrs_base_frame_zx;
-        model->rrrs_base_frame_zy[leg] = rrrs_base_frame_zy;
-        model->rrrs_base_frame_zz[leg] = rrrs_base_frame_zz;
-        model->rrrs_base_point_x[leg] = rrrs_base_point_x;
-        model->rrrs_base_point_y[leg] = rrrs_base_point_y;
-        model->rrrs_base_point_z[leg] = rrrs_base_point_z;
-        model->rrrs_branch_1[leg] = rrrs_branch_1;
-        model->rrrs_branch_2[leg] = rrrs_branch_2;
-        model->rrrs_d_Gamma_3_in_axes3_y[leg] = rrrs_d_Gamma_3_in_axes3_y;
-        model->rrrs_d_Gamma_3_t[leg] = rrrs_d_Gamma_3_t;
-        model->rrrs_d_c_in_axes3_yy[leg] = rrrs_d_c_in_axes3_yy;
-        model->rrrs_d_phi_3_t[leg] = rrrs_d_phi_3_t;
-        model->rrrs_g_in_axes1_z[leg] = rrrs_g_in_axes1_z;
-        model->rrrs_h_1_in_spec1_x[leg] = rrrs_h_1_in_spec1_x;
-        model->rrrs_h_1_in_spec1_y[leg] = rrrs_h_1_in_spec1_y;
-        model->rrrs_h_1_in_spec1_z[leg] = rrrs_h_1_in_spec1_z;
-        model->rrrs_h_2_in_spec2_x[leg] = rrrs_h_2_in_spec2_x;
-        model->rrrs_h_2_in_spec2_y[leg] = rrrs_h_2_in_spec2_y;
-        model->rrrs_h_2_in_spec2_z[leg] = rrrs_h_2_in_spec2_z;
-        model->rrrs_h_3_in_spec3_x[leg] = rrrs_h_3_in_spec3_x;
-        model->rrrs_h_3_in_spec3_y[leg] = rrrs_h_3_in_spec3_y;
-        model->rrrs_h_3_in_spec3_z[leg] = rrrs_h_3_in_spec3_z;
-        model->rrrs_joint2_offset_x[leg] = rrrs_joint2_offset_x;
-        model->rrrs_joint3_offset_x[leg] = rrrs_joint3_offset_x;
-        model->rrrs_link1_mass[leg] = rrrs_link1_mass;
-        model->rrrs_link2_mass[leg] = rrrs_link2_mass;
-        model->rrrs_link3_mass[leg] = rrrs_link3_mass;
-        model->rrrs_mu_2_t[leg] = rrrs_mu_2_t;
-        model->rrrs_mu_2_t_2[leg] = rrrs_mu_2_t_2;
-        model->rrrs_platform_joint_offset_x[leg] = rrrs_platform_joint_offset_x;
-        model->rrrs_platform_point_x[leg] = rrrs_platform_point_x;
-        model->rrrs_platform_point_y[leg] = rrrs_platform_point_y;
-        model->rrrs_platform_point_z[leg] = rrrs_platform_point_z;
-        model->rrrs_potential_t[leg] = rrrs_potential_t;
-        model->rrrs_potential_t_2[leg] = rrrs_potential_t_2;
-        model->rrrs_potential_t_3[leg] = rrrs_potential_t_3;
-        model->rrrs_potential_t_4[leg] = rrrs_potential_t_4;
-        model->rrrs_rho2_2_t[leg] = rrrs_rho2_2_t;
-        model->rrrs_size[leg] = rrrs_size;
-        model->rrrs_size_t_3[leg] = rrrs_size_t_3;
-        model->rrrs_w_3_in_axes3_y[leg] = rrrs_w_3_in_axes3_y;
+        KEEP_OF_LEG(inv_rrrs_rho2_2_t);
+        KEEP_OF_LEG(inv_rrrs_size);
+        KEEP_OF_LEG(inv_rrrs_size_t);
+        KEEP_OF_LEG(inv_rrrs_size_t_2);
+        KEEP_OF_LEG(inv_rrrs_size_t_3);
+        KEEP_OF_LEG(rrrs_J_1_in_spec1_xx);
+        KEEP_OF_LEG(rrrs_J_2_in_spec2_xx);
+        KEEP_OF_LEG(rrrs_J_2_in_spec2_xy);
+        KEEP_OF_LEG(rrrs_J_2_in_spec2_xz);
+        KEEP_OF_LEG(rrrs_J_2_in_spec2_yy);
+        KEEP_OF_LEG(rrrs_J_2_in_spec2_yz);
+        KEEP_OF_LEG(rrrs_J_3_in_spec3_xx);
+        KEEP_OF_LEG(rrrs_J_3_in_spec3_xy);
+        KEEP_OF_LEG(rrrs_J_3_in_spec3_xz);
+        KEEP_OF_LEG(rrrs_J_3_in_spec3_yy);
+        KEEP_OF_LEG(rrrs_J_3_in_spec3_yz);
+        KEEP_OF_LEG(rrrs_J_3_in_spec3_zz);
+        KEEP_OF_LEG(rrrs_Jc_2_in_axes2_zz);
+        KEEP_OF_LEG(rrrs_Kd_2_t);
+        KEEP_OF_LEG(rrrs_Kd_2_t_2);
+        KEEP_OF_LEG(rrrs_Sigma_2_in_axes2_xx);
+        KEEP_OF_LEG(rrrs_Sigma_2_in_axes2_yy);
+        KEEP_OF_LEG(rrrs_Sigma_2_in_axes2_zz);
+        KEEP_OF_LEG(rrrs_Sigma_3_in_axes3_xx);
+        KEEP_OF_LEG(rrrs_Sigma_3_in_axes3_yy);
+        KEEP_OF_LEG(rrrs_Sigma_3_in_axes3_zz);
+        KEEP_OF_LEG(rrrs_base_frame_xx);
+        KEEP_OF_LEG(rrrs_base_frame_xy);
+        KEEP_OF_LEG(rrrs_base_frame_xz);
+        KEEP_OF_LEG(rrrs_base_frame_yx);
+        KEEP_OF_LEG(rrrs_base_frame_yy);
+        KEEP_OF_LEG(rrrs_base_frame_yz);
+        KEEP_OF_LEG(rrrs_base_frame_zx);
+        KEEP_OF_LEG(rrrs_base_frame_zy);
+        KEEP_OF_LEG(rrrs_base_frame_zz);
+        KEEP_OF_LEG(rrrs_base_point_x);
+        KEEP_OF_LEG(rrrs_base_point_y);
+        KEEP_OF_LEG(rrrs_base_point_z);
+        KEEP_OF_LEG(rrrs_branch_1);
+        KEEP_OF_LEG(rrrs_branch_2);
+        KEEP_OF_LEG(rrrs_d_Gamma_3_in_axes3_y);
+        KEEP_OF_LEG(rrrs_d_Gamma_3_t);
+        KEEP_OF_LEG(rrrs_d_c_in_axes3_yy);
+        KEEP_OF_LEG(rrrs_d_phi_3_t);
+        KEEP_OF_LEG(rrrs_g_in_axes1_z);
+        KEEP_OF_LEG(rrrs_h_1_in_spec1_x);
+        KEEP_OF_LEG(rrrs_h_1_in_spec1_y);
+        KEEP_OF_LEG(rrrs_h_1_in_spec1_z);
+        KEEP_OF_LEG(rrrs_h_2_in_spec2_x);
+        KEEP_OF_LEG(rrrs_h_2_in_spec2_y);
+        KEEP_OF_LEG(rrrs_h_2_in_spec2_z);
+        KEEP_OF_LEG(rrrs_h_3_in_spec3_x);
+        KEEP_OF_LEG(rrrs_h_3_in_spec3_y);
+        KEEP_OF_LEG(rrrs_h_3_in_spec3_z);
+        KEEP_OF_LEG(rrrs_joint2_offset_x);
+        KEEP_OF_LEG(rrrs_joint3_offset_x);
+        KEEP_OF_LEG(rrrs_link1_mass);
+        KEEP_OF_LEG(rrrs_link2_mass);
+        KEEP_OF_LEG(rrrs_link3_mass);
+        KEEP_OF_LEG(rrrs_mu_2_t);
+        KEEP_OF_LEG(rrrs_mu_2_t_2);
+        KEEP_OF_LEG(rrrs_platform_joint_offset_x);
+        KEEP_OF_LEG(rrrs_platform_point_x);
+        KEEP_OF_LEG(rrrs_platform_point_y);
+        KEEP_OF_LEG(rrrs_platform_point_z);
+        KEEP_OF_LEG(rrrs_potential_t);
+        KEEP_OF_LEG(rrrs_potential_t_2);
+        KEEP_OF_LEG(rrrs_potential_t_3);
+        KEEP_OF_LEG(rrrs_potential_t_4);
+        KEEP_OF_LEG(rrrs_rho2_2_t);
+        KEEP_OF_LEG(rrrs_size);
+        KEEP_OF_LEG(rrrs_size_t_3);
+        KEEP_OF_LEG(rrrs_w_3_in_axes3_y);
         m_star_of_legs += rrrs_link3_mass;
         h_star_in_platform_x_of_legs += rrrs_h_star_t;
         h_star_in_platform_y_of_legs += rrrs_h_star_t_2;
@@ -1348,25 +1358,25 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = root(R(0.3333333333333333)*legs_size_rrrrs +
         R(0.3333333333333333)*legs_size_rrrs);
-    model->J_star_in_platform_xx = J_star_in_platform_xx;
-    model->J_star_in_platform_xy = J_star_in_platform_xy;
-    model->J_star_in_platform_xz = J_star_in_platform_xz;
-    model->J_star_in_platform_yy = J_star_in_platform_yy;
-    model->J_star_in_platform_yz = J_star_in_platform_yz;
-    model->J_star_in_platform_zz = J_star_in_platform_zz;
-    model->J_star_t_12 = J_star_t_12;
-    model->J_star_t_14 = J_star_t_14;
-    model->Z_p_t = Z_p_t;
-    model->Z_p_t_2 = Z_p_t_2;
-    model->Z_p_t_3 = Z_p_t_3;
-    model->b_c_in_platform_x = b_c_in_platform_x;
-    model->b_c_in_platform_y = b_c_in_platform_y;
-    model->b_c_in_platform_z = b_c_in_platform_z;
-    model->h_star_in_platform_x = h_star_in_platform_x;
-    model->h_star_in_platform_y = h_star_in_platform_y;
-    model->h_star_in_platform_z = h_star_in_platform_z;
-    model->legs_size = legs_size;
-    model->m_star = m_star;
+    KEEP(J_star_in_platform_xx);
+    KEEP(J_star_in_platform_xy);
+    KEEP(J_star_in_platform_xz);
+    KEEP(J_star_in_platform_yy);
+    KEEP(J_star_in_platform_yz);
+    KEEP(J_star_in_platform_zz);
+    KEEP(J_star_t_12);
+    KEEP(J_star_t_14);
+    KEEP(Z_p_t);
+    KEEP(Z_p_t_2);
+    KEEP(Z_p_t_3);
+    KEEP(b_c_in_platform_x);
+    KEEP(b_c_in_platform_y);
+    KEEP(b_c_in_platform_z);
+    KEEP(h_star_in_platform_x);
+    KEEP(h_star_in_platform_y);
+    KEEP(h_star_in_platform_z);
+    KEEP(legs_size);
+    KEEP(m_star);
     return OK;
 }
 
@@ -2054,10 +2064,10 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real R_zy = quaternion_wx + quaternion_yz;
     const real R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = R_xx*m->h_star_in_platform_x + R_xy*m->h_star_in_platform_y +
-        R_xz*m->h_star_in_platform_z;
-    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yy*m->h_star_in_platform_y +
-        R_yz*m->h_star_in_platform_z;
+    const real h_star_x = R_xy*m->h_star_in_platform_y + R_xz*m->h_star_in_platform_z +
+        R_xx*m->h_star_in_platform_x;
+    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yz*m->h_star_in_platform_z +
+        R_yy*m->h_star_in_platform_y;
     const real h_star_z = R_zx*m->h_star_in_platform_x + R_zy*m->h_star_in_platform_y +
         R_zz*m->h_star_in_platform_z;
     v->quaternion_scale = quaternion_scale;
@@ -2081,8 +2091,8 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
     const real omega_x = V[3*w + k];
     const real omega_y = V[4*w + k];
     const real omega_z = V[5*w + k];
-    const real omega_in_platform_x = v->R_xx*omega_x + v->R_yx*omega_y + v->R_zx*omega_z;
-    const real omega_in_platform_y = v->R_xy*omega_x + v->R_yy*omega_y + v->R_zy*omega_z;
+    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
     const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
     v->omega_in_platform_x = omega_in_platform_x;
     v->omega_in_platform_y = omega_in_platform_y;
@@ -2092,24 +2102,24 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
 INLINE void stage_M_dynamics(const prepared *m, values *v)
 {
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_t = m->J_star_in_platform_xy*v->R_xx + m->J_star_in_platform_yz*v->R_xz
-        - m->J_star_t_12*v->R_xy;
+    const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
+        m->J_star_in_platform_xy*v->R_xx;
     const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
         m->J_star_in_platform_yz*v->R_yz - m->J_star_t_12*v->R_yy;
-    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx +
-        m->J_star_in_platform_yz*v->R_zz - m->J_star_t_12*v->R_zy;
+    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx - m->J_star_t_12*v->R_zy +
+        m->J_star_in_platform_yz*v->R_zz;
     const real J_star_t_4 = m->J_star_t_14*v->R_xz - m->J_star_in_platform_xz*v->R_xx;
     const real J_star_t_5 = m->J_star_t_14*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
     const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
-    const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
-        J_star_t_5*v->R_xz;
+    const real J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
+        J_star_t_4*v->R_yz;
     const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
     const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
     const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
-    const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
+    const real J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
     const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
     const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
@@ -2134,10 +2144,10 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
     const real Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real g_in_platform_x = v->R_xx*m->gravity_x + v->R_yx*m->gravity_y +
-        v->R_zx*m->gravity_z;
-    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_yy*m->gravity_y +
-        v->R_zy*m->gravity_z;
+    const real g_in_platform_x = v->R_yx*m->gravity_y + v->R_zx*m->gravity_z +
+        v->R_xx*m->gravity_x;
+    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_zy*m->gravity_z +
+        v->R_yy*m->gravity_y;
     const real g_in_platform_z = v->R_xz*m->gravity_x + v->R_yz*m->gravity_y +
         v->R_zz*m->gravity_z;
     const real Z_q_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
@@ -2149,15 +2159,15 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
         m->J_star_in_platform_yz*v->omega_in_platform_y +
         m->J_star_in_platform_zz*v->omega_in_platform_z;
-    const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
-        g_in_platform_y*m->h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
-        g_in_platform_z*m->h_star_in_platform_y;
-    const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
-        g_in_platform_z*m->h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
-        g_in_platform_x*m->h_star_in_platform_z;
-    const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
-        g_in_platform_x*m->h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
-        g_in_platform_y*m->h_star_in_platform_x;
+    const real Z_q_in_platform_x = g_in_platform_y*m->h_star_in_platform_z -
+        g_in_platform_z*m->h_star_in_platform_y + Z_q_t_3*v->omega_in_platform_y -
+        Z_q_t_2*v->omega_in_platform_z;
+    const real Z_q_in_platform_y = g_in_platform_z*m->h_star_in_platform_x -
+        g_in_platform_x*m->h_star_in_platform_z + Z_q_t*v->omega_in_platform_z -
+        Z_q_t_3*v->omega_in_platform_x;
+    const real Z_q_in_platform_z = g_in_platform_x*m->h_star_in_platform_y -
+        g_in_platform_y*m->h_star_in_platform_x + Z_q_t_2*v->omega_in_platform_x -
+        Z_q_t*v->omega_in_platform_y;
     const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
         v->R_xz*Z_q_in_platform_z;
     const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
@@ -2218,13 +2228,13 @@ INLINE void stage_rrrrs_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real rrrrs_q_x = R_xx*m->rrrrs_platform_point_x[i] +
-        R_xy*m->rrrrs_platform_point_y[i] + R_xz*m->rrrrs_platform_point_z[i];
+    const real rrrrs_q_x = R_xy*m->rrrrs_platform_point_y[i] +
+        R_xz*m->rrrrs_platform_point_z[i] + R_xx*m->rrrrs_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real rrrrs_q_y = R_yx*m->rrrrs_platform_point_x[i] +
-        R_yy*m->rrrrs_platform_point_y[i] + R_yz*m->rrrrs_platform_point_z[i];
+        R_yz*m->rrrrs_platform_point_z[i] + R_yy*m->rrrrs_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
@@ -2235,11 +2245,11 @@ INLINE void stage_rrrrs_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real rrrrs_h_3_t_7 = sine(rrrrs_y_2_extra);
     /* (rrrrs-S) from the base point to the connection point */
     const real t_x = X[0*w + j];
-    const real rrrrs_S_x = rrrrs_q_x + t_x - m->rrrrs_base_point_x[i];
+    const real rrrrs_S_x = t_x - m->rrrrs_base_point_x[i] + rrrrs_q_x;
     const real t_y = X[1*w + j];
-    const real rrrrs_S_y = rrrrs_q_y + t_y - m->rrrrs_base_point_y[i];
+    const real rrrrs_S_y = t_y - m->rrrrs_base_point_y[i] + rrrrs_q_y;
     const real t_z = X[2*w + j];
-    const real rrrrs_S_z = rrrrs_q_z + t_z - m->rrrrs_base_point_z[i];
+    const real rrrrs_S_z = t_z - m->rrrrs_base_point_z[i] + rrrrs_q_z;
     const real rrrrs_S_in_turn1_x = rrrrs_S_x*m->rrrrs_base_frame_xy[i] +
         rrrrs_S_y*m->rrrrs_base_frame_yy[i] + rrrrs_S_z*m->rrrrs_base_frame_zy[i];
     const real rrrrs_S_in_turn1_y = rrrrs_S_x*m->rrrrs_base_frame_xz[i] +
@@ -2263,7 +2273,7 @@ INLINE void stage_rrrrs_X(const prepared *m, size_t w, size_t i, size_t j, const
     /* (rrrrs-x_2) from the origin of joint 2 to the connection point */
     const real rrrrs_x_2_in_axes1_z = rrrrs_S_in_turn1_z - m->rrrrs_joint2_offset_x[i];
     const real rrrrs_x_2_t = rrrrs_root_1*rrrrs_s_2;
-    const real rrrrs_x_2_in_axes2_x = rrrrs_x_2_t + rrrrs_c_2*rrrrs_x_2_in_axes1_z;
+    const real rrrrs_x_2_in_axes2_x = rrrrs_c_2*rrrrs_x_2_in_axes1_z + rrrrs_x_2_t;
     const real rrrrs_x_2_t_2 = rrrrs_c_2*rrrrs_root_1;
     const real rrrrs_x_2_in_axes2_y = rrrrs_x_2_t_2 - rrrrs_s_2*rrrrs_x_2_in_axes1_z;
     /* (rrrrs-x_3) from the origin of joint 3 to the connection point */
@@ -2272,13 +2282,13 @@ INLINE void stage_rrrrs_X(const prepared *m, size_t w, size_t i, size_t j, const
        joint 3 */
     const real rrrrs_Kd_3_t = rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y +
         rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x;
-    const real rrrrs_Kd_3 = R(0.5)*rrrrs_Kd_3_t + m->rrrrs_h_3_t[i] - m->rrrrs_h_3_t_2[i];
+    const real rrrrs_Kd_3 = m->rrrrs_h_3_t[i] - m->rrrrs_h_3_t_2[i] + R(0.5)*rrrrs_Kd_3_t;
     /* (rrrrs-Kc_3) factor of the cosine in the equation of joint 3 */
     const real rrrrs_Kc_3 = m->rrrrs_joint4_offset_x[i]*rrrrs_x_3_in_axes2_x;
     /* (rrrrs-Ks_3) factor of the sine in the equation of joint 3 */
     const real rrrrs_Ks_3 = m->rrrrs_joint4_offset_x[i]*rrrrs_x_2_in_axes2_y;
     /* (rrrrs-rho2_3) squared amplitude */
-    const real rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3;
+    const real rrrrs_rho2_3 = rrrrs_Ks_3*rrrrs_Ks_3 + rrrrs_Kc_3*rrrrs_Kc_3;
     /* (rrrrs-disc_3) discriminant */
     const real rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3;
     /* (rrrrs-root_3) root, with the sign of the branch */
@@ -2287,7 +2297,7 @@ INLINE void stage_rrrrs_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real inv_rrrrs_rho2_3 = 1/rrrrs_rho2_3;
     const real rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3);
     /* (rrrrs-s_3) sine of the angle of joint 3 from its reference direction */
-    const real rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3);
+    const real rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kd_3*rrrrs_Ks_3 + rrrrs_Kc_3*rrrrs_root_3);
     /* (rrrrs-x_4) from the origin of joint 4 to the connection point */
     const real rrrrs_x_4_in_axes3_x =
         m->inv_rrrrs_size_t[i]*rrrrs_Kd_3*m->rrrrs_joint4_offset_x[i] -
@@ -2315,7 +2325,7 @@ INLINE void stage_rrrrs_X(const prepared *m, size_t w, size_t i, size_t j, const
     /* (rrrrs-v_1) velocity of the connection point per rate of joint 1 */
     const real rrrrs_v_1_t = rrrrs_c_2*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3;
     const real rrrrs_v_1_t_2 = -rrrrs_c_2*rrrrs_s_3 - rrrrs_c_3*rrrrs_s_2;
-    const real rrrrs_v_1_t_3 = rrrrs_x_2_t + rrrrs_S_in_turn1_z*rrrrs_c_2;
+    const real rrrrs_v_1_t_3 = rrrrs_S_in_turn1_z*rrrrs_c_2 + rrrrs_x_2_t;
     const real rrrrs_v_1_t_4 = rrrrs_x_2_t_2 - rrrrs_S_in_turn1_z*rrrrs_s_2;
     const real rrrrs_v_1_t_5 = rrrrs_c_3*rrrrs_v_1_t_3 + rrrrs_s_3*rrrrs_v_1_t_4;
     const real rrrrs_v_1_t_6 = rrrrs_c_3*rrrrs_v_1_t_4 - rrrrs_s_3*rrrrs_v_1_t_3;
@@ -2350,7 +2360,7 @@ INLINE void stage_rrrrs_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real rrrrs_bias_t_4 = rrrrs_c_3*rrrrs_d_2_in_axes2_y -
         rrrrs_d_2_in_axes2_x*rrrrs_s_3;
     const real rrrrs_d_2_in_axes4_x = rrrrs_bias_t_3*rrrrs_c_4 - rrrrs_bias_t_4*rrrrs_s_4_t;
-    const real rrrrs_d_2_in_axes4_y = rrrrs_bias_t_3*rrrrs_s_4_t + rrrrs_bias_t_4*rrrrs_c_4;
+    const real rrrrs_d_2_in_axes4_y = rrrrs_bias_t_4*rrrrs_c_4 + rrrrs_bias_t_3*rrrrs_s_4_t;
     const real rrrrs_bias_t_5 = rrrrs_c_3*m->rrrrs_joint3_offset_x[i];
     const real rrrrs_bias_t_6 = m->rrrrs_joint3_offset_x[i]*rrrrs_s_3;
     const real rrrrs_d_3_in_axes4_x = rrrrs_bias_t_5*rrrrs_c_4 + rrrrs_bias_t_6*rrrrs_s_4_t;
@@ -2466,11 +2476,11 @@ INLINE void stage_rrrrs_V_X(size_t w, size_t j, const real *V, values_rrrrs *v)
     const real rrrrs_S_dot_t_2 = omega_z*v->rrrrs_q_x - omega_x*v->rrrrs_q_z;
     const real rrrrs_S_dot_t_3 = omega_x*v->rrrrs_q_y - omega_y*v->rrrrs_q_x;
     const real t_dot_x = V[0*w + j];
-    const real rrrrs_S_dot_x = rrrrs_S_dot_t + t_dot_x;
+    const real rrrrs_S_dot_x = t_dot_x + rrrrs_S_dot_t;
     const real t_dot_y = V[1*w + j];
-    const real rrrrs_S_dot_y = rrrrs_S_dot_t_2 + t_dot_y;
+    const real rrrrs_S_dot_y = t_dot_y + rrrrs_S_dot_t_2;
     const real t_dot_z = V[2*w + j];
-    const real rrrrs_S_dot_z = rrrrs_S_dot_t_3 + t_dot_z;
+    const real rrrrs_S_dot_z = t_dot_z + rrrrs_S_dot_t_3;
     v->rrrrs_S_dot_t = rrrrs_S_dot_t;
     v->rrrrs_S_dot_t_2 = rrrrs_S_dot_t_2;
     v->rrrrs_S_dot_t_3 = rrrrs_S_dot_t_3;
@@ -2484,13 +2494,13 @@ INLINE void stage_rrrrs_A_V_X(size_t w, size_t j, const real *V, values_rrrrs *v
     /* (rrrrs-S_ddot) acceleration of the connection point */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
-    const real rrrrs_S_ddot_x = v->rrrrs_a_p_x + omega_y*v->rrrrs_S_dot_t_3 -
-        omega_z*v->rrrrs_S_dot_t_2;
+    const real rrrrs_S_ddot_x = omega_y*v->rrrrs_S_dot_t_3 - omega_z*v->rrrrs_S_dot_t_2 +
+        v->rrrrs_a_p_x;
     const real omega_x = V[3*w + j];
-    const real rrrrs_S_ddot_y = v->rrrrs_a_p_y + omega_z*v->rrrrs_S_dot_t -
-        omega_x*v->rrrrs_S_dot_t_3;
-    const real rrrrs_S_ddot_z = v->rrrrs_a_p_z + omega_x*v->rrrrs_S_dot_t_2 -
-        omega_y*v->rrrrs_S_dot_t;
+    const real rrrrs_S_ddot_y = omega_z*v->rrrrs_S_dot_t - omega_x*v->rrrrs_S_dot_t_3 +
+        v->rrrrs_a_p_y;
+    const real rrrrs_S_ddot_z = omega_x*v->rrrrs_S_dot_t_2 - omega_y*v->rrrrs_S_dot_t +
+        v->rrrrs_a_p_z;
     v->rrrrs_S_ddot_x = rrrrs_S_ddot_x;
     v->rrrrs_S_ddot_y = rrrrs_S_ddot_y;
     v->rrrrs_S_ddot_z = rrrrs_S_ddot_z;
@@ -2536,11 +2546,11 @@ INLINE void stage_rrrrs_M_dynamics(const prepared *m, size_t w, size_t i, size_t
 {
     /* (rrrrs-h_3) first moment of link 3 about the origin of link 3 */
     const real t_x = X[0*w + j];
-    const real rrrrs_h_3_t_3 = v->rrrrs_q_x + t_x - m->rrrrs_base_point_x[i];
+    const real rrrrs_h_3_t_3 = t_x - m->rrrrs_base_point_x[i] + v->rrrrs_q_x;
     const real t_y = X[1*w + j];
-    const real rrrrs_h_3_t_4 = v->rrrrs_q_y + t_y - m->rrrrs_base_point_y[i];
+    const real rrrrs_h_3_t_4 = t_y - m->rrrrs_base_point_y[i] + v->rrrrs_q_y;
     const real t_z = X[2*w + j];
-    const real rrrrs_h_3_t_5 = v->rrrrs_q_z + t_z - m->rrrrs_base_point_z[i];
+    const real rrrrs_h_3_t_5 = t_z - m->rrrrs_base_point_z[i] + v->rrrrs_q_z;
     const real rrrrs_h_3_t_8 = m->rrrrs_base_frame_xy[i]*rrrrs_h_3_t_3 +
         m->rrrrs_base_frame_yy[i]*rrrrs_h_3_t_4 + m->rrrrs_base_frame_zy[i]*rrrrs_h_3_t_5;
     const real rrrrs_h_3_t_9 = m->rrrrs_base_frame_xz[i]*rrrrs_h_3_t_3 +
@@ -2551,16 +2561,16 @@ INLINE void stage_rrrrs_M_dynamics(const prepared *m, size_t w, size_t i, size_t
     const real rrrrs_h_3_t_12 = m->rrrrs_branch_1[i]*root(rrrrs_h_3_t_11);
     const real rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - m->rrrrs_joint2_offset_x[i];
     const real rrrrs_h_3_t_14 = rrrrs_h_3_t_12*v->rrrrs_h_3_t_7;
-    const real rrrrs_h_3_t_15 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*v->rrrrs_h_3_t_6;
+    const real rrrrs_h_3_t_15 = rrrrs_h_3_t_13*v->rrrrs_h_3_t_6 + rrrrs_h_3_t_14;
     const real rrrrs_h_3_t_16 = rrrrs_h_3_t_12*v->rrrrs_h_3_t_6;
     const real rrrrs_h_3_t_17 = rrrrs_h_3_t_16 - rrrrs_h_3_t_13*v->rrrrs_h_3_t_7;
     const real rrrrs_h_3_t_18 = rrrrs_h_3_t_15 - m->rrrrs_joint3_offset_x[i];
     const real rrrrs_h_3_t_19 = rrrrs_h_3_t_17*rrrrs_h_3_t_17 + rrrrs_h_3_t_18*rrrrs_h_3_t_18;
-    const real rrrrs_h_3_t_20 = m->rrrrs_h_3_t[i] + R(0.5)*rrrrs_h_3_t_19 -
-        m->rrrrs_h_3_t_2[i];
+    const real rrrrs_h_3_t_20 = m->rrrrs_h_3_t[i] - m->rrrrs_h_3_t_2[i] +
+        R(0.5)*rrrrs_h_3_t_19;
     const real rrrrs_h_3_t_21 = rrrrs_h_3_t_18*m->rrrrs_joint4_offset_x[i];
     const real rrrrs_h_3_t_22 = rrrrs_h_3_t_17*m->rrrrs_joint4_offset_x[i];
-    const real rrrrs_h_3_t_23 = rrrrs_h_3_t_21*rrrrs_h_3_t_21 + rrrrs_h_3_t_22*rrrrs_h_3_t_22;
+    const real rrrrs_h_3_t_23 = rrrrs_h_3_t_22*rrrrs_h_3_t_22 + rrrrs_h_3_t_21*rrrrs_h_3_t_21;
     const real rrrrs_h_3_t_24 = rrrrs_h_3_t_23 - rrrrs_h_3_t_20*rrrrs_h_3_t_20;
     const real rrrrs_h_3_t_25 = m->rrrrs_branch_3[i]*root(rrrrs_h_3_t_24);
     const real inv_rrrrs_h_3_t_23 = 1/rrrrs_h_3_t_23;
@@ -2605,7 +2615,7 @@ INLINE void stage_rrrrs_M_dynamics(const prepared *m, size_t w, size_t i, size_t
         rrrrs_h_3_t_27*v->rrrrs_h_3_t_6;
     const real rrrrs_e_1_in_axes4_x = rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2;
     const real rrrrs_e_1_in_axes4_y = rrrrs_c_4*rrrrs_v_1_t_2 + rrrrs_s_4_t*rrrrs_v_1_t;
-    const real rrrrs_v_1_t_3 = rrrrs_h_3_t_14 + rrrrs_h_3_t_10*v->rrrrs_h_3_t_6;
+    const real rrrrs_v_1_t_3 = rrrrs_h_3_t_10*v->rrrrs_h_3_t_6 + rrrrs_h_3_t_14;
     const real rrrrs_v_1_t_4 = rrrrs_h_3_t_16 - rrrrs_h_3_t_10*v->rrrrs_h_3_t_7;
     const real rrrrs_v_1_t_5 = rrrrs_h_3_t_26*rrrrs_v_1_t_3 + rrrrs_h_3_t_27*rrrrs_v_1_t_4;
     const real rrrrs_v_1_t_6 = rrrrs_h_3_t_26*rrrrs_v_1_t_4 - rrrrs_h_3_t_27*rrrrs_v_1_t_3;
@@ -2634,18 +2644,18 @@ INLINE void stage_rrrrs_M_dynamics(const prepared *m, size_t w, size_t i, size_t
     /* (rrrrs-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link
        about the connection point */
     const real rrrrs_Jc_3_t = m->rrrrs_J_4_in_spec4_xy[i]*rrrrs_s_4_t;
-    const real rrrrs_Jc_3_t_2 = rrrrs_Jc_3_t + m->rrrrs_J_4_in_spec4_xx[i]*rrrrs_c_4;
+    const real rrrrs_Jc_3_t_2 = m->rrrrs_J_4_in_spec4_xx[i]*rrrrs_c_4 + rrrrs_Jc_3_t;
     const real rrrrs_Jc_3_t_3 = m->rrrrs_J_4_in_spec4_xy[i]*rrrrs_c_4;
     const real rrrrs_Jc_3_t_4 = rrrrs_Jc_3_t_3 + m->rrrrs_J_4_in_spec4_yy[i]*rrrrs_s_4_t;
-    const real rrrrs_Jc_3_in_axes3_xx = m->rrrrs_J_3_in_spec3_xx[i] + rrrrs_Jc_3_t_2*rrrrs_c_4
-        + rrrrs_Jc_3_t_4*rrrrs_s_4_t;
+    const real rrrrs_Jc_3_in_axes3_xx = m->rrrrs_J_3_in_spec3_xx[i] +
+        rrrrs_Jc_3_t_4*rrrrs_s_4_t + rrrrs_Jc_3_t_2*rrrrs_c_4;
     const real rrrrs_Jc_3_in_axes3_xy = m->rrrrs_J_3_in_spec3_xy[i] + rrrrs_Jc_3_t_4*rrrrs_c_4
         - rrrrs_Jc_3_t_2*rrrrs_s_4_t;
     const real rrrrs_Jc_3_in_axes3_xz = m->rrrrs_J_3_in_spec3_xz[i] +
         m->rrrrs_J_4_in_spec4_xz[i]*rrrrs_c_4 + m->rrrrs_J_4_in_spec4_yz[i]*rrrrs_s_4_t;
-    const real rrrrs_Jc_3_in_axes3_yy = m->rrrrs_J_3_in_spec3_yy[i] +
-        rrrrs_c_4*(m->rrrrs_J_4_in_spec4_yy[i]*rrrrs_c_4 - rrrrs_Jc_3_t) -
-        rrrrs_s_4_t*(rrrrs_Jc_3_t_3 - m->rrrrs_J_4_in_spec4_xx[i]*rrrrs_s_4_t);
+    const real rrrrs_Jc_3_in_axes3_yy = m->rrrrs_J_3_in_spec3_yy[i] -
+        rrrrs_s_4_t*(rrrrs_Jc_3_t_3 - m->rrrrs_J_4_in_spec4_xx[i]*rrrrs_s_4_t) +
+        rrrrs_c_4*(m->rrrrs_J_4_in_spec4_yy[i]*rrrrs_c_4 - rrrrs_Jc_3_t);
     const real rrrrs_Jc_3_in_axes3_yz = m->rrrrs_J_3_in_spec3_yz[i] +
         m->rrrrs_J_4_in_spec4_yz[i]*rrrrs_c_4 - m->rrrrs_J_4_in_spec4_xz[i]*rrrrs_s_4_t;
     const real rrrrs_Jc_3_in_axes2_xz = rrrrs_Jc_3_in_axes3_xz*rrrrs_h_3_t_26 -
@@ -2668,16 +2678,16 @@ INLINE void stage_rrrrs_M_dynamics(const prepared *m, size_t w, size_t i, size_t
         rrrrs_h_3_in_axes2_x);
     const real rrrrs_Jc_2_t_7 = 2*rrrrs_Jc_2_t_6;
     const real rrrrs_Jc_2_in_axes2_xy = m->rrrrs_J_2_in_spec2_xy[i] +
-        rrrrs_Jc_2_t_3*rrrrs_h_3_t_27 + rrrrs_Jc_2_t_5*rrrrs_h_3_t_26 +
-        rrrrs_P_c_3_in_axes2_x*m->rrrrs_joint3_offset_x[i];
+        rrrrs_P_c_3_in_axes2_x*m->rrrrs_joint3_offset_x[i] + rrrrs_Jc_2_t_3*rrrrs_h_3_t_27 +
+        rrrrs_Jc_2_t_5*rrrrs_h_3_t_26;
     const real rrrrs_Jc_2_in_axes1_zz =
-        v->rrrrs_h_3_t_6*(v->rrrrs_h_3_t_6*(m->rrrrs_J_2_in_spec2_xx[i] + rrrrs_Jc_2_t_7 +
-        rrrrs_Jc_2_t_3*rrrrs_h_3_t_26 - 2*rrrrs_Jc_2_t_6 - rrrrs_Jc_2_t_5*rrrrs_h_3_t_27) -
+        v->rrrrs_h_3_t_6*(v->rrrrs_h_3_t_6*(m->rrrrs_J_2_in_spec2_xx[i] + rrrrs_Jc_2_t_7 -
+        2*rrrrs_Jc_2_t_6 + rrrrs_Jc_2_t_3*rrrrs_h_3_t_26 - rrrrs_Jc_2_t_5*rrrrs_h_3_t_27) -
         rrrrs_Jc_2_in_axes2_xy*v->rrrrs_h_3_t_7) -
         v->rrrrs_h_3_t_7*(rrrrs_Jc_2_in_axes2_xy*v->rrrrs_h_3_t_6 -
         v->rrrrs_h_3_t_7*(m->rrrrs_J_2_in_spec2_yy[i] + rrrrs_Jc_2_t_7 +
-        rrrrs_h_3_t_26*(rrrrs_Jc_2_t_2 + rrrrs_Jc_3_in_axes3_yy*rrrrs_h_3_t_26) +
-        rrrrs_h_3_t_27*(rrrrs_Jc_2_t_4 + rrrrs_Jc_3_in_axes3_xx*rrrrs_h_3_t_27)));
+        rrrrs_h_3_t_26*(rrrrs_Jc_3_in_axes3_yy*rrrrs_h_3_t_26 + rrrrs_Jc_2_t_2) +
+        rrrrs_h_3_t_27*(rrrrs_Jc_3_in_axes3_xx*rrrrs_h_3_t_27 + rrrrs_Jc_2_t_4)));
     /* (rrrrs-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
        inertia and weight */
     const real rrrrs_d_Gamma_4_in_axes4_z = rrrrs_D_1_4*rrrrs_w_1_in_axes4_z;
@@ -2694,9 +2704,9 @@ INLINE void stage_rrrrs_M_dynamics(const prepared *m, size_t w, size_t i, size_t
         rrrrs_d_Gamma_4_t_2) - m->rrrrs_h_4_in_spec4_y[i];
     /* (rrrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
-    const real rrrrs_d_Gamma_1_in_axes4_z = rrrrs_e_1_in_axes4_x*m->rrrrs_h_4_in_spec4_y[i] +
-        rrrrs_w_1_in_axes4_z*(m->rrrrs_J_1_in_spec1_xx[i] + rrrrs_Jc_2_in_axes1_zz) -
-        rrrrs_e_1_in_axes4_y*m->rrrrs_h_4_in_spec4_x[i];
+    const real rrrrs_d_Gamma_1_in_axes4_z = rrrrs_e_1_in_axes4_x*m->rrrrs_h_4_in_spec4_y[i] -
+        rrrrs_e_1_in_axes4_y*m->rrrrs_h_4_in_spec4_x[i] +
+        rrrrs_w_1_in_axes4_z*(m->rrrrs_J_1_in_spec1_xx[i] + rrrrs_Jc_2_in_axes1_zz);
     /* (rrrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the
        leg's inertia and weight along all degrees of freedom */
     const real rrrrs_d_G_in_axes4_yz = rrrrs_d_Gamma_4_in_axes4_z*m->rrrrs_w_4_in_axes4_y[i];
@@ -2704,31 +2714,33 @@ INLINE void stage_rrrrs_M_dynamics(const prepared *m, size_t w, size_t i, size_t
         rrrrs_d_Gamma_4_in_axes4_x*rrrrs_w_4_in_axes4_x;
     const real rrrrs_d_G_in_axes4_xy = m->rrrrs_d_Gamma_4_in_axes4_y[i]*rrrrs_w_3_in_axes4_x +
         m->rrrrs_d_Gamma_4_in_axes4_y[i]*rrrrs_w_4_in_axes4_x;
-    const real rrrrs_d_G_in_axes4_xz = rrrrs_d_Gamma_4_in_axes4_z*rrrrs_w_4_in_axes4_x +
+    const real rrrrs_d_G_in_axes4_xz =
         rrrrs_w_1_in_axes4_z*rrrrs_w_3_in_axes4_x*(rrrrs_Jc_3_in_axes2_xz*v->rrrrs_h_3_t_6 -
-        rrrrs_Jc_3_in_axes2_yz*v->rrrrs_h_3_t_7);
+        rrrrs_Jc_3_in_axes2_yz*v->rrrrs_h_3_t_7) +
+        rrrrs_d_Gamma_4_in_axes4_z*rrrrs_w_4_in_axes4_x;
     /* (rrrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
        without the mass at the connection point */
     const real rrrrs_d_c_in_axes4_xx = m->rrrrs_h_4_in_spec4_y[i]*(rrrrs_w_3_in_axes4_x +
         rrrrs_w_4_in_axes4_x) - rrrrs_d_G_in_axes4_xx;
     const real rrrrs_d_c_in_axes4_xy = m->rrrrs_d_phi_4_t[i] - rrrrs_d_G_in_axes4_xy;
-    const real rrrrs_d_c_in_axes4_xz = -rrrrs_d_G_in_axes4_xz -
-        rrrrs_d_alpha_4_in_axes4_yz*m->rrrrs_h_4_in_spec4_z[i];
+    const real rrrrs_d_c_in_axes4_xz = -rrrrs_d_alpha_4_in_axes4_yz*m->rrrrs_h_4_in_spec4_z[i]
+        - rrrrs_d_G_in_axes4_xz;
     const real rrrrs_d_c_in_axes4_yz = rrrrs_d_alpha_4_in_axes4_xz*m->rrrrs_h_4_in_spec4_z[i]
         - rrrrs_d_G_in_axes4_yz;
     /* (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra
        degree of freedom of joint 2 */
-    const real rrrrs_d_P_2_in_axes4_x = rrrrs_d_Gamma_2_in_axes4_x +
-        rrrrs_d_G_in_axes4_xx*rrrrs_r_2_in_axes4_y -
-        rrrrs_d_Gamma_4_in_axes4_x*rrrrs_r_2_in_axes4_x*m->rrrrs_w_4_in_axes4_y[i];
-    const real rrrrs_d_P_2_in_axes4_y = m->rrrrs_d_Gamma_4_in_axes4_y[i] +
-        rrrrs_d_G_in_axes4_xy*rrrrs_r_2_in_axes4_y -
-        m->rrrrs_d_G_in_axes4_yy[i]*rrrrs_r_2_in_axes4_x;
-    const real rrrrs_d_P_2_in_axes4_z = rrrrs_d_G_in_axes4_xz*rrrrs_r_2_in_axes4_y +
-        rrrrs_w_1_in_axes4_z*(v->rrrrs_h_3_t_6*(m->rrrrs_J_2_in_spec2_xz[i] +
-        rrrrs_Jc_3_in_axes2_xz - m->rrrrs_d_P_2_t[i]) -
+    const real rrrrs_d_P_2_in_axes4_x = rrrrs_d_Gamma_2_in_axes4_x -
+        rrrrs_d_Gamma_4_in_axes4_x*rrrrs_r_2_in_axes4_x*m->rrrrs_w_4_in_axes4_y[i] +
+        rrrrs_d_G_in_axes4_xx*rrrrs_r_2_in_axes4_y;
+    const real rrrrs_d_P_2_in_axes4_y = m->rrrrs_d_Gamma_4_in_axes4_y[i] -
+        m->rrrrs_d_G_in_axes4_yy[i]*rrrrs_r_2_in_axes4_x +
+        rrrrs_d_G_in_axes4_xy*rrrrs_r_2_in_axes4_y;
+    const real rrrrs_d_P_2_in_axes4_z =
+        rrrrs_w_1_in_axes4_z*(v->rrrrs_h_3_t_6*(m->rrrrs_J_2_in_spec2_xz[i] -
+        m->rrrrs_d_P_2_t[i] + rrrrs_Jc_3_in_axes2_xz) -
         v->rrrrs_h_3_t_7*(m->rrrrs_J_2_in_spec2_yz[i] + rrrrs_Jc_3_in_axes2_yz)) -
-        rrrrs_d_G_in_axes4_yz*rrrrs_r_2_in_axes4_x;
+        rrrrs_d_G_in_axes4_yz*rrrrs_r_2_in_axes4_x +
+        rrrrs_d_G_in_axes4_xz*rrrrs_r_2_in_axes4_y;
     v->rrrrs_h_3_t_11 = rrrrs_h_3_t_11;
     v->rrrrs_h_3_t_23 = rrrrs_h_3_t_23;
     v->rrrrs_h_3_t_24 = rrrrs_h_3_t_24;
@@ -2819,7 +2831,7 @@ INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, siz
     const real rrrrs_W_2_in_axes2_xz = rrrrs_omega_1_in_axes2_x*rrrrs_yd_2;
     const real rrrrs_W_2_in_axes2_xy = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_y;
     /* (rrrrs-omega_3) angular velocity of link 3 */
-    const real rrrrs_omega_3_in_axes3_z = rrrrs_qd_3 + rrrrs_yd_2;
+    const real rrrrs_omega_3_in_axes3_z = rrrrs_yd_2 + rrrrs_qd_3;
     /* (rrrrs-W_3) centripetal tensor of link 3 */
     const real rrrrs_W_3_in_axes3_xy = rrrrs_omega_1_t*rrrrs_omega_1_t_2;
     const real rrrrs_W_3_in_axes3_xz = rrrrs_omega_1_t*rrrrs_omega_3_in_axes3_z;
@@ -2842,8 +2854,8 @@ INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, siz
     const real rrrrs_zeta_3_in_axes3_x = rrrrs_omega_1_t_2*rrrrs_qd_3;
     const real rrrrs_zeta_3_in_axes3_y = -rrrrs_omega_1_t*rrrrs_qd_3;
     /* (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
-    const real rrrrs_beta_3_in_axes3_x = rrrrs_zeta_3_in_axes3_x +
-        rrrrs_W_2_in_axes2_yz*v->rrrrs_c_3 - rrrrs_W_2_in_axes2_xz*v->rrrrs_s_3;
+    const real rrrrs_beta_3_in_axes3_x = rrrrs_W_2_in_axes2_yz*v->rrrrs_c_3 -
+        rrrrs_W_2_in_axes2_xz*v->rrrrs_s_3 + rrrrs_zeta_3_in_axes3_x;
     const real rrrrs_beta_3_in_axes3_y = rrrrs_zeta_3_in_axes3_y -
         rrrrs_W_2_in_axes2_xz*v->rrrrs_c_3 - rrrrs_W_2_in_axes2_yz*v->rrrrs_s_3;
     const real rrrrs_beta_3_in_axes4_y = rrrrs_beta_3_in_axes3_x*v->rrrrs_s_4_t +
@@ -2858,29 +2870,28 @@ INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, siz
         rrrrs_W_1_in_axes4_xy*v->rrrrs_d_3_in_axes4_y +
         rrrrs_W_1_in_axes4_xy*v->rrrrs_d_4_in_axes4_y - rrrrs_W_1_t_2*v->rrrrs_d_2_in_axes4_x
         - rrrrs_W_4_t_2*m->rrrrs_platform_joint_offset_x[i] -
-        v->rrrrs_d_3_in_axes4_x*(rrrrs_W_1_t_2 + v->rrrrs_bias_t) -
-        v->rrrrs_d_4_in_axes4_x*(rrrrs_W_1_t_2 + rrrrs_bias_t_2);
+        v->rrrrs_d_3_in_axes4_x*(v->rrrrs_bias_t + rrrrs_W_1_t_2) -
+        v->rrrrs_d_4_in_axes4_x*(rrrrs_bias_t_2 + rrrrs_W_1_t_2);
     const real rrrrs_bias_in_axes4_y = rrrrs_W_1_in_axes4_xy*v->rrrrs_d_2_in_axes4_x +
         rrrrs_W_1_in_axes4_xy*v->rrrrs_d_3_in_axes4_x +
         rrrrs_W_1_in_axes4_xy*v->rrrrs_d_4_in_axes4_x +
         rrrrs_W_1_in_axes4_xy*m->rrrrs_platform_joint_offset_x[i] -
-        rrrrs_W_1_t*v->rrrrs_d_2_in_axes4_y - v->rrrrs_d_3_in_axes4_y*(rrrrs_W_1_t +
-        v->rrrrs_bias_t) - v->rrrrs_d_4_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t_2);
+        rrrrs_W_1_t*v->rrrrs_d_2_in_axes4_y - v->rrrrs_d_3_in_axes4_y*(v->rrrrs_bias_t +
+        rrrrs_W_1_t) - v->rrrrs_d_4_in_axes4_y*(rrrrs_bias_t_2 + rrrrs_W_1_t);
     const real rrrrs_bias_in_axes4_z =
+        2*v->rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
+        2*v->rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2 +
         v->rrrrs_d_4_in_axes4_x*(rrrrs_omega_1_in_axes4_x*rrrrs_omega_3_in_axes3_z -
         rrrrs_beta_3_in_axes4_y) +
-        v->rrrrs_d_4_in_axes4_y*(rrrrs_beta_3_in_axes3_x*v->rrrrs_c_4 +
-        rrrrs_omega_1_in_axes4_y*rrrrs_omega_3_in_axes3_z -
-        rrrrs_beta_3_in_axes3_y*v->rrrrs_s_4_t) +
-        m->rrrrs_platform_joint_offset_x[i]*(rrrrs_W_4_in_axes4_xz - rrrrs_beta_4_in_axes4_y)
-        + 2*v->rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
-        2*v->rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2;
+        v->rrrrs_d_4_in_axes4_y*(rrrrs_omega_1_in_axes4_y*rrrrs_omega_3_in_axes3_z +
+        rrrrs_beta_3_in_axes3_x*v->rrrrs_c_4 - rrrrs_beta_3_in_axes3_y*v->rrrrs_s_4_t) +
+        m->rrrrs_platform_joint_offset_x[i]*(rrrrs_W_4_in_axes4_xz - rrrrs_beta_4_in_axes4_y);
     /* (rrrrs-rel) acceleration of the connection point left to the joint accelerations */
     const real rrrrs_ydd_2 = A[6*w + j];
-    const real rrrrs_rel_in_axes4_x = rrrrs_S_ddot_in_axes4_x +
-        v->rrrrs_r_2_in_axes4_y*rrrrs_ydd_2 - rrrrs_bias_in_axes4_x;
-    const real rrrrs_rel_in_axes4_y = rrrrs_S_ddot_in_axes4_y - rrrrs_bias_in_axes4_y -
-        v->rrrrs_r_2_in_axes4_x*rrrrs_ydd_2;
+    const real rrrrs_rel_in_axes4_x = v->rrrrs_r_2_in_axes4_y*rrrrs_ydd_2 +
+        rrrrs_S_ddot_in_axes4_x - rrrrs_bias_in_axes4_x;
+    const real rrrrs_rel_in_axes4_y = rrrrs_S_ddot_in_axes4_y -
+        v->rrrrs_r_2_in_axes4_x*rrrrs_ydd_2 - rrrrs_bias_in_axes4_y;
     const real rrrrs_rel_in_axes4_z = rrrrs_S_ddot_in_axes4_z - rrrrs_bias_in_axes4_z;
     /* (rrrrs-qdd_1) acceleration of joint 1 */
     const real rrrrs_qdd_1 = rrrrs_rel_in_axes4_z*v->rrrrs_w_1_in_axes4_z;
@@ -2893,7 +2904,7 @@ INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, siz
     const real rrrrs_alpha_2_in_axes2_x = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_1_in_axes2_x;
     const real rrrrs_alpha_2_in_axes2_y = rrrrs_alpha_1_in_axes2_y - rrrrs_W_2_in_axes2_xz;
     /* (rrrrs-B_2) acceleration tensor of link 2 */
-    const real rrrrs_B_2_in_axes2_yx = rrrrs_W_2_in_axes2_xy + rrrrs_ydd_2;
+    const real rrrrs_B_2_in_axes2_yx = rrrrs_ydd_2 + rrrrs_W_2_in_axes2_xy;
     const real rrrrs_B_2_in_axes2_zx = rrrrs_W_2_in_axes2_xz - rrrrs_alpha_2_in_axes2_y;
     const real rrrrs_B_2_in_axes2_zy = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_2_in_axes2_x;
     /* (rrrrs-alpha_3) angular acceleration of link 3 */
@@ -2901,7 +2912,7 @@ INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, siz
         rrrrs_alpha_2_in_axes2_x*v->rrrrs_c_3 + rrrrs_alpha_2_in_axes2_y*v->rrrrs_s_3;
     const real rrrrs_alpha_3_in_axes3_y = rrrrs_zeta_3_in_axes3_y +
         rrrrs_alpha_2_in_axes2_y*v->rrrrs_c_3 - rrrrs_alpha_2_in_axes2_x*v->rrrrs_s_3;
-    const real rrrrs_alpha_3_in_axes3_z = rrrrs_qdd_3 + rrrrs_ydd_2;
+    const real rrrrs_alpha_3_in_axes3_z = rrrrs_ydd_2 + rrrrs_qdd_3;
     /* (rrrrs-B_3) acceleration tensor of link 3 */
     const real rrrrs_B_3_in_axes3_xy = rrrrs_W_3_in_axes3_xy - rrrrs_alpha_3_in_axes3_z;
     const real rrrrs_B_3_in_axes3_xz = rrrrs_W_3_in_axes3_xz + rrrrs_alpha_3_in_axes3_y;
@@ -2910,10 +2921,10 @@ INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, siz
     const real rrrrs_B_3_in_axes3_zx = rrrrs_W_3_in_axes3_xz - rrrrs_alpha_3_in_axes3_y;
     const real rrrrs_B_3_in_axes3_zy = rrrrs_W_3_in_axes3_yz + rrrrs_alpha_3_in_axes3_x;
     /* (rrrrs-alpha_4) angular acceleration of link 4 */
-    const real rrrrs_alpha_4_in_axes4_x = rrrrs_alpha_3_in_axes3_x*v->rrrrs_c_4 +
-        rrrrs_omega_1_in_axes4_y*rrrrs_qd_4 - rrrrs_alpha_3_in_axes3_y*v->rrrrs_s_4_t;
-    const real rrrrs_alpha_4_in_axes4_y = rrrrs_alpha_3_in_axes3_x*v->rrrrs_s_4_t +
-        rrrrs_alpha_3_in_axes3_y*v->rrrrs_c_4 - rrrrs_zeta_4_t;
+    const real rrrrs_alpha_4_in_axes4_x = rrrrs_omega_1_in_axes4_y*rrrrs_qd_4 +
+        rrrrs_alpha_3_in_axes3_x*v->rrrrs_c_4 - rrrrs_alpha_3_in_axes3_y*v->rrrrs_s_4_t;
+    const real rrrrs_alpha_4_in_axes4_y = rrrrs_alpha_3_in_axes3_x*v->rrrrs_s_4_t -
+        rrrrs_zeta_4_t + rrrrs_alpha_3_in_axes3_y*v->rrrrs_c_4;
     const real rrrrs_alpha_4_in_axes4_z = rrrrs_alpha_3_in_axes3_z +
         m->rrrrs_w_4_in_axes4_y[i]*(rrrrs_rel_in_axes4_y -
         rrrrs_qdd_3*v->rrrrs_r_3_in_axes4_x);
@@ -2926,25 +2937,25 @@ INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, siz
     const real rrrrs_B_4_in_axes4_zy = rrrrs_W_4_in_axes4_yz + rrrrs_alpha_4_in_axes4_x;
     /* (rrrrs-a_o_3) acceleration of the origin of joint 3 */
     const real rrrrs_a_o_3_t = rrrrs_omega_1_in_axes2_y*rrrrs_omega_1_in_axes2_y;
-    const real rrrrs_a_o_3_in_axes2_x = -m->rrrrs_joint3_offset_x[i]*(rrrrs_a_o_3_t +
-        v->rrrrs_bias_t);
+    const real rrrrs_a_o_3_in_axes2_x = -m->rrrrs_joint3_offset_x[i]*(v->rrrrs_bias_t +
+        rrrrs_a_o_3_t);
     const real rrrrs_a_o_3_in_axes2_y = rrrrs_B_2_in_axes2_yx*m->rrrrs_joint3_offset_x[i];
     /* (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity */
-    const real rrrrs_acc_3_in_axes3_x = rrrrs_a_o_3_in_axes2_x*v->rrrrs_c_3 +
-        rrrrs_a_o_3_in_axes2_y*v->rrrrs_s_3 - v->rrrrs_c_3*v->rrrrs_g_in_axes2_x -
-        v->rrrrs_g_in_axes2_y*v->rrrrs_s_3;
-    const real rrrrs_acc_3_in_axes3_y = rrrrs_a_o_3_in_axes2_y*v->rrrrs_c_3 +
-        v->rrrrs_g_in_axes2_x*v->rrrrs_s_3 - rrrrs_a_o_3_in_axes2_x*v->rrrrs_s_3 -
-        v->rrrrs_c_3*v->rrrrs_g_in_axes2_y;
+    const real rrrrs_acc_3_in_axes3_x = rrrrs_a_o_3_in_axes2_x*v->rrrrs_c_3 -
+        v->rrrrs_c_3*v->rrrrs_g_in_axes2_x - v->rrrrs_g_in_axes2_y*v->rrrrs_s_3 +
+        rrrrs_a_o_3_in_axes2_y*v->rrrrs_s_3;
+    const real rrrrs_acc_3_in_axes3_y = v->rrrrs_g_in_axes2_x*v->rrrrs_s_3 -
+        v->rrrrs_c_3*v->rrrrs_g_in_axes2_y + rrrrs_a_o_3_in_axes2_y*v->rrrrs_c_3 -
+        rrrrs_a_o_3_in_axes2_x*v->rrrrs_s_3;
     const real rrrrs_acc_3_in_axes3_z = rrrrs_B_2_in_axes2_zx*m->rrrrs_joint3_offset_x[i] -
         v->rrrrs_g_in_axes1_y;
     /* (rrrrs-f_3) inertia force of link 3 less its weight */
     const real rrrrs_f_3_t = rrrrs_omega_1_t*rrrrs_omega_1_t;
     const real rrrrs_f_3_t_2 = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2;
-    const real rrrrs_f_3_in_axes3_z = rrrrs_B_3_in_axes3_zx*m->rrrrs_h_3_in_spec3_x[i] +
-        rrrrs_B_3_in_axes3_zy*m->rrrrs_h_3_in_spec3_y[i] +
-        rrrrs_acc_3_in_axes3_z*m->rrrrs_link3_mass[i] -
-        m->rrrrs_h_3_in_spec3_z[i]*(rrrrs_f_3_t + rrrrs_f_3_t_2);
+    const real rrrrs_f_3_in_axes3_z = rrrrs_acc_3_in_axes3_z*m->rrrrs_link3_mass[i] -
+        m->rrrrs_h_3_in_spec3_z[i]*(rrrrs_f_3_t + rrrrs_f_3_t_2) +
+        rrrrs_B_3_in_axes3_zx*m->rrrrs_h_3_in_spec3_x[i] +
+        rrrrs_B_3_in_axes3_zy*m->rrrrs_h_3_in_spec3_y[i];
     /* (rrrrs-acc_4) acceleration of the reference point of link 4, less gravity */
     const real rrrrs_acc_4_in_axes4_x = rrrrs_S_ddot_in_axes4_x -
         axis_x_rrrrs_axes4_x*m->gravity_x - axis_x_rrrrs_axes4_y*m->gravity_y -
@@ -2956,49 +2967,49 @@ INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, siz
         v->axis_z_rrrrs_axes4_x*m->gravity_x - v->axis_z_rrrrs_axes4_y*m->gravity_y -
         v->axis_z_rrrrs_axes4_z*m->gravity_z;
     /* (rrrrs-mu_4) inertia moment of the links that turn with link 4, about their reference points */
-    const real rrrrs_mu_4_in_axes4_x = rrrrs_B_4_in_axes4_yx*m->rrrrs_J_4_in_spec4_xz[i] +
-        rrrrs_B_4_in_axes4_zy*m->rrrrs_Sigma_4_in_axes4_yy[i] +
+    const real rrrrs_mu_4_in_axes4_x = rrrrs_acc_4_in_axes4_z*m->rrrrs_h_4_in_spec4_y[i] -
+        rrrrs_acc_4_in_axes4_y*m->rrrrs_h_4_in_spec4_z[i] +
         m->rrrrs_J_4_in_spec4_yz[i]*(rrrrs_W_1_t_2 - rrrrs_W_4_t) +
-        rrrrs_acc_4_in_axes4_z*m->rrrrs_h_4_in_spec4_y[i] -
+        rrrrs_B_4_in_axes4_yx*m->rrrrs_J_4_in_spec4_xz[i] +
+        rrrrs_B_4_in_axes4_zy*m->rrrrs_Sigma_4_in_axes4_yy[i] -
         rrrrs_B_4_in_axes4_yz*m->rrrrs_Sigma_4_in_axes4_zz[i] -
-        rrrrs_B_4_in_axes4_zx*m->rrrrs_J_4_in_spec4_xy[i] -
-        rrrrs_acc_4_in_axes4_y*m->rrrrs_h_4_in_spec4_z[i];
-    const real rrrrs_mu_4_in_axes4_y = rrrrs_B_4_in_axes4_xz*m->rrrrs_Sigma_4_in_axes4_zz[i] +
-        rrrrs_B_4_in_axes4_zy*m->rrrrs_J_4_in_spec4_xy[i] +
-        rrrrs_acc_4_in_axes4_x*m->rrrrs_h_4_in_spec4_z[i] -
-        rrrrs_B_4_in_axes4_xy*m->rrrrs_J_4_in_spec4_yz[i] -
-        rrrrs_B_4_in_axes4_zx*m->rrrrs_Sigma_4_in_axes4_xx[i] -
+        rrrrs_B_4_in_axes4_zx*m->rrrrs_J_4_in_spec4_xy[i];
+    const real rrrrs_mu_4_in_axes4_y = rrrrs_acc_4_in_axes4_x*m->rrrrs_h_4_in_spec4_z[i] -
+        rrrrs_acc_4_in_axes4_z*m->rrrrs_h_4_in_spec4_x[i] -
         m->rrrrs_J_4_in_spec4_xz[i]*(rrrrs_W_1_t - rrrrs_W_4_t) -
-        rrrrs_acc_4_in_axes4_z*m->rrrrs_h_4_in_spec4_x[i];
-    const real rrrrs_mu_4_in_axes4_z = rrrrs_B_4_in_axes4_xz*m->rrrrs_J_4_in_spec4_yz[i] +
-        rrrrs_B_4_in_axes4_yx*m->rrrrs_Sigma_4_in_axes4_xx[i] +
+        rrrrs_B_4_in_axes4_xy*m->rrrrs_J_4_in_spec4_yz[i] +
+        rrrrs_B_4_in_axes4_xz*m->rrrrs_Sigma_4_in_axes4_zz[i] +
+        rrrrs_B_4_in_axes4_zy*m->rrrrs_J_4_in_spec4_xy[i] -
+        rrrrs_B_4_in_axes4_zx*m->rrrrs_Sigma_4_in_axes4_xx[i];
+    const real rrrrs_mu_4_in_axes4_z = rrrrs_acc_4_in_axes4_y*m->rrrrs_h_4_in_spec4_x[i] -
+        rrrrs_acc_4_in_axes4_x*m->rrrrs_h_4_in_spec4_y[i] +
         m->rrrrs_J_4_in_spec4_xy[i]*(rrrrs_W_1_t - rrrrs_W_1_t_2) +
-        rrrrs_acc_4_in_axes4_y*m->rrrrs_h_4_in_spec4_x[i] -
-        rrrrs_B_4_in_axes4_xy*m->rrrrs_Sigma_4_in_axes4_yy[i] -
-        rrrrs_B_4_in_axes4_yz*m->rrrrs_J_4_in_spec4_xz[i] -
-        rrrrs_acc_4_in_axes4_x*m->rrrrs_h_4_in_spec4_y[i];
+        rrrrs_B_4_in_axes4_yx*m->rrrrs_Sigma_4_in_axes4_xx[i] -
+        rrrrs_B_4_in_axes4_xy*m->rrrrs_Sigma_4_in_axes4_yy[i] +
+        rrrrs_B_4_in_axes4_xz*m->rrrrs_J_4_in_spec4_yz[i] -
+        rrrrs_B_4_in_axes4_yz*m->rrrrs_J_4_in_spec4_xz[i];
     /* (rrrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-    const real rrrrs_mu_3_in_axes3_x = rrrrs_B_3_in_axes3_yx*m->rrrrs_J_3_in_spec3_xz[i] +
-        rrrrs_B_3_in_axes3_zy*m->rrrrs_Sigma_3_in_axes3_yy[i] +
-        m->rrrrs_J_3_in_spec3_yz[i]*(rrrrs_f_3_t_2 - rrrrs_bias_t_2) +
-        rrrrs_acc_3_in_axes3_z*m->rrrrs_h_3_in_spec3_y[i] -
+    const real rrrrs_mu_3_in_axes3_x = m->rrrrs_J_3_in_spec3_yz[i]*(rrrrs_f_3_t_2 -
+        rrrrs_bias_t_2) - rrrrs_acc_3_in_axes3_y*m->rrrrs_h_3_in_spec3_z[i] +
+        rrrrs_B_3_in_axes3_yx*m->rrrrs_J_3_in_spec3_xz[i] +
+        rrrrs_acc_3_in_axes3_z*m->rrrrs_h_3_in_spec3_y[i] +
+        rrrrs_B_3_in_axes3_zy*m->rrrrs_Sigma_3_in_axes3_yy[i] -
         rrrrs_B_3_in_axes3_yz*m->rrrrs_Sigma_3_in_axes3_zz[i] -
-        rrrrs_B_3_in_axes3_zx*m->rrrrs_J_3_in_spec3_xy[i] -
-        rrrrs_acc_3_in_axes3_y*m->rrrrs_h_3_in_spec3_z[i];
-    const real rrrrs_mu_3_in_axes3_y = rrrrs_B_3_in_axes3_xz*m->rrrrs_Sigma_3_in_axes3_zz[i] +
-        rrrrs_B_3_in_axes3_zy*m->rrrrs_J_3_in_spec3_xy[i] +
-        rrrrs_acc_3_in_axes3_x*m->rrrrs_h_3_in_spec3_z[i] -
-        rrrrs_B_3_in_axes3_xy*m->rrrrs_J_3_in_spec3_yz[i] -
-        rrrrs_B_3_in_axes3_zx*m->rrrrs_Sigma_3_in_axes3_xx[i] -
+        rrrrs_B_3_in_axes3_zx*m->rrrrs_J_3_in_spec3_xy[i];
+    const real rrrrs_mu_3_in_axes3_y = rrrrs_acc_3_in_axes3_x*m->rrrrs_h_3_in_spec3_z[i] -
         m->rrrrs_J_3_in_spec3_xz[i]*(rrrrs_f_3_t - rrrrs_bias_t_2) -
-        rrrrs_acc_3_in_axes3_z*m->rrrrs_h_3_in_spec3_x[i];
-    const real rrrrs_mu_3_in_axes3_z = rrrrs_B_3_in_axes3_xz*m->rrrrs_J_3_in_spec3_yz[i] +
-        rrrrs_B_3_in_axes3_yx*m->rrrrs_Sigma_3_in_axes3_xx[i] +
-        m->rrrrs_J_3_in_spec3_xy[i]*(rrrrs_f_3_t - rrrrs_f_3_t_2) +
-        rrrrs_acc_3_in_axes3_y*m->rrrrs_h_3_in_spec3_x[i] -
-        rrrrs_B_3_in_axes3_xy*m->rrrrs_Sigma_3_in_axes3_yy[i] -
-        rrrrs_B_3_in_axes3_yz*m->rrrrs_J_3_in_spec3_xz[i] -
-        rrrrs_acc_3_in_axes3_x*m->rrrrs_h_3_in_spec3_y[i];
+        rrrrs_B_3_in_axes3_xy*m->rrrrs_J_3_in_spec3_yz[i] -
+        rrrrs_acc_3_in_axes3_z*m->rrrrs_h_3_in_spec3_x[i] +
+        rrrrs_B_3_in_axes3_xz*m->rrrrs_Sigma_3_in_axes3_zz[i] +
+        rrrrs_B_3_in_axes3_zy*m->rrrrs_J_3_in_spec3_xy[i] -
+        rrrrs_B_3_in_axes3_zx*m->rrrrs_Sigma_3_in_axes3_xx[i];
+    const real rrrrs_mu_3_in_axes3_z = m->rrrrs_J_3_in_spec3_xy[i]*(rrrrs_f_3_t -
+        rrrrs_f_3_t_2) + rrrrs_acc_3_in_axes3_y*m->rrrrs_h_3_in_spec3_x[i] -
+        rrrrs_acc_3_in_axes3_x*m->rrrrs_h_3_in_spec3_y[i] +
+        rrrrs_B_3_in_axes3_yx*m->rrrrs_Sigma_3_in_axes3_xx[i] -
+        rrrrs_B_3_in_axes3_xy*m->rrrrs_Sigma_3_in_axes3_yy[i] +
+        rrrrs_B_3_in_axes3_xz*m->rrrrs_J_3_in_spec3_yz[i] -
+        rrrrs_B_3_in_axes3_yz*m->rrrrs_J_3_in_spec3_xz[i];
     /* (rrrrs-N_3) moment about joint 3 of the links from 3 outwards, the force at the connection
        point left out */
     const real rrrrs_N_3_in_axes3_x = rrrrs_mu_3_in_axes3_x +
@@ -3007,29 +3018,29 @@ INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, siz
         v->rrrrs_c_4*rrrrs_mu_4_in_axes4_y - rrrrs_mu_4_in_axes4_x*v->rrrrs_s_4_t;
     const real rrrrs_N_3_in_axes3_z = rrrrs_mu_3_in_axes3_z + rrrrs_mu_4_in_axes4_z;
     /* (rrrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real rrrrs_mu_2_in_axes2_x = rrrrs_B_2_in_axes2_yx*m->rrrrs_J_2_in_spec2_xz[i] +
-        rrrrs_B_2_in_axes2_zy*m->rrrrs_Sigma_2_in_axes2_yy[i] +
+    const real rrrrs_mu_2_in_axes2_x = v->rrrrs_g_in_axes2_y*m->rrrrs_h_2_in_spec2_z[i] -
+        v->rrrrs_g_in_axes1_y*m->rrrrs_h_2_in_spec2_y[i] +
+        rrrrs_B_2_in_axes2_yx*m->rrrrs_J_2_in_spec2_xz[i] +
         m->rrrrs_J_2_in_spec2_yz[i]*(rrrrs_a_o_3_t - v->rrrrs_bias_t) +
         m->rrrrs_Sigma_2_in_axes2_zz[i]*rrrrs_alpha_1_in_axes2_x +
-        v->rrrrs_g_in_axes2_y*m->rrrrs_h_2_in_spec2_z[i] -
-        rrrrs_B_2_in_axes2_zx*m->rrrrs_J_2_in_spec2_xy[i] -
-        v->rrrrs_g_in_axes1_y*m->rrrrs_h_2_in_spec2_y[i];
+        rrrrs_B_2_in_axes2_zy*m->rrrrs_Sigma_2_in_axes2_yy[i] -
+        rrrrs_B_2_in_axes2_zx*m->rrrrs_J_2_in_spec2_xy[i];
     /* (rrrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection
        point left out */
     const real rrrrs_N_2_in_axes2_x = rrrrs_mu_2_in_axes2_x +
         rrrrs_N_3_in_axes3_x*v->rrrrs_c_3 - rrrrs_N_3_in_axes3_y*v->rrrrs_s_3;
     /* (rrrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-    const real rrrrs_mu_1_in_axes1_z = m->rrrrs_J_1_in_spec1_xx[i]*rrrrs_qdd_1 +
-        v->rrrrs_g_in_axes1_x*m->rrrrs_h_1_in_spec1_z[i] -
-        v->rrrrs_g_in_axes1_y*m->rrrrs_h_1_in_spec1_y[i];
+    const real rrrrs_mu_1_in_axes1_z = v->rrrrs_g_in_axes1_x*m->rrrrs_h_1_in_spec1_z[i] -
+        v->rrrrs_g_in_axes1_y*m->rrrrs_h_1_in_spec1_y[i] +
+        m->rrrrs_J_1_in_spec1_xx[i]*rrrrs_qdd_1;
     /* (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
     const real rrrrs_G_in_axes4_y = rrrrs_mu_4_in_axes4_z*m->rrrrs_w_4_in_axes4_y[i];
     /* (rrrrs-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real rrrrs_c_in_axes4_y = m->rrrrs_h_4_in_spec4_y[i]*(rrrrs_W_1_t + rrrrs_W_4_t) -
-        rrrrs_G_in_axes4_y - rrrrs_B_4_in_axes4_yx*m->rrrrs_h_4_in_spec4_x[i] -
-        rrrrs_B_4_in_axes4_yz*m->rrrrs_h_4_in_spec4_z[i];
+        rrrrs_B_4_in_axes4_yx*m->rrrrs_h_4_in_spec4_x[i] -
+        rrrrs_B_4_in_axes4_yz*m->rrrrs_h_4_in_spec4_z[i] - rrrrs_G_in_axes4_y;
     v->axis_x_rrrrs_axes4_x = axis_x_rrrrs_axes4_x;
     v->axis_x_rrrrs_axes4_y = axis_x_rrrrs_axes4_y;
     v->axis_x_rrrrs_axes4_z = axis_x_rrrrs_axes4_z;
@@ -3106,24 +3117,24 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real rrrs_q_x = R_xx*m->rrrs_platform_point_x[i] + R_xy*m->rrrs_platform_point_y[i]
-        + R_xz*m->rrrs_platform_point_z[i];
+    const real rrrs_q_x = R_xy*m->rrrs_platform_point_y[i] + R_xz*m->rrrs_platform_point_z[i]
+        + R_xx*m->rrrs_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real rrrs_q_y = R_yx*m->rrrs_platform_point_x[i] + R_yy*m->rrrs_platform_point_y[i]
-        + R_yz*m->rrrs_platform_point_z[i];
+    const real rrrs_q_y = R_yx*m->rrrs_platform_point_x[i] + R_yz*m->rrrs_platform_point_z[i]
+        + R_yy*m->rrrs_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real rrrs_q_z = R_zx*m->rrrs_platform_point_x[i] + R_zy*m->rrrs_platform_point_y[i]
         + R_zz*m->rrrs_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real rrrs_S_x = rrrs_q_x + t_x - m->rrrs_base_point_x[i];
+    const real rrrs_S_x = t_x - m->rrrs_base_point_x[i] + rrrs_q_x;
     const real t_y = X[1*w + j];
-    const real rrrs_S_y = rrrs_q_y + t_y - m->rrrs_base_point_y[i];
+    const real rrrs_S_y = t_y - m->rrrs_base_point_y[i] + rrrs_q_y;
     const real t_z = X[2*w + j];
-    const real rrrs_S_z = rrrs_q_z + t_z - m->rrrs_base_point_z[i];
+    const real rrrs_S_z = t_z - m->rrrs_base_point_z[i] + rrrs_q_z;
     const real rrrs_S_in_turn1_x = rrrs_S_x*m->rrrs_base_frame_xy[i] +
         rrrs_S_y*m->rrrs_base_frame_yy[i] + rrrs_S_z*m->rrrs_base_frame_zy[i];
     const real rrrs_S_in_turn1_y = rrrs_S_x*m->rrrs_base_frame_xz[i] +
@@ -3145,7 +3156,7 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
     /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 2 */
     const real rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
-    const real rrrs_Kd_2 = m->rrrs_Kd_2_t[i] + R(0.5)*rrrs_Kd_2_t_3 - m->rrrs_Kd_2_t_2[i];
+    const real rrrs_Kd_2 = m->rrrs_Kd_2_t[i] - m->rrrs_Kd_2_t_2[i] + R(0.5)*rrrs_Kd_2_t_3;
     /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
     const real rrrs_Kc_2 = m->rrrs_joint3_offset_x[i]*rrrs_x_2_in_axes1_z;
     /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
@@ -3160,7 +3171,7 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
     const real inv_rrrs_rho2_2 = 1/rrrs_rho2_2;
     const real rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2);
     /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
-    const real rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2);
+    const real rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kd_2*rrrs_Ks_2 + rrrs_Kc_2*rrrs_root_2);
     /* (rrrs-x_3) from the origin of joint 3 to the connection point */
     const real rrrs_x_3_in_axes2_x =
         m->inv_rrrs_size_t[i]*rrrs_Kd_2*m->rrrs_joint3_offset_x[i] -
@@ -3312,11 +3323,11 @@ INLINE void stage_rrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
     const real rrrs_S_dot_t_2 = omega_z*v->rrrs_q_x - omega_x*v->rrrs_q_z;
     const real rrrs_S_dot_t_3 = omega_x*v->rrrs_q_y - omega_y*v->rrrs_q_x;
     const real t_dot_x = V[0*w + j];
-    const real rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x;
+    const real rrrs_S_dot_x = t_dot_x + rrrs_S_dot_t;
     const real t_dot_y = V[1*w + j];
-    const real rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y;
+    const real rrrs_S_dot_y = t_dot_y + rrrs_S_dot_t_2;
     const real t_dot_z = V[2*w + j];
-    const real rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z;
+    const real rrrs_S_dot_z = t_dot_z + rrrs_S_dot_t_3;
     /* (rrrs-qd_1) rate of joint 1 */
     const real rrrs_qd_1 = v->rrrs_w_1_in_axes3_z*(v->axis_z_rrrs_axes3_x*rrrs_S_dot_x +
         v->axis_z_rrrs_axes3_y*rrrs_S_dot_y + v->axis_z_rrrs_axes3_z*rrrs_S_dot_z);
@@ -3361,18 +3372,17 @@ INLINE void stage_rrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
         v->rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y;
     const real rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*m->rrrs_platform_joint_offset_x[i];
     const real rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*m->rrrs_platform_joint_offset_x[i];
-    const real rrrs_bias_in_axes3_x = rrrs_bias_t_3*rrrs_omega_1_in_axes3_y +
-        rrrs_bias_t_6*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_qd_2_t -
-        rrrs_bias_t_7*rrrs_omega_3_in_axes3_z - rrrs_bias_t_8*rrrs_omega_1_in_axes3_y;
+    const real rrrs_bias_in_axes3_x = rrrs_bias_t_3*rrrs_omega_1_in_axes3_y -
+        rrrs_bias_t_5*rrrs_qd_2_t + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
+        rrrs_bias_t_8*rrrs_omega_1_in_axes3_y - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z;
     const real rrrs_bias_in_axes3_y = rrrs_bias_t_8*rrrs_omega_1_in_axes3_x -
-        rrrs_bias_t_3*rrrs_omega_1_in_axes3_x - rrrs_bias_t_4*rrrs_qd_2_t -
+        rrrs_bias_t_4*rrrs_qd_2_t - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
         rrrs_bias_t_6*rrrs_omega_1_in_axes3_x;
-    const real rrrs_bias_in_axes3_z = rrrs_bias_t_7*rrrs_omega_1_in_axes3_x +
-        v->rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*v->rrrs_c_3 -
-        v->rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) -
-        rrrs_beta_3_in_axes3_y*m->rrrs_platform_joint_offset_x[i] -
-        rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
-        v->rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y;
+    const real rrrs_bias_in_axes3_z = v->rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*v->rrrs_c_3
+        - v->rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) - rrrs_bias_t_4*rrrs_omega_1_in_axes3_y -
+        rrrs_bias_t_5*rrrs_omega_1_in_axes3_x - v->rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
+        + rrrs_bias_t_7*rrrs_omega_1_in_axes3_x -
+        rrrs_beta_3_in_axes3_y*m->rrrs_platform_joint_offset_x[i];
     v->rrrs_S_dot_t = rrrs_S_dot_t;
     v->rrrs_S_dot_t_2 = rrrs_S_dot_t_2;
     v->rrrs_S_dot_t_3 = rrrs_S_dot_t_3;
@@ -3406,13 +3416,13 @@ INLINE void stage_rrrs_A_V_X(size_t w, size_t j, const real *V, values_rrrs *v)
     /* (rrrs-S_ddot) acceleration of the connection point */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
-    const real rrrs_S_ddot_x = v->rrrs_a_p_x + omega_y*v->rrrs_S_dot_t_3 -
-        omega_z*v->rrrs_S_dot_t_2;
+    const real rrrs_S_ddot_x = omega_y*v->rrrs_S_dot_t_3 - omega_z*v->rrrs_S_dot_t_2 +
+        v->rrrs_a_p_x;
     const real omega_x = V[3*w + j];
-    const real rrrs_S_ddot_y = v->rrrs_a_p_y + omega_z*v->rrrs_S_dot_t -
-        omega_x*v->rrrs_S_dot_t_3;
-    const real rrrs_S_ddot_z = v->rrrs_a_p_z + omega_x*v->rrrs_S_dot_t_2 -
-        omega_y*v->rrrs_S_dot_t;
+    const real rrrs_S_ddot_y = omega_z*v->rrrs_S_dot_t - omega_x*v->rrrs_S_dot_t_3 +
+        v->rrrs_a_p_y;
+    const real rrrs_S_ddot_z = omega_x*v->rrrs_S_dot_t_2 - omega_y*v->rrrs_S_dot_t +
+        v->rrrs_a_p_z;
     v->rrrs_S_ddot_x = rrrs_S_ddot_x;
     v->rrrs_S_ddot_y = rrrs_S_ddot_y;
     v->rrrs_S_ddot_z = rrrs_S_ddot_z;
@@ -3458,17 +3468,17 @@ INLINE void stage_rrrs_M_dynamics(const prepared *m, size_t i, values_rrrs *v)
     /* (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
        about the connection point */
     const real rrrs_Jc_2_t = m->rrrs_J_3_in_spec3_xy[i]*v->rrrs_s_3_t;
-    const real rrrs_Jc_2_t_2 = rrrs_Jc_2_t + m->rrrs_J_3_in_spec3_xx[i]*v->rrrs_c_3;
+    const real rrrs_Jc_2_t_2 = m->rrrs_J_3_in_spec3_xx[i]*v->rrrs_c_3 + rrrs_Jc_2_t;
     const real rrrs_Jc_2_t_3 = m->rrrs_J_3_in_spec3_xy[i]*v->rrrs_c_3;
     const real rrrs_Jc_2_t_4 = rrrs_Jc_2_t_3 + m->rrrs_J_3_in_spec3_yy[i]*v->rrrs_s_3_t;
     const real rrrs_Jc_2_in_axes2_xy = m->rrrs_J_2_in_spec2_xy[i] + rrrs_Jc_2_t_4*v->rrrs_c_3
         - rrrs_Jc_2_t_2*v->rrrs_s_3_t;
     const real rrrs_Jc_2_in_axes1_zz = v->rrrs_c_2*(v->rrrs_c_2*(m->rrrs_J_2_in_spec2_xx[i] +
-        rrrs_Jc_2_t_2*v->rrrs_c_3 + rrrs_Jc_2_t_4*v->rrrs_s_3_t) -
+        rrrs_Jc_2_t_4*v->rrrs_s_3_t + rrrs_Jc_2_t_2*v->rrrs_c_3) -
         rrrs_Jc_2_in_axes2_xy*v->rrrs_s_2) - v->rrrs_s_2*(rrrs_Jc_2_in_axes2_xy*v->rrrs_c_2 -
-        v->rrrs_s_2*(m->rrrs_J_2_in_spec2_yy[i] +
-        v->rrrs_c_3*(m->rrrs_J_3_in_spec3_yy[i]*v->rrrs_c_3 - rrrs_Jc_2_t) -
-        v->rrrs_s_3_t*(rrrs_Jc_2_t_3 - m->rrrs_J_3_in_spec3_xx[i]*v->rrrs_s_3_t)));
+        v->rrrs_s_2*(m->rrrs_J_2_in_spec2_yy[i] - v->rrrs_s_3_t*(rrrs_Jc_2_t_3 -
+        m->rrrs_J_3_in_spec3_xx[i]*v->rrrs_s_3_t) +
+        v->rrrs_c_3*(m->rrrs_J_3_in_spec3_yy[i]*v->rrrs_c_3 - rrrs_Jc_2_t)));
     /* (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
        inertia and weight */
     const real rrrs_d_Gamma_3_in_axes3_z = rrrs_D_1_3*v->rrrs_w_1_in_axes3_z;
@@ -3481,16 +3491,17 @@ INLINE void stage_rrrs_M_dynamics(const prepared *m, size_t i, values_rrrs *v)
         - rrrs_d_Gamma_3_t_2) - m->rrrs_h_3_in_spec3_y[i];
     /* (rrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
-    const real rrrs_d_Gamma_1_in_axes3_z = v->rrrs_e_1_in_axes3_x*m->rrrs_h_3_in_spec3_y[i] +
-        v->rrrs_w_1_in_axes3_z*(m->rrrs_J_1_in_spec1_xx[i] + rrrs_Jc_2_in_axes1_zz) -
-        v->rrrs_e_1_in_axes3_y*m->rrrs_h_3_in_spec3_x[i];
+    const real rrrs_d_Gamma_1_in_axes3_z = v->rrrs_e_1_in_axes3_x*m->rrrs_h_3_in_spec3_y[i] -
+        v->rrrs_e_1_in_axes3_y*m->rrrs_h_3_in_spec3_x[i] +
+        v->rrrs_w_1_in_axes3_z*(m->rrrs_J_1_in_spec1_xx[i] + rrrs_Jc_2_in_axes1_zz);
     /* (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the
        leg's inertia and weight along all degrees of freedom */
-    const real rrrs_d_G_in_axes3_xz = rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_x +
+    const real rrrs_d_G_in_axes3_xz =
         v->rrrs_w_1_in_axes3_z*v->rrrs_w_2_in_axes3_x*(v->rrrs_c_2*(m->rrrs_J_2_in_spec2_xz[i]
         + m->rrrs_J_3_in_spec3_xz[i]*v->rrrs_c_3 + m->rrrs_J_3_in_spec3_yz[i]*v->rrrs_s_3_t) -
         v->rrrs_s_2*(m->rrrs_J_2_in_spec2_yz[i] + m->rrrs_J_3_in_spec3_yz[i]*v->rrrs_c_3 -
-        m->rrrs_J_3_in_spec3_xz[i]*v->rrrs_s_3_t));
+        m->rrrs_J_3_in_spec3_xz[i]*v->rrrs_s_3_t)) +
+        rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_x;
     /* (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
        without the mass at the connection point */
     const real rrrs_d_c_in_axes3_xx = m->rrrs_h_3_in_spec3_y[i]*(v->rrrs_w_2_in_axes3_x +
@@ -3499,8 +3510,8 @@ INLINE void stage_rrrs_M_dynamics(const prepared *m, size_t i, values_rrrs *v)
     const real rrrs_d_c_in_axes3_xy = m->rrrs_d_phi_3_t[i] -
         m->rrrs_d_Gamma_3_in_axes3_y[i]*v->rrrs_w_2_in_axes3_x -
         m->rrrs_d_Gamma_3_in_axes3_y[i]*rrrs_w_3_in_axes3_x;
-    const real rrrs_d_c_in_axes3_xz = -rrrs_d_G_in_axes3_xz -
-        rrrs_d_alpha_3_in_axes3_yz*m->rrrs_h_3_in_spec3_z[i];
+    const real rrrs_d_c_in_axes3_xz = -rrrs_d_alpha_3_in_axes3_yz*m->rrrs_h_3_in_spec3_z[i] -
+        rrrs_d_G_in_axes3_xz;
     const real rrrs_d_c_in_axes3_yz = rrrs_d_alpha_3_in_axes3_xz*m->rrrs_h_3_in_spec3_z[i] -
         rrrs_d_Gamma_3_in_axes3_z*m->rrrs_w_3_in_axes3_y[i];
     v->rrrs_d_alpha_3_in_axes3_xz = rrrs_d_alpha_3_in_axes3_xz;
@@ -3555,23 +3566,20 @@ INLINE void stage_rrrs_inverse_kinematics_potential(const prepared *m, size_t w,
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
     const real t_x = X[0*w + j];
-    const real rrrs_S_x = t_x + R_xx*m->rrrs_platform_point_x[i] +
-        R_xy*m->rrrs_platform_point_y[i] + R_xz*m->rrrs_platform_point_z[i] -
-        m->rrrs_base_point_x[i];
+    const real rrrs_S_x = t_x - m->rrrs_base_point_x[i] + R_xy*m->rrrs_platform_point_y[i] +
+        R_xz*m->rrrs_platform_point_z[i] + R_xx*m->rrrs_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real t_y = X[1*w + j];
-    const real rrrs_S_y = t_y + R_yx*m->rrrs_platform_point_x[i] +
-        R_yy*m->rrrs_platform_point_y[i] + R_yz*m->rrrs_platform_point_z[i] -
-        m->rrrs_base_point_y[i];
+    const real rrrs_S_y = t_y - m->rrrs_base_point_y[i] + R_yx*m->rrrs_platform_point_x[i] +
+        R_yz*m->rrrs_platform_point_z[i] + R_yy*m->rrrs_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real t_z = X[2*w + j];
-    const real rrrs_S_z = t_z + R_zx*m->rrrs_platform_point_x[i] +
-        R_zy*m->rrrs_platform_point_y[i] + R_zz*m->rrrs_platform_point_z[i] -
-        m->rrrs_base_point_z[i];
+    const real rrrs_S_z = t_z - m->rrrs_base_point_z[i] + R_zx*m->rrrs_platform_point_x[i] +
+        R_zy*m->rrrs_platform_point_y[i] + R_zz*m->rrrs_platform_point_z[i];
     const real rrrs_S_in_turn1_x = rrrs_S_x*m->rrrs_base_frame_xy[i] +
         rrrs_S_y*m->rrrs_base_frame_yy[i] + rrrs_S_z*m->rrrs_base_frame_zy[i];
     const real rrrs_S_in_turn1_y = rrrs_S_x*m->rrrs_base_frame_xz[i] +
@@ -3584,13 +3592,13 @@ INLINE void stage_rrrs_inverse_kinematics_potential(const prepared *m, size_t w,
     /* (rrrs-q_1) displacement of joint 1 */
     const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
     /* (rrrs-x_2) from the origin of joint 2 to the connection point */
-    const real rrrs_x_2_in_axes1_z = rrrs_S_x*m->rrrs_base_frame_xx[i] +
-        rrrs_S_y*m->rrrs_base_frame_yx[i] + rrrs_S_z*m->rrrs_base_frame_zx[i] -
-        m->rrrs_joint2_offset_x[i];
+    const real rrrs_x_2_in_axes1_z = rrrs_S_x*m->rrrs_base_frame_xx[i] -
+        m->rrrs_joint2_offset_x[i] + rrrs_S_y*m->rrrs_base_frame_yx[i] +
+        rrrs_S_z*m->rrrs_base_frame_zx[i];
     /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 2 */
     const real rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
-    const real rrrs_Kd_2 = m->rrrs_Kd_2_t[i] + R(0.5)*rrrs_Kd_2_t_3 - m->rrrs_Kd_2_t_2[i];
+    const real rrrs_Kd_2 = m->rrrs_Kd_2_t[i] - m->rrrs_Kd_2_t_2[i] + R(0.5)*rrrs_Kd_2_t_3;
     /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
     const real rrrs_Kc_2 = m->rrrs_joint3_offset_x[i]*rrrs_x_2_in_axes1_z;
     /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
@@ -3648,13 +3656,13 @@ INLINE void stage_rrrs_legs_required(const prepared *m, size_t i, values_rrrs *v
     /* (rrrs-B_2) acceleration tensor of link 2 */
     const real rrrs_B_2_in_axes2_xy = v->rrrs_W_2_in_axes2_xy - rrrs_qdd_2;
     const real rrrs_B_2_in_axes2_yx = v->rrrs_W_2_in_axes2_xy + rrrs_qdd_2;
-    const real rrrs_B_2_in_axes2_zx = -rrrs_alpha_2_in_axes2_y - v->rrrs_zeta_2_in_axes2_y;
+    const real rrrs_B_2_in_axes2_zx = -v->rrrs_zeta_2_in_axes2_y - rrrs_alpha_2_in_axes2_y;
     const real rrrs_B_2_in_axes2_zy = v->rrrs_W_2_in_axes2_yz + rrrs_alpha_2_in_axes2_x;
     /* (rrrs-alpha_3) angular acceleration of link 3 */
-    const real rrrs_alpha_3_in_axes3_x = rrrs_alpha_2_in_axes2_x*v->rrrs_c_3 +
-        v->rrrs_omega_1_in_axes3_y*v->rrrs_qd_3 - rrrs_alpha_2_in_axes2_y*v->rrrs_s_3_t;
-    const real rrrs_alpha_3_in_axes3_y = rrrs_alpha_2_in_axes2_x*v->rrrs_s_3_t +
-        rrrs_alpha_2_in_axes2_y*v->rrrs_c_3 - v->rrrs_zeta_3_t;
+    const real rrrs_alpha_3_in_axes3_x = v->rrrs_omega_1_in_axes3_y*v->rrrs_qd_3 +
+        rrrs_alpha_2_in_axes2_x*v->rrrs_c_3 - rrrs_alpha_2_in_axes2_y*v->rrrs_s_3_t;
+    const real rrrs_alpha_3_in_axes3_y = rrrs_alpha_2_in_axes2_x*v->rrrs_s_3_t -
+        v->rrrs_zeta_3_t + rrrs_alpha_2_in_axes2_y*v->rrrs_c_3;
     const real rrrs_alpha_3_in_axes3_z = rrrs_qdd_2 +
         m->rrrs_w_3_in_axes3_y[i]*(rrrs_rel_in_axes3_y - rrrs_qdd_2*v->rrrs_r_2_in_axes3_x);
     /* (rrrs-B_3) acceleration tensor of link 3 */
@@ -3678,52 +3686,52 @@ INLINE void stage_rrrs_legs_required(const prepared *m, size_t i, values_rrrs *v
     const real rrrs_mu_3_t = v->rrrs_omega_1_in_axes3_x*v->rrrs_omega_1_in_axes3_x;
     const real rrrs_mu_3_t_2 = v->rrrs_omega_1_in_axes3_y*v->rrrs_omega_1_in_axes3_y;
     const real rrrs_mu_3_t_3 = v->rrrs_omega_3_in_axes3_z*v->rrrs_omega_3_in_axes3_z;
-    const real rrrs_mu_3_in_axes3_x = rrrs_B_3_in_axes3_yx*m->rrrs_J_3_in_spec3_xz[i] +
-        rrrs_B_3_in_axes3_zy*m->rrrs_Sigma_3_in_axes3_yy[i] +
+    const real rrrs_mu_3_in_axes3_x = rrrs_acc_3_in_axes3_z*m->rrrs_h_3_in_spec3_y[i] -
+        rrrs_acc_3_in_axes3_y*m->rrrs_h_3_in_spec3_z[i] +
         m->rrrs_J_3_in_spec3_yz[i]*(rrrs_mu_3_t_2 - rrrs_mu_3_t_3) +
-        rrrs_acc_3_in_axes3_z*m->rrrs_h_3_in_spec3_y[i] -
+        rrrs_B_3_in_axes3_yx*m->rrrs_J_3_in_spec3_xz[i] +
+        rrrs_B_3_in_axes3_zy*m->rrrs_Sigma_3_in_axes3_yy[i] -
         rrrs_B_3_in_axes3_yz*m->rrrs_Sigma_3_in_axes3_zz[i] -
-        rrrs_B_3_in_axes3_zx*m->rrrs_J_3_in_spec3_xy[i] -
-        rrrs_acc_3_in_axes3_y*m->rrrs_h_3_in_spec3_z[i];
-    const real rrrs_mu_3_in_axes3_y = rrrs_B_3_in_axes3_xz*m->rrrs_Sigma_3_in_axes3_zz[i] +
-        rrrs_B_3_in_axes3_zy*m->rrrs_J_3_in_spec3_xy[i] +
-        rrrs_acc_3_in_axes3_x*m->rrrs_h_3_in_spec3_z[i] -
-        rrrs_B_3_in_axes3_xy*m->rrrs_J_3_in_spec3_yz[i] -
-        rrrs_B_3_in_axes3_zx*m->rrrs_Sigma_3_in_axes3_xx[i] -
+        rrrs_B_3_in_axes3_zx*m->rrrs_J_3_in_spec3_xy[i];
+    const real rrrs_mu_3_in_axes3_y = rrrs_acc_3_in_axes3_x*m->rrrs_h_3_in_spec3_z[i] -
+        rrrs_acc_3_in_axes3_z*m->rrrs_h_3_in_spec3_x[i] -
         m->rrrs_J_3_in_spec3_xz[i]*(rrrs_mu_3_t - rrrs_mu_3_t_3) -
-        rrrs_acc_3_in_axes3_z*m->rrrs_h_3_in_spec3_x[i];
-    const real rrrs_mu_3_in_axes3_z = rrrs_B_3_in_axes3_xz*m->rrrs_J_3_in_spec3_yz[i] +
-        rrrs_B_3_in_axes3_yx*m->rrrs_Sigma_3_in_axes3_xx[i] +
+        rrrs_B_3_in_axes3_xy*m->rrrs_J_3_in_spec3_yz[i] +
+        rrrs_B_3_in_axes3_xz*m->rrrs_Sigma_3_in_axes3_zz[i] +
+        rrrs_B_3_in_axes3_zy*m->rrrs_J_3_in_spec3_xy[i] -
+        rrrs_B_3_in_axes3_zx*m->rrrs_Sigma_3_in_axes3_xx[i];
+    const real rrrs_mu_3_in_axes3_z = rrrs_acc_3_in_axes3_y*m->rrrs_h_3_in_spec3_x[i] -
+        rrrs_acc_3_in_axes3_x*m->rrrs_h_3_in_spec3_y[i] +
         m->rrrs_J_3_in_spec3_xy[i]*(rrrs_mu_3_t - rrrs_mu_3_t_2) +
-        rrrs_acc_3_in_axes3_y*m->rrrs_h_3_in_spec3_x[i] -
-        rrrs_B_3_in_axes3_xy*m->rrrs_Sigma_3_in_axes3_yy[i] -
-        rrrs_B_3_in_axes3_yz*m->rrrs_J_3_in_spec3_xz[i] -
-        rrrs_acc_3_in_axes3_x*m->rrrs_h_3_in_spec3_y[i];
+        rrrs_B_3_in_axes3_yx*m->rrrs_Sigma_3_in_axes3_xx[i] -
+        rrrs_B_3_in_axes3_xy*m->rrrs_Sigma_3_in_axes3_yy[i] +
+        rrrs_B_3_in_axes3_xz*m->rrrs_J_3_in_spec3_yz[i] -
+        rrrs_B_3_in_axes3_yz*m->rrrs_J_3_in_spec3_xz[i];
     /* (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real rrrs_mu_2_t_3 = v->rrrs_omega_1_in_axes2_x*v->rrrs_omega_1_in_axes2_x;
     const real rrrs_mu_2_t_4 = v->rrrs_omega_1_t*v->rrrs_omega_1_t;
     const real rrrs_mu_2_t_5 = v->rrrs_qd_2_t*v->rrrs_qd_2_t;
-    const real rrrs_mu_2_in_axes2_x = rrrs_B_2_in_axes2_yx*m->rrrs_J_2_in_spec2_xz[i] +
-        rrrs_B_2_in_axes2_zy*m->rrrs_Sigma_2_in_axes2_yy[i] +
+    const real rrrs_mu_2_in_axes2_x = v->rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_z[i] -
+        v->rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_y[i] +
         m->rrrs_J_2_in_spec2_yz[i]*(rrrs_mu_2_t_4 - rrrs_mu_2_t_5) +
+        rrrs_B_2_in_axes2_yx*m->rrrs_J_2_in_spec2_xz[i] +
         m->rrrs_Sigma_2_in_axes2_zz[i]*rrrs_alpha_1_in_axes2_x +
-        v->rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_z[i] -
-        rrrs_B_2_in_axes2_zx*m->rrrs_J_2_in_spec2_xy[i] -
-        v->rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_y[i];
-    const real rrrs_mu_2_in_axes2_y = rrrs_B_2_in_axes2_zy*m->rrrs_J_2_in_spec2_xy[i] +
-        v->rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_x[i] -
-        rrrs_B_2_in_axes2_xy*m->rrrs_J_2_in_spec2_yz[i] -
-        rrrs_B_2_in_axes2_zx*m->rrrs_Sigma_2_in_axes2_xx[i] -
+        rrrs_B_2_in_axes2_zy*m->rrrs_Sigma_2_in_axes2_yy[i] -
+        rrrs_B_2_in_axes2_zx*m->rrrs_J_2_in_spec2_xy[i];
+    const real rrrs_mu_2_in_axes2_y = v->rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_x[i] -
+        v->rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_z[i] -
         m->rrrs_J_2_in_spec2_xz[i]*(rrrs_mu_2_t_3 - rrrs_mu_2_t_5) -
-        m->rrrs_Sigma_2_in_axes2_zz[i]*rrrs_alpha_1_t -
-        v->rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_z[i];
-    const real rrrs_mu_2_in_axes2_z = rrrs_B_2_in_axes2_yx*m->rrrs_Sigma_2_in_axes2_xx[i] +
+        rrrs_B_2_in_axes2_xy*m->rrrs_J_2_in_spec2_yz[i] -
+        m->rrrs_Sigma_2_in_axes2_zz[i]*rrrs_alpha_1_t +
+        rrrs_B_2_in_axes2_zy*m->rrrs_J_2_in_spec2_xy[i] -
+        rrrs_B_2_in_axes2_zx*m->rrrs_Sigma_2_in_axes2_xx[i];
+    const real rrrs_mu_2_in_axes2_z = v->rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_y[i] -
+        v->rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_x[i] +
         m->rrrs_J_2_in_spec2_xy[i]*(rrrs_mu_2_t_3 - rrrs_mu_2_t_4) +
-        m->rrrs_J_2_in_spec2_xz[i]*rrrs_alpha_1_in_axes2_x +
-        v->rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_y[i] -
+        rrrs_B_2_in_axes2_yx*m->rrrs_Sigma_2_in_axes2_xx[i] +
+        m->rrrs_J_2_in_spec2_xz[i]*rrrs_alpha_1_in_axes2_x -
         rrrs_B_2_in_axes2_xy*m->rrrs_Sigma_2_in_axes2_yy[i] -
-        m->rrrs_J_2_in_spec2_yz[i]*rrrs_alpha_1_t -
-        v->rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_x[i];
+        m->rrrs_J_2_in_spec2_yz[i]*rrrs_alpha_1_t;
     /* (rrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
        left out */
     const real rrrs_N_2_in_axes2_x = rrrs_mu_2_in_axes2_x + v->rrrs_c_3*rrrs_mu_3_in_axes3_x +
@@ -3732,9 +3740,9 @@ INLINE void stage_rrrs_legs_required(const prepared *m, size_t i, values_rrrs *v
         rrrs_mu_3_in_axes3_x*v->rrrs_s_3_t;
     const real rrrs_N_2_in_axes2_z = rrrs_mu_2_in_axes2_z + rrrs_mu_3_in_axes3_z;
     /* (rrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-    const real rrrs_mu_1_in_axes1_z = m->rrrs_J_1_in_spec1_xx[i]*rrrs_qdd_1 +
-        v->rrrs_g_in_axes1_x*m->rrrs_h_1_in_spec1_z[i] -
-        v->rrrs_g_in_axes1_y*m->rrrs_h_1_in_spec1_y[i];
+    const real rrrs_mu_1_in_axes1_z = v->rrrs_g_in_axes1_x*m->rrrs_h_1_in_spec1_z[i] -
+        v->rrrs_g_in_axes1_y*m->rrrs_h_1_in_spec1_y[i] +
+        m->rrrs_J_1_in_spec1_xx[i]*rrrs_qdd_1;
     /* (rrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real rrrs_N_1_in_axes1_z = rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*v->rrrs_c_2 -
@@ -3744,13 +3752,14 @@ INLINE void stage_rrrs_legs_required(const prepared *m, size_t i, values_rrrs *v
     const real rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*m->rrrs_w_3_in_axes3_y[i];
     /* (rrrs-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rrrs_c_in_axes3_x = m->rrrs_h_3_in_spec3_x[i]*(rrrs_mu_3_t_2 + rrrs_mu_3_t_3) +
+    const real rrrs_c_in_axes3_x = m->rrrs_h_3_in_spec3_x[i]*(rrrs_mu_3_t_2 + rrrs_mu_3_t_3) -
+        rrrs_B_3_in_axes3_xy*m->rrrs_h_3_in_spec3_y[i] -
+        rrrs_B_3_in_axes3_xz*m->rrrs_h_3_in_spec3_z[i] +
         v->rrrs_w_2_in_axes3_x*(rrrs_G_in_axes3_y*v->rrrs_r_2_in_axes3_x -
-        rrrs_N_2_in_axes2_z) - rrrs_B_3_in_axes3_xy*m->rrrs_h_3_in_spec3_y[i] -
-        rrrs_B_3_in_axes3_xz*m->rrrs_h_3_in_spec3_z[i];
+        rrrs_N_2_in_axes2_z);
     const real rrrs_c_in_axes3_y = m->rrrs_h_3_in_spec3_y[i]*(rrrs_mu_3_t + rrrs_mu_3_t_3) -
-        rrrs_G_in_axes3_y - rrrs_B_3_in_axes3_yx*m->rrrs_h_3_in_spec3_x[i] -
-        rrrs_B_3_in_axes3_yz*m->rrrs_h_3_in_spec3_z[i];
+        rrrs_B_3_in_axes3_yx*m->rrrs_h_3_in_spec3_x[i] -
+        rrrs_B_3_in_axes3_yz*m->rrrs_h_3_in_spec3_z[i] - rrrs_G_in_axes3_y;
     const real rrrs_c_in_axes3_z = m->rrrs_h_3_in_spec3_z[i]*(rrrs_mu_3_t + rrrs_mu_3_t_2) -
         rrrs_B_3_in_axes3_zx*m->rrrs_h_3_in_spec3_x[i] -
         rrrs_B_3_in_axes3_zy*m->rrrs_h_3_in_spec3_y[i] -
@@ -3766,39 +3775,43 @@ INLINE void stage_rrrs_legs_required(const prepared *m, size_t i, values_rrrs *v
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    real *s, verdict *t)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_M_dynamics(m, &v);
-    stage_Z_dynamics(m, w, k, V, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.h_star_x;
-    s[10*w + k] = v.h_star_y;
-    s[11*w + k] = v.h_star_z;
-    s[12*w + k] = v.J_star_xx;
-    s[13*w + k] = v.J_star_xy;
-    s[14*w + k] = v.J_star_xz;
-    s[15*w + k] = v.J_star_yy;
-    s[16*w + k] = v.J_star_yz;
-    s[17*w + k] = v.J_star_zz;
-    s[18*w + k] = v.Z_p_x;
-    s[19*w + k] = v.Z_p_y;
-    s[20*w + k] = v.Z_p_z;
-    s[21*w + k] = v.Z_q_x;
-    s[22*w + k] = v.Z_q_y;
-    s[23*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->h_star_x;
+    s[10*w + k] = v->h_star_y;
+    s[11*w + k] = v->h_star_z;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
+    *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_M_dynamics(m, v);
+    stage_Z_dynamics(m, w, k, V, v);
+    s[12*w + k] = v->J_star_xx;
+    s[13*w + k] = v->J_star_xy;
+    s[14*w + k] = v->J_star_xz;
+    s[15*w + k] = v->J_star_yy;
+    s[16*w + k] = v->J_star_yz;
+    s[17*w + k] = v->J_star_zz;
+    s[18*w + k] = v->Z_p_x;
+    s[19*w + k] = v->Z_p_y;
+    s[20*w + k] = v->Z_p_z;
+    s[21*w + k] = v->Z_q_x;
+    s[22*w + k] = v->Z_q_y;
+    s[23*w + k] = v->Z_q_z;
 }
 
 INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3879,7 +3892,7 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j,
     const real rrrrs_W_2_in_axes2_xz = rrrrs_omega_1_in_axes2_x*rrrrs_yd_2;
     const real rrrrs_W_2_in_axes2_xy = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_y;
     /* (rrrrs-omega_3) angular velocity of link 3 */
-    const real rrrrs_omega_3_in_axes3_z = rrrrs_qd_3 + rrrrs_yd_2;
+    const real rrrrs_omega_3_in_axes3_z = rrrrs_yd_2 + rrrrs_qd_3;
     /* (rrrrs-W_3) centripetal tensor of link 3 */
     const real rrrrs_W_3_in_axes3_xy = rrrrs_omega_1_t*rrrrs_omega_1_t_2;
     const real rrrrs_W_3_in_axes3_xz = rrrrs_omega_1_t*rrrrs_omega_3_in_axes3_z;
@@ -3908,8 +3921,8 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j,
     const real rrrrs_zeta_3_in_axes3_x = rrrrs_omega_1_t_2*rrrrs_qd_3;
     const real rrrrs_zeta_3_in_axes3_y = -rrrrs_omega_1_t*rrrrs_qd_3;
     /* (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
-    const real rrrrs_beta_3_in_axes3_x = rrrrs_zeta_3_in_axes3_x +
-        rrrrs_W_2_in_axes2_yz*v.rrrrs_h_3_t_26 - rrrrs_W_2_in_axes2_xz*v.rrrrs_h_3_t_27;
+    const real rrrrs_beta_3_in_axes3_x = rrrrs_W_2_in_axes2_yz*v.rrrrs_h_3_t_26 -
+        rrrrs_W_2_in_axes2_xz*v.rrrrs_h_3_t_27 + rrrrs_zeta_3_in_axes3_x;
     const real rrrrs_beta_3_in_axes3_y = rrrrs_zeta_3_in_axes3_y -
         rrrrs_W_2_in_axes2_xz*v.rrrrs_h_3_t_26 - rrrrs_W_2_in_axes2_yz*v.rrrrs_h_3_t_27;
     const real rrrrs_beta_3_in_axes4_y = rrrrs_beta_3_in_axes3_x*v.rrrrs_s_4_t +
@@ -3928,8 +3941,8 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j,
         rrrrs_d_2_in_axes2_x*v.rrrrs_h_3_t_27;
     const real rrrrs_d_2_in_axes4_x = rrrrs_bias_t_3*v.rrrrs_c_4 -
         rrrrs_bias_t_4*v.rrrrs_s_4_t;
-    const real rrrrs_d_2_in_axes4_y = rrrrs_bias_t_3*v.rrrrs_s_4_t +
-        rrrrs_bias_t_4*v.rrrrs_c_4;
+    const real rrrrs_d_2_in_axes4_y = rrrrs_bias_t_4*v.rrrrs_c_4 +
+        rrrrs_bias_t_3*v.rrrrs_s_4_t;
     const real rrrrs_bias_t_5 = v.rrrrs_h_3_t_26*m->rrrrs_joint3_offset_x[i];
     const real rrrrs_bias_t_6 = v.rrrrs_h_3_t_27*m->rrrrs_joint3_offset_x[i];
     const real rrrrs_d_3_in_axes4_x = rrrrs_bias_t_5*v.rrrrs_c_4 +
@@ -3942,22 +3955,22 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j,
         rrrrs_W_1_in_axes4_xy*rrrrs_d_3_in_axes4_y +
         rrrrs_W_1_in_axes4_xy*rrrrs_d_4_in_axes4_y - rrrrs_W_1_t_2*rrrrs_d_2_in_axes4_x -
         rrrrs_W_4_t_2*m->rrrrs_platform_joint_offset_x[i] -
-        rrrrs_d_3_in_axes4_x*(rrrrs_W_1_t_2 + v.rrrrs_bias_t) -
-        rrrrs_d_4_in_axes4_x*(rrrrs_W_1_t_2 + rrrrs_bias_t_2);
+        rrrrs_d_3_in_axes4_x*(v.rrrrs_bias_t + rrrrs_W_1_t_2) -
+        rrrrs_d_4_in_axes4_x*(rrrrs_bias_t_2 + rrrrs_W_1_t_2);
     const real rrrrs_bias_in_axes4_y = rrrrs_W_1_in_axes4_xy*rrrrs_d_2_in_axes4_x +
         rrrrs_W_1_in_axes4_xy*rrrrs_d_3_in_axes4_x +
         rrrrs_W_1_in_axes4_xy*rrrrs_d_4_in_axes4_x +
         rrrrs_W_1_in_axes4_xy*m->rrrrs_platform_joint_offset_x[i] -
-        rrrrs_W_1_t*rrrrs_d_2_in_axes4_y - rrrrs_d_3_in_axes4_y*(rrrrs_W_1_t + v.rrrrs_bias_t)
-        - rrrrs_d_4_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t_2);
+        rrrrs_W_1_t*rrrrs_d_2_in_axes4_y - rrrrs_d_3_in_axes4_y*(v.rrrrs_bias_t + rrrrs_W_1_t)
+        - rrrrs_d_4_in_axes4_y*(rrrrs_bias_t_2 + rrrrs_W_1_t);
     const real rrrrs_bias_in_axes4_z =
+        2*rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
+        2*rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2 +
         rrrrs_d_4_in_axes4_x*(rrrrs_omega_1_in_axes4_x*rrrrs_omega_3_in_axes3_z -
-        rrrrs_beta_3_in_axes4_y) + rrrrs_d_4_in_axes4_y*(rrrrs_beta_3_in_axes3_x*v.rrrrs_c_4 +
-        rrrrs_omega_1_in_axes4_y*rrrrs_omega_3_in_axes3_z -
-        rrrrs_beta_3_in_axes3_y*v.rrrrs_s_4_t) +
-        m->rrrrs_platform_joint_offset_x[i]*(rrrrs_W_4_in_axes4_xz - rrrrs_beta_4_in_axes4_y)
-        + 2*rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
-        2*rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2;
+        rrrrs_beta_3_in_axes4_y) +
+        rrrrs_d_4_in_axes4_y*(rrrrs_omega_1_in_axes4_y*rrrrs_omega_3_in_axes3_z +
+        rrrrs_beta_3_in_axes3_x*v.rrrrs_c_4 - rrrrs_beta_3_in_axes3_y*v.rrrrs_s_4_t) +
+        m->rrrrs_platform_joint_offset_x[i]*(rrrrs_W_4_in_axes4_xz - rrrrs_beta_4_in_axes4_y);
     /* (rrrrs-rel_o) remainder of: acceleration of the connection point left to the joint
        accelerations */
     const real rrrrs_rel_o_in_axes4_x = rrrrs_u_1_in_axes4_x - rrrrs_bias_in_axes4_x;
@@ -3993,10 +4006,10 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j,
     const real rrrrs_B_3_o_in_axes3_zx = rrrrs_W_3_in_axes3_xz - rrrrs_alpha_3_o_in_axes3_y;
     const real rrrrs_B_3_o_in_axes3_zy = rrrrs_W_3_in_axes3_yz + rrrrs_alpha_3_o_in_axes3_x;
     /* (rrrrs-alpha_4_o) remainder of: angular acceleration of link 4 */
-    const real rrrrs_alpha_4_o_in_axes4_x = rrrrs_alpha_3_o_in_axes3_x*v.rrrrs_c_4 +
-        rrrrs_omega_1_in_axes4_y*rrrrs_qd_4 - rrrrs_alpha_3_o_in_axes3_y*v.rrrrs_s_4_t;
-    const real rrrrs_alpha_4_o_in_axes4_y = rrrrs_alpha_3_o_in_axes3_x*v.rrrrs_s_4_t +
-        rrrrs_alpha_3_o_in_axes3_y*v.rrrrs_c_4 - rrrrs_zeta_4_t;
+    const real rrrrs_alpha_4_o_in_axes4_x = rrrrs_omega_1_in_axes4_y*rrrrs_qd_4 +
+        rrrrs_alpha_3_o_in_axes3_x*v.rrrrs_c_4 - rrrrs_alpha_3_o_in_axes3_y*v.rrrrs_s_4_t;
+    const real rrrrs_alpha_4_o_in_axes4_y = rrrrs_alpha_3_o_in_axes3_x*v.rrrrs_s_4_t -
+        rrrrs_zeta_4_t + rrrrs_alpha_3_o_in_axes3_y*v.rrrrs_c_4;
     const real rrrrs_alpha_4_o_in_axes4_z = rrrrs_qdd_3_o +
         m->rrrrs_w_4_in_axes4_y[i]*(rrrrs_rel_o_in_axes4_y -
         rrrrs_qdd_3_o*v.rrrrs_r_3_in_axes4_x);
@@ -4009,8 +4022,8 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j,
     const real rrrrs_B_4_o_in_axes4_zy = rrrrs_W_4_in_axes4_yz + rrrrs_alpha_4_o_in_axes4_x;
     /* (rrrrs-a_o_3) acceleration of the origin of joint 3 */
     const real rrrrs_a_o_3_t = rrrrs_omega_1_in_axes2_y*rrrrs_omega_1_in_axes2_y;
-    const real rrrrs_a_o_3_in_axes2_x = -m->rrrrs_joint3_offset_x[i]*(rrrrs_a_o_3_t +
-        v.rrrrs_bias_t);
+    const real rrrrs_a_o_3_in_axes2_x = -m->rrrrs_joint3_offset_x[i]*(v.rrrrs_bias_t +
+        rrrrs_a_o_3_t);
     /* (rrrrs-a_o_3_o) remainder of: acceleration of the origin of joint 3 */
     const real rrrrs_a_o_3_o_in_axes2_y = rrrrs_W_2_in_axes2_xy*m->rrrrs_joint3_offset_x[i];
     /* (rrrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
@@ -4018,33 +4031,33 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j,
         m->rrrrs_acc_3_t_2[i]*v.rrrrs_s_1;
     const real rrrrs_g_in_axes1_y = m->rrrrs_acc_3_t_2[i]*v.rrrrs_c_1 -
         m->rrrrs_acc_3_t[i]*v.rrrrs_s_1;
-    const real rrrrs_g_in_axes2_x = rrrrs_g_in_axes1_x*v.rrrrs_h_3_t_7 +
-        m->rrrrs_g_in_axes1_z[i]*v.rrrrs_h_3_t_6;
+    const real rrrrs_g_in_axes2_x = m->rrrrs_g_in_axes1_z[i]*v.rrrrs_h_3_t_6 +
+        rrrrs_g_in_axes1_x*v.rrrrs_h_3_t_7;
     const real rrrrs_g_in_axes2_y = rrrrs_g_in_axes1_x*v.rrrrs_h_3_t_6 -
         m->rrrrs_g_in_axes1_z[i]*v.rrrrs_h_3_t_7;
-    const real rrrrs_acc_3_o_in_axes3_x = rrrrs_a_o_3_in_axes2_x*v.rrrrs_h_3_t_26 +
-        rrrrs_a_o_3_o_in_axes2_y*v.rrrrs_h_3_t_27 - rrrrs_g_in_axes2_x*v.rrrrs_h_3_t_26 -
-        rrrrs_g_in_axes2_y*v.rrrrs_h_3_t_27;
-    const real rrrrs_acc_3_o_in_axes3_y = rrrrs_a_o_3_o_in_axes2_y*v.rrrrs_h_3_t_26 +
-        rrrrs_g_in_axes2_x*v.rrrrs_h_3_t_27 - rrrrs_a_o_3_in_axes2_x*v.rrrrs_h_3_t_27 -
-        rrrrs_g_in_axes2_y*v.rrrrs_h_3_t_26;
+    const real rrrrs_acc_3_o_in_axes3_x = rrrrs_a_o_3_o_in_axes2_y*v.rrrrs_h_3_t_27 -
+        rrrrs_g_in_axes2_x*v.rrrrs_h_3_t_26 - rrrrs_g_in_axes2_y*v.rrrrs_h_3_t_27 +
+        rrrrs_a_o_3_in_axes2_x*v.rrrrs_h_3_t_26;
+    const real rrrrs_acc_3_o_in_axes3_y = rrrrs_g_in_axes2_x*v.rrrrs_h_3_t_27 -
+        rrrrs_g_in_axes2_y*v.rrrrs_h_3_t_26 + rrrrs_a_o_3_o_in_axes2_y*v.rrrrs_h_3_t_26 -
+        rrrrs_a_o_3_in_axes2_x*v.rrrrs_h_3_t_27;
     const real rrrrs_acc_3_o_in_axes3_z = rrrrs_B_2_o_in_axes2_zx*m->rrrrs_joint3_offset_x[i]
         - rrrrs_g_in_axes1_y;
     /* (rrrrs-f_3_o) remainder of: inertia force of link 3 less its weight */
     const real rrrrs_f_3_o_t = rrrrs_omega_1_t*rrrrs_omega_1_t;
     const real rrrrs_f_3_o_t_2 = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2;
-    const real rrrrs_f_3_o_in_axes3_x = rrrrs_B_3_o_in_axes3_xy*m->rrrrs_h_3_in_spec3_y[i] +
-        rrrrs_B_3_o_in_axes3_xz*m->rrrrs_h_3_in_spec3_z[i] +
-        rrrrs_acc_3_o_in_axes3_x*m->rrrrs_link3_mass[i] -
-        m->rrrrs_h_3_in_spec3_x[i]*(rrrrs_bias_t_2 + rrrrs_f_3_o_t_2);
-    const real rrrrs_f_3_o_in_axes3_y = rrrrs_B_3_o_in_axes3_yx*m->rrrrs_h_3_in_spec3_x[i] +
-        rrrrs_B_3_o_in_axes3_yz*m->rrrrs_h_3_in_spec3_z[i] +
-        rrrrs_acc_3_o_in_axes3_y*m->rrrrs_link3_mass[i] -
-        m->rrrrs_h_3_in_spec3_y[i]*(rrrrs_bias_t_2 + rrrrs_f_3_o_t);
-    const real rrrrs_f_3_o_in_axes3_z = rrrrs_B_3_o_in_axes3_zx*m->rrrrs_h_3_in_spec3_x[i] +
-        rrrrs_B_3_o_in_axes3_zy*m->rrrrs_h_3_in_spec3_y[i] +
-        rrrrs_acc_3_o_in_axes3_z*m->rrrrs_link3_mass[i] -
-        m->rrrrs_h_3_in_spec3_z[i]*(rrrrs_f_3_o_t + rrrrs_f_3_o_t_2);
+    const real rrrrs_f_3_o_in_axes3_x = rrrrs_acc_3_o_in_axes3_x*m->rrrrs_link3_mass[i] -
+        m->rrrrs_h_3_in_spec3_x[i]*(rrrrs_bias_t_2 + rrrrs_f_3_o_t_2) +
+        rrrrs_B_3_o_in_axes3_xy*m->rrrrs_h_3_in_spec3_y[i] +
+        rrrrs_B_3_o_in_axes3_xz*m->rrrrs_h_3_in_spec3_z[i];
+    const real rrrrs_f_3_o_in_axes3_y = rrrrs_acc_3_o_in_axes3_y*m->rrrrs_link3_mass[i] -
+        m->rrrrs_h_3_in_spec3_y[i]*(rrrrs_bias_t_2 + rrrrs_f_3_o_t) +
+        rrrrs_B_3_o_in_axes3_yx*m->rrrrs_h_3_in_spec3_x[i] +
+        rrrrs_B_3_o_in_axes3_yz*m->rrrrs_h_3_in_spec3_z[i];
+    const real rrrrs_f_3_o_in_axes3_z = rrrrs_acc_3_o_in_axes3_z*m->rrrrs_link3_mass[i] -
+        m->rrrrs_h_3_in_spec3_z[i]*(rrrrs_f_3_o_t + rrrrs_f_3_o_t_2) +
+        rrrrs_B_3_o_in_axes3_zx*m->rrrrs_h_3_in_spec3_x[i] +
+        rrrrs_B_3_o_in_axes3_zy*m->rrrrs_h_3_in_spec3_y[i];
     /* (rrrrs-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity */
     const real rrrrs_acc_4_o_in_axes4_x = rrrrs_u_1_in_axes4_x -
         axis_x_rrrrs_axes4_x*m->gravity_x - axis_x_rrrrs_axes4_y*m->gravity_y -
@@ -4057,59 +4070,57 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j,
         v.axis_z_rrrrs_axes4_z*m->gravity_z;
     /* (rrrrs-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their
        reference points */
-    const real rrrrs_mu_4_o_in_axes4_x = rrrrs_B_4_o_in_axes4_yx*m->rrrrs_J_4_in_spec4_xz[i] +
-        rrrrs_B_4_o_in_axes4_zy*m->rrrrs_Sigma_4_in_axes4_yy[i] +
+    const real rrrrs_mu_4_o_in_axes4_x = rrrrs_acc_4_o_in_axes4_z*m->rrrrs_h_4_in_spec4_y[i] -
+        rrrrs_acc_4_o_in_axes4_y*m->rrrrs_h_4_in_spec4_z[i] +
         m->rrrrs_J_4_in_spec4_yz[i]*(rrrrs_W_1_t_2 - rrrrs_W_4_t) +
-        rrrrs_acc_4_o_in_axes4_z*m->rrrrs_h_4_in_spec4_y[i] -
+        rrrrs_B_4_o_in_axes4_yx*m->rrrrs_J_4_in_spec4_xz[i] +
+        rrrrs_B_4_o_in_axes4_zy*m->rrrrs_Sigma_4_in_axes4_yy[i] -
         rrrrs_B_4_o_in_axes4_yz*m->rrrrs_Sigma_4_in_axes4_zz[i] -
-        rrrrs_B_4_o_in_axes4_zx*m->rrrrs_J_4_in_spec4_xy[i] -
-        rrrrs_acc_4_o_in_axes4_y*m->rrrrs_h_4_in_spec4_z[i];
-    const real rrrrs_mu_4_o_in_axes4_y =
-        rrrrs_B_4_o_in_axes4_xz*m->rrrrs_Sigma_4_in_axes4_zz[i] +
-        rrrrs_B_4_o_in_axes4_zy*m->rrrrs_J_4_in_spec4_xy[i] +
-        rrrrs_acc_4_o_in_axes4_x*m->rrrrs_h_4_in_spec4_z[i] -
-        rrrrs_B_4_o_in_axes4_xy*m->rrrrs_J_4_in_spec4_yz[i] -
-        rrrrs_B_4_o_in_axes4_zx*m->rrrrs_Sigma_4_in_axes4_xx[i] -
+        rrrrs_B_4_o_in_axes4_zx*m->rrrrs_J_4_in_spec4_xy[i];
+    const real rrrrs_mu_4_o_in_axes4_y = rrrrs_acc_4_o_in_axes4_x*m->rrrrs_h_4_in_spec4_z[i] -
+        rrrrs_acc_4_o_in_axes4_z*m->rrrrs_h_4_in_spec4_x[i] -
         m->rrrrs_J_4_in_spec4_xz[i]*(rrrrs_W_1_t - rrrrs_W_4_t) -
-        rrrrs_acc_4_o_in_axes4_z*m->rrrrs_h_4_in_spec4_x[i];
-    const real rrrrs_mu_4_o_in_axes4_z = rrrrs_B_4_o_in_axes4_xz*m->rrrrs_J_4_in_spec4_yz[i] +
-        rrrrs_B_4_o_in_axes4_yx*m->rrrrs_Sigma_4_in_axes4_xx[i] +
+        rrrrs_B_4_o_in_axes4_xy*m->rrrrs_J_4_in_spec4_yz[i] +
+        rrrrs_B_4_o_in_axes4_xz*m->rrrrs_Sigma_4_in_axes4_zz[i] +
+        rrrrs_B_4_o_in_axes4_zy*m->rrrrs_J_4_in_spec4_xy[i] -
+        rrrrs_B_4_o_in_axes4_zx*m->rrrrs_Sigma_4_in_axes4_xx[i];
+    const real rrrrs_mu_4_o_in_axes4_z = rrrrs_acc_4_o_in_axes4_y*m->rrrrs_h_4_in_spec4_x[i] -
+        rrrrs_acc_4_o_in_axes4_x*m->rrrrs_h_4_in_spec4_y[i] +
         m->rrrrs_J_4_in_spec4_xy[i]*(rrrrs_W_1_t - rrrrs_W_1_t_2) +
-        rrrrs_acc_4_o_in_axes4_y*m->rrrrs_h_4_in_spec4_x[i] -
-        rrrrs_B_4_o_in_axes4_xy*m->rrrrs_Sigma_4_in_axes4_yy[i] -
-        rrrrs_B_4_o_in_axes4_yz*m->rrrrs_J_4_in_spec4_xz[i] -
-        rrrrs_acc_4_o_in_axes4_x*m->rrrrs_h_4_in_spec4_y[i];
+        rrrrs_B_4_o_in_axes4_yx*m->rrrrs_Sigma_4_in_axes4_xx[i] -
+        rrrrs_B_4_o_in_axes4_xy*m->rrrrs_Sigma_4_in_axes4_yy[i] +
+        rrrrs_B_4_o_in_axes4_xz*m->rrrrs_J_4_in_spec4_yz[i] -
+        rrrrs_B_4_o_in_axes4_yz*m->rrrrs_J_4_in_spec4_xz[i];
     /* (rrrrs-dy_2_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal
        links' inertia and weight */
     const real rrrrs_dy_2_Gamma_4_t =
         m->rrrrs_J_4_in_spec4_zz[i]*m->rrrrs_w_4_in_axes4_y[i]*(-v.rrrrs_r_2_in_axes4_x -
         v.rrrrs_r_3_in_axes4_x*rrrrs_w_3_t_7);
-    const real rrrrs_dy_2_Gamma_4 = m->rrrrs_J_4_in_spec4_zz[i] + rrrrs_dy_2_Gamma_4_t +
-        m->rrrrs_J_4_in_spec4_zz[i]*rrrrs_w_3_t_7;
+    const real rrrrs_dy_2_Gamma_4 = m->rrrrs_J_4_in_spec4_zz[i] +
+        m->rrrrs_J_4_in_spec4_zz[i]*rrrrs_w_3_t_7 + rrrrs_dy_2_Gamma_4_t;
     /* (rrrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
        reference points */
-    const real rrrrs_mu_3_o_in_axes3_x = rrrrs_B_3_o_in_axes3_yx*m->rrrrs_J_3_in_spec3_xz[i] +
-        rrrrs_B_3_o_in_axes3_zy*m->rrrrs_Sigma_3_in_axes3_yy[i] +
-        m->rrrrs_J_3_in_spec3_yz[i]*(rrrrs_f_3_o_t_2 - rrrrs_bias_t_2) +
-        rrrrs_acc_3_o_in_axes3_z*m->rrrrs_h_3_in_spec3_y[i] -
+    const real rrrrs_mu_3_o_in_axes3_x = m->rrrrs_J_3_in_spec3_yz[i]*(rrrrs_f_3_o_t_2 -
+        rrrrs_bias_t_2) - rrrrs_acc_3_o_in_axes3_y*m->rrrrs_h_3_in_spec3_z[i] +
+        rrrrs_B_3_o_in_axes3_yx*m->rrrrs_J_3_in_spec3_xz[i] +
+        rrrrs_acc_3_o_in_axes3_z*m->rrrrs_h_3_in_spec3_y[i] +
+        rrrrs_B_3_o_in_axes3_zy*m->rrrrs_Sigma_3_in_axes3_yy[i] -
         rrrrs_B_3_o_in_axes3_yz*m->rrrrs_Sigma_3_in_axes3_zz[i] -
-        rrrrs_B_3_o_in_axes3_zx*m->rrrrs_J_3_in_spec3_xy[i] -
-        rrrrs_acc_3_o_in_axes3_y*m->rrrrs_h_3_in_spec3_z[i];
-    const real rrrrs_mu_3_o_in_axes3_y =
-        rrrrs_B_3_o_in_axes3_xz*m->rrrrs_Sigma_3_in_axes3_zz[i] +
-        rrrrs_B_3_o_in_axes3_zy*m->rrrrs_J_3_in_spec3_xy[i] +
-        rrrrs_acc_3_o_in_axes3_x*m->rrrrs_h_3_in_spec3_z[i] -
-        rrrrs_B_3_o_in_axes3_xy*m->rrrrs_J_3_in_spec3_yz[i] -
-        rrrrs_B_3_o_in_axes3_zx*m->rrrrs_Sigma_3_in_axes3_xx[i] -
+        rrrrs_B_3_o_in_axes3_zx*m->rrrrs_J_3_in_spec3_xy[i];
+    const real rrrrs_mu_3_o_in_axes3_y = rrrrs_acc_3_o_in_axes3_x*m->rrrrs_h_3_in_spec3_z[i] -
         m->rrrrs_J_3_in_spec3_xz[i]*(rrrrs_f_3_o_t - rrrrs_bias_t_2) -
-        rrrrs_acc_3_o_in_axes3_z*m->rrrrs_h_3_in_spec3_x[i];
-    const real rrrrs_mu_3_o_in_axes3_z = rrrrs_B_3_o_in_axes3_xz*m->rrrrs_J_3_in_spec3_yz[i] +
-        rrrrs_B_3_o_in_axes3_yx*m->rrrrs_Sigma_3_in_axes3_xx[i] +
-        m->rrrrs_J_3_in_spec3_xy[i]*(rrrrs_f_3_o_t - rrrrs_f_3_o_t_2) +
-        rrrrs_acc_3_o_in_axes3_y*m->rrrrs_h_3_in_spec3_x[i] -
-        rrrrs_B_3_o_in_axes3_xy*m->rrrrs_Sigma_3_in_axes3_yy[i] -
-        rrrrs_B_3_o_in_axes3_yz*m->rrrrs_J_3_in_spec3_xz[i] -
-        rrrrs_acc_3_o_in_axes3_x*m->rrrrs_h_3_in_spec3_y[i];
+        rrrrs_B_3_o_in_axes3_xy*m->rrrrs_J_3_in_spec3_yz[i] -
+        rrrrs_acc_3_o_in_axes3_z*m->rrrrs_h_3_in_spec3_x[i] +
+        rrrrs_B_3_o_in_axes3_xz*m->rrrrs_Sigma_3_in_axes3_zz[i] +
+        rrrrs_B_3_o_in_axes3_zy*m->rrrrs_J_3_in_spec3_xy[i] -
+        rrrrs_B_3_o_in_axes3_zx*m->rrrrs_Sigma_3_in_axes3_xx[i];
+    const real rrrrs_mu_3_o_in_axes3_z = m->rrrrs_J_3_in_spec3_xy[i]*(rrrrs_f_3_o_t -
+        rrrrs_f_3_o_t_2) + rrrrs_acc_3_o_in_axes3_y*m->rrrrs_h_3_in_spec3_x[i] -
+        rrrrs_acc_3_o_in_axes3_x*m->rrrrs_h_3_in_spec3_y[i] +
+        rrrrs_B_3_o_in_axes3_yx*m->rrrrs_Sigma_3_in_axes3_xx[i] -
+        rrrrs_B_3_o_in_axes3_xy*m->rrrrs_Sigma_3_in_axes3_yy[i] +
+        rrrrs_B_3_o_in_axes3_xz*m->rrrrs_J_3_in_spec3_yz[i] -
+        rrrrs_B_3_o_in_axes3_yz*m->rrrrs_J_3_in_spec3_xz[i];
     /* (rrrrs-N_3_o) remainder of: moment about joint 3 of the links from 3 outwards, the force at the
        connection point left out */
     const real rrrrs_N_3_o_in_axes3_x = rrrrs_mu_3_o_in_axes3_x +
@@ -4119,53 +4130,51 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j,
     const real rrrrs_N_3_o_in_axes3_z = rrrrs_mu_3_o_in_axes3_z + rrrrs_mu_4_o_in_axes4_z;
     /* (rrrrs-dy_2_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
        links' inertia and weight */
-    const real rrrrs_dy_2_Gamma_3 = v.rrrrs_L_c_3_2_in_axes2_z + rrrrs_dy_2_Gamma_4_t +
-        m->rrrrs_Jc_3_in_axes3_zz[i]*rrrrs_w_3_t_7;
+    const real rrrrs_dy_2_Gamma_3 = v.rrrrs_L_c_3_2_in_axes2_z +
+        m->rrrrs_Jc_3_in_axes3_zz[i]*rrrrs_w_3_t_7 + rrrrs_dy_2_Gamma_4_t;
     /* (rrrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real rrrrs_mu_2_o_t = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_x;
-    const real rrrrs_mu_2_o_in_axes2_x =
-        rrrrs_B_2_o_in_axes2_zy*m->rrrrs_Sigma_2_in_axes2_yy[i] +
+    const real rrrrs_mu_2_o_in_axes2_x = rrrrs_g_in_axes2_y*m->rrrrs_h_2_in_spec2_z[i] -
+        rrrrs_g_in_axes1_y*m->rrrrs_h_2_in_spec2_y[i] +
         m->rrrrs_J_2_in_spec2_xz[i]*rrrrs_W_2_in_axes2_xy +
         m->rrrrs_J_2_in_spec2_yz[i]*(rrrrs_a_o_3_t - v.rrrrs_bias_t) +
         m->rrrrs_Sigma_2_in_axes2_zz[i]*rrrrs_alpha_1_o_in_axes2_x +
-        rrrrs_g_in_axes2_y*m->rrrrs_h_2_in_spec2_z[i] -
-        rrrrs_B_2_o_in_axes2_zx*m->rrrrs_J_2_in_spec2_xy[i] -
-        rrrrs_g_in_axes1_y*m->rrrrs_h_2_in_spec2_y[i];
-    const real rrrrs_mu_2_o_in_axes2_y = rrrrs_B_2_o_in_axes2_zy*m->rrrrs_J_2_in_spec2_xy[i] +
-        m->rrrrs_Sigma_2_in_axes2_zz[i]*rrrrs_alpha_1_o_in_axes2_y +
-        rrrrs_g_in_axes1_y*m->rrrrs_h_2_in_spec2_x[i] -
-        rrrrs_B_2_o_in_axes2_zx*m->rrrrs_Sigma_2_in_axes2_xx[i] -
-        m->rrrrs_J_2_in_spec2_xz[i]*(rrrrs_mu_2_o_t - v.rrrrs_bias_t) -
+        rrrrs_B_2_o_in_axes2_zy*m->rrrrs_Sigma_2_in_axes2_yy[i] -
+        rrrrs_B_2_o_in_axes2_zx*m->rrrrs_J_2_in_spec2_xy[i];
+    const real rrrrs_mu_2_o_in_axes2_y = rrrrs_g_in_axes1_y*m->rrrrs_h_2_in_spec2_x[i] -
+        rrrrs_g_in_axes2_x*m->rrrrs_h_2_in_spec2_z[i] -
         m->rrrrs_J_2_in_spec2_yz[i]*rrrrs_W_2_in_axes2_xy -
-        rrrrs_g_in_axes2_x*m->rrrrs_h_2_in_spec2_z[i];
-    const real rrrrs_mu_2_o_in_axes2_z = m->rrrrs_J_2_in_spec2_xy[i]*(rrrrs_mu_2_o_t -
-        rrrrs_a_o_3_t) + m->rrrrs_J_2_in_spec2_xz[i]*rrrrs_alpha_1_o_in_axes2_x +
-        m->rrrrs_J_2_in_spec2_yz[i]*rrrrs_alpha_1_o_in_axes2_y +
-        m->rrrrs_Sigma_2_in_axes2_xx[i]*rrrrs_W_2_in_axes2_xy +
-        rrrrs_g_in_axes2_x*m->rrrrs_h_2_in_spec2_y[i] -
-        m->rrrrs_Sigma_2_in_axes2_yy[i]*rrrrs_W_2_in_axes2_xy -
-        rrrrs_g_in_axes2_y*m->rrrrs_h_2_in_spec2_x[i];
+        m->rrrrs_J_2_in_spec2_xz[i]*(rrrrs_mu_2_o_t - v.rrrrs_bias_t) +
+        m->rrrrs_Sigma_2_in_axes2_zz[i]*rrrrs_alpha_1_o_in_axes2_y +
+        rrrrs_B_2_o_in_axes2_zy*m->rrrrs_J_2_in_spec2_xy[i] -
+        rrrrs_B_2_o_in_axes2_zx*m->rrrrs_Sigma_2_in_axes2_xx[i];
+    const real rrrrs_mu_2_o_in_axes2_z = rrrrs_g_in_axes2_x*m->rrrrs_h_2_in_spec2_y[i] -
+        rrrrs_g_in_axes2_y*m->rrrrs_h_2_in_spec2_x[i] +
+        m->rrrrs_Sigma_2_in_axes2_xx[i]*rrrrs_W_2_in_axes2_xy -
+        m->rrrrs_Sigma_2_in_axes2_yy[i]*rrrrs_W_2_in_axes2_xy +
+        m->rrrrs_J_2_in_spec2_xy[i]*(rrrrs_mu_2_o_t - rrrrs_a_o_3_t) +
+        m->rrrrs_J_2_in_spec2_xz[i]*rrrrs_alpha_1_o_in_axes2_x +
+        m->rrrrs_J_2_in_spec2_yz[i]*rrrrs_alpha_1_o_in_axes2_y;
     /* (rrrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
        connection point left out */
     const real rrrrs_N_2_o_in_axes2_x = rrrrs_mu_2_o_in_axes2_x +
         rrrrs_N_3_o_in_axes3_x*v.rrrrs_h_3_t_26 - rrrrs_N_3_o_in_axes3_y*v.rrrrs_h_3_t_27;
-    const real rrrrs_N_2_o_in_axes2_y = rrrrs_mu_2_o_in_axes2_y +
-        rrrrs_N_3_o_in_axes3_x*v.rrrrs_h_3_t_27 + rrrrs_N_3_o_in_axes3_y*v.rrrrs_h_3_t_26 -
-        rrrrs_f_3_o_in_axes3_z*m->rrrrs_joint3_offset_x[i];
-    const real rrrrs_N_2_o_in_axes2_z = rrrrs_N_3_o_in_axes3_z + rrrrs_mu_2_o_in_axes2_z +
+    const real rrrrs_N_2_o_in_axes2_y = rrrrs_mu_2_o_in_axes2_y -
+        rrrrs_f_3_o_in_axes3_z*m->rrrrs_joint3_offset_x[i] +
+        rrrrs_N_3_o_in_axes3_x*v.rrrrs_h_3_t_27 + rrrrs_N_3_o_in_axes3_y*v.rrrrs_h_3_t_26;
+    const real rrrrs_N_2_o_in_axes2_z = rrrrs_mu_2_o_in_axes2_z +
         m->rrrrs_joint3_offset_x[i]*(rrrrs_f_3_o_in_axes3_x*v.rrrrs_h_3_t_27 +
-        rrrrs_f_3_o_in_axes3_y*v.rrrrs_h_3_t_26);
+        rrrrs_f_3_o_in_axes3_y*v.rrrrs_h_3_t_26) + rrrrs_N_3_o_in_axes3_z;
     /* (rrrrs-dy_2_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
        links' inertia and weight */
-    const real rrrrs_dy_2_Gamma_2 = m->rrrrs_J_2_in_spec2_zz[i] + v.rrrrs_Jc_2_t_7 +
-        m->rrrrs_Jc_3_in_axes3_zz[i] + rrrrs_dy_2_Gamma_4_t +
-        v.rrrrs_L_c_3_2_in_axes2_z*rrrrs_w_3_t_7;
+    const real rrrrs_dy_2_Gamma_2 = m->rrrrs_J_2_in_spec2_zz[i] + m->rrrrs_Jc_3_in_axes3_zz[i]
+        + v.rrrrs_Jc_2_t_7 + v.rrrrs_L_c_3_2_in_axes2_z*rrrrs_w_3_t_7 + rrrrs_dy_2_Gamma_4_t;
     /* (rrrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
-    const real rrrrs_mu_1_o_in_axes1_z = m->rrrrs_J_1_in_spec1_xx[i]*rrrrs_qdd_1_o +
-        rrrrs_g_in_axes1_x*m->rrrrs_h_1_in_spec1_z[i] -
-        rrrrs_g_in_axes1_y*m->rrrrs_h_1_in_spec1_y[i];
+    const real rrrrs_mu_1_o_in_axes1_z = rrrrs_g_in_axes1_x*m->rrrrs_h_1_in_spec1_z[i] -
+        rrrrs_g_in_axes1_y*m->rrrrs_h_1_in_spec1_y[i] +
+        m->rrrrs_J_1_in_spec1_xx[i]*rrrrs_qdd_1_o;
     /* (rrrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
        connection point left out */
     const real rrrrs_N_1_o_in_axes1_z = rrrrs_mu_1_o_in_axes1_z +
@@ -4182,11 +4191,11 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j,
     /* (rrrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at
        the connection point */
     const real rrrrs_c_o_in_axes4_x = rrrrs_W_4_t_2*m->rrrrs_h_4_in_spec4_x[i] -
-        rrrrs_G_o_in_axes4_x - rrrrs_B_4_o_in_axes4_xy*m->rrrrs_h_4_in_spec4_y[i] -
-        rrrrs_B_4_o_in_axes4_xz*m->rrrrs_h_4_in_spec4_z[i];
+        rrrrs_B_4_o_in_axes4_xy*m->rrrrs_h_4_in_spec4_y[i] -
+        rrrrs_B_4_o_in_axes4_xz*m->rrrrs_h_4_in_spec4_z[i] - rrrrs_G_o_in_axes4_x;
     const real rrrrs_c_o_in_axes4_y = m->rrrrs_h_4_in_spec4_y[i]*(rrrrs_W_1_t + rrrrs_W_4_t) -
-        rrrrs_G_o_in_axes4_y - rrrrs_B_4_o_in_axes4_yx*m->rrrrs_h_4_in_spec4_x[i] -
-        rrrrs_B_4_o_in_axes4_yz*m->rrrrs_h_4_in_spec4_z[i];
+        rrrrs_B_4_o_in_axes4_yx*m->rrrrs_h_4_in_spec4_x[i] -
+        rrrrs_B_4_o_in_axes4_yz*m->rrrrs_h_4_in_spec4_z[i] - rrrrs_G_o_in_axes4_y;
     const real rrrrs_c_o_in_axes4_z = m->rrrrs_h_4_in_spec4_z[i]*(rrrrs_W_1_t + rrrrs_W_1_t_2)
         - rrrrs_B_4_o_in_axes4_zx*m->rrrrs_h_4_in_spec4_x[i] -
         rrrrs_B_4_o_in_axes4_zy*m->rrrrs_h_4_in_spec4_y[i] -
@@ -4194,17 +4203,16 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j,
     /* (rrrrs-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real rrrrs_Q_t = v.rrrrs_d_c_in_axes4_xx - m->rrrrs_d_c_in_axes4_yy[i];
     const real rrrrs_Q_t_2 = R(0.5)*rrrrs_Q_t;
-    const real rrrrs_Q_t_3 = v.rrrrs_d_c_in_axes4_xx +
-        v.rrrrs_d_Gamma_1_in_axes4_z*v.rrrrs_w_1_in_axes4_z +
-        v.rrrrs_d_alpha_4_in_axes4_xz*m->rrrrs_h_4_in_spec4_y[i] -
-        v.rrrrs_d_alpha_4_in_axes4_yz*m->rrrrs_h_4_in_spec4_x[i];
+    const real rrrrs_Q_t_3 = v.rrrrs_d_alpha_4_in_axes4_xz*m->rrrrs_h_4_in_spec4_y[i] -
+        v.rrrrs_d_alpha_4_in_axes4_yz*m->rrrrs_h_4_in_spec4_x[i] + v.rrrrs_d_c_in_axes4_xx +
+        v.rrrrs_d_Gamma_1_in_axes4_z*v.rrrrs_w_1_in_axes4_z;
     const real rrrrs_Q_t_4 = R(0.5)*rrrrs_Q_t_3;
-    const real rrrrs_Q_t_5 = axis_x_rrrrs_axes4_x*v.rrrrs_d_c_in_axes4_xy +
-        v.axis_z_rrrrs_axes4_x*v.rrrrs_d_c_in_axes4_yz - axis_y_rrrrs_axes4_x*rrrrs_Q_t_2;
-    const real rrrrs_Q_t_6 = axis_x_rrrrs_axes4_y*v.rrrrs_d_c_in_axes4_xy +
-        v.axis_z_rrrrs_axes4_y*v.rrrrs_d_c_in_axes4_yz - axis_y_rrrrs_axes4_y*rrrrs_Q_t_2;
-    const real rrrrs_Q_t_7 = axis_x_rrrrs_axes4_z*v.rrrrs_d_c_in_axes4_xy +
-        v.axis_z_rrrrs_axes4_z*v.rrrrs_d_c_in_axes4_yz - axis_y_rrrrs_axes4_z*rrrrs_Q_t_2;
+    const real rrrrs_Q_t_5 = v.axis_z_rrrrs_axes4_x*v.rrrrs_d_c_in_axes4_yz +
+        axis_x_rrrrs_axes4_x*v.rrrrs_d_c_in_axes4_xy - axis_y_rrrrs_axes4_x*rrrrs_Q_t_2;
+    const real rrrrs_Q_t_6 = v.axis_z_rrrrs_axes4_y*v.rrrrs_d_c_in_axes4_yz +
+        axis_x_rrrrs_axes4_y*v.rrrrs_d_c_in_axes4_xy - axis_y_rrrrs_axes4_y*rrrrs_Q_t_2;
+    const real rrrrs_Q_t_7 = v.axis_z_rrrrs_axes4_z*v.rrrrs_d_c_in_axes4_yz +
+        axis_x_rrrrs_axes4_z*v.rrrrs_d_c_in_axes4_xy - axis_y_rrrrs_axes4_z*rrrrs_Q_t_2;
     const real rrrrs_Q_t_8 = v.axis_z_rrrrs_axes4_x*rrrrs_Q_t_4 -
         axis_x_rrrrs_axes4_x*v.rrrrs_d_c_in_axes4_xz;
     const real rrrrs_Q_t_9 = v.axis_z_rrrrs_axes4_y*rrrrs_Q_t_4 -
@@ -4213,31 +4221,31 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j,
         axis_x_rrrrs_axes4_z*v.rrrrs_d_c_in_axes4_xz;
     const real rrrrs_Q_t_11 = axis_y_rrrrs_axes4_x*rrrrs_Q_t_5 -
         v.axis_z_rrrrs_axes4_x*rrrrs_Q_t_8;
-    const real rrrrs_Q_xx = -2*rrrrs_Q_t_11 - v.rrrrs_d_c_in_axes4_xx;
-    const real rrrrs_Q_xy = v.axis_z_rrrrs_axes4_x*rrrrs_Q_t_9 +
-        v.axis_z_rrrrs_axes4_y*rrrrs_Q_t_8 - axis_y_rrrrs_axes4_x*rrrrs_Q_t_6 -
-        axis_y_rrrrs_axes4_y*rrrrs_Q_t_5;
-    const real rrrrs_Q_xz = v.axis_z_rrrrs_axes4_x*rrrrs_Q_t_10 +
-        v.axis_z_rrrrs_axes4_z*rrrrs_Q_t_8 - axis_y_rrrrs_axes4_x*rrrrs_Q_t_7 -
-        axis_y_rrrrs_axes4_z*rrrrs_Q_t_5;
+    const real rrrrs_Q_xx = -v.rrrrs_d_c_in_axes4_xx - 2*rrrrs_Q_t_11;
+    const real rrrrs_Q_xy = v.axis_z_rrrrs_axes4_x*rrrrs_Q_t_9 -
+        axis_y_rrrrs_axes4_x*rrrrs_Q_t_6 - axis_y_rrrrs_axes4_y*rrrrs_Q_t_5 +
+        v.axis_z_rrrrs_axes4_y*rrrrs_Q_t_8;
+    const real rrrrs_Q_xz = v.axis_z_rrrrs_axes4_x*rrrrs_Q_t_10 -
+        axis_y_rrrrs_axes4_x*rrrrs_Q_t_7 - axis_y_rrrrs_axes4_z*rrrrs_Q_t_5 +
+        v.axis_z_rrrrs_axes4_z*rrrrs_Q_t_8;
     const real rrrrs_Q_t_12 = axis_y_rrrrs_axes4_y*rrrrs_Q_t_6 -
         v.axis_z_rrrrs_axes4_y*rrrrs_Q_t_9;
-    const real rrrrs_Q_yy = -2*rrrrs_Q_t_12 - v.rrrrs_d_c_in_axes4_xx;
-    const real rrrrs_Q_yz = v.axis_z_rrrrs_axes4_y*rrrrs_Q_t_10 +
-        v.axis_z_rrrrs_axes4_z*rrrrs_Q_t_9 - axis_y_rrrrs_axes4_y*rrrrs_Q_t_7 -
-        axis_y_rrrrs_axes4_z*rrrrs_Q_t_6;
+    const real rrrrs_Q_yy = -v.rrrrs_d_c_in_axes4_xx - 2*rrrrs_Q_t_12;
+    const real rrrrs_Q_yz = v.axis_z_rrrrs_axes4_y*rrrrs_Q_t_10 -
+        axis_y_rrrrs_axes4_y*rrrrs_Q_t_7 - axis_y_rrrrs_axes4_z*rrrrs_Q_t_6 +
+        v.axis_z_rrrrs_axes4_z*rrrrs_Q_t_9;
     const real rrrrs_Q_t_13 = axis_y_rrrrs_axes4_z*rrrrs_Q_t_7 -
         v.axis_z_rrrrs_axes4_z*rrrrs_Q_t_10;
-    const real rrrrs_Q_zz = -2*rrrrs_Q_t_13 - v.rrrrs_d_c_in_axes4_xx;
+    const real rrrrs_Q_zz = -v.rrrrs_d_c_in_axes4_xx - 2*rrrrs_Q_t_13;
     /* (rrrrs-U) velocity and gravity terms of the leg force */
-    const real rrrrs_U_x = -axis_x_rrrrs_axes4_x*rrrrs_c_o_in_axes4_x -
-        axis_y_rrrrs_axes4_x*rrrrs_c_o_in_axes4_y -
+    const real rrrrs_U_x = -axis_y_rrrrs_axes4_x*rrrrs_c_o_in_axes4_y -
+        axis_x_rrrrs_axes4_x*rrrrs_c_o_in_axes4_x -
         v.axis_z_rrrrs_axes4_x*rrrrs_c_o_in_axes4_z;
-    const real rrrrs_U_y = -axis_x_rrrrs_axes4_y*rrrrs_c_o_in_axes4_x -
-        axis_y_rrrrs_axes4_y*rrrrs_c_o_in_axes4_y -
+    const real rrrrs_U_y = -axis_y_rrrrs_axes4_y*rrrrs_c_o_in_axes4_y -
+        axis_x_rrrrs_axes4_y*rrrrs_c_o_in_axes4_x -
         v.axis_z_rrrrs_axes4_y*rrrrs_c_o_in_axes4_z;
-    const real rrrrs_U_z = -axis_x_rrrrs_axes4_z*rrrrs_c_o_in_axes4_x -
-        axis_y_rrrrs_axes4_z*rrrrs_c_o_in_axes4_y -
+    const real rrrrs_U_z = -axis_y_rrrrs_axes4_z*rrrrs_c_o_in_axes4_y -
+        axis_x_rrrrs_axes4_z*rrrrs_c_o_in_axes4_x -
         v.axis_z_rrrrs_axes4_z*rrrrs_c_o_in_axes4_z;
     /* (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra
        degree of freedom of joint 2 */
@@ -4277,9 +4285,9 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j,
     /* (M_aa) rotational block of M */
     const real rrrrs_M_aa_t = rrrrs_M_ta_t_10*v.rrrrs_q_y - rrrrs_M_ta_t_6*v.rrrrs_q_z;
     const real rrrrs_M_aa_t_2 = rrrrs_M_ta_t_11*v.rrrrs_q_y + rrrrs_M_ta_t_8*v.rrrrs_q_z;
-    const real rrrrs_M_aa_t_3 = rrrrs_M_ta_t_12*v.rrrrs_q_y + rrrrs_M_ta_t_9*v.rrrrs_q_z;
+    const real rrrrs_M_aa_t_3 = rrrrs_M_ta_t_9*v.rrrrs_q_z + rrrrs_M_ta_t_12*v.rrrrs_q_y;
     const real rrrrs_M_aa_t_4 = rrrrs_M_ta_t_11*v.rrrrs_q_x + rrrrs_M_ta_t_4*v.rrrrs_q_z;
-    const real rrrrs_M_aa_t_5 = rrrrs_M_ta_t_12*v.rrrrs_q_x + rrrrs_M_ta_t_5*v.rrrrs_q_z;
+    const real rrrrs_M_aa_t_5 = rrrrs_M_ta_t_5*v.rrrrs_q_z + rrrrs_M_ta_t_12*v.rrrrs_q_x;
     const real rrrrs_M_aa_t_6 = rrrrs_M_ta_t_9*v.rrrrs_q_x - rrrrs_M_ta_t_5*v.rrrrs_q_y;
     /* (Z_a) rotational part of Z */
     const real rrrrs_Z_a_t = rrrrs_U_z*v.rrrrs_q_y - rrrrs_U_y*v.rrrrs_q_z;
@@ -4447,13 +4455,13 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
     /* (rrrs-B_2_o) remainder of the acceleration tensor of link 2 */
     const real rrrs_B_2_o_in_axes2_xy = v.rrrs_W_2_in_axes2_xy - rrrs_qdd_2_o;
     const real rrrs_B_2_o_in_axes2_yx = v.rrrs_W_2_in_axes2_xy + rrrs_qdd_2_o;
-    const real rrrs_B_2_o_in_axes2_zx = -rrrs_alpha_2_o_in_axes2_y - v.rrrs_zeta_2_in_axes2_y;
+    const real rrrs_B_2_o_in_axes2_zx = -v.rrrs_zeta_2_in_axes2_y - rrrs_alpha_2_o_in_axes2_y;
     const real rrrs_B_2_o_in_axes2_zy = v.rrrs_W_2_in_axes2_yz + rrrs_alpha_2_o_in_axes2_x;
     /* (rrrs-alpha_3_o) remainder of: angular acceleration of link 3 */
-    const real rrrs_alpha_3_o_in_axes3_x = rrrs_alpha_2_o_in_axes2_x*v.rrrs_c_3 +
-        v.rrrs_omega_1_in_axes3_y*v.rrrs_qd_3 - rrrs_alpha_2_o_in_axes2_y*v.rrrs_s_3_t;
-    const real rrrs_alpha_3_o_in_axes3_y = rrrs_alpha_2_o_in_axes2_x*v.rrrs_s_3_t +
-        rrrs_alpha_2_o_in_axes2_y*v.rrrs_c_3 - v.rrrs_zeta_3_t;
+    const real rrrs_alpha_3_o_in_axes3_x = v.rrrs_omega_1_in_axes3_y*v.rrrs_qd_3 +
+        rrrs_alpha_2_o_in_axes2_x*v.rrrs_c_3 - rrrs_alpha_2_o_in_axes2_y*v.rrrs_s_3_t;
+    const real rrrs_alpha_3_o_in_axes3_y = rrrs_alpha_2_o_in_axes2_x*v.rrrs_s_3_t -
+        v.rrrs_zeta_3_t + rrrs_alpha_2_o_in_axes2_y*v.rrrs_c_3;
     const real rrrs_alpha_3_o_in_axes3_z = rrrs_qdd_2_o +
         m->rrrs_w_3_in_axes3_y[i]*(rrrs_rel_o_in_axes3_y -
         rrrs_qdd_2_o*v.rrrs_r_2_in_axes3_x);
@@ -4474,51 +4482,51 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
     /* (rrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
        reference points */
     const real rrrs_mu_3_o_t_3 = v.rrrs_omega_3_in_axes3_z*v.rrrs_omega_3_in_axes3_z;
-    const real rrrs_mu_3_o_in_axes3_x = rrrs_B_3_o_in_axes3_yx*m->rrrs_J_3_in_spec3_xz[i] +
-        rrrs_B_3_o_in_axes3_zy*m->rrrs_Sigma_3_in_axes3_yy[i] +
+    const real rrrs_mu_3_o_in_axes3_x = v.rrrs_acc_3_o_in_axes3_z*m->rrrs_h_3_in_spec3_y[i] -
+        rrrs_acc_3_o_in_axes3_y*m->rrrs_h_3_in_spec3_z[i] +
         m->rrrs_J_3_in_spec3_yz[i]*(v.rrrs_mu_3_o_t_2 - rrrs_mu_3_o_t_3) +
-        v.rrrs_acc_3_o_in_axes3_z*m->rrrs_h_3_in_spec3_y[i] -
+        rrrs_B_3_o_in_axes3_yx*m->rrrs_J_3_in_spec3_xz[i] +
+        rrrs_B_3_o_in_axes3_zy*m->rrrs_Sigma_3_in_axes3_yy[i] -
         rrrs_B_3_o_in_axes3_yz*m->rrrs_Sigma_3_in_axes3_zz[i] -
-        rrrs_B_3_o_in_axes3_zx*m->rrrs_J_3_in_spec3_xy[i] -
-        rrrs_acc_3_o_in_axes3_y*m->rrrs_h_3_in_spec3_z[i];
-    const real rrrs_mu_3_o_in_axes3_y = rrrs_B_3_o_in_axes3_xz*m->rrrs_Sigma_3_in_axes3_zz[i]
-        + rrrs_B_3_o_in_axes3_zy*m->rrrs_J_3_in_spec3_xy[i] +
-        rrrs_acc_3_o_in_axes3_x*m->rrrs_h_3_in_spec3_z[i] -
-        rrrs_B_3_o_in_axes3_xy*m->rrrs_J_3_in_spec3_yz[i] -
-        rrrs_B_3_o_in_axes3_zx*m->rrrs_Sigma_3_in_axes3_xx[i] -
+        rrrs_B_3_o_in_axes3_zx*m->rrrs_J_3_in_spec3_xy[i];
+    const real rrrs_mu_3_o_in_axes3_y = rrrs_acc_3_o_in_axes3_x*m->rrrs_h_3_in_spec3_z[i] -
+        v.rrrs_acc_3_o_in_axes3_z*m->rrrs_h_3_in_spec3_x[i] -
         m->rrrs_J_3_in_spec3_xz[i]*(v.rrrs_mu_3_o_t - rrrs_mu_3_o_t_3) -
-        v.rrrs_acc_3_o_in_axes3_z*m->rrrs_h_3_in_spec3_x[i];
-    const real rrrs_mu_3_o_in_axes3_z = rrrs_B_3_o_in_axes3_xz*m->rrrs_J_3_in_spec3_yz[i] +
-        rrrs_B_3_o_in_axes3_yx*m->rrrs_Sigma_3_in_axes3_xx[i] +
+        rrrs_B_3_o_in_axes3_xy*m->rrrs_J_3_in_spec3_yz[i] +
+        rrrs_B_3_o_in_axes3_xz*m->rrrs_Sigma_3_in_axes3_zz[i] +
+        rrrs_B_3_o_in_axes3_zy*m->rrrs_J_3_in_spec3_xy[i] -
+        rrrs_B_3_o_in_axes3_zx*m->rrrs_Sigma_3_in_axes3_xx[i];
+    const real rrrs_mu_3_o_in_axes3_z = rrrs_acc_3_o_in_axes3_y*m->rrrs_h_3_in_spec3_x[i] -
+        rrrs_acc_3_o_in_axes3_x*m->rrrs_h_3_in_spec3_y[i] +
         m->rrrs_J_3_in_spec3_xy[i]*(v.rrrs_mu_3_o_t - v.rrrs_mu_3_o_t_2) +
-        rrrs_acc_3_o_in_axes3_y*m->rrrs_h_3_in_spec3_x[i] -
-        rrrs_B_3_o_in_axes3_xy*m->rrrs_Sigma_3_in_axes3_yy[i] -
-        rrrs_B_3_o_in_axes3_yz*m->rrrs_J_3_in_spec3_xz[i] -
-        rrrs_acc_3_o_in_axes3_x*m->rrrs_h_3_in_spec3_y[i];
+        rrrs_B_3_o_in_axes3_yx*m->rrrs_Sigma_3_in_axes3_xx[i] -
+        rrrs_B_3_o_in_axes3_xy*m->rrrs_Sigma_3_in_axes3_yy[i] +
+        rrrs_B_3_o_in_axes3_xz*m->rrrs_J_3_in_spec3_yz[i] -
+        rrrs_B_3_o_in_axes3_yz*m->rrrs_J_3_in_spec3_xz[i];
     /* (rrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real rrrs_mu_2_o_t_3 = v.rrrs_qd_2_t*v.rrrs_qd_2_t;
-    const real rrrs_mu_2_o_in_axes2_x = rrrs_B_2_o_in_axes2_yx*m->rrrs_J_2_in_spec2_xz[i] +
-        rrrs_B_2_o_in_axes2_zy*m->rrrs_Sigma_2_in_axes2_yy[i] +
+    const real rrrs_mu_2_o_in_axes2_x = v.rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_z[i] -
+        v.rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_y[i] +
         m->rrrs_J_2_in_spec2_yz[i]*(v.rrrs_mu_2_o_t_2 - rrrs_mu_2_o_t_3) +
+        rrrs_B_2_o_in_axes2_yx*m->rrrs_J_2_in_spec2_xz[i] +
         m->rrrs_Sigma_2_in_axes2_zz[i]*rrrs_alpha_1_o_in_axes2_x +
-        v.rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_z[i] -
-        rrrs_B_2_o_in_axes2_zx*m->rrrs_J_2_in_spec2_xy[i] -
-        v.rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_y[i];
-    const real rrrs_mu_2_o_in_axes2_y = rrrs_B_2_o_in_axes2_zy*m->rrrs_J_2_in_spec2_xy[i] +
-        v.rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_x[i] -
-        rrrs_B_2_o_in_axes2_xy*m->rrrs_J_2_in_spec2_yz[i] -
-        rrrs_B_2_o_in_axes2_zx*m->rrrs_Sigma_2_in_axes2_xx[i] -
+        rrrs_B_2_o_in_axes2_zy*m->rrrs_Sigma_2_in_axes2_yy[i] -
+        rrrs_B_2_o_in_axes2_zx*m->rrrs_J_2_in_spec2_xy[i];
+    const real rrrs_mu_2_o_in_axes2_y = v.rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_x[i] -
+        v.rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_z[i] -
         m->rrrs_J_2_in_spec2_xz[i]*(v.rrrs_mu_2_o_t - rrrs_mu_2_o_t_3) -
-        m->rrrs_Sigma_2_in_axes2_zz[i]*rrrs_alpha_1_o_t -
-        v.rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_z[i];
-    const real rrrs_mu_2_o_in_axes2_z = rrrs_B_2_o_in_axes2_yx*m->rrrs_Sigma_2_in_axes2_xx[i]
-        + m->rrrs_J_2_in_spec2_xy[i]*(v.rrrs_mu_2_o_t - v.rrrs_mu_2_o_t_2) +
-        m->rrrs_J_2_in_spec2_xz[i]*rrrs_alpha_1_o_in_axes2_x +
-        v.rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_y[i] -
+        rrrs_B_2_o_in_axes2_xy*m->rrrs_J_2_in_spec2_yz[i] -
+        m->rrrs_Sigma_2_in_axes2_zz[i]*rrrs_alpha_1_o_t +
+        rrrs_B_2_o_in_axes2_zy*m->rrrs_J_2_in_spec2_xy[i] -
+        rrrs_B_2_o_in_axes2_zx*m->rrrs_Sigma_2_in_axes2_xx[i];
+    const real rrrs_mu_2_o_in_axes2_z = v.rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_y[i] -
+        v.rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_x[i] +
+        m->rrrs_J_2_in_spec2_xy[i]*(v.rrrs_mu_2_o_t - v.rrrs_mu_2_o_t_2) +
+        rrrs_B_2_o_in_axes2_yx*m->rrrs_Sigma_2_in_axes2_xx[i] +
+        m->rrrs_J_2_in_spec2_xz[i]*rrrs_alpha_1_o_in_axes2_x -
         rrrs_B_2_o_in_axes2_xy*m->rrrs_Sigma_2_in_axes2_yy[i] -
-        m->rrrs_J_2_in_spec2_yz[i]*rrrs_alpha_1_o_t -
-        v.rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_x[i];
+        m->rrrs_J_2_in_spec2_yz[i]*rrrs_alpha_1_o_t;
     /* (rrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
        connection point left out */
     const real rrrs_N_2_o_in_axes2_x = rrrs_mu_2_o_in_axes2_x +
@@ -4528,9 +4536,9 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
     const real rrrs_N_2_o_in_axes2_z = rrrs_mu_2_o_in_axes2_z + rrrs_mu_3_o_in_axes3_z;
     /* (rrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
-    const real rrrs_mu_1_o_in_axes1_z = m->rrrs_J_1_in_spec1_xx[i]*rrrs_qdd_1_o +
-        v.rrrs_g_in_axes1_x*m->rrrs_h_1_in_spec1_z[i] -
-        v.rrrs_g_in_axes1_y*m->rrrs_h_1_in_spec1_y[i];
+    const real rrrs_mu_1_o_in_axes1_z = v.rrrs_g_in_axes1_x*m->rrrs_h_1_in_spec1_z[i] -
+        v.rrrs_g_in_axes1_y*m->rrrs_h_1_in_spec1_y[i] +
+        m->rrrs_J_1_in_spec1_xx[i]*rrrs_qdd_1_o;
     /* (rrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
        connection point left out */
     const real rrrs_N_1_o_in_axes1_z = rrrs_mu_1_o_in_axes1_z +
@@ -4541,13 +4549,13 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
     /* (rrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at
        the connection point */
     const real rrrs_c_o_in_axes3_x = m->rrrs_h_3_in_spec3_x[i]*(v.rrrs_mu_3_o_t_2 +
-        rrrs_mu_3_o_t_3) + v.rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*v.rrrs_r_2_in_axes3_x -
-        rrrs_N_2_o_in_axes2_z) - rrrs_B_3_o_in_axes3_xy*m->rrrs_h_3_in_spec3_y[i] -
-        rrrs_B_3_o_in_axes3_xz*m->rrrs_h_3_in_spec3_z[i];
+        rrrs_mu_3_o_t_3) - rrrs_B_3_o_in_axes3_xy*m->rrrs_h_3_in_spec3_y[i] -
+        rrrs_B_3_o_in_axes3_xz*m->rrrs_h_3_in_spec3_z[i] +
+        v.rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*v.rrrs_r_2_in_axes3_x -
+        rrrs_N_2_o_in_axes2_z);
     const real rrrs_c_o_in_axes3_y = m->rrrs_h_3_in_spec3_y[i]*(v.rrrs_mu_3_o_t +
-        rrrs_mu_3_o_t_3) - rrrs_G_o_in_axes3_y -
-        rrrs_B_3_o_in_axes3_yx*m->rrrs_h_3_in_spec3_x[i] -
-        rrrs_B_3_o_in_axes3_yz*m->rrrs_h_3_in_spec3_z[i];
+        rrrs_mu_3_o_t_3) - rrrs_B_3_o_in_axes3_yx*m->rrrs_h_3_in_spec3_x[i] -
+        rrrs_B_3_o_in_axes3_yz*m->rrrs_h_3_in_spec3_z[i] - rrrs_G_o_in_axes3_y;
     const real rrrs_c_o_in_axes3_z = m->rrrs_h_3_in_spec3_z[i]*(v.rrrs_mu_3_o_t +
         v.rrrs_mu_3_o_t_2) - rrrs_B_3_o_in_axes3_zx*m->rrrs_h_3_in_spec3_x[i] -
         rrrs_B_3_o_in_axes3_zy*m->rrrs_h_3_in_spec3_y[i] -
@@ -4555,17 +4563,16 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
     /* (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real rrrs_Q_t = v.rrrs_d_c_in_axes3_xx - m->rrrs_d_c_in_axes3_yy[i];
     const real rrrs_Q_t_2 = R(0.5)*rrrs_Q_t;
-    const real rrrs_Q_t_3 = v.rrrs_d_c_in_axes3_xx +
-        v.rrrs_d_Gamma_1_in_axes3_z*v.rrrs_w_1_in_axes3_z +
+    const real rrrs_Q_t_3 = v.rrrs_d_Gamma_1_in_axes3_z*v.rrrs_w_1_in_axes3_z +
         v.rrrs_d_alpha_3_in_axes3_xz*m->rrrs_h_3_in_spec3_y[i] -
-        v.rrrs_d_alpha_3_in_axes3_yz*m->rrrs_h_3_in_spec3_x[i];
+        v.rrrs_d_alpha_3_in_axes3_yz*m->rrrs_h_3_in_spec3_x[i] + v.rrrs_d_c_in_axes3_xx;
     const real rrrs_Q_t_4 = R(0.5)*rrrs_Q_t_3;
-    const real rrrs_Q_t_5 = v.axis_x_rrrs_axes3_x*v.rrrs_d_c_in_axes3_xy +
-        v.axis_z_rrrs_axes3_x*v.rrrs_d_c_in_axes3_yz - v.axis_y_rrrs_axes3_x*rrrs_Q_t_2;
-    const real rrrs_Q_t_6 = v.axis_x_rrrs_axes3_y*v.rrrs_d_c_in_axes3_xy +
-        v.axis_z_rrrs_axes3_y*v.rrrs_d_c_in_axes3_yz - v.axis_y_rrrs_axes3_y*rrrs_Q_t_2;
-    const real rrrs_Q_t_7 = v.axis_x_rrrs_axes3_z*v.rrrs_d_c_in_axes3_xy +
-        v.axis_z_rrrs_axes3_z*v.rrrs_d_c_in_axes3_yz - v.axis_y_rrrs_axes3_z*rrrs_Q_t_2;
+    const real rrrs_Q_t_5 = v.axis_z_rrrs_axes3_x*v.rrrs_d_c_in_axes3_yz +
+        v.axis_x_rrrs_axes3_x*v.rrrs_d_c_in_axes3_xy - v.axis_y_rrrs_axes3_x*rrrs_Q_t_2;
+    const real rrrs_Q_t_6 = v.axis_z_rrrs_axes3_y*v.rrrs_d_c_in_axes3_yz +
+        v.axis_x_rrrs_axes3_y*v.rrrs_d_c_in_axes3_xy - v.axis_y_rrrs_axes3_y*rrrs_Q_t_2;
+    const real rrrs_Q_t_7 = v.axis_z_rrrs_axes3_z*v.rrrs_d_c_in_axes3_yz +
+        v.axis_x_rrrs_axes3_z*v.rrrs_d_c_in_axes3_xy - v.axis_y_rrrs_axes3_z*rrrs_Q_t_2;
     const real rrrs_Q_t_8 = v.axis_z_rrrs_axes3_x*rrrs_Q_t_4 -
         v.axis_x_rrrs_axes3_x*v.rrrs_d_c_in_axes3_xz;
     const real rrrs_Q_t_9 = v.axis_z_rrrs_axes3_y*rrrs_Q_t_4 -
@@ -4574,7 +4581,7 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
         v.axis_x_rrrs_axes3_z*v.rrrs_d_c_in_axes3_xz;
     const real rrrs_Q_t_11 = v.axis_y_rrrs_axes3_x*rrrs_Q_t_5 -
         v.axis_z_rrrs_axes3_x*rrrs_Q_t_8;
-    const real rrrs_Q_xx = -2*rrrs_Q_t_11 - v.rrrs_d_c_in_axes3_xx;
+    const real rrrs_Q_xx = -v.rrrs_d_c_in_axes3_xx - 2*rrrs_Q_t_11;
     const real rrrs_Q_xy = v.axis_z_rrrs_axes3_x*rrrs_Q_t_9 + v.axis_z_rrrs_axes3_y*rrrs_Q_t_8
         - v.axis_y_rrrs_axes3_x*rrrs_Q_t_6 - v.axis_y_rrrs_axes3_y*rrrs_Q_t_5;
     const real rrrs_Q_xz = v.axis_z_rrrs_axes3_x*rrrs_Q_t_10 +
@@ -4582,20 +4589,20 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
         v.axis_y_rrrs_axes3_z*rrrs_Q_t_5;
     const real rrrs_Q_t_12 = v.axis_y_rrrs_axes3_y*rrrs_Q_t_6 -
         v.axis_z_rrrs_axes3_y*rrrs_Q_t_9;
-    const real rrrs_Q_yy = -2*rrrs_Q_t_12 - v.rrrs_d_c_in_axes3_xx;
+    const real rrrs_Q_yy = -v.rrrs_d_c_in_axes3_xx - 2*rrrs_Q_t_12;
     const real rrrs_Q_yz = v.axis_z_rrrs_axes3_y*rrrs_Q_t_10 +
         v.axis_z_rrrs_axes3_z*rrrs_Q_t_9 - v.axis_y_rrrs_axes3_y*rrrs_Q_t_7 -
         v.axis_y_rrrs_axes3_z*rrrs_Q_t_6;
     const real rrrs_Q_t_13 = v.axis_y_rrrs_axes3_z*rrrs_Q_t_7 -
         v.axis_z_rrrs_axes3_z*rrrs_Q_t_10;
-    const real rrrs_Q_zz = -2*rrrs_Q_t_13 - v.rrrs_d_c_in_axes3_xx;
+    const real rrrs_Q_zz = -v.rrrs_d_c_in_axes3_xx - 2*rrrs_Q_t_13;
     /* (rrrs-U) velocity and gravity terms of the leg force */
-    const real rrrs_U_x = -v.axis_x_rrrs_axes3_x*rrrs_c_o_in_axes3_x -
-        v.axis_y_rrrs_axes3_x*rrrs_c_o_in_axes3_y - v.axis_z_rrrs_axes3_x*rrrs_c_o_in_axes3_z;
-    const real rrrs_U_y = -v.axis_x_rrrs_axes3_y*rrrs_c_o_in_axes3_x -
-        v.axis_y_rrrs_axes3_y*rrrs_c_o_in_axes3_y - v.axis_z_rrrs_axes3_y*rrrs_c_o_in_axes3_z;
-    const real rrrs_U_z = -v.axis_x_rrrs_axes3_z*rrrs_c_o_in_axes3_x -
-        v.axis_y_rrrs_axes3_z*rrrs_c_o_in_axes3_y - v.axis_z_rrrs_axes3_z*rrrs_c_o_in_axes3_z;
+    const real rrrs_U_x = -v.axis_y_rrrs_axes3_x*rrrs_c_o_in_axes3_y -
+        v.axis_x_rrrs_axes3_x*rrrs_c_o_in_axes3_x - v.axis_z_rrrs_axes3_x*rrrs_c_o_in_axes3_z;
+    const real rrrs_U_y = -v.axis_y_rrrs_axes3_y*rrrs_c_o_in_axes3_y -
+        v.axis_x_rrrs_axes3_y*rrrs_c_o_in_axes3_x - v.axis_z_rrrs_axes3_y*rrrs_c_o_in_axes3_z;
+    const real rrrs_U_z = -v.axis_y_rrrs_axes3_z*rrrs_c_o_in_axes3_y -
+        v.axis_x_rrrs_axes3_z*rrrs_c_o_in_axes3_x - v.axis_z_rrrs_axes3_z*rrrs_c_o_in_axes3_z;
     /* (M_ta) */
     const real rrrs_M_ta_t = rrrs_Q_xy*v.rrrs_q_z;
     const real rrrs_M_ta_t_2 = rrrs_Q_xz*v.rrrs_q_y;
@@ -4708,15 +4715,15 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[11*w + k];
-    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
     const real h_star_y = s[10*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -4724,9 +4731,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[9*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
@@ -4763,13 +4770,13 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[24*w + k];
     const real Z_q_x = s[21*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[25*w + k];
     const real Z_q_y = s[22*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[26*w + k];
     const real Z_q_z = s[23*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
     const real M_tt_xy = sums[1*w + k];
@@ -4836,7 +4843,8 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     real terms_rrrrs[29*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[31*LEGS(LEGS_OF_rrrrs)] = {0};
     real terms_rrrs[29*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[15*LEGS(LEGS_OF_rrrs)] = {0};
     clear(H, NV*NU);
-    dynamics_before(m, 1, 0, X, V, s, t);
+    values v;
+    dynamics_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
         dynamics_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), 0, s, X, V, terms_rrrrs, o_rrrrs);
     }
@@ -4857,6 +4865,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
             sums[n] += terms_rrrs[n*LEGS(LEGS_OF_rrrs) + leg];
         }
     }
+    dynamics_between(m, 1, 0, V, &v, s);
     dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
@@ -4868,7 +4877,9 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real o_rrrs[15*LANES];
     clear(H, NV*NU*LANES);
     for (size_t k = 0; k < LANES; ++k) {
-        dynamics_before(m, LANES, k, X, V, s, t);
+        values v;
+        dynamics_before(m, LANES, k, X, &v, s, t);
+        dynamics_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 29*LANES);
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
@@ -4893,30 +4904,34 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_M_dynamics(m, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.h_star_x;
-    s[10*w + k] = v.h_star_y;
-    s[11*w + k] = v.h_star_z;
-    s[12*w + k] = v.J_star_xx;
-    s[13*w + k] = v.J_star_xy;
-    s[14*w + k] = v.J_star_xz;
-    s[15*w + k] = v.J_star_yy;
-    s[16*w + k] = v.J_star_yz;
-    s[17*w + k] = v.J_star_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->h_star_x;
+    s[10*w + k] = v->h_star_y;
+    s[11*w + k] = v->h_star_z;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void M_between(const prepared *m, size_t w, size_t k, values *v, real *s)
+{
+    stage_M_dynamics(m, v);
+    s[12*w + k] = v->J_star_xx;
+    s[13*w + k] = v->J_star_xy;
+    s[14*w + k] = v->J_star_xz;
+    s[15*w + k] = v->J_star_yy;
+    s[16*w + k] = v->J_star_yz;
+    s[17*w + k] = v->J_star_zz;
 }
 
 INLINE void M_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -4932,17 +4947,17 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
     const real rrrrs_dy_2_Gamma_4_t =
         m->rrrrs_J_4_in_spec4_zz[i]*m->rrrrs_w_4_in_axes4_y[i]*(-v.rrrrs_r_2_in_axes4_x -
         rrrrs_dy_2_qdd_3*v.rrrrs_r_3_in_axes4_x);
-    const real rrrrs_dy_2_Gamma_4 = m->rrrrs_J_4_in_spec4_zz[i] + rrrrs_dy_2_Gamma_4_t +
-        m->rrrrs_J_4_in_spec4_zz[i]*rrrrs_dy_2_qdd_3;
+    const real rrrrs_dy_2_Gamma_4 = m->rrrrs_J_4_in_spec4_zz[i] +
+        m->rrrrs_J_4_in_spec4_zz[i]*rrrrs_dy_2_qdd_3 + rrrrs_dy_2_Gamma_4_t;
     /* (rrrrs-dy_2_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
        links' inertia and weight */
-    const real rrrrs_dy_2_Gamma_3 = v.rrrrs_L_c_3_2_in_axes2_z + rrrrs_dy_2_Gamma_4_t +
-        m->rrrrs_Jc_3_in_axes3_zz[i]*rrrrs_dy_2_qdd_3;
+    const real rrrrs_dy_2_Gamma_3 = v.rrrrs_L_c_3_2_in_axes2_z +
+        m->rrrrs_Jc_3_in_axes3_zz[i]*rrrrs_dy_2_qdd_3 + rrrrs_dy_2_Gamma_4_t;
     /* (rrrrs-dy_2_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
        links' inertia and weight */
-    const real rrrrs_dy_2_Gamma_2 = m->rrrrs_J_2_in_spec2_zz[i] + v.rrrrs_Jc_2_t_7 +
-        m->rrrrs_Jc_3_in_axes3_zz[i] + rrrrs_dy_2_Gamma_4_t +
-        v.rrrrs_L_c_3_2_in_axes2_z*rrrrs_dy_2_qdd_3;
+    const real rrrrs_dy_2_Gamma_2 = m->rrrrs_J_2_in_spec2_zz[i] + m->rrrrs_Jc_3_in_axes3_zz[i]
+        + v.rrrrs_Jc_2_t_7 + v.rrrrs_L_c_3_2_in_axes2_z*rrrrs_dy_2_qdd_3 +
+        rrrrs_dy_2_Gamma_4_t;
     /* (rrrrs-dy_2_G) coefficient of the acceleration in: force at the connection point that balances
        the leg's inertia and weight along all degrees of freedom */
     const real rrrrs_dy_2_G_in_axes4_y = rrrrs_dy_2_Gamma_4*m->rrrrs_w_4_in_axes4_y[i];
@@ -4967,17 +4982,16 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
         axis_y_rrrrs_axes4_y*v.axis_z_rrrrs_axes4_x;
     const real rrrrs_Q_t_7 = v.rrrrs_d_c_in_axes4_xx - m->rrrrs_d_c_in_axes4_yy[i];
     const real rrrrs_Q_t_8 = R(0.5)*rrrrs_Q_t_7;
-    const real rrrrs_Q_t_9 = v.rrrrs_d_c_in_axes4_xx +
-        v.rrrrs_d_Gamma_1_in_axes4_z*v.rrrrs_w_1_in_axes4_z +
-        v.rrrrs_d_alpha_4_in_axes4_xz*m->rrrrs_h_4_in_spec4_y[i] -
-        v.rrrrs_d_alpha_4_in_axes4_yz*m->rrrrs_h_4_in_spec4_x[i];
+    const real rrrrs_Q_t_9 = v.rrrrs_d_alpha_4_in_axes4_xz*m->rrrrs_h_4_in_spec4_y[i] -
+        v.rrrrs_d_alpha_4_in_axes4_yz*m->rrrrs_h_4_in_spec4_x[i] + v.rrrrs_d_c_in_axes4_xx +
+        v.rrrrs_d_Gamma_1_in_axes4_z*v.rrrrs_w_1_in_axes4_z;
     const real rrrrs_Q_t_10 = R(0.5)*rrrrs_Q_t_9;
-    const real rrrrs_Q_t_11 = axis_x_rrrrs_axes4_x*v.rrrrs_d_c_in_axes4_xy +
-        v.axis_z_rrrrs_axes4_x*v.rrrrs_d_c_in_axes4_yz - axis_y_rrrrs_axes4_x*rrrrs_Q_t_8;
-    const real rrrrs_Q_t_12 = axis_x_rrrrs_axes4_y*v.rrrrs_d_c_in_axes4_xy +
-        v.axis_z_rrrrs_axes4_y*v.rrrrs_d_c_in_axes4_yz - axis_y_rrrrs_axes4_y*rrrrs_Q_t_8;
-    const real rrrrs_Q_t_13 = axis_x_rrrrs_axes4_z*v.rrrrs_d_c_in_axes4_xy +
-        v.axis_z_rrrrs_axes4_z*v.rrrrs_d_c_in_axes4_yz - axis_y_rrrrs_axes4_z*rrrrs_Q_t_8;
+    const real rrrrs_Q_t_11 = v.axis_z_rrrrs_axes4_x*v.rrrrs_d_c_in_axes4_yz +
+        axis_x_rrrrs_axes4_x*v.rrrrs_d_c_in_axes4_xy - axis_y_rrrrs_axes4_x*rrrrs_Q_t_8;
+    const real rrrrs_Q_t_12 = v.axis_z_rrrrs_axes4_y*v.rrrrs_d_c_in_axes4_yz +
+        axis_x_rrrrs_axes4_y*v.rrrrs_d_c_in_axes4_xy - axis_y_rrrrs_axes4_y*rrrrs_Q_t_8;
+    const real rrrrs_Q_t_13 = v.axis_z_rrrrs_axes4_z*v.rrrrs_d_c_in_axes4_yz +
+        axis_x_rrrrs_axes4_z*v.rrrrs_d_c_in_axes4_xy - axis_y_rrrrs_axes4_z*rrrrs_Q_t_8;
     const real rrrrs_Q_t_14 = v.axis_z_rrrrs_axes4_x*rrrrs_Q_t_10 -
         axis_x_rrrrs_axes4_x*v.rrrrs_d_c_in_axes4_xz;
     const real rrrrs_Q_t_15 = v.axis_z_rrrrs_axes4_y*rrrrs_Q_t_10 -
@@ -4986,22 +5000,22 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
         axis_x_rrrrs_axes4_z*v.rrrrs_d_c_in_axes4_xz;
     const real rrrrs_Q_t_17 = axis_y_rrrrs_axes4_x*rrrrs_Q_t_11 -
         v.axis_z_rrrrs_axes4_x*rrrrs_Q_t_14;
-    const real rrrrs_Q_xx = -2*rrrrs_Q_t_17 - v.rrrrs_d_c_in_axes4_xx;
-    const real rrrrs_Q_xy = v.axis_z_rrrrs_axes4_x*rrrrs_Q_t_15 +
-        v.axis_z_rrrrs_axes4_y*rrrrs_Q_t_14 - axis_y_rrrrs_axes4_x*rrrrs_Q_t_12 -
-        axis_y_rrrrs_axes4_y*rrrrs_Q_t_11;
-    const real rrrrs_Q_xz = v.axis_z_rrrrs_axes4_x*rrrrs_Q_t_16 +
-        v.axis_z_rrrrs_axes4_z*rrrrs_Q_t_14 - axis_y_rrrrs_axes4_x*rrrrs_Q_t_13 -
-        axis_y_rrrrs_axes4_z*rrrrs_Q_t_11;
+    const real rrrrs_Q_xx = -v.rrrrs_d_c_in_axes4_xx - 2*rrrrs_Q_t_17;
+    const real rrrrs_Q_xy = v.axis_z_rrrrs_axes4_x*rrrrs_Q_t_15 -
+        axis_y_rrrrs_axes4_x*rrrrs_Q_t_12 - axis_y_rrrrs_axes4_y*rrrrs_Q_t_11 +
+        v.axis_z_rrrrs_axes4_y*rrrrs_Q_t_14;
+    const real rrrrs_Q_xz = v.axis_z_rrrrs_axes4_x*rrrrs_Q_t_16 -
+        axis_y_rrrrs_axes4_x*rrrrs_Q_t_13 - axis_y_rrrrs_axes4_z*rrrrs_Q_t_11 +
+        v.axis_z_rrrrs_axes4_z*rrrrs_Q_t_14;
     const real rrrrs_Q_t_18 = axis_y_rrrrs_axes4_y*rrrrs_Q_t_12 -
         v.axis_z_rrrrs_axes4_y*rrrrs_Q_t_15;
-    const real rrrrs_Q_yy = -2*rrrrs_Q_t_18 - v.rrrrs_d_c_in_axes4_xx;
-    const real rrrrs_Q_yz = v.axis_z_rrrrs_axes4_y*rrrrs_Q_t_16 +
-        v.axis_z_rrrrs_axes4_z*rrrrs_Q_t_15 - axis_y_rrrrs_axes4_y*rrrrs_Q_t_13 -
-        axis_y_rrrrs_axes4_z*rrrrs_Q_t_12;
+    const real rrrrs_Q_yy = -v.rrrrs_d_c_in_axes4_xx - 2*rrrrs_Q_t_18;
+    const real rrrrs_Q_yz = v.axis_z_rrrrs_axes4_y*rrrrs_Q_t_16 -
+        axis_y_rrrrs_axes4_y*rrrrs_Q_t_13 - axis_y_rrrrs_axes4_z*rrrrs_Q_t_12 +
+        v.axis_z_rrrrs_axes4_z*rrrrs_Q_t_15;
     const real rrrrs_Q_t_19 = axis_y_rrrrs_axes4_z*rrrrs_Q_t_13 -
         v.axis_z_rrrrs_axes4_z*rrrrs_Q_t_16;
-    const real rrrrs_Q_zz = -2*rrrrs_Q_t_19 - v.rrrrs_d_c_in_axes4_xx;
+    const real rrrrs_Q_zz = -v.rrrrs_d_c_in_axes4_xx - 2*rrrrs_Q_t_19;
     /* (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra
        degree of freedom of joint 2 */
     const real rrrrs_d_P_2_x = axis_x_rrrrs_axes4_x*v.rrrrs_d_P_2_in_axes4_x +
@@ -5035,9 +5049,9 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
     /* (M_aa) rotational block of M */
     const real rrrrs_M_aa_t = rrrrs_M_ta_t_10*v.rrrrs_q_y - rrrrs_M_ta_t_6*v.rrrrs_q_z;
     const real rrrrs_M_aa_t_2 = rrrrs_M_ta_t_11*v.rrrrs_q_y + rrrrs_M_ta_t_8*v.rrrrs_q_z;
-    const real rrrrs_M_aa_t_3 = rrrrs_M_ta_t_12*v.rrrrs_q_y + rrrrs_M_ta_t_9*v.rrrrs_q_z;
+    const real rrrrs_M_aa_t_3 = rrrrs_M_ta_t_9*v.rrrrs_q_z + rrrrs_M_ta_t_12*v.rrrrs_q_y;
     const real rrrrs_M_aa_t_4 = rrrrs_M_ta_t_11*v.rrrrs_q_x + rrrrs_M_ta_t_4*v.rrrrs_q_z;
-    const real rrrrs_M_aa_t_5 = rrrrs_M_ta_t_12*v.rrrrs_q_x + rrrrs_M_ta_t_5*v.rrrrs_q_z;
+    const real rrrrs_M_aa_t_5 = rrrrs_M_ta_t_5*v.rrrrs_q_z + rrrrs_M_ta_t_12*v.rrrrs_q_x;
     const real rrrrs_M_aa_t_6 = rrrrs_M_ta_t_9*v.rrrrs_q_x - rrrrs_M_ta_t_5*v.rrrrs_q_y;
     /* (rrrrs-M_ya_2) coupling of extra joint 2 with the rotation of the platform */
     const real rrrrs_M_ya_2_x = rrrrs_d_P_2_z*v.rrrrs_q_y - rrrrs_d_P_2_y*v.rrrrs_q_z;
@@ -5123,12 +5137,12 @@ INLINE void M_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
     /* (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real rrrs_Q_t = v.rrrs_c_1*v.rrrs_e_1_in_axes3_x;
     const real rrrs_Q_t_2 = v.rrrs_e_1_in_axes3_x*v.rrrs_s_1;
-    const real axis_y_rrrs_axes3_x = rrrs_Q_t*m->rrrs_base_frame_xy[i] +
-        rrrs_Q_t_2*m->rrrs_base_frame_xz[i] + m->rrrs_base_frame_xx[i]*v.rrrs_e_1_in_axes3_y;
-    const real axis_y_rrrs_axes3_y = rrrs_Q_t*m->rrrs_base_frame_yy[i] +
-        rrrs_Q_t_2*m->rrrs_base_frame_yz[i] + m->rrrs_base_frame_yx[i]*v.rrrs_e_1_in_axes3_y;
-    const real axis_y_rrrs_axes3_z = rrrs_Q_t*m->rrrs_base_frame_zy[i] +
-        rrrs_Q_t_2*m->rrrs_base_frame_zz[i] + m->rrrs_base_frame_zx[i]*v.rrrs_e_1_in_axes3_y;
+    const real axis_y_rrrs_axes3_x = m->rrrs_base_frame_xx[i]*v.rrrs_e_1_in_axes3_y +
+        rrrs_Q_t*m->rrrs_base_frame_xy[i] + rrrs_Q_t_2*m->rrrs_base_frame_xz[i];
+    const real axis_y_rrrs_axes3_y = m->rrrs_base_frame_yx[i]*v.rrrs_e_1_in_axes3_y +
+        rrrs_Q_t*m->rrrs_base_frame_yy[i] + rrrs_Q_t_2*m->rrrs_base_frame_yz[i];
+    const real axis_y_rrrs_axes3_z = m->rrrs_base_frame_zx[i]*v.rrrs_e_1_in_axes3_y +
+        rrrs_Q_t*m->rrrs_base_frame_zy[i] + rrrs_Q_t_2*m->rrrs_base_frame_zz[i];
     const real axis_x_rrrs_axes3_x = axis_y_rrrs_axes3_y*v.axis_z_rrrs_axes3_z -
         axis_y_rrrs_axes3_z*v.axis_z_rrrs_axes3_y;
     const real axis_x_rrrs_axes3_y = axis_y_rrrs_axes3_z*v.axis_z_rrrs_axes3_x -
@@ -5137,17 +5151,16 @@ INLINE void M_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
         axis_y_rrrs_axes3_y*v.axis_z_rrrs_axes3_x;
     const real rrrs_Q_t_3 = v.rrrs_d_c_in_axes3_xx - m->rrrs_d_c_in_axes3_yy[i];
     const real rrrs_Q_t_4 = R(0.5)*rrrs_Q_t_3;
-    const real rrrs_Q_t_5 = v.rrrs_d_c_in_axes3_xx +
-        v.rrrs_d_Gamma_1_in_axes3_z*v.rrrs_w_1_in_axes3_z +
+    const real rrrs_Q_t_5 = v.rrrs_d_Gamma_1_in_axes3_z*v.rrrs_w_1_in_axes3_z +
         v.rrrs_d_alpha_3_in_axes3_xz*m->rrrs_h_3_in_spec3_y[i] -
-        v.rrrs_d_alpha_3_in_axes3_yz*m->rrrs_h_3_in_spec3_x[i];
+        v.rrrs_d_alpha_3_in_axes3_yz*m->rrrs_h_3_in_spec3_x[i] + v.rrrs_d_c_in_axes3_xx;
     const real rrrs_Q_t_6 = R(0.5)*rrrs_Q_t_5;
-    const real rrrs_Q_t_7 = axis_x_rrrs_axes3_x*v.rrrs_d_c_in_axes3_xy +
-        v.axis_z_rrrs_axes3_x*v.rrrs_d_c_in_axes3_yz - axis_y_rrrs_axes3_x*rrrs_Q_t_4;
-    const real rrrs_Q_t_8 = axis_x_rrrs_axes3_y*v.rrrs_d_c_in_axes3_xy +
-        v.axis_z_rrrs_axes3_y*v.rrrs_d_c_in_axes3_yz - axis_y_rrrs_axes3_y*rrrs_Q_t_4;
-    const real rrrs_Q_t_9 = axis_x_rrrs_axes3_z*v.rrrs_d_c_in_axes3_xy +
-        v.axis_z_rrrs_axes3_z*v.rrrs_d_c_in_axes3_yz - axis_y_rrrs_axes3_z*rrrs_Q_t_4;
+    const real rrrs_Q_t_7 = v.axis_z_rrrs_axes3_x*v.rrrs_d_c_in_axes3_yz +
+        axis_x_rrrs_axes3_x*v.rrrs_d_c_in_axes3_xy - axis_y_rrrs_axes3_x*rrrs_Q_t_4;
+    const real rrrs_Q_t_8 = v.axis_z_rrrs_axes3_y*v.rrrs_d_c_in_axes3_yz +
+        axis_x_rrrs_axes3_y*v.rrrs_d_c_in_axes3_xy - axis_y_rrrs_axes3_y*rrrs_Q_t_4;
+    const real rrrs_Q_t_9 = v.axis_z_rrrs_axes3_z*v.rrrs_d_c_in_axes3_yz +
+        axis_x_rrrs_axes3_z*v.rrrs_d_c_in_axes3_xy - axis_y_rrrs_axes3_z*rrrs_Q_t_4;
     const real rrrs_Q_t_10 = v.axis_z_rrrs_axes3_x*rrrs_Q_t_6 -
         axis_x_rrrs_axes3_x*v.rrrs_d_c_in_axes3_xz;
     const real rrrs_Q_t_11 = v.axis_z_rrrs_axes3_y*rrrs_Q_t_6 -
@@ -5156,7 +5169,7 @@ INLINE void M_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
         axis_x_rrrs_axes3_z*v.rrrs_d_c_in_axes3_xz;
     const real rrrs_Q_t_13 = axis_y_rrrs_axes3_x*rrrs_Q_t_7 -
         v.axis_z_rrrs_axes3_x*rrrs_Q_t_10;
-    const real rrrs_Q_xx = -2*rrrs_Q_t_13 - v.rrrs_d_c_in_axes3_xx;
+    const real rrrs_Q_xx = -v.rrrs_d_c_in_axes3_xx - 2*rrrs_Q_t_13;
     const real rrrs_Q_xy = v.axis_z_rrrs_axes3_x*rrrs_Q_t_11 +
         v.axis_z_rrrs_axes3_y*rrrs_Q_t_10 - axis_y_rrrs_axes3_x*rrrs_Q_t_8 -
         axis_y_rrrs_axes3_y*rrrs_Q_t_7;
@@ -5165,13 +5178,13 @@ INLINE void M_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
         axis_y_rrrs_axes3_z*rrrs_Q_t_7;
     const real rrrs_Q_t_14 = axis_y_rrrs_axes3_y*rrrs_Q_t_8 -
         v.axis_z_rrrs_axes3_y*rrrs_Q_t_11;
-    const real rrrs_Q_yy = -2*rrrs_Q_t_14 - v.rrrs_d_c_in_axes3_xx;
+    const real rrrs_Q_yy = -v.rrrs_d_c_in_axes3_xx - 2*rrrs_Q_t_14;
     const real rrrs_Q_yz = v.axis_z_rrrs_axes3_y*rrrs_Q_t_12 +
         v.axis_z_rrrs_axes3_z*rrrs_Q_t_11 - axis_y_rrrs_axes3_y*rrrs_Q_t_9 -
         axis_y_rrrs_axes3_z*rrrs_Q_t_8;
     const real rrrs_Q_t_15 = axis_y_rrrs_axes3_z*rrrs_Q_t_9 -
         v.axis_z_rrrs_axes3_z*rrrs_Q_t_12;
-    const real rrrs_Q_zz = -2*rrrs_Q_t_15 - v.rrrs_d_c_in_axes3_xx;
+    const real rrrs_Q_zz = -v.rrrs_d_c_in_axes3_xx - 2*rrrs_Q_t_15;
     /* (M_ta) */
     const real rrrs_M_ta_t = rrrs_Q_xy*v.rrrs_q_z;
     const real rrrs_M_ta_t_2 = rrrs_Q_xz*v.rrrs_q_y;
@@ -5235,15 +5248,15 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[11*w + k];
-    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
     const real h_star_y = s[10*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -5251,9 +5264,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[9*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
@@ -5333,7 +5346,8 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     real s[18] = {0}, sums[23] = {0};
     real terms_rrrrs[23*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[16*LEGS(LEGS_OF_rrrrs)] = {0};
     real terms_rrrs[23*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0};
-    M_before(m, 1, 0, X, s, t);
+    values v;
+    M_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
         M_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), 0, s, X, terms_rrrrs, o_rrrrs);
     }
@@ -5354,6 +5368,7 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
             sums[n] += terms_rrrs[n*LEGS(LEGS_OF_rrrs) + leg];
         }
     }
+    M_between(m, 1, 0, &v, s);
     M_after(m, 1, 0, s, sums, M, t);
 }
 
@@ -5363,7 +5378,9 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
     real o_rrrrs[16*LANES];
     real o_rrrs[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        M_before(m, LANES, k, X, s, t);
+        values v;
+        M_before(m, LANES, k, X, &v, s, t);
+        M_between(m, LANES, k, &v, s);
     }
     clear(sums, 23*LANES);
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
@@ -5388,29 +5405,32 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s,
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
     verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_Z_dynamics(m, w, k, V, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.Z_p_x;
-    s[10*w + k] = v.Z_p_y;
-    s[11*w + k] = v.Z_p_z;
-    s[12*w + k] = v.Z_q_x;
-    s[13*w + k] = v.Z_q_y;
-    s[14*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_Z_dynamics(m, w, k, V, v);
+    s[9*w + k] = v->Z_p_x;
+    s[10*w + k] = v->Z_p_y;
+    s[11*w + k] = v->Z_p_z;
+    s[12*w + k] = v->Z_q_x;
+    s[13*w + k] = v->Z_q_y;
+    s[14*w + k] = v->Z_q_z;
 }
 
 INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -5478,7 +5498,7 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
     const real rrrrs_W_2_in_axes2_xz = rrrrs_omega_1_in_axes2_x*rrrrs_yd_2;
     const real rrrrs_W_2_in_axes2_xy = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_y;
     /* (rrrrs-omega_3) angular velocity of link 3 */
-    const real rrrrs_omega_3_in_axes3_z = rrrrs_qd_3 + rrrrs_yd_2;
+    const real rrrrs_omega_3_in_axes3_z = rrrrs_yd_2 + rrrrs_qd_3;
     /* (rrrrs-W_3) centripetal tensor of link 3 */
     const real rrrrs_W_3_in_axes3_xy = rrrrs_omega_1_t*rrrrs_omega_1_t_2;
     const real rrrrs_W_3_in_axes3_xz = rrrrs_omega_1_t*rrrrs_omega_3_in_axes3_z;
@@ -5507,8 +5527,8 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
     const real rrrrs_zeta_3_in_axes3_x = rrrrs_omega_1_t_2*rrrrs_qd_3;
     const real rrrrs_zeta_3_in_axes3_y = -rrrrs_omega_1_t*rrrrs_qd_3;
     /* (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
-    const real rrrrs_beta_3_in_axes3_x = rrrrs_zeta_3_in_axes3_x +
-        rrrrs_W_2_in_axes2_yz*v.rrrrs_c_3 - rrrrs_W_2_in_axes2_xz*v.rrrrs_s_3;
+    const real rrrrs_beta_3_in_axes3_x = rrrrs_W_2_in_axes2_yz*v.rrrrs_c_3 -
+        rrrrs_W_2_in_axes2_xz*v.rrrrs_s_3 + rrrrs_zeta_3_in_axes3_x;
     const real rrrrs_beta_3_in_axes3_y = rrrrs_zeta_3_in_axes3_y -
         rrrrs_W_2_in_axes2_xz*v.rrrrs_c_3 - rrrrs_W_2_in_axes2_yz*v.rrrrs_s_3;
     const real rrrrs_beta_3_in_axes4_y = rrrrs_beta_3_in_axes3_x*v.rrrrs_s_4_t +
@@ -5523,22 +5543,22 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
         rrrrs_W_1_in_axes4_xy*v.rrrrs_d_3_in_axes4_y +
         rrrrs_W_1_in_axes4_xy*v.rrrrs_d_4_in_axes4_y - rrrrs_W_1_t_2*v.rrrrs_d_2_in_axes4_x -
         rrrrs_W_4_t_2*m->rrrrs_platform_joint_offset_x[i] -
-        v.rrrrs_d_3_in_axes4_x*(rrrrs_W_1_t_2 + v.rrrrs_bias_t) -
-        v.rrrrs_d_4_in_axes4_x*(rrrrs_W_1_t_2 + rrrrs_bias_t_2);
+        v.rrrrs_d_3_in_axes4_x*(v.rrrrs_bias_t + rrrrs_W_1_t_2) -
+        v.rrrrs_d_4_in_axes4_x*(rrrrs_bias_t_2 + rrrrs_W_1_t_2);
     const real rrrrs_bias_in_axes4_y = rrrrs_W_1_in_axes4_xy*v.rrrrs_d_2_in_axes4_x +
         rrrrs_W_1_in_axes4_xy*v.rrrrs_d_3_in_axes4_x +
         rrrrs_W_1_in_axes4_xy*v.rrrrs_d_4_in_axes4_x +
         rrrrs_W_1_in_axes4_xy*m->rrrrs_platform_joint_offset_x[i] -
-        rrrrs_W_1_t*v.rrrrs_d_2_in_axes4_y - v.rrrrs_d_3_in_axes4_y*(rrrrs_W_1_t +
-        v.rrrrs_bias_t) - v.rrrrs_d_4_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t_2);
+        rrrrs_W_1_t*v.rrrrs_d_2_in_axes4_y - v.rrrrs_d_3_in_axes4_y*(v.rrrrs_bias_t +
+        rrrrs_W_1_t) - v.rrrrs_d_4_in_axes4_y*(rrrrs_bias_t_2 + rrrrs_W_1_t);
     const real rrrrs_bias_in_axes4_z =
+        2*v.rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
+        2*v.rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2 +
         v.rrrrs_d_4_in_axes4_x*(rrrrs_omega_1_in_axes4_x*rrrrs_omega_3_in_axes3_z -
-        rrrrs_beta_3_in_axes4_y) + v.rrrrs_d_4_in_axes4_y*(rrrrs_beta_3_in_axes3_x*v.rrrrs_c_4
-        + rrrrs_omega_1_in_axes4_y*rrrrs_omega_3_in_axes3_z -
-        rrrrs_beta_3_in_axes3_y*v.rrrrs_s_4_t) +
-        m->rrrrs_platform_joint_offset_x[i]*(rrrrs_W_4_in_axes4_xz - rrrrs_beta_4_in_axes4_y)
-        + 2*v.rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
-        2*v.rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2;
+        rrrrs_beta_3_in_axes4_y) +
+        v.rrrrs_d_4_in_axes4_y*(rrrrs_omega_1_in_axes4_y*rrrrs_omega_3_in_axes3_z +
+        rrrrs_beta_3_in_axes3_x*v.rrrrs_c_4 - rrrrs_beta_3_in_axes3_y*v.rrrrs_s_4_t) +
+        m->rrrrs_platform_joint_offset_x[i]*(rrrrs_W_4_in_axes4_xz - rrrrs_beta_4_in_axes4_y);
     /* (rrrrs-rel_o) remainder of: acceleration of the connection point left to the joint
        accelerations */
     const real rrrrs_rel_o_in_axes4_x = rrrrs_u_1_in_axes4_x - rrrrs_bias_in_axes4_x;
@@ -5572,10 +5592,10 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
     const real rrrrs_B_3_o_in_axes3_zx = rrrrs_W_3_in_axes3_xz - rrrrs_alpha_3_o_in_axes3_y;
     const real rrrrs_B_3_o_in_axes3_zy = rrrrs_W_3_in_axes3_yz + rrrrs_alpha_3_o_in_axes3_x;
     /* (rrrrs-alpha_4_o) remainder of: angular acceleration of link 4 */
-    const real rrrrs_alpha_4_o_in_axes4_x = rrrrs_alpha_3_o_in_axes3_x*v.rrrrs_c_4 +
-        rrrrs_omega_1_in_axes4_y*rrrrs_qd_4 - rrrrs_alpha_3_o_in_axes3_y*v.rrrrs_s_4_t;
-    const real rrrrs_alpha_4_o_in_axes4_y = rrrrs_alpha_3_o_in_axes3_x*v.rrrrs_s_4_t +
-        rrrrs_alpha_3_o_in_axes3_y*v.rrrrs_c_4 - rrrrs_zeta_4_t;
+    const real rrrrs_alpha_4_o_in_axes4_x = rrrrs_omega_1_in_axes4_y*rrrrs_qd_4 +
+        rrrrs_alpha_3_o_in_axes3_x*v.rrrrs_c_4 - rrrrs_alpha_3_o_in_axes3_y*v.rrrrs_s_4_t;
+    const real rrrrs_alpha_4_o_in_axes4_y = rrrrs_alpha_3_o_in_axes3_x*v.rrrrs_s_4_t -
+        rrrrs_zeta_4_t + rrrrs_alpha_3_o_in_axes3_y*v.rrrrs_c_4;
     const real rrrrs_alpha_4_o_in_axes4_z = rrrrs_qdd_3_o +
         m->rrrrs_w_4_in_axes4_y[i]*(rrrrs_rel_o_in_axes4_y -
         rrrrs_qdd_3_o*v.rrrrs_r_3_in_axes4_x);
@@ -5588,34 +5608,34 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
     const real rrrrs_B_4_o_in_axes4_zy = rrrrs_W_4_in_axes4_yz + rrrrs_alpha_4_o_in_axes4_x;
     /* (rrrrs-a_o_3) acceleration of the origin of joint 3 */
     const real rrrrs_a_o_3_t = rrrrs_omega_1_in_axes2_y*rrrrs_omega_1_in_axes2_y;
-    const real rrrrs_a_o_3_in_axes2_x = -m->rrrrs_joint3_offset_x[i]*(rrrrs_a_o_3_t +
-        v.rrrrs_bias_t);
+    const real rrrrs_a_o_3_in_axes2_x = -m->rrrrs_joint3_offset_x[i]*(v.rrrrs_bias_t +
+        rrrrs_a_o_3_t);
     /* (rrrrs-a_o_3_o) remainder of: acceleration of the origin of joint 3 */
     const real rrrrs_a_o_3_o_in_axes2_y = rrrrs_W_2_in_axes2_xy*m->rrrrs_joint3_offset_x[i];
     /* (rrrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real rrrrs_acc_3_o_in_axes3_x = rrrrs_a_o_3_in_axes2_x*v.rrrrs_c_3 +
-        rrrrs_a_o_3_o_in_axes2_y*v.rrrrs_s_3 - v.rrrrs_c_3*v.rrrrs_g_in_axes2_x -
-        v.rrrrs_g_in_axes2_y*v.rrrrs_s_3;
-    const real rrrrs_acc_3_o_in_axes3_y = rrrrs_a_o_3_o_in_axes2_y*v.rrrrs_c_3 +
-        v.rrrrs_g_in_axes2_x*v.rrrrs_s_3 - rrrrs_a_o_3_in_axes2_x*v.rrrrs_s_3 -
-        v.rrrrs_c_3*v.rrrrs_g_in_axes2_y;
+    const real rrrrs_acc_3_o_in_axes3_x = rrrrs_a_o_3_o_in_axes2_y*v.rrrrs_s_3 -
+        v.rrrrs_c_3*v.rrrrs_g_in_axes2_x - v.rrrrs_g_in_axes2_y*v.rrrrs_s_3 +
+        rrrrs_a_o_3_in_axes2_x*v.rrrrs_c_3;
+    const real rrrrs_acc_3_o_in_axes3_y = v.rrrrs_g_in_axes2_x*v.rrrrs_s_3 -
+        v.rrrrs_c_3*v.rrrrs_g_in_axes2_y + rrrrs_a_o_3_o_in_axes2_y*v.rrrrs_c_3 -
+        rrrrs_a_o_3_in_axes2_x*v.rrrrs_s_3;
     const real rrrrs_acc_3_o_in_axes3_z = rrrrs_B_2_o_in_axes2_zx*m->rrrrs_joint3_offset_x[i]
         - v.rrrrs_g_in_axes1_y;
     /* (rrrrs-f_3_o) remainder of: inertia force of link 3 less its weight */
     const real rrrrs_f_3_o_t = rrrrs_omega_1_t*rrrrs_omega_1_t;
     const real rrrrs_f_3_o_t_2 = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2;
-    const real rrrrs_f_3_o_in_axes3_x = rrrrs_B_3_o_in_axes3_xy*m->rrrrs_h_3_in_spec3_y[i] +
-        rrrrs_B_3_o_in_axes3_xz*m->rrrrs_h_3_in_spec3_z[i] +
-        rrrrs_acc_3_o_in_axes3_x*m->rrrrs_link3_mass[i] -
-        m->rrrrs_h_3_in_spec3_x[i]*(rrrrs_bias_t_2 + rrrrs_f_3_o_t_2);
-    const real rrrrs_f_3_o_in_axes3_y = rrrrs_B_3_o_in_axes3_yx*m->rrrrs_h_3_in_spec3_x[i] +
-        rrrrs_B_3_o_in_axes3_yz*m->rrrrs_h_3_in_spec3_z[i] +
-        rrrrs_acc_3_o_in_axes3_y*m->rrrrs_link3_mass[i] -
-        m->rrrrs_h_3_in_spec3_y[i]*(rrrrs_bias_t_2 + rrrrs_f_3_o_t);
-    const real rrrrs_f_3_o_in_axes3_z = rrrrs_B_3_o_in_axes3_zx*m->rrrrs_h_3_in_spec3_x[i] +
-        rrrrs_B_3_o_in_axes3_zy*m->rrrrs_h_3_in_spec3_y[i] +
-        rrrrs_acc_3_o_in_axes3_z*m->rrrrs_link3_mass[i] -
-        m->rrrrs_h_3_in_spec3_z[i]*(rrrrs_f_3_o_t + rrrrs_f_3_o_t_2);
+    const real rrrrs_f_3_o_in_axes3_x = rrrrs_acc_3_o_in_axes3_x*m->rrrrs_link3_mass[i] -
+        m->rrrrs_h_3_in_spec3_x[i]*(rrrrs_bias_t_2 + rrrrs_f_3_o_t_2) +
+        rrrrs_B_3_o_in_axes3_xy*m->rrrrs_h_3_in_spec3_y[i] +
+        rrrrs_B_3_o_in_axes3_xz*m->rrrrs_h_3_in_spec3_z[i];
+    const real rrrrs_f_3_o_in_axes3_y = rrrrs_acc_3_o_in_axes3_y*m->rrrrs_link3_mass[i] -
+        m->rrrrs_h_3_in_spec3_y[i]*(rrrrs_bias_t_2 + rrrrs_f_3_o_t) +
+        rrrrs_B_3_o_in_axes3_yx*m->rrrrs_h_3_in_spec3_x[i] +
+        rrrrs_B_3_o_in_axes3_yz*m->rrrrs_h_3_in_spec3_z[i];
+    const real rrrrs_f_3_o_in_axes3_z = rrrrs_acc_3_o_in_axes3_z*m->rrrrs_link3_mass[i] -
+        m->rrrrs_h_3_in_spec3_z[i]*(rrrrs_f_3_o_t + rrrrs_f_3_o_t_2) +
+        rrrrs_B_3_o_in_axes3_zx*m->rrrrs_h_3_in_spec3_x[i] +
+        rrrrs_B_3_o_in_axes3_zy*m->rrrrs_h_3_in_spec3_y[i];
     /* (rrrrs-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity */
     const real rrrrs_acc_4_o_in_axes4_x = rrrrs_u_1_in_axes4_x -
         axis_x_rrrrs_axes4_x*m->gravity_x - axis_x_rrrrs_axes4_y*m->gravity_y -
@@ -5628,52 +5648,50 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
         v.axis_z_rrrrs_axes4_z*m->gravity_z;
     /* (rrrrs-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their
        reference points */
-    const real rrrrs_mu_4_o_in_axes4_x = rrrrs_B_4_o_in_axes4_yx*m->rrrrs_J_4_in_spec4_xz[i] +
-        rrrrs_B_4_o_in_axes4_zy*m->rrrrs_Sigma_4_in_axes4_yy[i] +
+    const real rrrrs_mu_4_o_in_axes4_x = rrrrs_acc_4_o_in_axes4_z*m->rrrrs_h_4_in_spec4_y[i] -
+        rrrrs_acc_4_o_in_axes4_y*m->rrrrs_h_4_in_spec4_z[i] +
         m->rrrrs_J_4_in_spec4_yz[i]*(rrrrs_W_1_t_2 - rrrrs_W_4_t) +
-        rrrrs_acc_4_o_in_axes4_z*m->rrrrs_h_4_in_spec4_y[i] -
+        rrrrs_B_4_o_in_axes4_yx*m->rrrrs_J_4_in_spec4_xz[i] +
+        rrrrs_B_4_o_in_axes4_zy*m->rrrrs_Sigma_4_in_axes4_yy[i] -
         rrrrs_B_4_o_in_axes4_yz*m->rrrrs_Sigma_4_in_axes4_zz[i] -
-        rrrrs_B_4_o_in_axes4_zx*m->rrrrs_J_4_in_spec4_xy[i] -
-        rrrrs_acc_4_o_in_axes4_y*m->rrrrs_h_4_in_spec4_z[i];
-    const real rrrrs_mu_4_o_in_axes4_y =
-        rrrrs_B_4_o_in_axes4_xz*m->rrrrs_Sigma_4_in_axes4_zz[i] +
-        rrrrs_B_4_o_in_axes4_zy*m->rrrrs_J_4_in_spec4_xy[i] +
-        rrrrs_acc_4_o_in_axes4_x*m->rrrrs_h_4_in_spec4_z[i] -
-        rrrrs_B_4_o_in_axes4_xy*m->rrrrs_J_4_in_spec4_yz[i] -
-        rrrrs_B_4_o_in_axes4_zx*m->rrrrs_Sigma_4_in_axes4_xx[i] -
+        rrrrs_B_4_o_in_axes4_zx*m->rrrrs_J_4_in_spec4_xy[i];
+    const real rrrrs_mu_4_o_in_axes4_y = rrrrs_acc_4_o_in_axes4_x*m->rrrrs_h_4_in_spec4_z[i] -
+        rrrrs_acc_4_o_in_axes4_z*m->rrrrs_h_4_in_spec4_x[i] -
         m->rrrrs_J_4_in_spec4_xz[i]*(rrrrs_W_1_t - rrrrs_W_4_t) -
-        rrrrs_acc_4_o_in_axes4_z*m->rrrrs_h_4_in_spec4_x[i];
-    const real rrrrs_mu_4_o_in_axes4_z = rrrrs_B_4_o_in_axes4_xz*m->rrrrs_J_4_in_spec4_yz[i] +
-        rrrrs_B_4_o_in_axes4_yx*m->rrrrs_Sigma_4_in_axes4_xx[i] +
+        rrrrs_B_4_o_in_axes4_xy*m->rrrrs_J_4_in_spec4_yz[i] +
+        rrrrs_B_4_o_in_axes4_xz*m->rrrrs_Sigma_4_in_axes4_zz[i] +
+        rrrrs_B_4_o_in_axes4_zy*m->rrrrs_J_4_in_spec4_xy[i] -
+        rrrrs_B_4_o_in_axes4_zx*m->rrrrs_Sigma_4_in_axes4_xx[i];
+    const real rrrrs_mu_4_o_in_axes4_z = rrrrs_acc_4_o_in_axes4_y*m->rrrrs_h_4_in_spec4_x[i] -
+        rrrrs_acc_4_o_in_axes4_x*m->rrrrs_h_4_in_spec4_y[i] +
         m->rrrrs_J_4_in_spec4_xy[i]*(rrrrs_W_1_t - rrrrs_W_1_t_2) +
-        rrrrs_acc_4_o_in_axes4_y*m->rrrrs_h_4_in_spec4_x[i] -
-        rrrrs_B_4_o_in_axes4_xy*m->rrrrs_Sigma_4_in_axes4_yy[i] -
-        rrrrs_B_4_o_in_axes4_yz*m->rrrrs_J_4_in_spec4_xz[i] -
-        rrrrs_acc_4_o_in_axes4_x*m->rrrrs_h_4_in_spec4_y[i];
+        rrrrs_B_4_o_in_axes4_yx*m->rrrrs_Sigma_4_in_axes4_xx[i] -
+        rrrrs_B_4_o_in_axes4_xy*m->rrrrs_Sigma_4_in_axes4_yy[i] +
+        rrrrs_B_4_o_in_axes4_xz*m->rrrrs_J_4_in_spec4_yz[i] -
+        rrrrs_B_4_o_in_axes4_yz*m->rrrrs_J_4_in_spec4_xz[i];
     /* (rrrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
        reference points */
-    const real rrrrs_mu_3_o_in_axes3_x = rrrrs_B_3_o_in_axes3_yx*m->rrrrs_J_3_in_spec3_xz[i] +
-        rrrrs_B_3_o_in_axes3_zy*m->rrrrs_Sigma_3_in_axes3_yy[i] +
-        m->rrrrs_J_3_in_spec3_yz[i]*(rrrrs_f_3_o_t_2 - rrrrs_bias_t_2) +
-        rrrrs_acc_3_o_in_axes3_z*m->rrrrs_h_3_in_spec3_y[i] -
+    const real rrrrs_mu_3_o_in_axes3_x = m->rrrrs_J_3_in_spec3_yz[i]*(rrrrs_f_3_o_t_2 -
+        rrrrs_bias_t_2) - rrrrs_acc_3_o_in_axes3_y*m->rrrrs_h_3_in_spec3_z[i] +
+        rrrrs_B_3_o_in_axes3_yx*m->rrrrs_J_3_in_spec3_xz[i] +
+        rrrrs_acc_3_o_in_axes3_z*m->rrrrs_h_3_in_spec3_y[i] +
+        rrrrs_B_3_o_in_axes3_zy*m->rrrrs_Sigma_3_in_axes3_yy[i] -
         rrrrs_B_3_o_in_axes3_yz*m->rrrrs_Sigma_3_in_axes3_zz[i] -
-        rrrrs_B_3_o_in_axes3_zx*m->rrrrs_J_3_in_spec3_xy[i] -
-        rrrrs_acc_3_o_in_axes3_y*m->rrrrs_h_3_in_spec3_z[i];
-    const real rrrrs_mu_3_o_in_axes3_y =
-        rrrrs_B_3_o_in_axes3_xz*m->rrrrs_Sigma_3_in_axes3_zz[i] +
-        rrrrs_B_3_o_in_axes3_zy*m->rrrrs_J_3_in_spec3_xy[i] +
-        rrrrs_acc_3_o_in_axes3_x*m->rrrrs_h_3_in_spec3_z[i] -
-        rrrrs_B_3_o_in_axes3_xy*m->rrrrs_J_3_in_spec3_yz[i] -
-        rrrrs_B_3_o_in_axes3_zx*m->rrrrs_Sigma_3_in_axes3_xx[i] -
+        rrrrs_B_3_o_in_axes3_zx*m->rrrrs_J_3_in_spec3_xy[i];
+    const real rrrrs_mu_3_o_in_axes3_y = rrrrs_acc_3_o_in_axes3_x*m->rrrrs_h_3_in_spec3_z[i] -
         m->rrrrs_J_3_in_spec3_xz[i]*(rrrrs_f_3_o_t - rrrrs_bias_t_2) -
-        rrrrs_acc_3_o_in_axes3_z*m->rrrrs_h_3_in_spec3_x[i];
-    const real rrrrs_mu_3_o_in_axes3_z = rrrrs_B_3_o_in_axes3_xz*m->rrrrs_J_3_in_spec3_yz[i] +
-        rrrrs_B_3_o_in_axes3_yx*m->rrrrs_Sigma_3_in_axes3_xx[i] +
-        m->rrrrs_J_3_in_spec3_xy[i]*(rrrrs_f_3_o_t - rrrrs_f_3_o_t_2) +
-        rrrrs_acc_3_o_in_axes3_y*m->rrrrs_h_3_in_spec3_x[i] -
-        rrrrs_B_3_o_in_axes3_xy*m->rrrrs_Sigma_3_in_axes3_yy[i] -
-        rrrrs_B_3_o_in_axes3_yz*m->rrrrs_J_3_in_spec3_xz[i] -
-        rrrrs_acc_3_o_in_axes3_x*m->rrrrs_h_3_in_spec3_y[i];
+        rrrrs_B_3_o_in_axes3_xy*m->rrrrs_J_3_in_spec3_yz[i] -
+        rrrrs_acc_3_o_in_axes3_z*m->rrrrs_h_3_in_spec3_x[i] +
+        rrrrs_B_3_o_in_axes3_xz*m->rrrrs_Sigma_3_in_axes3_zz[i] +
+        rrrrs_B_3_o_in_axes3_zy*m->rrrrs_J_3_in_spec3_xy[i] -
+        rrrrs_B_3_o_in_axes3_zx*m->rrrrs_Sigma_3_in_axes3_xx[i];
+    const real rrrrs_mu_3_o_in_axes3_z = m->rrrrs_J_3_in_spec3_xy[i]*(rrrrs_f_3_o_t -
+        rrrrs_f_3_o_t_2) + rrrrs_acc_3_o_in_axes3_y*m->rrrrs_h_3_in_spec3_x[i] -
+        rrrrs_acc_3_o_in_axes3_x*m->rrrrs_h_3_in_spec3_y[i] +
+        rrrrs_B_3_o_in_axes3_yx*m->rrrrs_Sigma_3_in_axes3_xx[i] -
+        rrrrs_B_3_o_in_axes3_xy*m->rrrrs_Sigma_3_in_axes3_yy[i] +
+        rrrrs_B_3_o_in_axes3_xz*m->rrrrs_J_3_in_spec3_yz[i] -
+        rrrrs_B_3_o_in_axes3_yz*m->rrrrs_J_3_in_spec3_xz[i];
     /* (rrrrs-N_3_o) remainder of: moment about joint 3 of the links from 3 outwards, the force at the
        connection point left out */
     const real rrrrs_N_3_o_in_axes3_x = rrrrs_mu_3_o_in_axes3_x +
@@ -5684,43 +5702,42 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
     /* (rrrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real rrrrs_mu_2_o_t = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_x;
-    const real rrrrs_mu_2_o_in_axes2_x =
-        rrrrs_B_2_o_in_axes2_zy*m->rrrrs_Sigma_2_in_axes2_yy[i] +
+    const real rrrrs_mu_2_o_in_axes2_x = v.rrrrs_g_in_axes2_y*m->rrrrs_h_2_in_spec2_z[i] -
+        v.rrrrs_g_in_axes1_y*m->rrrrs_h_2_in_spec2_y[i] +
         m->rrrrs_J_2_in_spec2_xz[i]*rrrrs_W_2_in_axes2_xy +
         m->rrrrs_J_2_in_spec2_yz[i]*(rrrrs_a_o_3_t - v.rrrrs_bias_t) +
         m->rrrrs_Sigma_2_in_axes2_zz[i]*rrrrs_alpha_1_o_in_axes2_x +
-        v.rrrrs_g_in_axes2_y*m->rrrrs_h_2_in_spec2_z[i] -
-        rrrrs_B_2_o_in_axes2_zx*m->rrrrs_J_2_in_spec2_xy[i] -
-        v.rrrrs_g_in_axes1_y*m->rrrrs_h_2_in_spec2_y[i];
-    const real rrrrs_mu_2_o_in_axes2_y = rrrrs_B_2_o_in_axes2_zy*m->rrrrs_J_2_in_spec2_xy[i] +
-        m->rrrrs_Sigma_2_in_axes2_zz[i]*rrrrs_alpha_1_o_in_axes2_y +
-        v.rrrrs_g_in_axes1_y*m->rrrrs_h_2_in_spec2_x[i] -
-        rrrrs_B_2_o_in_axes2_zx*m->rrrrs_Sigma_2_in_axes2_xx[i] -
-        m->rrrrs_J_2_in_spec2_xz[i]*(rrrrs_mu_2_o_t - v.rrrrs_bias_t) -
+        rrrrs_B_2_o_in_axes2_zy*m->rrrrs_Sigma_2_in_axes2_yy[i] -
+        rrrrs_B_2_o_in_axes2_zx*m->rrrrs_J_2_in_spec2_xy[i];
+    const real rrrrs_mu_2_o_in_axes2_y = v.rrrrs_g_in_axes1_y*m->rrrrs_h_2_in_spec2_x[i] -
+        v.rrrrs_g_in_axes2_x*m->rrrrs_h_2_in_spec2_z[i] -
         m->rrrrs_J_2_in_spec2_yz[i]*rrrrs_W_2_in_axes2_xy -
-        v.rrrrs_g_in_axes2_x*m->rrrrs_h_2_in_spec2_z[i];
-    const real rrrrs_mu_2_o_in_axes2_z = m->rrrrs_J_2_in_spec2_xy[i]*(rrrrs_mu_2_o_t -
-        rrrrs_a_o_3_t) + m->rrrrs_J_2_in_spec2_xz[i]*rrrrs_alpha_1_o_in_axes2_x +
-        m->rrrrs_J_2_in_spec2_yz[i]*rrrrs_alpha_1_o_in_axes2_y +
-        m->rrrrs_Sigma_2_in_axes2_xx[i]*rrrrs_W_2_in_axes2_xy +
-        v.rrrrs_g_in_axes2_x*m->rrrrs_h_2_in_spec2_y[i] -
-        m->rrrrs_Sigma_2_in_axes2_yy[i]*rrrrs_W_2_in_axes2_xy -
-        v.rrrrs_g_in_axes2_y*m->rrrrs_h_2_in_spec2_x[i];
+        m->rrrrs_J_2_in_spec2_xz[i]*(rrrrs_mu_2_o_t - v.rrrrs_bias_t) +
+        m->rrrrs_Sigma_2_in_axes2_zz[i]*rrrrs_alpha_1_o_in_axes2_y +
+        rrrrs_B_2_o_in_axes2_zy*m->rrrrs_J_2_in_spec2_xy[i] -
+        rrrrs_B_2_o_in_axes2_zx*m->rrrrs_Sigma_2_in_axes2_xx[i];
+    const real rrrrs_mu_2_o_in_axes2_z = v.rrrrs_g_in_axes2_x*m->rrrrs_h_2_in_spec2_y[i] -
+        v.rrrrs_g_in_axes2_y*m->rrrrs_h_2_in_spec2_x[i] +
+        m->rrrrs_Sigma_2_in_axes2_xx[i]*rrrrs_W_2_in_axes2_xy -
+        m->rrrrs_Sigma_2_in_axes2_yy[i]*rrrrs_W_2_in_axes2_xy +
+        m->rrrrs_J_2_in_spec2_xy[i]*(rrrrs_mu_2_o_t - rrrrs_a_o_3_t) +
+        m->rrrrs_J_2_in_spec2_xz[i]*rrrrs_alpha_1_o_in_axes2_x +
+        m->rrrrs_J_2_in_spec2_yz[i]*rrrrs_alpha_1_o_in_axes2_y;
     /* (rrrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
        connection point left out */
     const real rrrrs_N_2_o_in_axes2_x = rrrrs_mu_2_o_in_axes2_x +
         rrrrs_N_3_o_in_axes3_x*v.rrrrs_c_3 - rrrrs_N_3_o_in_axes3_y*v.rrrrs_s_3;
-    const real rrrrs_N_2_o_in_axes2_y = rrrrs_mu_2_o_in_axes2_y +
-        rrrrs_N_3_o_in_axes3_x*v.rrrrs_s_3 + rrrrs_N_3_o_in_axes3_y*v.rrrrs_c_3 -
-        rrrrs_f_3_o_in_axes3_z*m->rrrrs_joint3_offset_x[i];
-    const real rrrrs_N_2_o_in_axes2_z = rrrrs_N_3_o_in_axes3_z + rrrrs_mu_2_o_in_axes2_z +
+    const real rrrrs_N_2_o_in_axes2_y = rrrrs_mu_2_o_in_axes2_y -
+        rrrrs_f_3_o_in_axes3_z*m->rrrrs_joint3_offset_x[i] +
+        rrrrs_N_3_o_in_axes3_x*v.rrrrs_s_3 + rrrrs_N_3_o_in_axes3_y*v.rrrrs_c_3;
+    const real rrrrs_N_2_o_in_axes2_z = rrrrs_mu_2_o_in_axes2_z +
         m->rrrrs_joint3_offset_x[i]*(v.rrrrs_c_3*rrrrs_f_3_o_in_axes3_y +
-        rrrrs_f_3_o_in_axes3_x*v.rrrrs_s_3);
+        rrrrs_f_3_o_in_axes3_x*v.rrrrs_s_3) + rrrrs_N_3_o_in_axes3_z;
     /* (rrrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
-    const real rrrrs_mu_1_o_in_axes1_z = m->rrrrs_J_1_in_spec1_xx[i]*rrrrs_qdd_1_o +
-        v.rrrrs_g_in_axes1_x*m->rrrrs_h_1_in_spec1_z[i] -
-        v.rrrrs_g_in_axes1_y*m->rrrrs_h_1_in_spec1_y[i];
+    const real rrrrs_mu_1_o_in_axes1_z = v.rrrrs_g_in_axes1_x*m->rrrrs_h_1_in_spec1_z[i] -
+        v.rrrrs_g_in_axes1_y*m->rrrrs_h_1_in_spec1_y[i] +
+        m->rrrrs_J_1_in_spec1_xx[i]*rrrrs_qdd_1_o;
     /* (rrrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
        connection point left out */
     const real rrrrs_N_1_o_in_axes1_z = rrrrs_mu_1_o_in_axes1_z +
@@ -5734,24 +5751,24 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
     /* (rrrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at
        the connection point */
     const real rrrrs_c_o_in_axes4_x = rrrrs_W_4_t_2*m->rrrrs_h_4_in_spec4_x[i] -
-        rrrrs_G_o_in_axes4_x - rrrrs_B_4_o_in_axes4_xy*m->rrrrs_h_4_in_spec4_y[i] -
-        rrrrs_B_4_o_in_axes4_xz*m->rrrrs_h_4_in_spec4_z[i];
+        rrrrs_B_4_o_in_axes4_xy*m->rrrrs_h_4_in_spec4_y[i] -
+        rrrrs_B_4_o_in_axes4_xz*m->rrrrs_h_4_in_spec4_z[i] - rrrrs_G_o_in_axes4_x;
     const real rrrrs_c_o_in_axes4_y = m->rrrrs_h_4_in_spec4_y[i]*(rrrrs_W_1_t + rrrrs_W_4_t) -
-        rrrrs_G_o_in_axes4_y - rrrrs_B_4_o_in_axes4_yx*m->rrrrs_h_4_in_spec4_x[i] -
-        rrrrs_B_4_o_in_axes4_yz*m->rrrrs_h_4_in_spec4_z[i];
+        rrrrs_B_4_o_in_axes4_yx*m->rrrrs_h_4_in_spec4_x[i] -
+        rrrrs_B_4_o_in_axes4_yz*m->rrrrs_h_4_in_spec4_z[i] - rrrrs_G_o_in_axes4_y;
     const real rrrrs_c_o_in_axes4_z = m->rrrrs_h_4_in_spec4_z[i]*(rrrrs_W_1_t + rrrrs_W_1_t_2)
         - rrrrs_B_4_o_in_axes4_zx*m->rrrrs_h_4_in_spec4_x[i] -
         rrrrs_B_4_o_in_axes4_zy*m->rrrrs_h_4_in_spec4_y[i] -
         rrrrs_N_1_o_in_axes1_z*v.rrrrs_w_1_in_axes4_z;
     /* (rrrrs-U) velocity and gravity terms of the leg force */
-    const real rrrrs_U_x = -axis_x_rrrrs_axes4_x*rrrrs_c_o_in_axes4_x -
-        axis_y_rrrrs_axes4_x*rrrrs_c_o_in_axes4_y -
+    const real rrrrs_U_x = -axis_y_rrrrs_axes4_x*rrrrs_c_o_in_axes4_y -
+        axis_x_rrrrs_axes4_x*rrrrs_c_o_in_axes4_x -
         v.axis_z_rrrrs_axes4_x*rrrrs_c_o_in_axes4_z;
-    const real rrrrs_U_y = -axis_x_rrrrs_axes4_y*rrrrs_c_o_in_axes4_x -
-        axis_y_rrrrs_axes4_y*rrrrs_c_o_in_axes4_y -
+    const real rrrrs_U_y = -axis_y_rrrrs_axes4_y*rrrrs_c_o_in_axes4_y -
+        axis_x_rrrrs_axes4_y*rrrrs_c_o_in_axes4_x -
         v.axis_z_rrrrs_axes4_y*rrrrs_c_o_in_axes4_z;
-    const real rrrrs_U_z = -axis_x_rrrrs_axes4_z*rrrrs_c_o_in_axes4_x -
-        axis_y_rrrrs_axes4_z*rrrrs_c_o_in_axes4_y -
+    const real rrrrs_U_z = -axis_y_rrrrs_axes4_z*rrrrs_c_o_in_axes4_y -
+        axis_x_rrrrs_axes4_z*rrrrs_c_o_in_axes4_x -
         v.axis_z_rrrrs_axes4_z*rrrrs_c_o_in_axes4_z;
     /* (rrrrs-P_2_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
        joint 2 */
@@ -5841,18 +5858,17 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
     const real rrrs_bias_t_4 = v.rrrs_d_3_in_axes3_y*rrrs_qd_2_t_3;
     const real rrrs_bias_t_5 = v.rrrs_d_3_in_axes3_x*rrrs_qd_2_t_3;
     const real rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*m->rrrs_platform_joint_offset_x[i];
-    const real rrrs_bias_in_axes3_x = v.rrrs_bias_t_3*v.rrrs_omega_1_in_axes3_y +
-        v.rrrs_bias_t_6*v.rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_qd_2_t_3 -
-        rrrs_bias_t_7*rrrs_omega_3_in_axes3_z - v.rrrs_bias_t_8*v.rrrs_omega_1_in_axes3_y;
+    const real rrrs_bias_in_axes3_x = v.rrrs_bias_t_3*v.rrrs_omega_1_in_axes3_y -
+        rrrs_bias_t_5*rrrs_qd_2_t_3 + v.rrrs_bias_t_6*v.rrrs_omega_1_in_axes3_y -
+        v.rrrs_bias_t_8*v.rrrs_omega_1_in_axes3_y - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z;
     const real rrrs_bias_in_axes3_y = v.rrrs_bias_t_8*v.rrrs_omega_1_in_axes3_x -
-        v.rrrs_bias_t_3*v.rrrs_omega_1_in_axes3_x - rrrs_bias_t_4*rrrs_qd_2_t_3 -
+        rrrs_bias_t_4*rrrs_qd_2_t_3 - v.rrrs_bias_t_3*v.rrrs_omega_1_in_axes3_x -
         v.rrrs_bias_t_6*v.rrrs_omega_1_in_axes3_x;
-    const real rrrs_bias_in_axes3_z = rrrs_bias_t_7*v.rrrs_omega_1_in_axes3_x +
-        v.rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*v.rrrs_c_3 -
-        v.rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) -
-        rrrs_beta_3_in_axes3_y*m->rrrs_platform_joint_offset_x[i] -
-        rrrs_bias_t_4*v.rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*v.rrrs_omega_1_in_axes3_x -
-        v.rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y;
+    const real rrrs_bias_in_axes3_z = v.rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*v.rrrs_c_3 -
+        v.rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) - rrrs_bias_t_4*v.rrrs_omega_1_in_axes3_y -
+        rrrs_bias_t_5*v.rrrs_omega_1_in_axes3_x - v.rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
+        + rrrs_bias_t_7*v.rrrs_omega_1_in_axes3_x -
+        rrrs_beta_3_in_axes3_y*m->rrrs_platform_joint_offset_x[i];
     /* (rrrs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
        */
     const real rrrs_rel_o_in_axes3_x = rrrs_u_1_in_axes3_x - rrrs_bias_in_axes3_x;
@@ -5871,13 +5887,13 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
     /* (rrrs-B_2_o) remainder of the acceleration tensor of link 2 */
     const real rrrs_B_2_o_in_axes2_xy = v.rrrs_W_2_in_axes2_xy - rrrs_qdd_2_o;
     const real rrrs_B_2_o_in_axes2_yx = v.rrrs_W_2_in_axes2_xy + rrrs_qdd_2_o;
-    const real rrrs_B_2_o_in_axes2_zx = -rrrs_alpha_2_o_in_axes2_y - rrrs_zeta_2_in_axes2_y;
+    const real rrrs_B_2_o_in_axes2_zx = -rrrs_zeta_2_in_axes2_y - rrrs_alpha_2_o_in_axes2_y;
     const real rrrs_B_2_o_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_o_in_axes2_x;
     /* (rrrs-alpha_3_o) remainder of: angular acceleration of link 3 */
-    const real rrrs_alpha_3_o_in_axes3_x = rrrs_alpha_2_o_in_axes2_x*v.rrrs_c_3 +
-        v.rrrs_omega_1_in_axes3_y*rrrs_qd_3 - rrrs_alpha_2_o_in_axes2_y*v.rrrs_s_3_t;
-    const real rrrs_alpha_3_o_in_axes3_y = rrrs_alpha_2_o_in_axes2_x*v.rrrs_s_3_t +
-        rrrs_alpha_2_o_in_axes2_y*v.rrrs_c_3 - rrrs_zeta_3_t;
+    const real rrrs_alpha_3_o_in_axes3_x = v.rrrs_omega_1_in_axes3_y*rrrs_qd_3 +
+        rrrs_alpha_2_o_in_axes2_x*v.rrrs_c_3 - rrrs_alpha_2_o_in_axes2_y*v.rrrs_s_3_t;
+    const real rrrs_alpha_3_o_in_axes3_y = rrrs_alpha_2_o_in_axes2_x*v.rrrs_s_3_t -
+        rrrs_zeta_3_t + rrrs_alpha_2_o_in_axes2_y*v.rrrs_c_3;
     const real rrrs_alpha_3_o_in_axes3_z = rrrs_qdd_2_o +
         m->rrrs_w_3_in_axes3_y[i]*(rrrs_rel_o_in_axes3_y -
         rrrs_qdd_2_o*v.rrrs_r_2_in_axes3_x);
@@ -5898,51 +5914,51 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
     /* (rrrs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
        reference points */
     const real rrrs_mu_3_o_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z;
-    const real rrrs_mu_3_o_in_axes3_x = rrrs_B_3_o_in_axes3_yx*m->rrrs_J_3_in_spec3_xz[i] +
-        rrrs_B_3_o_in_axes3_zy*m->rrrs_Sigma_3_in_axes3_yy[i] +
+    const real rrrs_mu_3_o_in_axes3_x = v.rrrs_acc_3_o_in_axes3_z*m->rrrs_h_3_in_spec3_y[i] -
+        rrrs_acc_3_o_in_axes3_y*m->rrrs_h_3_in_spec3_z[i] +
         m->rrrs_J_3_in_spec3_yz[i]*(v.rrrs_mu_3_o_t_2 - rrrs_mu_3_o_t_3) +
-        v.rrrs_acc_3_o_in_axes3_z*m->rrrs_h_3_in_spec3_y[i] -
+        rrrs_B_3_o_in_axes3_yx*m->rrrs_J_3_in_spec3_xz[i] +
+        rrrs_B_3_o_in_axes3_zy*m->rrrs_Sigma_3_in_axes3_yy[i] -
         rrrs_B_3_o_in_axes3_yz*m->rrrs_Sigma_3_in_axes3_zz[i] -
-        rrrs_B_3_o_in_axes3_zx*m->rrrs_J_3_in_spec3_xy[i] -
-        rrrs_acc_3_o_in_axes3_y*m->rrrs_h_3_in_spec3_z[i];
-    const real rrrs_mu_3_o_in_axes3_y = rrrs_B_3_o_in_axes3_xz*m->rrrs_Sigma_3_in_axes3_zz[i]
-        + rrrs_B_3_o_in_axes3_zy*m->rrrs_J_3_in_spec3_xy[i] +
-        rrrs_acc_3_o_in_axes3_x*m->rrrs_h_3_in_spec3_z[i] -
-        rrrs_B_3_o_in_axes3_xy*m->rrrs_J_3_in_spec3_yz[i] -
-        rrrs_B_3_o_in_axes3_zx*m->rrrs_Sigma_3_in_axes3_xx[i] -
+        rrrs_B_3_o_in_axes3_zx*m->rrrs_J_3_in_spec3_xy[i];
+    const real rrrs_mu_3_o_in_axes3_y = rrrs_acc_3_o_in_axes3_x*m->rrrs_h_3_in_spec3_z[i] -
+        v.rrrs_acc_3_o_in_axes3_z*m->rrrs_h_3_in_spec3_x[i] -
         m->rrrs_J_3_in_spec3_xz[i]*(v.rrrs_mu_3_o_t - rrrs_mu_3_o_t_3) -
-        v.rrrs_acc_3_o_in_axes3_z*m->rrrs_h_3_in_spec3_x[i];
-    const real rrrs_mu_3_o_in_axes3_z = rrrs_B_3_o_in_axes3_xz*m->rrrs_J_3_in_spec3_yz[i] +
-        rrrs_B_3_o_in_axes3_yx*m->rrrs_Sigma_3_in_axes3_xx[i] +
+        rrrs_B_3_o_in_axes3_xy*m->rrrs_J_3_in_spec3_yz[i] +
+        rrrs_B_3_o_in_axes3_xz*m->rrrs_Sigma_3_in_axes3_zz[i] +
+        rrrs_B_3_o_in_axes3_zy*m->rrrs_J_3_in_spec3_xy[i] -
+        rrrs_B_3_o_in_axes3_zx*m->rrrs_Sigma_3_in_axes3_xx[i];
+    const real rrrs_mu_3_o_in_axes3_z = rrrs_acc_3_o_in_axes3_y*m->rrrs_h_3_in_spec3_x[i] -
+        rrrs_acc_3_o_in_axes3_x*m->rrrs_h_3_in_spec3_y[i] +
         m->rrrs_J_3_in_spec3_xy[i]*(v.rrrs_mu_3_o_t - v.rrrs_mu_3_o_t_2) +
-        rrrs_acc_3_o_in_axes3_y*m->rrrs_h_3_in_spec3_x[i] -
-        rrrs_B_3_o_in_axes3_xy*m->rrrs_Sigma_3_in_axes3_yy[i] -
-        rrrs_B_3_o_in_axes3_yz*m->rrrs_J_3_in_spec3_xz[i] -
-        rrrs_acc_3_o_in_axes3_x*m->rrrs_h_3_in_spec3_y[i];
+        rrrs_B_3_o_in_axes3_yx*m->rrrs_Sigma_3_in_axes3_xx[i] -
+        rrrs_B_3_o_in_axes3_xy*m->rrrs_Sigma_3_in_axes3_yy[i] +
+        rrrs_B_3_o_in_axes3_xz*m->rrrs_J_3_in_spec3_yz[i] -
+        rrrs_B_3_o_in_axes3_yz*m->rrrs_J_3_in_spec3_xz[i];
     /* (rrrs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real rrrs_mu_2_o_t_3 = rrrs_qd_2_t_3*rrrs_qd_2_t_3;
-    const real rrrs_mu_2_o_in_axes2_x = rrrs_B_2_o_in_axes2_yx*m->rrrs_J_2_in_spec2_xz[i] +
-        rrrs_B_2_o_in_axes2_zy*m->rrrs_Sigma_2_in_axes2_yy[i] +
+    const real rrrs_mu_2_o_in_axes2_x = v.rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_z[i] -
+        v.rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_y[i] +
         m->rrrs_J_2_in_spec2_yz[i]*(v.rrrs_mu_2_o_t_2 - rrrs_mu_2_o_t_3) +
+        rrrs_B_2_o_in_axes2_yx*m->rrrs_J_2_in_spec2_xz[i] +
         m->rrrs_Sigma_2_in_axes2_zz[i]*rrrs_alpha_1_o_in_axes2_x +
-        v.rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_z[i] -
-        rrrs_B_2_o_in_axes2_zx*m->rrrs_J_2_in_spec2_xy[i] -
-        v.rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_y[i];
-    const real rrrs_mu_2_o_in_axes2_y = rrrs_B_2_o_in_axes2_zy*m->rrrs_J_2_in_spec2_xy[i] +
-        v.rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_x[i] -
-        rrrs_B_2_o_in_axes2_xy*m->rrrs_J_2_in_spec2_yz[i] -
-        rrrs_B_2_o_in_axes2_zx*m->rrrs_Sigma_2_in_axes2_xx[i] -
+        rrrs_B_2_o_in_axes2_zy*m->rrrs_Sigma_2_in_axes2_yy[i] -
+        rrrs_B_2_o_in_axes2_zx*m->rrrs_J_2_in_spec2_xy[i];
+    const real rrrs_mu_2_o_in_axes2_y = v.rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_x[i] -
+        v.rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_z[i] -
         m->rrrs_J_2_in_spec2_xz[i]*(v.rrrs_mu_2_o_t - rrrs_mu_2_o_t_3) -
-        m->rrrs_Sigma_2_in_axes2_zz[i]*rrrs_alpha_1_o_t -
-        v.rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_z[i];
-    const real rrrs_mu_2_o_in_axes2_z = rrrs_B_2_o_in_axes2_yx*m->rrrs_Sigma_2_in_axes2_xx[i]
-        + m->rrrs_J_2_in_spec2_xy[i]*(v.rrrs_mu_2_o_t - v.rrrs_mu_2_o_t_2) +
-        m->rrrs_J_2_in_spec2_xz[i]*rrrs_alpha_1_o_in_axes2_x +
-        v.rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_y[i] -
+        rrrs_B_2_o_in_axes2_xy*m->rrrs_J_2_in_spec2_yz[i] -
+        m->rrrs_Sigma_2_in_axes2_zz[i]*rrrs_alpha_1_o_t +
+        rrrs_B_2_o_in_axes2_zy*m->rrrs_J_2_in_spec2_xy[i] -
+        rrrs_B_2_o_in_axes2_zx*m->rrrs_Sigma_2_in_axes2_xx[i];
+    const real rrrs_mu_2_o_in_axes2_z = v.rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_y[i] -
+        v.rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_x[i] +
+        m->rrrs_J_2_in_spec2_xy[i]*(v.rrrs_mu_2_o_t - v.rrrs_mu_2_o_t_2) +
+        rrrs_B_2_o_in_axes2_yx*m->rrrs_Sigma_2_in_axes2_xx[i] +
+        m->rrrs_J_2_in_spec2_xz[i]*rrrs_alpha_1_o_in_axes2_x -
         rrrs_B_2_o_in_axes2_xy*m->rrrs_Sigma_2_in_axes2_yy[i] -
-        m->rrrs_J_2_in_spec2_yz[i]*rrrs_alpha_1_o_t -
-        v.rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_x[i];
+        m->rrrs_J_2_in_spec2_yz[i]*rrrs_alpha_1_o_t;
     /* (rrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
        connection point left out */
     const real rrrs_N_2_o_in_axes2_x = rrrs_mu_2_o_in_axes2_x +
@@ -5952,9 +5968,9 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
     const real rrrs_N_2_o_in_axes2_z = rrrs_mu_2_o_in_axes2_z + rrrs_mu_3_o_in_axes3_z;
     /* (rrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
-    const real rrrs_mu_1_o_in_axes1_z = m->rrrs_J_1_in_spec1_xx[i]*rrrs_qdd_1_o +
-        v.rrrs_g_in_axes1_x*m->rrrs_h_1_in_spec1_z[i] -
-        v.rrrs_g_in_axes1_y*m->rrrs_h_1_in_spec1_y[i];
+    const real rrrs_mu_1_o_in_axes1_z = v.rrrs_g_in_axes1_x*m->rrrs_h_1_in_spec1_z[i] -
+        v.rrrs_g_in_axes1_y*m->rrrs_h_1_in_spec1_y[i] +
+        m->rrrs_J_1_in_spec1_xx[i]*rrrs_qdd_1_o;
     /* (rrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
        connection point left out */
     const real rrrs_N_1_o_in_axes1_z = rrrs_mu_1_o_in_axes1_z +
@@ -5965,24 +5981,24 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
     /* (rrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at
        the connection point */
     const real rrrs_c_o_in_axes3_x = m->rrrs_h_3_in_spec3_x[i]*(v.rrrs_mu_3_o_t_2 +
-        rrrs_mu_3_o_t_3) + v.rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*v.rrrs_r_2_in_axes3_x -
-        rrrs_N_2_o_in_axes2_z) - rrrs_B_3_o_in_axes3_xy*m->rrrs_h_3_in_spec3_y[i] -
-        rrrs_B_3_o_in_axes3_xz*m->rrrs_h_3_in_spec3_z[i];
+        rrrs_mu_3_o_t_3) - rrrs_B_3_o_in_axes3_xy*m->rrrs_h_3_in_spec3_y[i] -
+        rrrs_B_3_o_in_axes3_xz*m->rrrs_h_3_in_spec3_z[i] +
+        v.rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*v.rrrs_r_2_in_axes3_x -
+        rrrs_N_2_o_in_axes2_z);
     const real rrrs_c_o_in_axes3_y = m->rrrs_h_3_in_spec3_y[i]*(v.rrrs_mu_3_o_t +
-        rrrs_mu_3_o_t_3) - rrrs_G_o_in_axes3_y -
-        rrrs_B_3_o_in_axes3_yx*m->rrrs_h_3_in_spec3_x[i] -
-        rrrs_B_3_o_in_axes3_yz*m->rrrs_h_3_in_spec3_z[i];
+        rrrs_mu_3_o_t_3) - rrrs_B_3_o_in_axes3_yx*m->rrrs_h_3_in_spec3_x[i] -
+        rrrs_B_3_o_in_axes3_yz*m->rrrs_h_3_in_spec3_z[i] - rrrs_G_o_in_axes3_y;
     const real rrrs_c_o_in_axes3_z = m->rrrs_h_3_in_spec3_z[i]*(v.rrrs_mu_3_o_t +
         v.rrrs_mu_3_o_t_2) - rrrs_B_3_o_in_axes3_zx*m->rrrs_h_3_in_spec3_x[i] -
         rrrs_B_3_o_in_axes3_zy*m->rrrs_h_3_in_spec3_y[i] -
         rrrs_N_1_o_in_axes1_z*v.rrrs_w_1_in_axes3_z;
     /* (rrrs-U) velocity and gravity terms of the leg force */
-    const real rrrs_U_x = -axis_x_rrrs_axes3_x*rrrs_c_o_in_axes3_x -
-        axis_y_rrrs_axes3_x*rrrs_c_o_in_axes3_y - v.axis_z_rrrs_axes3_x*rrrs_c_o_in_axes3_z;
-    const real rrrs_U_y = -axis_x_rrrs_axes3_y*rrrs_c_o_in_axes3_x -
-        axis_y_rrrs_axes3_y*rrrs_c_o_in_axes3_y - v.axis_z_rrrs_axes3_y*rrrs_c_o_in_axes3_z;
-    const real rrrs_U_z = -axis_x_rrrs_axes3_z*rrrs_c_o_in_axes3_x -
-        axis_y_rrrs_axes3_z*rrrs_c_o_in_axes3_y - v.axis_z_rrrs_axes3_z*rrrs_c_o_in_axes3_z;
+    const real rrrs_U_x = -axis_y_rrrs_axes3_x*rrrs_c_o_in_axes3_y -
+        axis_x_rrrs_axes3_x*rrrs_c_o_in_axes3_x - v.axis_z_rrrs_axes3_x*rrrs_c_o_in_axes3_z;
+    const real rrrs_U_y = -axis_y_rrrs_axes3_y*rrrs_c_o_in_axes3_y -
+        axis_x_rrrs_axes3_y*rrrs_c_o_in_axes3_x - v.axis_z_rrrs_axes3_y*rrrs_c_o_in_axes3_z;
+    const real rrrs_U_z = -axis_y_rrrs_axes3_z*rrrs_c_o_in_axes3_y -
+        axis_x_rrrs_axes3_z*rrrs_c_o_in_axes3_x - v.axis_z_rrrs_axes3_z*rrrs_c_o_in_axes3_z;
     /* (Z_a) */
     const real rrrs_Z_a_t = rrrs_U_z*v.rrrs_q_y - rrrs_U_y*v.rrrs_q_z;
     const real rrrs_Z_a_t_2 = rrrs_U_x*v.rrrs_q_z - rrrs_U_z*v.rrrs_q_x;
@@ -6024,13 +6040,13 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[3*w + k];
     const real Z_q_x = s[12*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[4*w + k];
     const real Z_q_y = s[13*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[5*w + k];
     const real Z_q_z = s[14*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
     Z[1*w + k] = Z_t_y;
@@ -6047,7 +6063,8 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     real s[15] = {0}, sums[6] = {0};
     real terms_rrrrs[6*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[4*LEGS(LEGS_OF_rrrrs)] = {0};
     real terms_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0};
-    Z_before(m, 1, 0, X, V, s, t);
+    values v;
+    Z_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
         Z_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), 0, s, X, V, terms_rrrrs, o_rrrrs);
     }
@@ -6068,6 +6085,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
             sums[n] += terms_rrrs[n*LEGS(LEGS_OF_rrrs) + leg];
         }
     }
+    Z_between(m, 1, 0, V, &v, s);
     Z_after(1, 0, s, sums, Z, t);
 }
 
@@ -6078,7 +6096,9 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real o_rrrrs[4*LANES];
     real o_rrrs[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        Z_before(m, LANES, k, X, V, s, t);
+        values v;
+        Z_before(m, LANES, k, X, &v, s, t);
+        Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
@@ -6103,20 +6123,20 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void H_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -6238,7 +6258,8 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
     real o_rrrrs[17*LEGS(LEGS_OF_rrrrs)] = {0};
     real o_rrrs[15*LEGS(LEGS_OF_rrrs)] = {0};
     clear(H, NV*NU);
-    H_before(m, 1, 0, X, s, t);
+    values v;
+    H_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
         H_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), s, X, o_rrrrs);
     }
@@ -6260,7 +6281,8 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
     real o_rrrs[15*LANES];
     clear(H, NV*NU*LANES);
     for (size_t k = 0; k < LANES; ++k) {
-        H_before(m, LANES, k, X, s, t);
+        values v;
+        H_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -6281,12 +6303,26 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, real *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
+    values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
     /* (W_p) centripetal tensor of the platform */
     const real omega_x = V[3*w + k];
     const real omega_y = V[4*w + k];
@@ -6301,72 +6337,62 @@ INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X
     const real a_t_y = t_ddot_y - m->gravity_y;
     const real t_ddot_z = A[2*w + k];
     const real a_t_z = t_ddot_z - m->gravity_z;
-    const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
-    const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
-    const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
+    const real a_t_in_platform_x = v->R_yx*a_t_y + v->R_zx*a_t_z + v->R_xx*a_t_x;
+    const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
+    const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
     const real f_p_t = omega_x*omega_x;
     const real f_p_t_2 = omega_y*omega_y;
     const real f_p_t_3 = omega_z*omega_z;
     const real alpha_y = A[4*w + k];
     const real alpha_z = A[5*w + k];
-    const real f_p_x = a_t_x*m->m_star + v.h_star_y*(W_p_xy - alpha_z) + v.h_star_z*(W_p_xz +
-        alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+    const real f_p_x = a_t_x*m->m_star + v->h_star_y*(W_p_xy - alpha_z) + v->h_star_z*(alpha_y
+        + W_p_xz) - v->h_star_x*(f_p_t_2 + f_p_t_3);
     const real alpha_x = A[3*w + k];
-    const real f_p_y = a_t_y*m->m_star + v.h_star_x*(W_p_xy + alpha_z) + v.h_star_z*(W_p_yz -
-        alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
-    const real f_p_z = a_t_z*m->m_star + v.h_star_x*(W_p_xz - alpha_y) + v.h_star_y*(W_p_yz +
-        alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
+    const real f_p_y = a_t_y*m->m_star + v->h_star_x*(alpha_z + W_p_xy) + v->h_star_z*(W_p_yz
+        - alpha_x) - v->h_star_y*(f_p_t + f_p_t_3);
+    const real f_p_z = a_t_z*m->m_star + v->h_star_x*(W_p_xz - alpha_y) + v->h_star_y*(alpha_x
+        + W_p_yz) - v->h_star_z*(f_p_t + f_p_t_2);
     /* (mu_p) inertia moment of the platform less that of its weight */
-    const real mu_p_t = m->J_star_in_platform_xx*v.omega_in_platform_x +
-        m->J_star_in_platform_xy*v.omega_in_platform_y +
-        m->J_star_in_platform_xz*v.omega_in_platform_z;
-    const real mu_p_t_2 = m->J_star_in_platform_xy*v.omega_in_platform_x +
-        m->J_star_in_platform_yy*v.omega_in_platform_y +
-        m->J_star_in_platform_yz*v.omega_in_platform_z;
-    const real mu_p_t_3 = m->J_star_in_platform_xz*v.omega_in_platform_x +
-        m->J_star_in_platform_yz*v.omega_in_platform_y +
-        m->J_star_in_platform_zz*v.omega_in_platform_z;
-    const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
-    const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
-    const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+    const real mu_p_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
+        m->J_star_in_platform_xy*v->omega_in_platform_y +
+        m->J_star_in_platform_xz*v->omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
+        m->J_star_in_platform_yy*v->omega_in_platform_y +
+        m->J_star_in_platform_yz*v->omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
+        m->J_star_in_platform_yz*v->omega_in_platform_y +
+        m->J_star_in_platform_zz*v->omega_in_platform_z;
+    const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
+    const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
+    const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
     const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
         m->J_star_in_platform_xy*alpha_in_platform_y +
         m->J_star_in_platform_xz*alpha_in_platform_z +
-        a_t_in_platform_z*m->h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
-        a_t_in_platform_y*m->h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+        a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
+        + mu_p_t_3*v->omega_in_platform_y - mu_p_t_2*v->omega_in_platform_z;
     const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
         m->J_star_in_platform_yz*alpha_in_platform_z +
-        a_t_in_platform_x*m->h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
-        a_t_in_platform_z*m->h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
+        a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
+        + mu_p_t*v->omega_in_platform_z - mu_p_t_3*v->omega_in_platform_x;
     const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
         m->J_star_in_platform_zz*alpha_in_platform_z +
-        a_t_in_platform_y*m->h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
-        a_t_in_platform_x*m->h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
-    const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
-        v.R_xz*mu_p_in_platform_z;
-    const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
-        v.R_yz*mu_p_in_platform_z;
-    const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
-        v.R_zz*mu_p_in_platform_z;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+        a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
+        + mu_p_t_2*v->omega_in_platform_x - mu_p_t*v->omega_in_platform_y;
+    const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
+        v->R_xz*mu_p_in_platform_z;
+    const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
+        v->R_yz*mu_p_in_platform_z;
+    const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
+        v->R_zz*mu_p_in_platform_z;
     s[9*w + k] = f_p_x;
     s[10*w + k] = f_p_y;
     s[11*w + k] = f_p_z;
     s[12*w + k] = mu_p_x;
     s[13*w + k] = mu_p_y;
     s[14*w + k] = mu_p_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void required_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -6386,38 +6412,38 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j,
     const real rrrrs_ydd_2 = A[6*w + j];
     const real rrrrs_B_2_in_axes2_xy = v.rrrrs_W_2_in_axes2_xy - rrrrs_ydd_2;
     /* (rrrrs-f_3) inertia force of link 3 less its weight */
-    const real rrrrs_f_3_in_axes3_x = v.rrrrs_B_3_in_axes3_xy*m->rrrrs_h_3_in_spec3_y[i] +
-        v.rrrrs_B_3_in_axes3_xz*m->rrrrs_h_3_in_spec3_z[i] +
-        v.rrrrs_acc_3_in_axes3_x*m->rrrrs_link3_mass[i] -
-        m->rrrrs_h_3_in_spec3_x[i]*(v.rrrrs_bias_t_2 + v.rrrrs_f_3_t_2);
-    const real rrrrs_f_3_in_axes3_y = v.rrrrs_B_3_in_axes3_yx*m->rrrrs_h_3_in_spec3_x[i] +
-        v.rrrrs_B_3_in_axes3_yz*m->rrrrs_h_3_in_spec3_z[i] +
-        v.rrrrs_acc_3_in_axes3_y*m->rrrrs_link3_mass[i] -
-        m->rrrrs_h_3_in_spec3_y[i]*(v.rrrrs_bias_t_2 + v.rrrrs_f_3_t);
+    const real rrrrs_f_3_in_axes3_x = v.rrrrs_acc_3_in_axes3_x*m->rrrrs_link3_mass[i] -
+        m->rrrrs_h_3_in_spec3_x[i]*(v.rrrrs_bias_t_2 + v.rrrrs_f_3_t_2) +
+        v.rrrrs_B_3_in_axes3_xy*m->rrrrs_h_3_in_spec3_y[i] +
+        v.rrrrs_B_3_in_axes3_xz*m->rrrrs_h_3_in_spec3_z[i];
+    const real rrrrs_f_3_in_axes3_y = v.rrrrs_acc_3_in_axes3_y*m->rrrrs_link3_mass[i] -
+        m->rrrrs_h_3_in_spec3_y[i]*(v.rrrrs_bias_t_2 + v.rrrrs_f_3_t) +
+        v.rrrrs_B_3_in_axes3_yx*m->rrrrs_h_3_in_spec3_x[i] +
+        v.rrrrs_B_3_in_axes3_yz*m->rrrrs_h_3_in_spec3_z[i];
     /* (rrrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real rrrrs_mu_2_t = v.rrrrs_omega_1_in_axes2_x*v.rrrrs_omega_1_in_axes2_x;
-    const real rrrrs_mu_2_in_axes2_y = v.rrrrs_B_2_in_axes2_zy*m->rrrrs_J_2_in_spec2_xy[i] +
-        m->rrrrs_Sigma_2_in_axes2_zz[i]*v.rrrrs_alpha_1_in_axes2_y +
-        v.rrrrs_g_in_axes1_y*m->rrrrs_h_2_in_spec2_x[i] -
+    const real rrrrs_mu_2_in_axes2_y = v.rrrrs_g_in_axes1_y*m->rrrrs_h_2_in_spec2_x[i] -
+        v.rrrrs_g_in_axes2_x*m->rrrrs_h_2_in_spec2_z[i] -
         rrrrs_B_2_in_axes2_xy*m->rrrrs_J_2_in_spec2_yz[i] -
-        v.rrrrs_B_2_in_axes2_zx*m->rrrrs_Sigma_2_in_axes2_xx[i] -
-        m->rrrrs_J_2_in_spec2_xz[i]*(rrrrs_mu_2_t - v.rrrrs_bias_t) -
-        v.rrrrs_g_in_axes2_x*m->rrrrs_h_2_in_spec2_z[i];
-    const real rrrrs_mu_2_in_axes2_z = v.rrrrs_B_2_in_axes2_yx*m->rrrrs_Sigma_2_in_axes2_xx[i]
-        + m->rrrrs_J_2_in_spec2_xy[i]*(rrrrs_mu_2_t - v.rrrrs_a_o_3_t) +
+        m->rrrrs_J_2_in_spec2_xz[i]*(rrrrs_mu_2_t - v.rrrrs_bias_t) +
+        m->rrrrs_Sigma_2_in_axes2_zz[i]*v.rrrrs_alpha_1_in_axes2_y +
+        v.rrrrs_B_2_in_axes2_zy*m->rrrrs_J_2_in_spec2_xy[i] -
+        v.rrrrs_B_2_in_axes2_zx*m->rrrrs_Sigma_2_in_axes2_xx[i];
+    const real rrrrs_mu_2_in_axes2_z = v.rrrrs_g_in_axes2_x*m->rrrrs_h_2_in_spec2_y[i] -
+        v.rrrrs_g_in_axes2_y*m->rrrrs_h_2_in_spec2_x[i] +
+        v.rrrrs_B_2_in_axes2_yx*m->rrrrs_Sigma_2_in_axes2_xx[i] +
+        m->rrrrs_J_2_in_spec2_xy[i]*(rrrrs_mu_2_t - v.rrrrs_a_o_3_t) -
+        rrrrs_B_2_in_axes2_xy*m->rrrrs_Sigma_2_in_axes2_yy[i] +
         m->rrrrs_J_2_in_spec2_xz[i]*v.rrrrs_alpha_1_in_axes2_x +
-        m->rrrrs_J_2_in_spec2_yz[i]*v.rrrrs_alpha_1_in_axes2_y +
-        v.rrrrs_g_in_axes2_x*m->rrrrs_h_2_in_spec2_y[i] -
-        rrrrs_B_2_in_axes2_xy*m->rrrrs_Sigma_2_in_axes2_yy[i] -
-        v.rrrrs_g_in_axes2_y*m->rrrrs_h_2_in_spec2_x[i];
+        m->rrrrs_J_2_in_spec2_yz[i]*v.rrrrs_alpha_1_in_axes2_y;
     /* (rrrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection
        point left out */
-    const real rrrrs_N_2_in_axes2_y = rrrrs_mu_2_in_axes2_y +
-        v.rrrrs_N_3_in_axes3_x*v.rrrrs_s_3 + v.rrrrs_N_3_in_axes3_y*v.rrrrs_c_3 -
-        v.rrrrs_f_3_in_axes3_z*m->rrrrs_joint3_offset_x[i];
-    const real rrrrs_N_2_in_axes2_z = v.rrrrs_N_3_in_axes3_z + rrrrs_mu_2_in_axes2_z +
+    const real rrrrs_N_2_in_axes2_y = rrrrs_mu_2_in_axes2_y -
+        v.rrrrs_f_3_in_axes3_z*m->rrrrs_joint3_offset_x[i] +
+        v.rrrrs_N_3_in_axes3_x*v.rrrrs_s_3 + v.rrrrs_N_3_in_axes3_y*v.rrrrs_c_3;
+    const real rrrrs_N_2_in_axes2_z = rrrrs_mu_2_in_axes2_z +
         m->rrrrs_joint3_offset_x[i]*(v.rrrrs_c_3*rrrrs_f_3_in_axes3_y +
-        rrrrs_f_3_in_axes3_x*v.rrrrs_s_3);
+        rrrrs_f_3_in_axes3_x*v.rrrrs_s_3) + v.rrrrs_N_3_in_axes3_z;
     /* (rrrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection
        point left out */
     const real rrrrs_N_1_in_axes1_z = v.rrrrs_mu_1_in_axes1_z +
@@ -6430,21 +6456,18 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j,
     /* (rrrrs-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real rrrrs_c_in_axes4_x = v.rrrrs_W_4_t_2*m->rrrrs_h_4_in_spec4_x[i] -
-        rrrrs_G_in_axes4_x - v.rrrrs_B_4_in_axes4_xy*m->rrrrs_h_4_in_spec4_y[i] -
-        v.rrrrs_B_4_in_axes4_xz*m->rrrrs_h_4_in_spec4_z[i];
+        v.rrrrs_B_4_in_axes4_xy*m->rrrrs_h_4_in_spec4_y[i] -
+        v.rrrrs_B_4_in_axes4_xz*m->rrrrs_h_4_in_spec4_z[i] - rrrrs_G_in_axes4_x;
     const real rrrrs_c_in_axes4_z = m->rrrrs_h_4_in_spec4_z[i]*(v.rrrrs_W_1_t +
         v.rrrrs_W_1_t_2) - v.rrrrs_B_4_in_axes4_zx*m->rrrrs_h_4_in_spec4_x[i] -
         v.rrrrs_B_4_in_axes4_zy*m->rrrrs_h_4_in_spec4_y[i] -
         rrrrs_N_1_in_axes1_z*v.rrrrs_w_1_in_axes4_z;
-    const real rrrrs_c_x = v.axis_x_rrrrs_axes4_x*rrrrs_c_in_axes4_x +
-        v.axis_y_rrrrs_axes4_x*v.rrrrs_c_in_axes4_y +
-        v.axis_z_rrrrs_axes4_x*rrrrs_c_in_axes4_z;
-    const real rrrrs_c_y = v.axis_x_rrrrs_axes4_y*rrrrs_c_in_axes4_x +
-        v.axis_y_rrrrs_axes4_y*v.rrrrs_c_in_axes4_y +
-        v.axis_z_rrrrs_axes4_y*rrrrs_c_in_axes4_z;
-    const real rrrrs_c_z = v.axis_x_rrrrs_axes4_z*rrrrs_c_in_axes4_x +
-        v.axis_y_rrrrs_axes4_z*v.rrrrs_c_in_axes4_y +
-        v.axis_z_rrrrs_axes4_z*rrrrs_c_in_axes4_z;
+    const real rrrrs_c_x = v.axis_y_rrrrs_axes4_x*v.rrrrs_c_in_axes4_y +
+        v.axis_x_rrrrs_axes4_x*rrrrs_c_in_axes4_x + v.axis_z_rrrrs_axes4_x*rrrrs_c_in_axes4_z;
+    const real rrrrs_c_y = v.axis_y_rrrrs_axes4_y*v.rrrrs_c_in_axes4_y +
+        v.axis_x_rrrrs_axes4_y*rrrrs_c_in_axes4_x + v.axis_z_rrrrs_axes4_y*rrrrs_c_in_axes4_z;
+    const real rrrrs_c_z = v.axis_y_rrrrs_axes4_z*v.rrrrs_c_in_axes4_y +
+        v.axis_x_rrrrs_axes4_z*rrrrs_c_in_axes4_x + v.axis_z_rrrrs_axes4_z*rrrrs_c_in_axes4_z;
     /* (rrrrs-P_2) inertia and weight of the leg along the extra degree of freedom of joint 2 */
     const real rrrrs_P_2_t = rrrrs_G_in_axes4_x*v.rrrrs_r_2_in_axes4_y -
         v.rrrrs_G_in_axes4_y*v.rrrrs_r_2_in_axes4_x;
@@ -6529,12 +6552,12 @@ INLINE void required_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
     stage_rrrs_legs_required(m, i, &v);
     /* (rrrs-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rrrs_c_x = v.axis_x_rrrs_axes3_x*v.rrrs_c_in_axes3_x +
-        v.axis_y_rrrs_axes3_x*v.rrrs_c_in_axes3_y + v.axis_z_rrrs_axes3_x*v.rrrs_c_in_axes3_z;
-    const real rrrs_c_y = v.axis_x_rrrs_axes3_y*v.rrrs_c_in_axes3_x +
-        v.axis_y_rrrs_axes3_y*v.rrrs_c_in_axes3_y + v.axis_z_rrrs_axes3_y*v.rrrs_c_in_axes3_z;
-    const real rrrs_c_z = v.axis_x_rrrs_axes3_z*v.rrrs_c_in_axes3_x +
-        v.axis_y_rrrs_axes3_z*v.rrrs_c_in_axes3_y + v.axis_z_rrrs_axes3_z*v.rrrs_c_in_axes3_z;
+    const real rrrs_c_x = v.axis_y_rrrs_axes3_x*v.rrrs_c_in_axes3_y +
+        v.axis_x_rrrs_axes3_x*v.rrrs_c_in_axes3_x + v.axis_z_rrrs_axes3_x*v.rrrs_c_in_axes3_z;
+    const real rrrs_c_y = v.axis_y_rrrs_axes3_y*v.rrrs_c_in_axes3_y +
+        v.axis_x_rrrs_axes3_y*v.rrrs_c_in_axes3_x + v.axis_z_rrrs_axes3_y*v.rrrs_c_in_axes3_z;
+    const real rrrs_c_z = v.axis_y_rrrs_axes3_z*v.rrrs_c_in_axes3_y +
+        v.axis_x_rrrs_axes3_z*v.rrrs_c_in_axes3_x + v.axis_z_rrrs_axes3_z*v.rrrs_c_in_axes3_z;
     /* (R_a) */
     const real rrrs_R_a_t = rrrs_c_y*v.rrrs_q_z - rrrs_c_z*v.rrrs_q_y;
     const real rrrs_R_a_t_2 = rrrs_c_z*v.rrrs_q_x - rrrs_c_x*v.rrrs_q_z;
@@ -6609,13 +6632,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[12*w + k];
-    const real R_a_x = R_a_x_of_legs + mu_p_x;
+    const real R_a_x = mu_p_x + R_a_x_of_legs;
     const real R_a_y_of_legs = sums[4*w + k];
     const real mu_p_y = s[13*w + k];
-    const real R_a_y = R_a_y_of_legs + mu_p_y;
+    const real R_a_y = mu_p_y + R_a_y_of_legs;
     const real R_a_z_of_legs = sums[5*w + k];
     const real mu_p_z = s[14*w + k];
-    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
     required[1*w + k] = R_t_y;
@@ -6626,14 +6649,15 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[5*w + k] = R_a_z;
 }
 
-APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_rrrrs[6*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[17*LEGS(LEGS_OF_rrrrs)] = {0};
     real terms_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[14*LEGS(LEGS_OF_rrrs)] = {0};
     clear(H, NV*NU);
-    required_before(m, 1, 0, X, V, A, s, t);
+    values v;
+    required_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
         required_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), 0, s, X, V, A, terms_rrrrs, o_rrrrs);
     }
@@ -6654,6 +6678,7 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
             sums[n] += terms_rrrs[n*LEGS(LEGS_OF_rrrs) + leg];
         }
     }
+    required_between(m, 1, 0, V, A, &v, s);
     required_after(1, 0, s, sums, required);
 }
 
@@ -6665,7 +6690,9 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real o_rrrs[14*LANES];
     clear(H, NV*NU*LANES);
     for (size_t k = 0; k < LANES; ++k) {
-        required_before(m, LANES, k, X, V, A, s, t);
+        values v;
+        required_before(m, LANES, k, X, &v, s, t);
+        required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
@@ -6690,21 +6717,20 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s, verdict *t)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
+    *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void inverse_kinematics_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
@@ -6717,23 +6743,20 @@ INLINE void inverse_kinematics_legs_rrrrs(const prepared *m, size_t w, size_t i,
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
     const real t_x = X[0*w + j];
-    const real rrrrs_S_x = t_x + R_xx*m->rrrrs_platform_point_x[i] +
-        R_xy*m->rrrrs_platform_point_y[i] + R_xz*m->rrrrs_platform_point_z[i] -
-        m->rrrrs_base_point_x[i];
+    const real rrrrs_S_x = t_x - m->rrrrs_base_point_x[i] + R_xy*m->rrrrs_platform_point_y[i]
+        + R_xz*m->rrrrs_platform_point_z[i] + R_xx*m->rrrrs_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real t_y = X[1*w + j];
-    const real rrrrs_S_y = t_y + R_yx*m->rrrrs_platform_point_x[i] +
-        R_yy*m->rrrrs_platform_point_y[i] + R_yz*m->rrrrs_platform_point_z[i] -
-        m->rrrrs_base_point_y[i];
+    const real rrrrs_S_y = t_y - m->rrrrs_base_point_y[i] + R_yx*m->rrrrs_platform_point_x[i]
+        + R_yz*m->rrrrs_platform_point_z[i] + R_yy*m->rrrrs_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real t_z = X[2*w + j];
-    const real rrrrs_S_z = t_z + R_zx*m->rrrrs_platform_point_x[i] +
-        R_zy*m->rrrrs_platform_point_y[i] + R_zz*m->rrrrs_platform_point_z[i] -
-        m->rrrrs_base_point_z[i];
+    const real rrrrs_S_z = t_z - m->rrrrs_base_point_z[i] + R_zx*m->rrrrs_platform_point_x[i]
+        + R_zy*m->rrrrs_platform_point_y[i] + R_zz*m->rrrrs_platform_point_z[i];
     const real rrrrs_S_in_turn1_x = rrrrs_S_x*m->rrrrs_base_frame_xy[i] +
         rrrrs_S_y*m->rrrrs_base_frame_yy[i] + rrrrs_S_z*m->rrrrs_base_frame_zy[i];
     const real rrrrs_S_in_turn1_y = rrrrs_S_x*m->rrrrs_base_frame_xz[i] +
@@ -6748,19 +6771,19 @@ INLINE void inverse_kinematics_legs_rrrrs(const prepared *m, size_t w, size_t i,
     const real rrrrs_q_1 = angle(inv_rrrrs_rho2_1*rrrrs_S_in_turn1_y*rrrrs_root_1,
         inv_rrrrs_rho2_1*rrrrs_S_in_turn1_x*rrrrs_root_1);
     /* (rrrrs-x_2) from the origin of joint 2 to the connection point */
-    const real rrrrs_x_2_in_axes1_z = rrrrs_S_x*m->rrrrs_base_frame_xx[i] +
-        rrrrs_S_y*m->rrrrs_base_frame_yx[i] + rrrrs_S_z*m->rrrrs_base_frame_zx[i] -
-        m->rrrrs_joint2_offset_x[i];
+    const real rrrrs_x_2_in_axes1_z = rrrrs_S_x*m->rrrrs_base_frame_xx[i] -
+        m->rrrrs_joint2_offset_x[i] + rrrrs_S_y*m->rrrrs_base_frame_yx[i] +
+        rrrrs_S_z*m->rrrrs_base_frame_zx[i];
     const real rrrrs_x_2_in_axes2_y = v.rrrrs_c_2*rrrrs_root_1 -
         v.rrrrs_s_2*rrrrs_x_2_in_axes1_z;
     /* (rrrrs-x_3) from the origin of joint 3 to the connection point */
-    const real rrrrs_x_3_in_axes2_x = v.rrrrs_c_2*rrrrs_x_2_in_axes1_z +
-        rrrrs_root_1*v.rrrrs_s_2 - m->rrrrs_joint3_offset_x[i];
+    const real rrrrs_x_3_in_axes2_x = v.rrrrs_c_2*rrrrs_x_2_in_axes1_z -
+        m->rrrrs_joint3_offset_x[i] + rrrrs_root_1*v.rrrrs_s_2;
     /* (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 3 */
     const real rrrrs_Kd_3_t = rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y +
         rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x;
-    const real rrrrs_Kd_3 = R(0.5)*rrrrs_Kd_3_t + m->rrrrs_h_3_t[i] - m->rrrrs_h_3_t_2[i];
+    const real rrrrs_Kd_3 = m->rrrrs_h_3_t[i] - m->rrrrs_h_3_t_2[i] + R(0.5)*rrrrs_Kd_3_t;
     /* (rrrrs-Kc_3) factor of the cosine in the equation of joint 3 */
     const real rrrrs_Kc_3 = m->rrrrs_joint4_offset_x[i]*rrrrs_x_3_in_axes2_x;
     /* (rrrrs-Ks_3) factor of the sine in the equation of joint 3 */
@@ -6773,8 +6796,8 @@ INLINE void inverse_kinematics_legs_rrrrs(const prepared *m, size_t w, size_t i,
     const real rrrrs_root_3 = m->rrrrs_branch_3[i]*root(rrrrs_disc_3);
     /* (rrrrs-q_3) displacement of joint 3 */
     const real inv_rrrrs_rho2_3 = 1/rrrrs_rho2_3;
-    const real rrrrs_q_3 = angle(inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 +
-        rrrrs_Kd_3*rrrrs_Ks_3), inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 -
+    const real rrrrs_q_3 = angle(inv_rrrrs_rho2_3*(rrrrs_Kd_3*rrrrs_Ks_3 +
+        rrrrs_Kc_3*rrrrs_root_3), inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 -
         rrrrs_Ks_3*rrrrs_root_3));
     /* (rrrrs-x_4) from the origin of joint 4 to the connection point */
     const real rrrrs_x_4_in_axes3_x =
@@ -6821,8 +6844,8 @@ INLINE void inverse_kinematics_legs_rrrs(const prepared *m, size_t w, size_t i, 
     const real rrrs_q_1 = angle(v.inv_rrrs_rho2_1*v.rrrs_S_in_turn1_y*v.rrrs_root_1,
         v.inv_rrrs_rho2_1*v.rrrs_S_in_turn1_x*v.rrrs_root_1);
     /* (rrrs-q_2) displacement of joint 2 */
-    const real rrrs_q_2 = angle(v.inv_rrrs_rho2_2*(v.rrrs_Kc_2*v.rrrs_root_2 +
-        v.rrrs_Kd_2*v.rrrs_Ks_2), v.inv_rrrs_rho2_2*(v.rrrs_Kc_2*v.rrrs_Kd_2 -
+    const real rrrs_q_2 = angle(v.inv_rrrs_rho2_2*(v.rrrs_Kd_2*v.rrrs_Ks_2 +
+        v.rrrs_Kc_2*v.rrrs_root_2), v.inv_rrrs_rho2_2*(v.rrrs_Kc_2*v.rrrs_Kd_2 -
         v.rrrs_Ks_2*v.rrrs_root_2));
     /* (rrrs-q_3) displacement of joint 3 */
     const real rrrs_q_3 =
@@ -6857,7 +6880,8 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
     real s[9] = {0};
     real o_rrrrs[7*LEGS(LEGS_OF_rrrrs)] = {0};
     real o_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0};
-    inverse_kinematics_before(m, 1, 0, X, s, t);
+    values v;
+    inverse_kinematics_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
         inverse_kinematics_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), s, X, o_rrrrs);
     }
@@ -6879,7 +6903,8 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real o_rrrrs[7*LANES];
     real o_rrrs[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        inverse_kinematics_before(m, LANES, k, X, s, t);
+        values v;
+        inverse_kinematics_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -6900,21 +6925,20 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_rates_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k,
@@ -7068,7 +7092,8 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
     real s[9] = {0};
     real o_rrrrs[7*LEGS(LEGS_OF_rrrrs)] = {0};
     real o_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0};
-    joint_rates_before(m, 1, 0, X, s, t);
+    values v;
+    joint_rates_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
         joint_rates_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), s, X, V, o_rrrrs);
     }
@@ -7090,7 +7115,8 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real o_rrrrs[7*LANES];
     real o_rrrs[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_rates_before(m, LANES, k, X, s, t);
+        values v;
+        joint_rates_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -7111,21 +7137,20 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
+    values *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_accelerations_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
@@ -7194,7 +7219,7 @@ INLINE void joint_accelerations_legs_rrrrs(const prepared *m, size_t w, size_t i
     const real rrrrs_W_2_in_axes2_yz = rrrrs_omega_1_in_axes2_y*rrrrs_yd_2;
     const real rrrrs_W_2_in_axes2_xz = rrrrs_omega_1_in_axes2_x*rrrrs_yd_2;
     /* (rrrrs-omega_3) angular velocity of link 3 */
-    const real rrrrs_omega_3_in_axes3_z = rrrrs_qd_3 + rrrrs_yd_2;
+    const real rrrrs_omega_3_in_axes3_z = rrrrs_yd_2 + rrrrs_qd_3;
     /* (rrrrs-omega_4) angular velocity of link 4 */
     const real rrrrs_omega_4_in_axes4_z = rrrrs_omega_3_in_axes3_z + rrrrs_qd_4;
     /* (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
@@ -7212,33 +7237,33 @@ INLINE void joint_accelerations_legs_rrrrs(const prepared *m, size_t w, size_t i
     const real rrrrs_bias_in_axes4_x = rrrrs_W_1_in_axes4_xy*v.rrrrs_d_2_in_axes4_y +
         rrrrs_W_1_in_axes4_xy*v.rrrrs_d_3_in_axes4_y +
         rrrrs_W_1_in_axes4_xy*v.rrrrs_d_4_in_axes4_y - rrrrs_W_1_t_2*v.rrrrs_d_2_in_axes4_x -
-        v.rrrrs_d_3_in_axes4_x*(rrrrs_W_1_t_2 + v.rrrrs_bias_t) -
-        v.rrrrs_d_4_in_axes4_x*(rrrrs_W_1_t_2 + rrrrs_bias_t_2) -
+        v.rrrrs_d_3_in_axes4_x*(v.rrrrs_bias_t + rrrrs_W_1_t_2) -
+        v.rrrrs_d_4_in_axes4_x*(rrrrs_bias_t_2 + rrrrs_W_1_t_2) -
         m->rrrrs_platform_joint_offset_x[i]*(rrrrs_W_1_t_2 +
         rrrrs_omega_4_in_axes4_z*rrrrs_omega_4_in_axes4_z);
     const real rrrrs_bias_in_axes4_y = rrrrs_W_1_in_axes4_xy*v.rrrrs_d_2_in_axes4_x +
         rrrrs_W_1_in_axes4_xy*v.rrrrs_d_3_in_axes4_x +
         rrrrs_W_1_in_axes4_xy*v.rrrrs_d_4_in_axes4_x +
         rrrrs_W_1_in_axes4_xy*m->rrrrs_platform_joint_offset_x[i] -
-        rrrrs_W_1_t*v.rrrrs_d_2_in_axes4_y - v.rrrrs_d_3_in_axes4_y*(rrrrs_W_1_t +
-        v.rrrrs_bias_t) - v.rrrrs_d_4_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t_2);
+        rrrrs_W_1_t*v.rrrrs_d_2_in_axes4_y - v.rrrrs_d_3_in_axes4_y*(v.rrrrs_bias_t +
+        rrrrs_W_1_t) - v.rrrrs_d_4_in_axes4_y*(rrrrs_bias_t_2 + rrrrs_W_1_t);
     const real rrrrs_bias_in_axes4_z =
-        v.rrrrs_d_4_in_axes4_x*(rrrrs_omega_1_in_axes4_x*rrrrs_omega_3_in_axes3_z -
-        rrrrs_beta_3_in_axes4_y) + v.rrrrs_d_4_in_axes4_y*(rrrrs_beta_3_in_axes3_x*v.rrrrs_c_4
-        + rrrrs_omega_1_in_axes4_y*rrrrs_omega_3_in_axes3_z -
-        rrrrs_beta_3_in_axes3_y*v.rrrrs_s_4_t) +
-        m->rrrrs_platform_joint_offset_x[i]*(rrrrs_omega_1_in_axes4_x*rrrrs_omega_4_in_axes4_z
-        - rrrrs_beta_4_in_axes4_y) +
         2*v.rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
-        2*v.rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2;
+        2*v.rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2 +
+        v.rrrrs_d_4_in_axes4_x*(rrrrs_omega_1_in_axes4_x*rrrrs_omega_3_in_axes3_z -
+        rrrrs_beta_3_in_axes4_y) +
+        v.rrrrs_d_4_in_axes4_y*(rrrrs_omega_1_in_axes4_y*rrrrs_omega_3_in_axes3_z +
+        rrrrs_beta_3_in_axes3_x*v.rrrrs_c_4 - rrrrs_beta_3_in_axes3_y*v.rrrrs_s_4_t) +
+        m->rrrrs_platform_joint_offset_x[i]*(rrrrs_omega_1_in_axes4_x*rrrrs_omega_4_in_axes4_z
+        - rrrrs_beta_4_in_axes4_y);
     /* (rrrrs-rel) acceleration of the connection point left to the joint accelerations */
     const real rrrrs_ydd_2 = A[6*w + j];
-    const real rrrrs_rel_in_axes4_x = axis_x_rrrrs_axes4_x*v.rrrrs_S_ddot_x +
-        axis_x_rrrrs_axes4_y*v.rrrrs_S_ddot_y + axis_x_rrrrs_axes4_z*v.rrrrs_S_ddot_z +
-        v.rrrrs_r_2_in_axes4_y*rrrrs_ydd_2 - rrrrs_bias_in_axes4_x;
-    const real rrrrs_rel_in_axes4_y = axis_y_rrrrs_axes4_x*v.rrrrs_S_ddot_x +
-        axis_y_rrrrs_axes4_y*v.rrrrs_S_ddot_y + axis_y_rrrrs_axes4_z*v.rrrrs_S_ddot_z -
-        rrrrs_bias_in_axes4_y - v.rrrrs_r_2_in_axes4_x*rrrrs_ydd_2;
+    const real rrrrs_rel_in_axes4_x = v.rrrrs_r_2_in_axes4_y*rrrrs_ydd_2 +
+        axis_x_rrrrs_axes4_x*v.rrrrs_S_ddot_x + axis_x_rrrrs_axes4_y*v.rrrrs_S_ddot_y +
+        axis_x_rrrrs_axes4_z*v.rrrrs_S_ddot_z - rrrrs_bias_in_axes4_x;
+    const real rrrrs_rel_in_axes4_y = axis_y_rrrrs_axes4_x*v.rrrrs_S_ddot_x -
+        v.rrrrs_r_2_in_axes4_x*rrrrs_ydd_2 + axis_y_rrrrs_axes4_y*v.rrrrs_S_ddot_y +
+        axis_y_rrrrs_axes4_z*v.rrrrs_S_ddot_z - rrrrs_bias_in_axes4_y;
     const real rrrrs_rel_in_axes4_z = v.axis_z_rrrrs_axes4_x*v.rrrrs_S_ddot_x +
         v.axis_z_rrrrs_axes4_y*v.rrrrs_S_ddot_y + v.axis_z_rrrrs_axes4_z*v.rrrrs_S_ddot_z -
         rrrrs_bias_in_axes4_z;
@@ -7321,18 +7346,17 @@ INLINE void joint_accelerations_legs_rrrs(const prepared *m, size_t w, size_t i,
     const real rrrs_bias_t_4 = v.rrrs_d_3_in_axes3_y*rrrs_qd_2_t_3;
     const real rrrs_bias_t_5 = v.rrrs_d_3_in_axes3_x*rrrs_qd_2_t_3;
     const real rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*m->rrrs_platform_joint_offset_x[i];
-    const real rrrs_bias_in_axes3_x = v.rrrs_bias_t_3*v.rrrs_omega_1_in_axes3_y +
-        v.rrrs_bias_t_6*v.rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_qd_2_t_3 -
-        rrrs_bias_t_7*rrrs_omega_3_in_axes3_z - v.rrrs_bias_t_8*v.rrrs_omega_1_in_axes3_y;
+    const real rrrs_bias_in_axes3_x = v.rrrs_bias_t_3*v.rrrs_omega_1_in_axes3_y -
+        rrrs_bias_t_5*rrrs_qd_2_t_3 + v.rrrs_bias_t_6*v.rrrs_omega_1_in_axes3_y -
+        v.rrrs_bias_t_8*v.rrrs_omega_1_in_axes3_y - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z;
     const real rrrs_bias_in_axes3_y = v.rrrs_bias_t_8*v.rrrs_omega_1_in_axes3_x -
-        v.rrrs_bias_t_3*v.rrrs_omega_1_in_axes3_x - rrrs_bias_t_4*rrrs_qd_2_t_3 -
+        rrrs_bias_t_4*rrrs_qd_2_t_3 - v.rrrs_bias_t_3*v.rrrs_omega_1_in_axes3_x -
         v.rrrs_bias_t_6*v.rrrs_omega_1_in_axes3_x;
-    const real rrrs_bias_in_axes3_z = rrrs_bias_t_7*v.rrrs_omega_1_in_axes3_x +
-        v.rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*v.rrrs_c_3 -
-        v.rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) -
-        rrrs_beta_3_in_axes3_y*m->rrrs_platform_joint_offset_x[i] -
-        rrrs_bias_t_4*v.rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*v.rrrs_omega_1_in_axes3_x -
-        v.rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y;
+    const real rrrs_bias_in_axes3_z = v.rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*v.rrrs_c_3 -
+        v.rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) - rrrs_bias_t_4*v.rrrs_omega_1_in_axes3_y -
+        rrrs_bias_t_5*v.rrrs_omega_1_in_axes3_x - v.rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
+        - rrrs_beta_3_in_axes3_y*m->rrrs_platform_joint_offset_x[i] +
+        rrrs_bias_t_7*v.rrrs_omega_1_in_axes3_x;
     /* (rrrs-rel) acceleration of the connection point left to the joint accelerations */
     const real rrrs_rel_in_axes3_x = axis_x_rrrs_axes3_x*v.rrrs_S_ddot_x +
         axis_x_rrrs_axes3_y*v.rrrs_S_ddot_y + axis_x_rrrs_axes3_z*v.rrrs_S_ddot_z -
@@ -7382,7 +7406,8 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
     real s[9] = {0};
     real o_rrrrs[7*LEGS(LEGS_OF_rrrrs)] = {0};
     real o_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0};
-    joint_accelerations_before(m, 1, 0, X, s, t);
+    values v;
+    joint_accelerations_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
         joint_accelerations_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), s, X, V, A, o_rrrrs);
     }
@@ -7404,7 +7429,8 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real o_rrrrs[7*LANES];
     real o_rrrs[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_accelerations_before(m, LANES, k, X, s, t);
+        values v;
+        joint_accelerations_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -7425,20 +7451,20 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void legs_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -7453,28 +7479,29 @@ INLINE void legs_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, siz
     stage_rrrrs_legs_required(m, w, i, j, V, A, &v);
     /* (rrrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real rrrrs_ydd_2 = A[6*w + j];
-    const real rrrrs_mu_2_in_axes2_y = v.rrrrs_B_2_in_axes2_zy*m->rrrrs_J_2_in_spec2_xy[i] +
-        m->rrrrs_Sigma_2_in_axes2_zz[i]*v.rrrrs_alpha_1_in_axes2_y +
-        v.rrrrs_g_in_axes1_y*m->rrrrs_h_2_in_spec2_x[i] -
-        v.rrrrs_B_2_in_axes2_zx*m->rrrrs_Sigma_2_in_axes2_xx[i] -
+    const real rrrrs_mu_2_in_axes2_y = v.rrrrs_g_in_axes1_y*m->rrrrs_h_2_in_spec2_x[i] -
+        v.rrrrs_g_in_axes2_x*m->rrrrs_h_2_in_spec2_z[i] -
         m->rrrrs_J_2_in_spec2_xz[i]*(v.rrrrs_omega_1_in_axes2_x*v.rrrrs_omega_1_in_axes2_x -
         v.rrrrs_bias_t) - m->rrrrs_J_2_in_spec2_yz[i]*(v.rrrrs_W_2_in_axes2_xy - rrrrs_ydd_2)
-        - v.rrrrs_g_in_axes2_x*m->rrrrs_h_2_in_spec2_z[i];
+        + m->rrrrs_Sigma_2_in_axes2_zz[i]*v.rrrrs_alpha_1_in_axes2_y +
+        v.rrrrs_B_2_in_axes2_zy*m->rrrrs_J_2_in_spec2_xy[i] -
+        v.rrrrs_B_2_in_axes2_zx*m->rrrrs_Sigma_2_in_axes2_xx[i];
     /* (rrrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection
        point left out */
-    const real rrrrs_N_2_in_axes2_y = rrrrs_mu_2_in_axes2_y +
-        v.rrrrs_N_3_in_axes3_x*v.rrrrs_s_3 + v.rrrrs_N_3_in_axes3_y*v.rrrrs_c_3 -
-        v.rrrrs_f_3_in_axes3_z*m->rrrrs_joint3_offset_x[i];
+    const real rrrrs_N_2_in_axes2_y = rrrrs_mu_2_in_axes2_y -
+        v.rrrrs_f_3_in_axes3_z*m->rrrrs_joint3_offset_x[i] +
+        v.rrrrs_N_3_in_axes3_x*v.rrrrs_s_3 + v.rrrrs_N_3_in_axes3_y*v.rrrrs_c_3;
     /* (rrrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection
        point left out */
     const real rrrrs_N_1_in_axes1_z = v.rrrrs_mu_1_in_axes1_z +
         v.rrrrs_N_2_in_axes2_x*v.rrrrs_c_2 - rrrrs_N_2_in_axes2_y*v.rrrrs_s_2;
     /* (rrrrs-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rrrrs_c_in_axes4_x = v.rrrrs_W_4_t_2*m->rrrrs_h_4_in_spec4_x[i] +
+    const real rrrrs_c_in_axes4_x = v.rrrrs_W_4_t_2*m->rrrrs_h_4_in_spec4_x[i] -
+        v.rrrrs_B_4_in_axes4_xy*m->rrrrs_h_4_in_spec4_y[i] -
+        v.rrrrs_B_4_in_axes4_xz*m->rrrrs_h_4_in_spec4_z[i] +
         v.rrrrs_w_3_in_axes4_x*(v.rrrrs_G_in_axes4_y*v.rrrrs_r_3_in_axes4_x -
-        v.rrrrs_N_3_in_axes3_z) - v.rrrrs_B_4_in_axes4_xy*m->rrrrs_h_4_in_spec4_y[i] -
-        v.rrrrs_B_4_in_axes4_xz*m->rrrrs_h_4_in_spec4_z[i];
+        v.rrrrs_N_3_in_axes3_z);
     const real rrrrs_c_in_axes4_z = m->rrrrs_h_4_in_spec4_z[i]*(v.rrrrs_W_1_t +
         v.rrrrs_W_1_t_2) - v.rrrrs_B_4_in_axes4_zx*m->rrrrs_h_4_in_spec4_x[i] -
         v.rrrrs_B_4_in_axes4_zy*m->rrrrs_h_4_in_spec4_y[i] -
@@ -7486,14 +7513,14 @@ INLINE void legs_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, siz
         v.rrrrs_acc_4_in_axes4_y*m->rrrrs_link4_mass[i];
     const real rrrrs_c_true_in_axes4_z = rrrrs_c_in_axes4_z -
         v.rrrrs_acc_4_in_axes4_z*m->rrrrs_link4_mass[i];
-    const real rrrrs_c_true_x = v.axis_x_rrrrs_axes4_x*rrrrs_c_true_in_axes4_x +
-        v.axis_y_rrrrs_axes4_x*rrrrs_c_true_in_axes4_y +
+    const real rrrrs_c_true_x = v.axis_y_rrrrs_axes4_x*rrrrs_c_true_in_axes4_y +
+        v.axis_x_rrrrs_axes4_x*rrrrs_c_true_in_axes4_x +
         v.axis_z_rrrrs_axes4_x*rrrrs_c_true_in_axes4_z;
-    const real rrrrs_c_true_y = v.axis_x_rrrrs_axes4_y*rrrrs_c_true_in_axes4_x +
-        v.axis_y_rrrrs_axes4_y*rrrrs_c_true_in_axes4_y +
+    const real rrrrs_c_true_y = v.axis_y_rrrrs_axes4_y*rrrrs_c_true_in_axes4_y +
+        v.axis_x_rrrrs_axes4_y*rrrrs_c_true_in_axes4_x +
         v.axis_z_rrrrs_axes4_y*rrrrs_c_true_in_axes4_z;
-    const real rrrrs_c_true_z = v.axis_x_rrrrs_axes4_z*rrrrs_c_true_in_axes4_x +
-        v.axis_y_rrrrs_axes4_z*rrrrs_c_true_in_axes4_y +
+    const real rrrrs_c_true_z = v.axis_y_rrrrs_axes4_z*rrrrs_c_true_in_axes4_y +
+        v.axis_x_rrrrs_axes4_z*rrrrs_c_true_in_axes4_x +
         v.axis_z_rrrrs_axes4_z*rrrrs_c_true_in_axes4_z;
     /* (rrrrs-c_true) */
     o[0*count + k] = rrrrs_c_true_x;
@@ -7547,14 +7574,14 @@ INLINE void legs_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size
         v.rrrs_acc_3_in_axes3_y*m->rrrs_link3_mass[i];
     const real rrrs_c_true_in_axes3_z = v.rrrs_c_in_axes3_z -
         v.rrrs_acc_3_in_axes3_z*m->rrrs_link3_mass[i];
-    const real rrrs_c_true_x = v.axis_x_rrrs_axes3_x*rrrs_c_true_in_axes3_x +
-        v.axis_y_rrrs_axes3_x*rrrs_c_true_in_axes3_y +
+    const real rrrs_c_true_x = v.axis_y_rrrs_axes3_x*rrrs_c_true_in_axes3_y +
+        v.axis_x_rrrs_axes3_x*rrrs_c_true_in_axes3_x +
         v.axis_z_rrrs_axes3_x*rrrs_c_true_in_axes3_z;
-    const real rrrs_c_true_y = v.axis_x_rrrs_axes3_y*rrrs_c_true_in_axes3_x +
-        v.axis_y_rrrs_axes3_y*rrrs_c_true_in_axes3_y +
+    const real rrrs_c_true_y = v.axis_y_rrrs_axes3_y*rrrs_c_true_in_axes3_y +
+        v.axis_x_rrrs_axes3_y*rrrs_c_true_in_axes3_x +
         v.axis_z_rrrs_axes3_y*rrrs_c_true_in_axes3_z;
-    const real rrrs_c_true_z = v.axis_x_rrrs_axes3_z*rrrs_c_true_in_axes3_x +
-        v.axis_y_rrrs_axes3_z*rrrs_c_true_in_axes3_y +
+    const real rrrs_c_true_z = v.axis_y_rrrs_axes3_z*rrrs_c_true_in_axes3_y +
+        v.axis_x_rrrs_axes3_z*rrrs_c_true_in_axes3_x +
         v.axis_z_rrrs_axes3_z*rrrs_c_true_in_axes3_z;
     /* (rrrs-c_true) */
     o[0*count + k] = rrrs_c_true_x;
@@ -7599,7 +7626,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     real o_rrrrs[11*LEGS(LEGS_OF_rrrrs)] = {0};
     real o_rrrs[11*LEGS(LEGS_OF_rrrs)] = {0};
     clear(actuator, 21);
-    legs_before(m, 1, 0, X, s, t);
+    values v;
+    legs_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
         legs_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), s, X, V, A, o_rrrrs);
     }
@@ -7615,32 +7643,36 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s)
+{
     /* (potential) potential energy */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
-    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x +
-        v.R_xy*m->h_star_in_platform_y + v.R_xz*m->h_star_in_platform_z + m->m_star*t_x) +
-        m->gravity_y*(v.R_yx*m->h_star_in_platform_x + v.R_yy*m->h_star_in_platform_y +
-        v.R_yz*m->h_star_in_platform_z + m->m_star*t_y) +
-        m->gravity_z*(v.R_zx*m->h_star_in_platform_x + v.R_zy*m->h_star_in_platform_y +
-        v.R_zz*m->h_star_in_platform_z + m->m_star*t_z);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+    const real potential_t = m->gravity_x*(m->m_star*t_x + v->R_xy*m->h_star_in_platform_y +
+        v->R_xz*m->h_star_in_platform_z + v->R_xx*m->h_star_in_platform_x) +
+        m->gravity_y*(m->m_star*t_y + v->R_yx*m->h_star_in_platform_x +
+        v->R_yz*m->h_star_in_platform_z + v->R_yy*m->h_star_in_platform_y) +
+        m->gravity_z*(m->m_star*t_z + v->R_zx*m->h_star_in_platform_x +
+        v->R_zy*m->h_star_in_platform_y + v->R_zz*m->h_star_in_platform_z);
     s[9*w + k] = potential_t;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void potential_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -7653,39 +7685,39 @@ INLINE void potential_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
     const real t_x = X[0*w + j];
-    const real rrrrs_h_3_t_3 = t_x + R_xx*m->rrrrs_platform_point_x[i] +
-        R_xy*m->rrrrs_platform_point_y[i] + R_xz*m->rrrrs_platform_point_z[i] -
-        m->rrrrs_base_point_x[i];
+    const real rrrrs_h_3_t_3 = t_x - m->rrrrs_base_point_x[i] +
+        R_xy*m->rrrrs_platform_point_y[i] + R_xz*m->rrrrs_platform_point_z[i] +
+        R_xx*m->rrrrs_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real t_y = X[1*w + j];
-    const real rrrrs_h_3_t_4 = t_y + R_yx*m->rrrrs_platform_point_x[i] +
-        R_yy*m->rrrrs_platform_point_y[i] + R_yz*m->rrrrs_platform_point_z[i] -
-        m->rrrrs_base_point_y[i];
+    const real rrrrs_h_3_t_4 = t_y - m->rrrrs_base_point_y[i] +
+        R_yx*m->rrrrs_platform_point_x[i] + R_yz*m->rrrrs_platform_point_z[i] +
+        R_yy*m->rrrrs_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real t_z = X[2*w + j];
-    const real rrrrs_h_3_t_5 = t_z + R_zx*m->rrrrs_platform_point_x[i] +
-        R_zy*m->rrrrs_platform_point_y[i] + R_zz*m->rrrrs_platform_point_z[i] -
-        m->rrrrs_base_point_z[i];
+    const real rrrrs_h_3_t_5 = t_z - m->rrrrs_base_point_z[i] +
+        R_zx*m->rrrrs_platform_point_x[i] + R_zy*m->rrrrs_platform_point_y[i] +
+        R_zz*m->rrrrs_platform_point_z[i];
     const real rrrrs_h_3_t_8 = m->rrrrs_base_frame_xy[i]*rrrrs_h_3_t_3 +
         m->rrrrs_base_frame_yy[i]*rrrrs_h_3_t_4 + m->rrrrs_base_frame_zy[i]*rrrrs_h_3_t_5;
     const real rrrrs_h_3_t_9 = m->rrrrs_base_frame_xz[i]*rrrrs_h_3_t_3 +
         m->rrrrs_base_frame_yz[i]*rrrrs_h_3_t_4 + m->rrrrs_base_frame_zz[i]*rrrrs_h_3_t_5;
     const real rrrrs_h_3_t_10 = rrrrs_h_3_t_8*rrrrs_h_3_t_8 + rrrrs_h_3_t_9*rrrrs_h_3_t_9;
     const real rrrrs_h_3_t_11 = m->rrrrs_branch_1[i]*root(rrrrs_h_3_t_10);
-    const real rrrrs_h_3_t_12 = m->rrrrs_base_frame_xx[i]*rrrrs_h_3_t_3 +
-        m->rrrrs_base_frame_yx[i]*rrrrs_h_3_t_4 + m->rrrrs_base_frame_zx[i]*rrrrs_h_3_t_5 -
-        m->rrrrs_joint2_offset_x[i];
+    const real rrrrs_h_3_t_12 = m->rrrrs_base_frame_xx[i]*rrrrs_h_3_t_3 -
+        m->rrrrs_joint2_offset_x[i] + m->rrrrs_base_frame_yx[i]*rrrrs_h_3_t_4 +
+        m->rrrrs_base_frame_zx[i]*rrrrs_h_3_t_5;
     const real rrrrs_h_3_t_13 = rrrrs_h_3_t_11*v.rrrrs_h_3_t_6 -
         rrrrs_h_3_t_12*v.rrrrs_h_3_t_7;
-    const real rrrrs_h_3_t_14 = rrrrs_h_3_t_11*v.rrrrs_h_3_t_7 +
-        rrrrs_h_3_t_12*v.rrrrs_h_3_t_6 - m->rrrrs_joint3_offset_x[i];
+    const real rrrrs_h_3_t_14 = rrrrs_h_3_t_12*v.rrrrs_h_3_t_6 - m->rrrrs_joint3_offset_x[i] +
+        rrrrs_h_3_t_11*v.rrrrs_h_3_t_7;
     const real rrrrs_h_3_t_15 = rrrrs_h_3_t_13*rrrrs_h_3_t_13 + rrrrs_h_3_t_14*rrrrs_h_3_t_14;
-    const real rrrrs_h_3_t_16 = m->rrrrs_h_3_t[i] + R(0.5)*rrrrs_h_3_t_15 -
-        m->rrrrs_h_3_t_2[i];
+    const real rrrrs_h_3_t_16 = m->rrrrs_h_3_t[i] - m->rrrrs_h_3_t_2[i] +
+        R(0.5)*rrrrs_h_3_t_15;
     const real rrrrs_h_3_t_17 = rrrrs_h_3_t_14*m->rrrrs_joint4_offset_x[i];
     const real rrrrs_h_3_t_18 = rrrrs_h_3_t_13*m->rrrrs_joint4_offset_x[i];
     const real rrrrs_h_3_t_19 = rrrrs_h_3_t_17*rrrrs_h_3_t_17 + rrrrs_h_3_t_18*rrrrs_h_3_t_18;
@@ -7730,25 +7762,28 @@ INLINE void potential_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j
     const real rrrrs_potential_t_8 = rrrrs_h_3_t_22*rrrrs_potential_t_6 +
         rrrrs_h_3_t_23*rrrrs_potential_t_5;
     const real rrrrs_potential_t_9 = m->rrrrs_h_1_in_spec1_x[i] + m->rrrrs_potential_t_3[i] +
-        m->rrrrs_potential_t_4[i] + rrrrs_P_c_3_in_axes2_x*v.rrrrs_h_3_t_7 +
-        m->rrrrs_h_2_in_spec2_x[i]*v.rrrrs_h_3_t_6 + rrrrs_h_3_in_axes2_x*v.rrrrs_h_3_t_6 +
-        v.rrrrs_h_3_t_6*rrrrs_potential_t_7 + m->rrrrs_link3_mass[i]*(m->rrrrs_b_in_spec1_x[i]
-        + m->rrrrs_joint2_offset_x[i] + v.rrrrs_h_3_t_6*m->rrrrs_joint3_offset_x[i]) -
-        m->rrrrs_h_2_in_spec2_y[i]*v.rrrrs_h_3_t_7 - v.rrrrs_h_3_t_7*rrrrs_potential_t_8;
+        m->rrrrs_potential_t_4[i] + m->rrrrs_h_2_in_spec2_x[i]*v.rrrrs_h_3_t_6 -
+        m->rrrrs_h_2_in_spec2_y[i]*v.rrrrs_h_3_t_7 +
+        m->rrrrs_link3_mass[i]*(m->rrrrs_b_in_spec1_x[i] + m->rrrrs_joint2_offset_x[i] +
+        v.rrrrs_h_3_t_6*m->rrrrs_joint3_offset_x[i]) + rrrrs_P_c_3_in_axes2_x*v.rrrrs_h_3_t_7
+        + rrrrs_h_3_in_axes2_x*v.rrrrs_h_3_t_6 + v.rrrrs_h_3_t_6*rrrrs_potential_t_7 -
+        v.rrrrs_h_3_t_7*rrrrs_potential_t_8;
     const real rrrrs_potential_t_10 = m->rrrrs_h_1_in_spec1_y[i] +
-        rrrrs_b_in_spec1_y*m->rrrrs_link1_mass[i] + rrrrs_b_in_spec1_y*m->rrrrs_link2_mass[i]
-        + m->rrrrs_h_2_in_spec2_x[i]*v.rrrrs_h_3_t_7 +
-        m->rrrrs_h_2_in_spec2_y[i]*v.rrrrs_h_3_t_6 + rrrrs_h_3_in_axes2_x*v.rrrrs_h_3_t_7 +
-        v.rrrrs_h_3_t_6*rrrrs_potential_t_8 + v.rrrrs_h_3_t_7*rrrrs_potential_t_7 +
-        m->rrrrs_link3_mass[i]*(rrrrs_b_in_spec1_y +
-        v.rrrrs_h_3_t_7*m->rrrrs_joint3_offset_x[i]) - rrrrs_P_c_3_in_axes2_x*v.rrrrs_h_3_t_6;
-    const real rrrrs_potential_t_11 = m->rrrrs_g_in_axes1_z[i]*rrrrs_potential_t_9 +
-        rrrrs_potential_t_10*(m->rrrrs_acc_3_t[i]*rrrrs_c_1 + m->rrrrs_acc_3_t_2[i]*rrrrs_s_1)
-        + (m->rrrrs_acc_3_t_2[i]*rrrrs_c_1 -
+        m->rrrrs_h_2_in_spec2_x[i]*v.rrrrs_h_3_t_7 +
+        m->rrrrs_h_2_in_spec2_y[i]*v.rrrrs_h_3_t_6 + rrrrs_b_in_spec1_y*m->rrrrs_link1_mass[i]
+        + rrrrs_b_in_spec1_y*m->rrrrs_link2_mass[i] +
+        m->rrrrs_link3_mass[i]*(v.rrrrs_h_3_t_7*m->rrrrs_joint3_offset_x[i] +
+        rrrrs_b_in_spec1_y) + rrrrs_h_3_in_axes2_x*v.rrrrs_h_3_t_7 -
+        rrrrs_P_c_3_in_axes2_x*v.rrrrs_h_3_t_6 + v.rrrrs_h_3_t_6*rrrrs_potential_t_8 +
+        v.rrrrs_h_3_t_7*rrrrs_potential_t_7;
+    const real rrrrs_potential_t_11 = (m->rrrrs_acc_3_t_2[i]*rrrrs_c_1 -
         m->rrrrs_acc_3_t[i]*rrrrs_s_1)*(m->rrrrs_h_1_in_spec1_z[i] +
         m->rrrrs_h_2_in_spec2_z[i] + m->rrrrs_h_3_in_spec3_z[i] + m->rrrrs_h_4_in_spec4_z[i] +
         rrrrs_b_in_spec1_z*m->rrrrs_link1_mass[i] + rrrrs_b_in_spec1_z*m->rrrrs_link2_mass[i]
-        + rrrrs_b_in_spec1_z*m->rrrrs_link3_mass[i]);
+        + rrrrs_b_in_spec1_z*m->rrrrs_link3_mass[i]) +
+        m->rrrrs_g_in_axes1_z[i]*rrrrs_potential_t_9 +
+        rrrrs_potential_t_10*(m->rrrrs_acc_3_t[i]*rrrrs_c_1 +
+        m->rrrrs_acc_3_t_2[i]*rrrrs_s_1);
     /* (potential) */
     gather(&terms[0*count + k], add, -rrrrs_potential_t_11);  /* potential_of_legs */
     o[1*count + k] = UNLESS(magnitude(rrrrs_h_3_t_10) >
@@ -7776,8 +7811,8 @@ INLINE void potential_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j,
     const real rrrs_c_2 = v.inv_rrrs_rho2_2*(v.rrrs_Kc_2*v.rrrs_Kd_2 -
         v.rrrs_Ks_2*v.rrrs_root_2);
     /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
-    const real rrrs_s_2 = v.inv_rrrs_rho2_2*(v.rrrs_Kc_2*v.rrrs_root_2 +
-        v.rrrs_Kd_2*v.rrrs_Ks_2);
+    const real rrrs_s_2 = v.inv_rrrs_rho2_2*(v.rrrs_Kd_2*v.rrrs_Ks_2 +
+        v.rrrs_Kc_2*v.rrrs_root_2);
     /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
     const real rrrs_c_3 =
         m->inv_rrrs_size_t_2[i]*m->rrrs_platform_joint_offset_x[i]*v.rrrs_x_3_in_axes2_x;
@@ -7796,16 +7831,16 @@ INLINE void potential_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j,
     const real rrrs_potential_t_7 = (rrrs_c_1*m->rrrs_mu_2_t[i] +
         m->rrrs_mu_2_t_2[i]*rrrs_s_1)*(m->rrrs_h_1_in_spec1_y[i] +
         rrrs_b_in_spec1_y*m->rrrs_link1_mass[i] + rrrs_b_in_spec1_y*m->rrrs_link2_mass[i] +
-        rrrs_c_2*m->rrrs_h_2_in_spec2_y[i] + rrrs_c_2*rrrs_potential_t_6 +
-        m->rrrs_h_2_in_spec2_x[i]*rrrs_s_2 + rrrs_potential_t_5*rrrs_s_2);
-    const real rrrs_potential_t_8 = rrrs_potential_t_7 +
-        m->rrrs_g_in_axes1_z[i]*(m->rrrs_h_1_in_spec1_x[i] + m->rrrs_potential_t_3[i] +
-        m->rrrs_potential_t_4[i] + rrrs_c_2*m->rrrs_h_2_in_spec2_x[i] +
-        rrrs_c_2*rrrs_potential_t_5 - m->rrrs_h_2_in_spec2_y[i]*rrrs_s_2 -
-        rrrs_potential_t_6*rrrs_s_2) + (rrrs_c_1*m->rrrs_mu_2_t_2[i] -
+        rrrs_c_2*m->rrrs_h_2_in_spec2_y[i] + m->rrrs_h_2_in_spec2_x[i]*rrrs_s_2 +
+        rrrs_c_2*rrrs_potential_t_6 + rrrs_potential_t_5*rrrs_s_2);
+    const real rrrs_potential_t_8 = (rrrs_c_1*m->rrrs_mu_2_t_2[i] -
         m->rrrs_mu_2_t[i]*rrrs_s_1)*(m->rrrs_h_1_in_spec1_z[i] + m->rrrs_h_2_in_spec2_z[i] +
         m->rrrs_h_3_in_spec3_z[i] + rrrs_b_in_spec1_z*m->rrrs_link1_mass[i] +
-        rrrs_b_in_spec1_z*m->rrrs_link2_mass[i]);
+        rrrs_b_in_spec1_z*m->rrrs_link2_mass[i]) +
+        m->rrrs_g_in_axes1_z[i]*(m->rrrs_h_1_in_spec1_x[i] + m->rrrs_potential_t_3[i] +
+        m->rrrs_potential_t_4[i] + rrrs_c_2*m->rrrs_h_2_in_spec2_x[i] -
+        m->rrrs_h_2_in_spec2_y[i]*rrrs_s_2 + rrrs_c_2*rrrs_potential_t_5 -
+        rrrs_potential_t_6*rrrs_s_2) + rrrs_potential_t_7;
     /* (potential) */
     gather(&terms[1*count + k], add, rrrs_potential_t_8);  /* potential_t_2 */
     o[1*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) >
@@ -7836,7 +7871,8 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
     real s[10] = {0}, sums[2] = {0};
     real terms_rrrrs[2*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[2*LEGS(LEGS_OF_rrrrs)] = {0};
     real terms_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0};
-    potential_before(m, 1, 0, X, s, t);
+    values v;
+    potential_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
         potential_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), 0, s, X, terms_rrrrs, o_rrrrs);
     }
@@ -7857,28 +7893,28 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
             sums[n] += terms_rrrs[n*LEGS(LEGS_OF_rrrs) + leg];
         }
     }
+    potential_between(m, 1, 0, X, &v, s);
     potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
-    *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, real *lengths, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void condition_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -8060,7 +8096,8 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     real terms_rrrrs[2*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[19*LEGS(LEGS_OF_rrrrs)] = {0};
     real terms_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[17*LEGS(LEGS_OF_rrrs)] = {0};
     clear(H, NV*NU);
-    condition_before(m, 1, 0, X, s, lengths, t);
+    values v;
+    condition_before(m, 1, 0, X, &v, s, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
         condition_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), 0, s, X, terms_rrrrs, o_rrrrs);
     }
@@ -8097,11 +8134,7 @@ int hybrid_3rrrs_redundant_M(const prepared *m, const real *X, real *M_out)
         check(NV*NV, 1, M, why.overflow);
     }
     copy(NV*NV, M, M_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-    }
-    return code;
+    return settled(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -8130,11 +8163,7 @@ int hybrid_3rrrs_redundant_Z(const prepared *m, const real *X, const real *V, re
         check(NV, 1, Z, why.overflow);
     }
     copy(NV, Z, Z_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, Z_out);
-    }
-    return code;
+    return settled(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -8160,11 +8189,7 @@ int hybrid_3rrrs_redundant_H(const prepared *m, const real *X, real *H_out)
         check(NV*NU, 1, H, why.overflow);
     }
     copy(NV*NU, H, H_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -8189,11 +8214,7 @@ int hybrid_3rrrs_redundant_inverse_kinematics(const prepared *m, const real *X, 
         check(NJ, 1, q, why.overflow);
     }
     copy(NJ, q, q_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, q_out);
-    }
-    return code;
+    return settled(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -8223,11 +8244,7 @@ int hybrid_3rrrs_redundant_joint_rates(const prepared *m, const real *X, const r
         check(NJ, 1, qd, why.overflow);
     }
     copy(NJ, qd, qd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qd_out);
-    }
-    return code;
+    return settled(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -8260,11 +8277,7 @@ int hybrid_3rrrs_redundant_joint_accelerations(const prepared *m, const real *X,
         check(NJ, 1, qdd, why.overflow);
     }
     copy(NJ, qdd, qdd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qdd_out);
-    }
-    return code;
+    return settled(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -8301,13 +8314,9 @@ int hybrid_3rrrs_redundant_dynamics(const prepared *m, const real *X, const real
     copy(NV*NV, M, M_out);
     copy(NV, Z, Z_out);
     copy(NV*NU, H, H_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-        refuse(NV, Z_out);
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    settled(&why, NV*NV, M_out);
+    settled(&why, NV, Z_out);
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -8328,7 +8337,8 @@ INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real
 int hybrid_3rrrs_redundant_inverse_dynamics(const prepared *m, const real *X, const real *V, const
     real *A, const real *wrench, real *tau_out)
 {
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, extend_1[7] = {0}, subtract_1[NV] = {0},
+    static const real no_wrench[NW] = {0};
+    real required[NV] = {0}, H[NV*NU] = {0}, extend_1[7] = {0}, subtract_1[NV] = {0},
         work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
@@ -8338,7 +8348,7 @@ int hybrid_3rrrs_redundant_inverse_dynamics(const prepared *m, const real *X, co
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < 7; ++i) {
         extend_1[i] = i < NW ? wrench[i] : 0;
@@ -8349,11 +8359,7 @@ int hybrid_3rrrs_redundant_inverse_dynamics(const prepared *m, const real *X, co
     set_matrix(NV, 1, H, work);
     solve_state(NV, subtract_1, work, tau_out, why.singular);
     check(NU, 1, tau_out, why.overflow);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, tau_out);
-    }
-    return code;
+    return settled(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -8385,8 +8391,9 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 int hybrid_3rrrs_redundant_forward_dynamics(const prepared *m, const real *X, const real *V, const
     real *tau, const real *wrench, real *A_out)
 {
-    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, extend_1[7] =
-        {0}, add_1[NV] = {0}, subtract_1[NV] = {0}, work[NV*PADDED(NV)];
+    static const real no_wrench[NW] = {0};
+    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, extend_1[7] = {0}, add_1[NV]
+        = {0}, subtract_1[NV] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
@@ -8395,7 +8402,7 @@ int hybrid_3rrrs_redundant_forward_dynamics(const prepared *m, const real *X, co
         check(NV, 1, V, why.invalid);
         check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     for (size_t i = 0; i < 7; ++i) {
@@ -8410,11 +8417,7 @@ int hybrid_3rrrs_redundant_forward_dynamics(const prepared *m, const real *X, co
     set_matrix(NV, 1, M, work);
     solve_state(NV, subtract_1, work, A_out, why.singular);
     check(NV, 1, A_out, why.overflow);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, A_out);
-    }
-    return code;
+    return settled(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -8460,20 +8463,16 @@ int hybrid_3rrrs_redundant_complete_acceleration(const prepared *m, const real *
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, completed_out);
-    }
-    return code;
+    return settled(&why, NV, completed_out);
 }
 
 int hybrid_3rrrs_redundant_leg_reactions(const prepared *m, const real *X, const real *V, const
     real *A, const real *wrench, real *forces_out)
 {
+    static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 0, 0, 1, 1, 2, 2};
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, extend_1[7] = {0}, subtract_1[NV] = {0},
-        solve_1[NV] = {0}, leg_force[3*NL] = {0}, actuator[21] = {0}, forces[NL*NL] = {0},
-        work[NV*PADDED(NV)];
+    real required[NV] = {0}, H[NV*NU] = {0}, extend_1[7] = {0}, subtract_1[NV] = {0}, solve_1[NV] =
+        {0}, leg_force[3*NL] = {0}, actuator[21] = {0}, forces[NL*NL] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
@@ -8482,7 +8481,7 @@ int hybrid_3rrrs_redundant_leg_reactions(const prepared *m, const real *X, const
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < 7; ++i) {
         extend_1[i] = i < NW ? wrench[i] : 0;
@@ -8499,11 +8498,7 @@ int hybrid_3rrrs_redundant_leg_reactions(const prepared *m, const real *X, const
     add_forces(NV, 3, 1, places_forces, solve_1, actuator, forces);
     check(NL*NL, 1, forces, why.overflow);
     copy(NL*NL, forces, forces_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NL*NL, forces_out);
-    }
-    return code;
+    return settled(&why, NL*NL, forces_out);
 }
 
 int hybrid_3rrrs_redundant_energy(const prepared *m, const real *X, const real *V, real
@@ -8525,26 +8520,23 @@ int hybrid_3rrrs_redundant_energy(const prepared *m, const real *X, const real *
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, kinetic_out);
-        refuse(1, potential_out);
-    }
-    return code;
+    settled(&why, 1, kinetic_out);
+    return settled(&why, 1, potential_out);
 }
 
 int hybrid_3rrrs_redundant_condition(const prepared *m, const real *X, real *sigma_out, real
     *legs_out)
 {
     const real *length = NULL;
+    static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5, 6};
-    real length_in[1], H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
+        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, length, 0, length_in, why.invalid);
+    length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
@@ -8562,12 +8554,8 @@ int hybrid_3rrrs_redundant_condition(const prepared *m, const real *X, real *sig
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, sigma_out);
-        refuse(NL, legs_out);
-    }
-    return code;
+    settled(&why, NV, sigma_out);
+    return settled(&why, NL, legs_out);
 }
 
 int hybrid_3rrrs_redundant_manipulability(const prepared *m, const real *X, real *measure_out,
@@ -8601,12 +8589,8 @@ int hybrid_3rrrs_redundant_manipulability(const prepared *m, const real *X, real
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, measure_out);
-        refuse(1, isotropy_out);
-    }
-    return code;
+    settled(&why, 1, measure_out);
+    return settled(&why, 1, isotropy_out);
 }
 
 int hybrid_3rrrs_redundant_singularity_distance(const prepared *m, const real *X, real
@@ -8640,12 +8624,8 @@ int hybrid_3rrrs_redundant_singularity_distance(const prepared *m, const real *X
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, actuators_out);
-        refuse(1, legs_out);
-    }
-    return code;
+    settled(&why, 1, actuators_out);
+    return settled(&why, 1, legs_out);
 }
 
 static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
@@ -8670,11 +8650,7 @@ static int mismatch_one(const prepared *m, const real *X, const real *q_actuated
     wrap_turns(NU, 1, places_gap, gap);
     check(NU, 1, gap, why.overflow);
     copy(NU, gap, gap_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, gap_out);
-    }
-    return code;
+    return settled(&why, NU, gap_out);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
@@ -8688,11 +8664,7 @@ static int slope_one(const prepared *m, const real *X, real *slope_out)
         check(NV*NU, 1, slope, why.overflow);
     }
     copy(NV*NU, slope, slope_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, slope_out);
-    }
-    return code;
+    return settled(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -8754,11 +8726,7 @@ int hybrid_3rrrs_redundant_forward_kinematics(const prepared *m, const real *q_a
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int hybrid_3rrrs_redundant_dissipation(const prepared *m, const real *X, const real *V, real
@@ -8776,11 +8744,7 @@ int hybrid_3rrrs_redundant_dissipation(const prepared *m, const real *X, const r
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, dissipation_out);
-    }
-    return code;
+    return settled(&why, 1, dissipation_out);
 }
 
 int hybrid_3rrrs_redundant_momentum(const prepared *m, const real *X, const real *V, real
@@ -8798,11 +8762,7 @@ int hybrid_3rrrs_redundant_momentum(const prepared *m, const real *X, const real
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, momentum_out);
-    }
-    return code;
+    return settled(&why, NV, momentum_out);
 }
 
 int hybrid_3rrrs_redundant_joint_margins(const prepared *m, const real *X, real *margins_out)
@@ -8818,11 +8778,7 @@ int hybrid_3rrrs_redundant_joint_margins(const prepared *m, const real *X, real 
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, margins_out);
-    }
-    return code;
+    return settled(&why, NJ, margins_out);
 }
 
 int hybrid_3rrrs_redundant_within_limits(const prepared *m, const real *X, real *within_out)
@@ -8838,11 +8794,7 @@ int hybrid_3rrrs_redundant_within_limits(const prepared *m, const real *X, real 
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, within_out);
-    }
-    return code;
+    return settled(&why, 1, within_out);
 }
 
 int hybrid_3rrrs_redundant_actuator_positions(const prepared *m, const real *X, real *q_out)
@@ -8855,11 +8807,7 @@ int hybrid_3rrrs_redundant_actuator_positions(const prepared *m, const real *X, 
     take(NU, 1, hybrid_3rrrs_redundant_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, q_out);
-    }
-    return code;
+    return settled(&why, NU, q_out);
 }
 
 int hybrid_3rrrs_redundant_actuator_rates(const prepared *m, const real *X, const real *V, real
@@ -8877,11 +8825,7 @@ int hybrid_3rrrs_redundant_actuator_rates(const prepared *m, const real *X, cons
     take(NU, 1, hybrid_3rrrs_redundant_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qd_out);
-    }
-    return code;
+    return settled(&why, NU, qd_out);
 }
 
 int hybrid_3rrrs_redundant_actuator_accelerations(const prepared *m, const real *X, const real *V,
@@ -8900,11 +8844,7 @@ int hybrid_3rrrs_redundant_actuator_accelerations(const prepared *m, const real 
     take(NU, 1, hybrid_3rrrs_redundant_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qdd_out);
-    }
-    return code;
+    return settled(&why, NU, qdd_out);
 }
 
 int hybrid_3rrrs_redundant_power(const prepared *m, const real *X, const real *V, const real *tau,
@@ -8924,11 +8864,7 @@ int hybrid_3rrrs_redundant_power(const prepared *m, const real *X, const real *V
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, power_out);
-    }
-    return code;
+    return settled(&why, 1, power_out);
 }
 
 int hybrid_3rrrs_redundant_rotation(const real *X, real *R_out)
@@ -8941,11 +8877,7 @@ int hybrid_3rrrs_redundant_rotation(const real *X, real *R_out)
     rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     copy(9, R, R_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(9, R_out);
-    }
-    return code;
+    return settled(&why, 9, R_out);
 }
 
 int hybrid_3rrrs_redundant_pose(const real *t, const real *R, real *X_out)
@@ -8965,11 +8897,7 @@ int hybrid_3rrrs_redundant_pose(const real *t, const real *R, real *X_out)
     }
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int hybrid_3rrrs_redundant_X_dot(const real *X, const real *V, real *X_dot_out)
@@ -8991,11 +8919,7 @@ int hybrid_3rrrs_redundant_X_dot(const real *X, const real *V, real *X_dot_out)
     beside(1, 7, 1, join_1, V_from_6, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_dot_out);
-    }
-    return code;
+    return settled(&why, NQ, X_dot_out);
 }
 
 int hybrid_3rrrs_redundant_pose_from_rpy(const real *t, const real *rpy, real *X_out)
@@ -9015,11 +8939,7 @@ int hybrid_3rrrs_redundant_pose_from_rpy(const real *t, const real *rpy, real *X
     }
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int hybrid_3rrrs_redundant_retract(const real *X, const real *step, real *X_moved_out)
@@ -9050,11 +8970,7 @@ int hybrid_3rrrs_redundant_retract(const real *X, const real *step, real *X_move
     beside(1, 7, 1, join_1, add_2, X_moved);
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_moved_out);
-    }
-    return code;
+    return settled(&why, NQ, X_moved_out);
 }
 
 int hybrid_3rrrs_redundant_difference(const real *X0, const real *X1, real *step_out)
@@ -9085,11 +9001,7 @@ int hybrid_3rrrs_redundant_difference(const real *X0, const real *X1, real *step
     beside(1, 6, 1, join_1, subtract_2, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, step_out);
-    }
-    return code;
+    return settled(&why, NV, step_out);
 }
 
 int hybrid_3rrrs_redundant_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
@@ -9140,11 +9052,7 @@ int hybrid_3rrrs_redundant_interpolate(const real *X0, const real *X1, const rea
     beside(1, 7, 1, join_3, add_2, X);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 /* ---- one state, and batches ---- */

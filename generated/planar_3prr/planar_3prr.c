@@ -231,15 +231,12 @@ INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *t
 }
 
 /* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
-INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+INLINE const real *optional(size_t size, const real *x, const real *none, real *flags)
 {
-    for (size_t e = 0; e < size && !x; ++e) {
-        own[e] = none;
-    }
     if (x) {
         check(size, 1, x, flags);
     }
-    return x ? x : own;
+    return x ? x : none;
 }
 
 INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
@@ -296,6 +293,16 @@ APART void refuse(size_t size, real *out)
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
     }
+}
+
+/* The status of a state; an output is refused where it is impossible. */
+INLINE int settled(const verdict *t, size_t size, real *out)
+{
+    const int code = judge(t);
+    if (code != OK) {
+        refuse(size, out);
+    }
+    return code;
 }
 
 /* Outputs of a state where the user wants them, and of states side by side, state by state. */
@@ -423,29 +430,29 @@ INLINE int all_planar_inertias(const real *x, size_t n)
 /* ---- parameters ---- */
 
 const planar_3prr_params planar_3prr_default_params = {
-    {R(0.0), R(-9.81), R(0.0)},  /* gravity */
+    {0, R(-9.81), 0},  /* gravity */
     R(4.0),  /* platform_mass */
-    {R(0.01), R(0.02), R(0.0)},  /* platform_centre_of_mass */
-    {{R(0.02), R(0.0), R(0.0)}, {R(0.0), R(0.02), R(0.0)}, {R(0.0), R(0.0), R(0.05)}},  /* platform_inertia */
+    {R(0.01), R(0.02), 0},  /* platform_centre_of_mass */
+    {{R(0.02), 0, 0}, {0, R(0.02), 0}, {0, 0, R(0.05)}},  /* platform_inertia */
     {  /* prr_base_point */
-        {R(-0.5203911086386732), R(0.48120959336889035), R(0.0)},
-        {R(-0.12886468615859142), R(-0.7472574787826168), R(0.0)},
-        {R(0.7392557947972639), R(0.20604788541372687), R(0.0)},
+        {R(-0.5203911086386732), R(0.48120959336889035), 0},
+        {R(-0.12886468615859142), R(-0.7472574787826168), 0},
+        {R(0.7392557947972639), R(0.20604788541372687), 0},
     },
     {  /* prr_base_frame */
-        {{R(1.0), R(2.4492935982947064e-16), R(0.0)}, {R(-2.4492935982947064e-16), R(1.0), R(0.0)}, {R(0.0), R(0.0), R(1.0)}},
-        {{R(-0.4999999999999991), R(-0.8660254037844392), R(0.0)}, {R(0.8660254037844392), R(-0.4999999999999991), R(0.0)}, {R(0.0), R(0.0), R(1.0)}},
-        {{R(-0.4999999999999998), R(0.8660254037844387), R(0.0)}, {R(-0.8660254037844387), R(-0.4999999999999998), R(0.0)}, {R(0.0), R(0.0), R(1.0)}},
+        {{1, R(2.4492935982947064e-16), 0}, {R(-2.4492935982947064e-16), 1, 0}, {0, 0, 1}},
+        {{R(-0.4999999999999991), R(-0.8660254037844392), 0}, {R(0.8660254037844392), R(-0.4999999999999991), 0}, {0, 0, 1}},
+        {{R(-0.4999999999999998), R(0.8660254037844387), 0}, {R(-0.8660254037844387), R(-0.4999999999999998), 0}, {0, 0, 1}},
     },
     {  /* prr_platform_point */
-        {R(1.1021821192326179e-17), R(0.18), R(0.0)},
-        {R(-0.15588457268119899), R(-0.08999999999999994), R(0.0)},
-        {R(0.1558845726811989), R(-0.09000000000000008), R(0.0)},
+        {R(1.1021821192326179e-17), R(0.18), 0},
+        {R(-0.15588457268119899), R(-0.08999999999999994), 0},
+        {R(0.1558845726811989), R(-0.09000000000000008), 0},
     },
     {  /* prr_platform_joint_offset */
-        {R(0.5), R(0.0), R(0.0)},
-        {R(0.5), R(0.0), R(0.0)},
-        {R(0.5), R(0.0), R(0.0)},
+        {R(0.5), 0, 0},
+        {R(0.5), 0, 0},
+        {R(0.5), 0, 0},
     },
     {  /* prr_link1_mass */
         R(1.8),
@@ -453,29 +460,29 @@ const planar_3prr_params planar_3prr_default_params = {
         R(1.8),
     },
     {  /* prr_link1_centre_of_mass */
-        {R(0.0), R(0.0), R(0.0)},
-        {R(0.0), R(0.0), R(0.0)},
-        {R(0.0), R(0.0), R(0.0)},
+        {0, 0, 0},
+        {0, 0, 0},
+        {0, 0, 0},
     },
     {  /* prr_link1_inertia */
-        {{R(0.01), R(0.0), R(0.0)}, {R(0.0), R(0.01), R(0.0)}, {R(0.0), R(0.0), R(0.01)}},
-        {{R(0.01), R(0.0), R(0.0)}, {R(0.0), R(0.01), R(0.0)}, {R(0.0), R(0.0), R(0.01)}},
-        {{R(0.01), R(0.0), R(0.0)}, {R(0.0), R(0.01), R(0.0)}, {R(0.0), R(0.0), R(0.01)}},
+        {{R(0.01), 0, 0}, {0, R(0.01), 0}, {0, 0, R(0.01)}},
+        {{R(0.01), 0, 0}, {0, R(0.01), 0}, {0, 0, R(0.01)}},
+        {{R(0.01), 0, 0}, {0, R(0.01), 0}, {0, 0, R(0.01)}},
     },
     {  /* prr_link2_mass */
-        R(1.0),
-        R(1.0),
-        R(1.0),
+        1,
+        1,
+        1,
     },
     {  /* prr_link2_centre_of_mass */
-        {R(0.25), R(0.0), R(0.0)},
-        {R(0.25), R(0.0), R(0.0)},
-        {R(0.25), R(0.0), R(0.0)},
+        {R(0.25), 0, 0},
+        {R(0.25), 0, 0},
+        {R(0.25), 0, 0},
     },
     {  /* prr_link2_inertia */
-        {{R(0.0002), R(0.0), R(0.0)}, {R(0.0), R(0.02093333333333333), R(0.0)}, {R(0.0), R(0.0), R(0.02093333333333333)}},
-        {{R(0.0002), R(0.0), R(0.0)}, {R(0.0), R(0.02093333333333333), R(0.0)}, {R(0.0), R(0.0), R(0.02093333333333333)}},
-        {{R(0.0002), R(0.0), R(0.0)}, {R(0.0), R(0.02093333333333333), R(0.0)}, {R(0.0), R(0.0), R(0.02093333333333333)}},
+        {{R(0.0002), 0, 0}, {0, R(0.02093333333333333), 0}, {0, 0, R(0.02093333333333333)}},
+        {{R(0.0002), 0, 0}, {0, R(0.02093333333333333), 0}, {0, 0, R(0.02093333333333333)}},
+        {{R(0.0002), 0, 0}, {0, R(0.02093333333333333), 0}, {0, 0, R(0.02093333333333333)}},
     },
 };
 
@@ -524,6 +531,9 @@ static int acceptable(const planar_3prr_params *p)
     return ok;
 }
 
+#define KEEP(name) model->name = name
+#define KEEP_OF_LEG(name) model->name[leg] = name
+
 int planar_3prr_prepare(const planar_3prr_params *params, planar_3prr_model *model)
 {
     if (!acceptable(params)) {
@@ -554,9 +564,9 @@ int planar_3prr_prepare(const planar_3prr_params *params, planar_3prr_model *mod
     const real J_star_t_4 = J_star_t_2*platform_mass;
     /* (spread) rms distance of the platform points from their centroid */
     const real spread_t = R(0.3333333333333333)*root(3);
-    model->gravity_x = gravity_x;
-    model->gravity_y = gravity_y;
-    model->spread_t = spread_t;
+    KEEP(gravity_x);
+    KEEP(gravity_y);
+    KEEP(spread_t);
     for (size_t leg = 0; leg < FILLED(LEGS_OF_prr); ++leg) {
         const size_t own = leg < LEGS_OF_prr ? leg : 0;
         const real prr_base_point_x = params->prr_base_point[own][0];
@@ -616,31 +626,31 @@ int planar_3prr_prepare(const planar_3prr_params *params, planar_3prr_model *mod
             prr_base_frame_yx*prr_base_point_y;
         const real prr_potential_t = prr_link1_mass*(prr_base_frame_xy*prr_base_point_x +
             prr_base_frame_yy*prr_base_point_y);
-        model->inv_prr_size[leg] = inv_prr_size;
-        model->inv_prr_size_t[leg] = inv_prr_size_t;
-        model->prr_J_2_in_spec2_zz[leg] = prr_J_2_in_spec2_zz;
-        model->prr_b_in_axes0_x[leg] = prr_b_in_axes0_x;
-        model->prr_base_frame_xx[leg] = prr_base_frame_xx;
-        model->prr_base_frame_xy[leg] = prr_base_frame_xy;
-        model->prr_base_frame_yx[leg] = prr_base_frame_yx;
-        model->prr_base_frame_yy[leg] = prr_base_frame_yy;
-        model->prr_base_point_x[leg] = prr_base_point_x;
-        model->prr_base_point_y[leg] = prr_base_point_y;
-        model->prr_branch_1[leg] = prr_branch_1;
-        model->prr_g_in_axes0_x[leg] = prr_g_in_axes0_x;
-        model->prr_g_in_axes0_y[leg] = prr_g_in_axes0_y;
-        model->prr_h_1_in_spec0_x[leg] = prr_h_1_in_spec0_x;
-        model->prr_h_1_in_spec0_y[leg] = prr_h_1_in_spec0_y;
-        model->prr_h_2_in_spec2_x[leg] = prr_h_2_in_spec2_x;
-        model->prr_h_2_in_spec2_y[leg] = prr_h_2_in_spec2_y;
-        model->prr_link1_mass[leg] = prr_link1_mass;
-        model->prr_link2_mass[leg] = prr_link2_mass;
-        model->prr_platform_joint_offset_x[leg] = prr_platform_joint_offset_x;
-        model->prr_platform_point_x[leg] = prr_platform_point_x;
-        model->prr_platform_point_y[leg] = prr_platform_point_y;
-        model->prr_potential_t[leg] = prr_potential_t;
-        model->prr_size[leg] = prr_size;
-        model->prr_size_t[leg] = prr_size_t;
+        KEEP_OF_LEG(inv_prr_size);
+        KEEP_OF_LEG(inv_prr_size_t);
+        KEEP_OF_LEG(prr_J_2_in_spec2_zz);
+        KEEP_OF_LEG(prr_b_in_axes0_x);
+        KEEP_OF_LEG(prr_base_frame_xx);
+        KEEP_OF_LEG(prr_base_frame_xy);
+        KEEP_OF_LEG(prr_base_frame_yx);
+        KEEP_OF_LEG(prr_base_frame_yy);
+        KEEP_OF_LEG(prr_base_point_x);
+        KEEP_OF_LEG(prr_base_point_y);
+        KEEP_OF_LEG(prr_branch_1);
+        KEEP_OF_LEG(prr_g_in_axes0_x);
+        KEEP_OF_LEG(prr_g_in_axes0_y);
+        KEEP_OF_LEG(prr_h_1_in_spec0_x);
+        KEEP_OF_LEG(prr_h_1_in_spec0_y);
+        KEEP_OF_LEG(prr_h_2_in_spec2_x);
+        KEEP_OF_LEG(prr_h_2_in_spec2_y);
+        KEEP_OF_LEG(prr_link1_mass);
+        KEEP_OF_LEG(prr_link2_mass);
+        KEEP_OF_LEG(prr_platform_joint_offset_x);
+        KEEP_OF_LEG(prr_platform_point_x);
+        KEEP_OF_LEG(prr_platform_point_y);
+        KEEP_OF_LEG(prr_potential_t);
+        KEEP_OF_LEG(prr_size);
+        KEEP_OF_LEG(prr_size_t);
         m_star_of_legs += leg < LEGS_OF_prr ? prr_link2_mass : 0;
         h_star_in_platform_x_of_legs += leg < LEGS_OF_prr ? prr_h_star_t : 0;
         h_star_in_platform_y_of_legs += leg < LEGS_OF_prr ? prr_h_star_t_2 : 0;
@@ -668,15 +678,15 @@ int planar_3prr_prepare(const planar_3prr_params *params, planar_3prr_model *mod
     const real b_c_in_platform_y = R(0.3333333333333333)*b_c_prr_in_platform_y;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = root(legs_size_prr)*spread_t;
-    model->J_star_zz = J_star_zz;
-    model->Z_p_t = Z_p_t;
-    model->Z_p_t_2 = Z_p_t_2;
-    model->b_c_in_platform_x = b_c_in_platform_x;
-    model->b_c_in_platform_y = b_c_in_platform_y;
-    model->h_star_in_platform_x = h_star_in_platform_x;
-    model->h_star_in_platform_y = h_star_in_platform_y;
-    model->legs_size = legs_size;
-    model->m_star = m_star;
+    KEEP(J_star_zz);
+    KEEP(Z_p_t);
+    KEEP(Z_p_t_2);
+    KEEP(b_c_in_platform_x);
+    KEEP(b_c_in_platform_y);
+    KEEP(h_star_in_platform_x);
+    KEEP(h_star_in_platform_y);
+    KEEP(legs_size);
+    KEEP(m_star);
     return OK;
 }
 
@@ -1175,14 +1185,14 @@ INLINE void stage_prr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real prr_q_x = R_xx*m->prr_platform_point_x[i] - R_yx*m->prr_platform_point_y[i];
     const real prr_q_y = R_xx*m->prr_platform_point_y[i] + R_yx*m->prr_platform_point_x[i];
     const real t_x = X[0*w + j];
-    const real prr_S_x = prr_q_x + t_x - m->prr_base_point_x[i];
+    const real prr_S_x = t_x - m->prr_base_point_x[i] + prr_q_x;
     const real t_y = X[1*w + j];
-    const real prr_S_y = prr_q_y + t_y - m->prr_base_point_y[i];
+    const real prr_S_y = t_y - m->prr_base_point_y[i] + prr_q_y;
     const real prr_S_in_axes0_x = prr_S_x*m->prr_base_frame_xx[i] +
         prr_S_y*m->prr_base_frame_yx[i];
     /* (prr-disc_1) discriminant of the distance equation */
     const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-    const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + m->prr_size_t[i] -
+    const real prr_disc_1 = m->prr_size_t[i] + prr_S_in_axes0_x*prr_S_in_axes0_x -
         prr_disc_1_t;
     /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
     const real prr_c_2 =
@@ -1248,7 +1258,7 @@ INLINE void stage_prr_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real t_dot_x = V[0*w + j];
     const real prr_S_dot_x = t_dot_x - prr_S_dot_t;
     const real t_dot_y = V[1*w + j];
-    const real prr_S_dot_y = prr_S_dot_t_2 + t_dot_y;
+    const real prr_S_dot_y = t_dot_y + prr_S_dot_t_2;
     /* (prr-qd_2) rate of joint 2 */
     const real prr_qd_2_t = v->prr_w_1_t*(prr_S_dot_x*m->prr_base_frame_xy[i] +
         prr_S_dot_y*m->prr_base_frame_yy[i]);
@@ -1314,9 +1324,8 @@ INLINE void stage_prr_M_dynamics(const prepared *m, size_t i, values_prr *v)
     const real prr_d_c_in_axes2_xx = prr_d_Gamma_2_in_axes2_x*prr_w_2_t -
         m->prr_h_2_in_spec2_y[i]*prr_w_2_t -
         v->prr_w_1_in_axes2_x*(v->prr_c_2*m->prr_link1_mass[i] + prr_d_Gamma_1_t*v->prr_s_2);
-    const real prr_d_c_in_axes2_xy = prr_d_Gamma_2_in_axes2_y*prr_w_2_t +
-        m->prr_h_2_in_spec2_y[i]*prr_w_2_in_axes2_y -
-        prr_d_Gamma_1_in_axes2_y*v->prr_w_1_in_axes2_x;
+    const real prr_d_c_in_axes2_xy = m->prr_h_2_in_spec2_y[i]*prr_w_2_in_axes2_y +
+        prr_d_Gamma_2_in_axes2_y*prr_w_2_t - prr_d_Gamma_1_in_axes2_y*v->prr_w_1_in_axes2_x;
     v->prr_w_2_in_axes2_y = prr_w_2_in_axes2_y;
     v->prr_d_Gamma_2_in_axes2_y = prr_d_Gamma_2_in_axes2_y;
     v->prr_d_Gamma_1_in_axes2_y = prr_d_Gamma_1_in_axes2_y;
@@ -1336,10 +1345,10 @@ INLINE void stage_prr_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real prr_u_1_in_axes2_y = v->axis_y_prr_axes2_x*prr_u_1_x -
         v->axis_x_prr_axes2_x*prr_u_1_t;
     /* (prr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real prr_acc_2_o_in_axes2_x = prr_u_1_in_axes2_x - v->prr_c_2*m->prr_g_in_axes0_x[i]
-        - m->prr_g_in_axes0_y[i]*v->prr_s_2;
-    const real prr_acc_2_o_in_axes2_y = prr_u_1_in_axes2_y + m->prr_g_in_axes0_x[i]*v->prr_s_2
-        - v->prr_c_2*m->prr_g_in_axes0_y[i];
+    const real prr_acc_2_o_in_axes2_x = prr_u_1_in_axes2_x - m->prr_g_in_axes0_y[i]*v->prr_s_2
+        - v->prr_c_2*m->prr_g_in_axes0_x[i];
+    const real prr_acc_2_o_in_axes2_y = m->prr_g_in_axes0_x[i]*v->prr_s_2 -
+        v->prr_c_2*m->prr_g_in_axes0_y[i] + prr_u_1_in_axes2_y;
     v->prr_u_1_in_axes2_x = prr_u_1_in_axes2_x;
     v->prr_u_1_in_axes2_y = prr_u_1_in_axes2_y;
     v->prr_acc_2_o_in_axes2_x = prr_acc_2_o_in_axes2_x;
@@ -1353,16 +1362,16 @@ INLINE void stage_prr_inverse_kinematics_potential(const prepared *m, size_t w, 
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
     const real t_x = X[0*w + j];
-    const real prr_S_x = t_x + R_xx*m->prr_platform_point_x[i] - m->prr_base_point_x[i] -
+    const real prr_S_x = t_x - m->prr_base_point_x[i] + R_xx*m->prr_platform_point_x[i] -
         R_yx*m->prr_platform_point_y[i];
     const real t_y = X[1*w + j];
-    const real prr_S_y = t_y + R_xx*m->prr_platform_point_y[i] +
-        R_yx*m->prr_platform_point_x[i] - m->prr_base_point_y[i];
+    const real prr_S_y = t_y - m->prr_base_point_y[i] + R_xx*m->prr_platform_point_y[i] +
+        R_yx*m->prr_platform_point_x[i];
     const real prr_S_in_axes0_x = prr_S_x*m->prr_base_frame_xx[i] +
         prr_S_y*m->prr_base_frame_yx[i];
     /* (prr-disc_1) discriminant of the distance equation */
     const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-    const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + m->prr_size_t[i] -
+    const real prr_disc_1 = m->prr_size_t[i] + prr_S_in_axes0_x*prr_S_in_axes0_x -
         prr_disc_1_t;
     /* (prr-q_1) displacement of joint 1 */
     const real prr_q_1_t = -m->prr_branch_1[i]*root(prr_disc_1);
@@ -1386,29 +1395,29 @@ INLINE void stage_prr_legs_required(const prepared *m, size_t i, values_prr *v)
     const real prr_B_2_in_axes2_xy = v->prr_w_1_t*(v->prr_S_ddot_in_axes2_y*v->prr_c_2 +
         prr_rel_in_axes2_x*v->prr_s_2);
     /* (prr-acc_1) acceleration of the reference point of link 1, less gravity */
-    const real prr_acc_1_in_axes0_x = prr_B_2_in_axes2_xy*v->prr_v_2_in_axes0_x +
-        v->prr_c_2*prr_rel_in_axes2_x - m->prr_g_in_axes0_x[i] -
-        v->prr_S_ddot_in_axes2_y*v->prr_s_2;
+    const real prr_acc_1_in_axes0_x = v->prr_c_2*prr_rel_in_axes2_x - m->prr_g_in_axes0_x[i] -
+        v->prr_S_ddot_in_axes2_y*v->prr_s_2 + prr_B_2_in_axes2_xy*v->prr_v_2_in_axes0_x;
     /* (prr-f_1) inertia force of link 1 less its weight */
     const real prr_f_1_in_axes0_x = prr_acc_1_in_axes0_x*m->prr_link1_mass[i];
     /* (prr-acc_2) acceleration of the reference point of link 2, less gravity */
     const real prr_acc_2_in_axes2_x = prr_S_ddot_in_axes2_x -
-        v->prr_c_2*m->prr_g_in_axes0_x[i] - m->prr_g_in_axes0_y[i]*v->prr_s_2;
-    const real prr_acc_2_in_axes2_y = v->prr_S_ddot_in_axes2_y +
-        m->prr_g_in_axes0_x[i]*v->prr_s_2 - v->prr_c_2*m->prr_g_in_axes0_y[i];
+        m->prr_g_in_axes0_y[i]*v->prr_s_2 - v->prr_c_2*m->prr_g_in_axes0_x[i];
+    const real prr_acc_2_in_axes2_y = m->prr_g_in_axes0_x[i]*v->prr_s_2 -
+        v->prr_c_2*m->prr_g_in_axes0_y[i] + v->prr_S_ddot_in_axes2_y;
     /* (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real prr_mu_2_in_axes2_z = prr_acc_2_in_axes2_y*m->prr_h_2_in_spec2_x[i] -
-        prr_B_2_in_axes2_xy*m->prr_J_2_in_spec2_zz[i] -
-        prr_acc_2_in_axes2_x*m->prr_h_2_in_spec2_y[i];
+        prr_acc_2_in_axes2_x*m->prr_h_2_in_spec2_y[i] -
+        prr_B_2_in_axes2_xy*m->prr_J_2_in_spec2_zz[i];
     /* (prr-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real prr_c_t = v->prr_w_1_t*(prr_mu_2_in_axes2_z -
         prr_f_1_in_axes0_x*v->prr_v_2_in_axes0_x);
-    const real prr_c_in_axes2_x = v->prr_W_2_t*m->prr_h_2_in_spec2_x[i] + prr_c_t*v->prr_s_2 -
-        prr_B_2_in_axes2_xy*m->prr_h_2_in_spec2_y[i] - v->prr_c_2*prr_f_1_in_axes0_x;
-    const real prr_c_in_axes2_y = prr_B_2_in_axes2_xy*m->prr_h_2_in_spec2_x[i] +
-        v->prr_W_2_t*m->prr_h_2_in_spec2_y[i] + v->prr_c_2*prr_c_t +
-        prr_f_1_in_axes0_x*v->prr_s_2;
+    const real prr_c_in_axes2_x = v->prr_W_2_t*m->prr_h_2_in_spec2_x[i] -
+        prr_B_2_in_axes2_xy*m->prr_h_2_in_spec2_y[i] - v->prr_c_2*prr_f_1_in_axes0_x +
+        prr_c_t*v->prr_s_2;
+    const real prr_c_in_axes2_y = v->prr_W_2_t*m->prr_h_2_in_spec2_y[i] +
+        prr_B_2_in_axes2_xy*m->prr_h_2_in_spec2_x[i] + prr_f_1_in_axes0_x*v->prr_s_2 +
+        v->prr_c_2*prr_c_t;
     v->prr_acc_2_in_axes2_x = prr_acc_2_in_axes2_x;
     v->prr_acc_2_in_axes2_y = prr_acc_2_in_axes2_y;
     v->prr_c_in_axes2_x = prr_c_in_axes2_x;
@@ -1418,21 +1427,25 @@ INLINE void stage_prr_legs_required(const prepared *m, size_t i, values_prr *v)
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    real *s)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s)
 {
-    values v;
-    stage_V(w, k, V, &v);
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+    s[2*w + k] = v->h_star_x;
+    s[3*w + k] = v->h_star_y;
+}
+
+INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
+    *s)
+{
+    stage_V(w, k, V, v);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_x = v.W_p_xx*v.h_star_x - m->Z_p_t;
-    const real Z_p_y = v.W_p_xx*v.h_star_y - m->Z_p_t_2;
+    const real Z_p_x = v->W_p_xx*v->h_star_x - m->Z_p_t;
+    const real Z_p_y = v->W_p_xx*v->h_star_y - m->Z_p_t_2;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real Z_q_z = m->gravity_x*v.h_star_y - m->gravity_y*v.h_star_x;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
-    s[2*w + k] = v.h_star_x;
-    s[3*w + k] = v.h_star_y;
+    const real Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x;
     s[4*w + k] = Z_p_x;
     s[5*w + k] = Z_p_y;
     s[6*w + k] = Z_q_z;
@@ -1454,35 +1467,35 @@ INLINE void dynamics_legs_prr(const prepared *m, size_t w, size_t i, size_t j, s
     const real prr_B_2_o_in_axes2_xy = v.prr_w_1_t*(v.prr_c_2*v.prr_u_1_in_axes2_y +
         prr_rel_o_in_axes2_x*v.prr_s_2);
     /* (prr-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
-    const real prr_acc_1_o_in_axes0_x = prr_B_2_o_in_axes2_xy*v.prr_v_2_in_axes0_x +
-        v.prr_c_2*prr_rel_o_in_axes2_x - m->prr_g_in_axes0_x[i] -
-        v.prr_s_2*v.prr_u_1_in_axes2_y;
+    const real prr_acc_1_o_in_axes0_x = v.prr_c_2*prr_rel_o_in_axes2_x -
+        m->prr_g_in_axes0_x[i] - v.prr_s_2*v.prr_u_1_in_axes2_y +
+        prr_B_2_o_in_axes2_xy*v.prr_v_2_in_axes0_x;
     /* (prr-f_1_o) remainder of: inertia force of link 1 less its weight */
     const real prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*m->prr_link1_mass[i];
     /* (prr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real prr_mu_2_o_in_axes2_z = v.prr_acc_2_o_in_axes2_y*m->prr_h_2_in_spec2_x[i] -
-        prr_B_2_o_in_axes2_xy*m->prr_J_2_in_spec2_zz[i] -
-        v.prr_acc_2_o_in_axes2_x*m->prr_h_2_in_spec2_y[i];
+        v.prr_acc_2_o_in_axes2_x*m->prr_h_2_in_spec2_y[i] -
+        prr_B_2_o_in_axes2_xy*m->prr_J_2_in_spec2_zz[i];
     /* (prr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
     const real prr_c_o_t = v.prr_w_1_t*(prr_mu_2_o_in_axes2_z -
         prr_f_1_o_in_axes0_x*v.prr_v_2_in_axes0_x);
-    const real prr_c_o_in_axes2_x = v.prr_W_2_t*m->prr_h_2_in_spec2_x[i] + prr_c_o_t*v.prr_s_2
-        - prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_y[i] - v.prr_c_2*prr_f_1_o_in_axes0_x;
-    const real prr_c_o_in_axes2_y = prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_x[i] +
-        v.prr_W_2_t*m->prr_h_2_in_spec2_y[i] + v.prr_c_2*prr_c_o_t +
-        prr_f_1_o_in_axes0_x*v.prr_s_2;
+    const real prr_c_o_in_axes2_x = v.prr_W_2_t*m->prr_h_2_in_spec2_x[i] -
+        prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_y[i] - v.prr_c_2*prr_f_1_o_in_axes0_x +
+        prr_c_o_t*v.prr_s_2;
+    const real prr_c_o_in_axes2_y = v.prr_W_2_t*m->prr_h_2_in_spec2_y[i] +
+        prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_x[i] + prr_f_1_o_in_axes0_x*v.prr_s_2 +
+        v.prr_c_2*prr_c_o_t;
     /* (prr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real prr_Q_t = v.prr_d_c_in_axes2_xx +
-        v.prr_d_Gamma_1_in_axes2_y*v.prr_w_1_in_axes2_y +
+    const real prr_Q_t = m->prr_h_2_in_spec2_x[i]*v.prr_w_2_in_axes2_y +
         v.prr_d_Gamma_2_in_axes2_y*v.prr_w_2_in_axes2_y +
-        m->prr_h_2_in_spec2_x[i]*v.prr_w_2_in_axes2_y;
+        v.prr_d_Gamma_1_in_axes2_y*v.prr_w_1_in_axes2_y + v.prr_d_c_in_axes2_xx;
     const real prr_Q_t_2 = R(0.5)*prr_Q_t;
     const real prr_Q_t_3 = v.axis_y_prr_axes2_x*prr_Q_t_2 -
         v.axis_x_prr_axes2_x*v.prr_d_c_in_axes2_xy;
-    const real prr_Q_t_4 = v.axis_x_prr_axes2_x*prr_Q_t_2 +
-        v.axis_y_prr_axes2_x*v.prr_d_c_in_axes2_xy;
+    const real prr_Q_t_4 = v.axis_y_prr_axes2_x*v.prr_d_c_in_axes2_xy +
+        v.axis_x_prr_axes2_x*prr_Q_t_2;
     const real prr_Q_xx = 2*v.axis_y_prr_axes2_x*prr_Q_t_3 - v.prr_d_c_in_axes2_xx;
     const real prr_Q_xy = v.axis_x_prr_axes2_x*prr_Q_t_3 + v.axis_y_prr_axes2_x*prr_Q_t_4;
     const real prr_Q_yy = 2*v.axis_x_prr_axes2_x*prr_Q_t_4 - v.prr_d_c_in_axes2_xx;
@@ -1540,16 +1553,16 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     /* (M_ta) */
     const real M_ta_xz_of_legs = sums[3*w + k];
     const real h_star_y = s[3*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yz_of_legs = sums[4*w + k];
     const real h_star_x = s[2*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     /* (M_aa) */
     const real M_aa_zz_of_legs = sums[5*w + k];
     const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
@@ -1563,7 +1576,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     /* (Z_a) */
     const real Z_a_z_of_legs = sums[8*w + k];
     const real Z_q_z = s[6*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
     const real M_tt_xy = sums[1*w + k];
@@ -1591,7 +1604,8 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 {
     real s[7] = {0}, sums[9] = {0};
     real terms_prr[9*LEGS(LEGS_OF_prr)] = {0}, o_prr[6*LEGS(LEGS_OF_prr)] = {0};
-    dynamics_before(m, 1, 0, X, V, s);
+    values v;
+    dynamics_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         dynamics_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), 0, s, X, V, terms_prr, o_prr);
     }
@@ -1601,6 +1615,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t n = 0; n < 9; ++n) {
         sums[n] = total(terms_prr + n*LEGS(LEGS_OF_prr), LEGS_OF_prr);
     }
+    dynamics_between(m, 1, 0, V, &v, s);
     dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
@@ -1610,7 +1625,9 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real s[7*LANES], sums[9*LANES];
     real o_prr[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        dynamics_before(m, LANES, k, X, V, s);
+        values v;
+        dynamics_before(m, LANES, k, X, &v, s);
+        dynamics_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 9*LANES);
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
@@ -1627,14 +1644,13 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
-    s[2*w + k] = v.h_star_x;
-    s[3*w + k] = v.h_star_y;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+    s[2*w + k] = v->h_star_x;
+    s[3*w + k] = v->h_star_y;
 }
 
 INLINE void M_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -1644,15 +1660,15 @@ INLINE void M_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_prr_X(m, w, i, j, s, X, &v);
     stage_prr_M_dynamics(m, i, &v);
     /* (prr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real prr_Q_t = v.prr_d_c_in_axes2_xx +
-        v.prr_d_Gamma_1_in_axes2_y*(v.prr_c_2*v.prr_w_1_t_2 - v.prr_s_2) +
+    const real prr_Q_t = m->prr_h_2_in_spec2_x[i]*v.prr_w_2_in_axes2_y +
         v.prr_d_Gamma_2_in_axes2_y*v.prr_w_2_in_axes2_y +
-        m->prr_h_2_in_spec2_x[i]*v.prr_w_2_in_axes2_y;
+        v.prr_d_Gamma_1_in_axes2_y*(v.prr_c_2*v.prr_w_1_t_2 - v.prr_s_2) +
+        v.prr_d_c_in_axes2_xx;
     const real prr_Q_t_2 = R(0.5)*prr_Q_t;
     const real prr_Q_t_3 = v.axis_y_prr_axes2_x*prr_Q_t_2 -
         v.axis_x_prr_axes2_x*v.prr_d_c_in_axes2_xy;
-    const real prr_Q_t_4 = v.axis_x_prr_axes2_x*prr_Q_t_2 +
-        v.axis_y_prr_axes2_x*v.prr_d_c_in_axes2_xy;
+    const real prr_Q_t_4 = v.axis_y_prr_axes2_x*v.prr_d_c_in_axes2_xy +
+        v.axis_x_prr_axes2_x*prr_Q_t_2;
     const real prr_Q_xx = 2*v.axis_y_prr_axes2_x*prr_Q_t_3 - v.prr_d_c_in_axes2_xx;
     const real prr_Q_xy = v.axis_x_prr_axes2_x*prr_Q_t_3 + v.axis_y_prr_axes2_x*prr_Q_t_4;
     const real prr_Q_yy = 2*v.axis_x_prr_axes2_x*prr_Q_t_4 - v.prr_d_c_in_axes2_xx;
@@ -1685,16 +1701,16 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     /* (M_ta) */
     const real M_ta_xz_of_legs = sums[3*w + k];
     const real h_star_y = s[3*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yz_of_legs = sums[4*w + k];
     const real h_star_x = s[2*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     /* (M_aa) */
     const real M_aa_zz_of_legs = sums[5*w + k];
     const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
@@ -1718,7 +1734,8 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
     real s[4] = {0}, sums[6] = {0};
     real terms_prr[6*LEGS(LEGS_OF_prr)] = {0}, o_prr[2*LEGS(LEGS_OF_prr)] = {0};
-    M_before(m, 1, 0, X, s);
+    values v;
+    M_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         M_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), 0, s, X, terms_prr, o_prr);
     }
@@ -1736,7 +1753,8 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
     real s[4*LANES], sums[6*LANES];
     real o_prr[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        M_before(m, LANES, k, X, s);
+        values v;
+        M_before(m, LANES, k, X, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
@@ -1753,18 +1771,21 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s)
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
-    values v;
-    stage_V(w, k, V, &v);
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+}
+
+INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
+{
+    stage_V(w, k, V, v);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_x = v.W_p_xx*v.h_star_x - m->Z_p_t;
-    const real Z_p_y = v.W_p_xx*v.h_star_y - m->Z_p_t_2;
+    const real Z_p_x = v->W_p_xx*v->h_star_x - m->Z_p_t;
+    const real Z_p_y = v->W_p_xx*v->h_star_y - m->Z_p_t_2;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real Z_q_z = m->gravity_x*v.h_star_y - m->gravity_y*v.h_star_x;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    const real Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x;
     s[2*w + k] = Z_p_x;
     s[3*w + k] = Z_p_y;
     s[4*w + k] = Z_q_z;
@@ -1791,25 +1812,26 @@ INLINE void Z_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real prr_B_2_o_in_axes2_xy = prr_qd_2_t*(v.prr_c_2*v.prr_u_1_in_axes2_y +
         prr_rel_o_in_axes2_x*v.prr_s_2);
     /* (prr-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
-    const real prr_acc_1_o_in_axes0_x = prr_B_2_o_in_axes2_xy*v.prr_v_2_in_axes0_x +
-        v.prr_c_2*prr_rel_o_in_axes2_x - m->prr_g_in_axes0_x[i] -
-        v.prr_s_2*v.prr_u_1_in_axes2_y;
+    const real prr_acc_1_o_in_axes0_x = v.prr_c_2*prr_rel_o_in_axes2_x -
+        m->prr_g_in_axes0_x[i] - v.prr_s_2*v.prr_u_1_in_axes2_y +
+        prr_B_2_o_in_axes2_xy*v.prr_v_2_in_axes0_x;
     /* (prr-f_1_o) remainder of: inertia force of link 1 less its weight */
     const real prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*m->prr_link1_mass[i];
     /* (prr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real prr_mu_2_o_in_axes2_z = v.prr_acc_2_o_in_axes2_y*m->prr_h_2_in_spec2_x[i] -
-        prr_B_2_o_in_axes2_xy*m->prr_J_2_in_spec2_zz[i] -
-        v.prr_acc_2_o_in_axes2_x*m->prr_h_2_in_spec2_y[i];
+        v.prr_acc_2_o_in_axes2_x*m->prr_h_2_in_spec2_y[i] -
+        prr_B_2_o_in_axes2_xy*m->prr_J_2_in_spec2_zz[i];
     /* (prr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
     const real prr_c_o_t = prr_qd_2_t*(prr_mu_2_o_in_axes2_z -
         prr_f_1_o_in_axes0_x*v.prr_v_2_in_axes0_x);
-    const real prr_c_o_in_axes2_x = prr_W_2_t*m->prr_h_2_in_spec2_x[i] + prr_c_o_t*v.prr_s_2 -
-        prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_y[i] - v.prr_c_2*prr_f_1_o_in_axes0_x;
-    const real prr_c_o_in_axes2_y = prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_x[i] +
-        prr_W_2_t*m->prr_h_2_in_spec2_y[i] + v.prr_c_2*prr_c_o_t +
-        prr_f_1_o_in_axes0_x*v.prr_s_2;
+    const real prr_c_o_in_axes2_x = prr_W_2_t*m->prr_h_2_in_spec2_x[i] -
+        prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_y[i] - v.prr_c_2*prr_f_1_o_in_axes0_x +
+        prr_c_o_t*v.prr_s_2;
+    const real prr_c_o_in_axes2_y = prr_W_2_t*m->prr_h_2_in_spec2_y[i] +
+        prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_x[i] + prr_f_1_o_in_axes0_x*v.prr_s_2 +
+        v.prr_c_2*prr_c_o_t;
     /* (prr-U) velocity and gravity terms of the leg force */
     const real prr_U_x = -v.axis_x_prr_axes2_x*prr_c_o_in_axes2_x -
         v.axis_y_prr_axes2_x*prr_c_o_in_axes2_y;
@@ -1844,7 +1866,7 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     /* (Z_a) */
     const real Z_a_z_of_legs = sums[2*w + k];
     const real Z_q_z = s[4*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
     Z[1*w + k] = Z_t_y;
@@ -1857,7 +1879,8 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 {
     real s[5] = {0}, sums[3] = {0};
     real terms_prr[3*LEGS(LEGS_OF_prr)] = {0}, o_prr[2*LEGS(LEGS_OF_prr)] = {0};
-    Z_before(m, 1, 0, X, V, s);
+    values v;
+    Z_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         Z_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), 0, s, X, V, terms_prr, o_prr);
     }
@@ -1867,6 +1890,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_prr + n*LEGS(LEGS_OF_prr), LEGS_OF_prr);
     }
+    Z_between(m, 1, 0, V, &v, s);
     Z_after(1, 0, s, sums, Z, t);
 }
 
@@ -1876,7 +1900,9 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real s[5*LANES], sums[3*LANES];
     real o_prr[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        Z_before(m, LANES, k, X, V, s);
+        values v;
+        Z_before(m, LANES, k, X, &v, s);
+        Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 3*LANES);
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
@@ -1893,12 +1919,11 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void H_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -1932,7 +1957,8 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
     real s[2] = {0};
     real o_prr[6*LEGS(LEGS_OF_prr)] = {0};
-    H_before(m, 1, 0, X, s);
+    values v;
+    H_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         H_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), s, X, o_prr);
     }
@@ -1946,7 +1972,8 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
     real s[2*LANES];
     real o_prr[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        H_before(m, LANES, k, X, s);
+        values v;
+        H_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -1959,12 +1986,18 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, real *s)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s)
 {
-    values v;
-    stage_V(w, k, V, &v);
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+}
+
+INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
+    values *v, real *s)
+{
+    stage_V(w, k, V, v);
     /* (a_t) acceleration of the platform origin, less gravity */
     const real t_ddot_x = A[0*w + k];
     const real a_t_x = t_ddot_x - m->gravity_x;
@@ -1972,12 +2005,10 @@ INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X
     const real a_t_y = t_ddot_y - m->gravity_y;
     /* (f_p) inertia force of the platform less its weight */
     const real alpha_z = A[2*w + k];
-    const real f_p_x = v.W_p_xx*v.h_star_x + a_t_x*m->m_star - alpha_z*v.h_star_y;
-    const real f_p_y = v.W_p_xx*v.h_star_y + a_t_y*m->m_star + alpha_z*v.h_star_x;
+    const real f_p_x = a_t_x*m->m_star + v->W_p_xx*v->h_star_x - alpha_z*v->h_star_y;
+    const real f_p_y = a_t_y*m->m_star + v->W_p_xx*v->h_star_y + alpha_z*v->h_star_x;
     /* (mu_p) inertia moment of the platform less that of its weight */
-    const real mu_p_z = m->J_star_zz*alpha_z + a_t_y*v.h_star_x - a_t_x*v.h_star_y;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    const real mu_p_z = m->J_star_zz*alpha_z + a_t_y*v->h_star_x - a_t_x*v->h_star_y;
     s[2*w + k] = f_p_x;
     s[3*w + k] = f_p_y;
     s[4*w + k] = mu_p_z;
@@ -2039,7 +2070,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     /* (R_a) */
     const real R_a_z_of_legs = sums[2*w + k];
     const real mu_p_z = s[4*w + k];
-    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
     required[1*w + k] = R_t_y;
@@ -2047,12 +2078,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[2*w + k] = R_a_z;
 }
 
-APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
     real s[5] = {0}, sums[3] = {0};
     real terms_prr[3*LEGS(LEGS_OF_prr)] = {0}, o_prr[5*LEGS(LEGS_OF_prr)] = {0};
-    required_before(m, 1, 0, X, V, A, s);
+    values v;
+    required_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         required_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), 0, s, X, V, A, terms_prr, o_prr);
     }
@@ -2062,6 +2094,7 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_prr + n*LEGS(LEGS_OF_prr), LEGS_OF_prr);
     }
+    required_between(m, 1, 0, V, A, &v, s);
     required_after(1, 0, s, sums, required);
 }
 
@@ -2071,7 +2104,9 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real s[5*LANES], sums[3*LANES];
     real o_prr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        required_before(m, LANES, k, X, V, A, s);
+        values v;
+        required_before(m, LANES, k, X, &v, s);
+        required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 3*LANES);
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
@@ -2088,13 +2123,12 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
+    *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void inverse_kinematics_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k,
@@ -2128,7 +2162,8 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 {
     real s[2] = {0};
     real o_prr[4*LEGS(LEGS_OF_prr)] = {0};
-    inverse_kinematics_before(m, 1, 0, X, s);
+    values v;
+    inverse_kinematics_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         inverse_kinematics_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), s, X, o_prr);
     }
@@ -2143,7 +2178,8 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real s[2*LANES];
     real o_prr[4*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        inverse_kinematics_before(m, LANES, k, X, s);
+        values v;
+        inverse_kinematics_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2156,12 +2192,12 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void joint_rates_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2208,7 +2244,8 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 {
     real s[2] = {0};
     real o_prr[5*LEGS(LEGS_OF_prr)] = {0};
-    joint_rates_before(m, 1, 0, X, s);
+    values v;
+    joint_rates_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         joint_rates_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), s, X, V, o_prr);
     }
@@ -2223,7 +2260,8 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real s[2*LANES];
     real o_prr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_rates_before(m, LANES, k, X, s);
+        values v;
+        joint_rates_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2236,13 +2274,12 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
+    values *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void joint_accelerations_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t
@@ -2258,9 +2295,9 @@ INLINE void joint_accelerations_legs_prr(const prepared *m, size_t w, size_t i, 
     const real prr_qd_2_t_2 = prr_qd_2_t*(v.prr_S_dot_x*m->prr_base_frame_xy[i] +
         v.prr_S_dot_y*m->prr_base_frame_yy[i]);
     /* (prr-rel) acceleration of the connection point left to the joint accelerations */
-    const real prr_rel_in_axes2_x = v.axis_x_prr_axes2_x*v.prr_S_ddot_x +
-        m->prr_platform_joint_offset_x[i]*prr_qd_2_t_2*prr_qd_2_t_2 -
-        v.axis_y_prr_axes2_x*v.prr_S_ddot_y;
+    const real prr_rel_in_axes2_x = v.axis_x_prr_axes2_x*v.prr_S_ddot_x -
+        v.axis_y_prr_axes2_x*v.prr_S_ddot_y +
+        m->prr_platform_joint_offset_x[i]*prr_qd_2_t_2*prr_qd_2_t_2;
     /* (prr-qdd_1) acceleration of joint 1 */
     const real prr_qdd_1_t = prr_qd_2_t*(v.prr_S_ddot_in_axes2_y*v.prr_c_2 +
         prr_rel_in_axes2_x*v.prr_s_2);
@@ -2290,7 +2327,8 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 {
     real s[2] = {0};
     real o_prr[5*LEGS(LEGS_OF_prr)] = {0};
-    joint_accelerations_before(m, 1, 0, X, s);
+    values v;
+    joint_accelerations_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         joint_accelerations_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), s, X, V, A, o_prr);
     }
@@ -2305,7 +2343,8 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real s[2*LANES];
     real o_prr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_accelerations_before(m, LANES, k, X, s);
+        values v;
+        joint_accelerations_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2318,12 +2357,11 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void legs_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2372,7 +2410,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     real o_prr[6*LEGS(LEGS_OF_prr)] = {0};
     clear(leg_force, 3*NL);
     clear(actuator, 9);
-    legs_before(m, 1, 0, X, s);
+    values v;
+    legs_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         legs_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), s, X, V, A, o_prr);
     }
@@ -2382,18 +2421,23 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+}
+
+INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s)
+{
     /* (potential) potential energy */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
-    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x + m->m_star*t_x -
-        v.R_yx*m->h_star_in_platform_y) + m->gravity_y*(v.R_xx*m->h_star_in_platform_y +
-        v.R_yx*m->h_star_in_platform_x + m->m_star*t_y);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    const real potential_t = m->gravity_x*(m->m_star*t_x + v->R_xx*m->h_star_in_platform_x -
+        v->R_yx*m->h_star_in_platform_y) + m->gravity_y*(m->m_star*t_y +
+        v->R_xx*m->h_star_in_platform_y + v->R_yx*m->h_star_in_platform_x);
     s[2*w + k] = potential_t;
 }
 
@@ -2409,11 +2453,11 @@ INLINE void potential_legs_prr(const prepared *m, size_t w, size_t i, size_t j, 
         m->inv_prr_size_t[i]*m->prr_platform_joint_offset_x[i]*(v.prr_S_x*m->prr_base_frame_xy[i]
         + v.prr_S_y*m->prr_base_frame_yy[i]);
     /* (potential) */
-    const real prr_potential_t_2 = m->prr_g_in_axes0_x[i]*(m->prr_h_1_in_spec0_x[i] +
-        prr_c_2*m->prr_h_2_in_spec2_x[i] + m->prr_link1_mass[i]*(m->prr_b_in_axes0_x[i] +
-        v.prr_q_1) - m->prr_h_2_in_spec2_y[i]*prr_s_2) +
-        m->prr_g_in_axes0_y[i]*(m->prr_h_1_in_spec0_y[i] + m->prr_potential_t[i] +
-        prr_c_2*m->prr_h_2_in_spec2_y[i] + m->prr_h_2_in_spec2_x[i]*prr_s_2);
+    const real prr_potential_t_2 = m->prr_g_in_axes0_y[i]*(m->prr_h_1_in_spec0_y[i] +
+        m->prr_potential_t[i] + m->prr_h_2_in_spec2_x[i]*prr_s_2 +
+        prr_c_2*m->prr_h_2_in_spec2_y[i]) + m->prr_g_in_axes0_x[i]*(m->prr_h_1_in_spec0_x[i] -
+        m->prr_h_2_in_spec2_y[i]*prr_s_2 + prr_c_2*m->prr_h_2_in_spec2_x[i] +
+        m->prr_link1_mass[i]*(m->prr_b_in_axes0_x[i] + v.prr_q_1));
     /* (potential) */
     gather(&terms[0*count + k], add, prr_potential_t_2);  /* potential_of_legs */
     o[0*count + k] = UNLESS(v.prr_disc_1 >= 0);
@@ -2429,7 +2473,7 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     /* (potential) */
     const real potential_of_legs = sums[0*w + k];
     const real potential_t = s[2*w + k];
-    const real potential_ = -potential_of_legs - potential_t;
+    const real potential_ = -potential_t - potential_of_legs;
     /* (potential) */
     potential[0*w + k] = potential_;
 }
@@ -2438,7 +2482,8 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 {
     real s[3] = {0}, sums[1] = {0};
     real terms_prr[LEGS(LEGS_OF_prr)] = {0}, o_prr[LEGS(LEGS_OF_prr)] = {0};
-    potential_before(m, 1, 0, X, s);
+    values v;
+    potential_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         potential_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), 0, s, X, terms_prr, o_prr);
     }
@@ -2448,17 +2493,17 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_prr + n*LEGS(LEGS_OF_prr), LEGS_OF_prr);
     }
+    potential_between(m, 1, 0, X, &v, s);
     potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
-    *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, real *lengths, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
@@ -2523,7 +2568,8 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 {
     real s[2] = {0}, sums[1] = {0};
     real terms_prr[LEGS(LEGS_OF_prr)] = {0}, o_prr[8*LEGS(LEGS_OF_prr)] = {0};
-    condition_before(m, 1, 0, X, s, lengths, t);
+    values v;
+    condition_before(m, 1, 0, X, &v, s, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         condition_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), 0, s, X, terms_prr, o_prr);
     }
@@ -2547,11 +2593,7 @@ int planar_3prr_M(const prepared *m, const real *X, real *M_out)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-    }
-    return code;
+    return settled(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -2578,11 +2620,7 @@ int planar_3prr_Z(const prepared *m, const real *X, const real *V, real *Z_out)
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, Z_out);
-    }
-    return code;
+    return settled(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -2606,11 +2644,7 @@ int planar_3prr_H(const prepared *m, const real *X, real *H_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -2633,11 +2667,7 @@ int planar_3prr_inverse_kinematics(const prepared *m, const real *X, real *q_out
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, q_out);
-    }
-    return code;
+    return settled(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -2664,11 +2694,7 @@ int planar_3prr_joint_rates(const prepared *m, const real *X, const real *V, rea
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qd_out);
-    }
-    return code;
+    return settled(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -2699,11 +2725,7 @@ int planar_3prr_joint_accelerations(const prepared *m, const real *X, const real
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qdd_out);
-    }
-    return code;
+    return settled(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -2736,13 +2758,9 @@ int planar_3prr_dynamics(const prepared *m, const real *X, const real *V, real *
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-        refuse(NV, Z_out);
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    settled(&why, NV*NV, M_out);
+    settled(&why, NV, Z_out);
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -2813,7 +2831,8 @@ static const real sizes_tau[] = {1.0, 1.0, 0.25};
 int planar_3prr_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out)
 {
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    static const real no_wrench[NW] = {0};
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
@@ -2823,7 +2842,7 @@ int planar_3prr_inverse_dynamics(const prepared *m, const real *X, const real *V
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -2837,11 +2856,7 @@ int planar_3prr_inverse_dynamics(const prepared *m, const real *X, const real *V
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, tau_out);
-    }
-    return code;
+    return settled(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -2870,8 +2885,9 @@ static const real sizes_A[] = {16.0, 16.0, 0.25};
 int planar_3prr_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau,
     const real *wrench, real *A_out)
 {
-    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] =
-        {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    static const real no_wrench[NW] = {0};
+    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
+        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
@@ -2880,7 +2896,7 @@ int planar_3prr_forward_dynamics(const prepared *m, const real *X, const real *V
         check(NV, 1, V, why.invalid);
         check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     for (size_t i = 0; i < NV; ++i) {
@@ -2898,11 +2914,7 @@ int planar_3prr_forward_dynamics(const prepared *m, const real *X, const real *V
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, A_out);
-    }
-    return code;
+    return settled(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -2943,18 +2955,15 @@ int planar_3prr_complete_acceleration(const prepared *m, const real *X, const re
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, completed_out);
-    }
-    return code;
+    return settled(&why, NV, completed_out);
 }
 
 int planar_3prr_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out)
 {
+    static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2};
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
         unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[9] = {0}, forces[NL*NL] = {0},
         work[NV*PADDED(NV)];
     verdict why;
@@ -2965,7 +2974,7 @@ int planar_3prr_leg_reactions(const prepared *m, const real *X, const real *V, c
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -2983,11 +2992,7 @@ int planar_3prr_leg_reactions(const prepared *m, const real *X, const real *V, c
     add_forces(NL, 3, 1, places_forces, solve_1, actuator, forces);
     check(NL*NL, 1, forces, why.overflow);
     copy(NL*NL, forces, forces_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NL*NL, forces_out);
-    }
-    return code;
+    return settled(&why, NL*NL, forces_out);
 }
 
 int planar_3prr_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
@@ -3009,25 +3014,22 @@ int planar_3prr_energy(const prepared *m, const real *X, const real *V, real *ki
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, kinetic_out);
-        refuse(1, potential_out);
-    }
-    return code;
+    settled(&why, 1, kinetic_out);
+    return settled(&why, 1, potential_out);
 }
 
 int planar_3prr_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
     const real *length = NULL;
+    static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {2};
-    real length_in[1], H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
+        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, length, 0, length_in, why.invalid);
+    length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
@@ -3045,12 +3047,8 @@ int planar_3prr_condition(const prepared *m, const real *X, real *sigma_out, rea
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, sigma_out);
-        refuse(NL, legs_out);
-    }
-    return code;
+    settled(&why, NV, sigma_out);
+    return settled(&why, NL, legs_out);
 }
 
 int planar_3prr_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -3084,12 +3082,8 @@ int planar_3prr_manipulability(const prepared *m, const real *X, real *measure_o
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, measure_out);
-        refuse(1, isotropy_out);
-    }
-    return code;
+    settled(&why, 1, measure_out);
+    return settled(&why, 1, isotropy_out);
 }
 
 int planar_3prr_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
@@ -3123,12 +3117,8 @@ int planar_3prr_singularity_distance(const prepared *m, const real *X, real *act
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, actuators_out);
-        refuse(1, legs_out);
-    }
-    return code;
+    settled(&why, 1, actuators_out);
+    return settled(&why, 1, legs_out);
 }
 
 static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
@@ -3148,11 +3138,7 @@ static int mismatch_one(const prepared *m, const real *X, const real *q_actuated
     }
     check(NU, 1, gap, why.overflow);
     copy(NU, gap, gap_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, gap_out);
-    }
-    return code;
+    return settled(&why, NU, gap_out);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
@@ -3164,11 +3150,7 @@ static int slope_one(const prepared *m, const real *X, real *slope_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, slope_out);
-    }
-    return code;
+    return settled(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -3230,11 +3212,7 @@ int planar_3prr_forward_kinematics(const prepared *m, const real *q_actuated, co
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int planar_3prr_dissipation(const prepared *m, const real *X, const real *V, real
@@ -3252,11 +3230,7 @@ int planar_3prr_dissipation(const prepared *m, const real *X, const real *V, rea
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, dissipation_out);
-    }
-    return code;
+    return settled(&why, 1, dissipation_out);
 }
 
 int planar_3prr_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
@@ -3273,11 +3247,7 @@ int planar_3prr_momentum(const prepared *m, const real *X, const real *V, real *
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, momentum_out);
-    }
-    return code;
+    return settled(&why, NV, momentum_out);
 }
 
 int planar_3prr_joint_margins(const prepared *m, const real *X, real *margins_out)
@@ -3293,11 +3263,7 @@ int planar_3prr_joint_margins(const prepared *m, const real *X, real *margins_ou
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, margins_out);
-    }
-    return code;
+    return settled(&why, NJ, margins_out);
 }
 
 int planar_3prr_within_limits(const prepared *m, const real *X, real *within_out)
@@ -3313,11 +3279,7 @@ int planar_3prr_within_limits(const prepared *m, const real *X, real *within_out
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, within_out);
-    }
-    return code;
+    return settled(&why, 1, within_out);
 }
 
 int planar_3prr_actuator_positions(const prepared *m, const real *X, real *q_out)
@@ -3330,11 +3292,7 @@ int planar_3prr_actuator_positions(const prepared *m, const real *X, real *q_out
     take(NU, 1, planar_3prr_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, q_out);
-    }
-    return code;
+    return settled(&why, NU, q_out);
 }
 
 int planar_3prr_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
@@ -3351,11 +3309,7 @@ int planar_3prr_actuator_rates(const prepared *m, const real *X, const real *V, 
     take(NU, 1, planar_3prr_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qd_out);
-    }
-    return code;
+    return settled(&why, NU, qd_out);
 }
 
 int planar_3prr_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
@@ -3374,11 +3328,7 @@ int planar_3prr_actuator_accelerations(const prepared *m, const real *X, const r
     take(NU, 1, planar_3prr_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qdd_out);
-    }
-    return code;
+    return settled(&why, NU, qdd_out);
 }
 
 int planar_3prr_power(const prepared *m, const real *X, const real *V, const real *tau, real
@@ -3398,11 +3348,7 @@ int planar_3prr_power(const prepared *m, const real *X, const real *V, const rea
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, power_out);
-    }
-    return code;
+    return settled(&why, 1, power_out);
 }
 
 int planar_3prr_rotation(const real *X, real *R_out)
@@ -3415,11 +3361,7 @@ int planar_3prr_rotation(const real *X, real *R_out)
     rotation_of_angle(X_from_2, R);
     check(4, 1, R, why.overflow);
     copy(4, R, R_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(4, R_out);
-    }
-    return code;
+    return settled(&why, 4, R_out);
 }
 
 int planar_3prr_pose(const real *t, const real *R, real *X_out)
@@ -3437,11 +3379,7 @@ int planar_3prr_pose(const real *t, const real *R, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int planar_3prr_X_dot(const real *X, const real *V, real *X_dot_out)
@@ -3456,11 +3394,7 @@ int planar_3prr_X_dot(const real *X, const real *V, real *X_dot_out)
     const real *const X_dot = V;
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_dot_out);
-    }
-    return code;
+    return settled(&why, NQ, X_dot_out);
 }
 
 int planar_3prr_retract(const real *X, const real *step, real *X_moved_out)
@@ -3478,11 +3412,7 @@ int planar_3prr_retract(const real *X, const real *step, real *X_moved_out)
     }
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_moved_out);
-    }
-    return code;
+    return settled(&why, NQ, X_moved_out);
 }
 
 int planar_3prr_difference(const real *X0, const real *X1, real *step_out)
@@ -3505,11 +3435,7 @@ int planar_3prr_difference(const real *X0, const real *X1, real *step_out)
     wrap_turns(1, 1, places_step, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, step_out);
-    }
-    return code;
+    return settled(&why, NV, step_out);
 }
 
 int planar_3prr_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
@@ -3539,11 +3465,7 @@ int planar_3prr_interpolate(const real *X0, const real *X1, const real *s, real 
     }
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 /* ---- one state, and batches ---- */

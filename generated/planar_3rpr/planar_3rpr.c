@@ -234,15 +234,12 @@ INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *t
 }
 
 /* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
-INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+INLINE const real *optional(size_t size, const real *x, const real *none, real *flags)
 {
-    for (size_t e = 0; e < size && !x; ++e) {
-        own[e] = none;
-    }
     if (x) {
         check(size, 1, x, flags);
     }
-    return x ? x : own;
+    return x ? x : none;
 }
 
 INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
@@ -299,6 +296,16 @@ APART void refuse(size_t size, real *out)
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
     }
+}
+
+/* The status of a state; an output is refused where it is impossible. */
+INLINE int settled(const verdict *t, size_t size, real *out)
+{
+    const int code = judge(t);
+    if (code != OK) {
+        refuse(size, out);
+    }
+    return code;
 }
 
 /* Outputs of a state where the user wants them, and of states side by side, state by state. */
@@ -426,24 +433,24 @@ INLINE int all_planar_inertias(const real *x, size_t n)
 /* ---- parameters ---- */
 
 const planar_3rpr_params planar_3rpr_default_params = {
-    {R(0.0), R(-9.81), R(0.0)},  /* gravity */
+    {0, R(-9.81), 0},  /* gravity */
     R(4.0),  /* platform_mass */
-    {R(0.01), R(0.02), R(0.0)},  /* platform_centre_of_mass */
-    {{R(0.02), R(0.0), R(0.0)}, {R(0.0), R(0.02), R(0.0)}, {R(0.0), R(0.0), R(0.05)}},  /* platform_inertia */
+    {R(0.01), R(0.02), 0},  /* platform_centre_of_mass */
+    {{R(0.02), 0, 0}, {0, R(0.02), 0}, {0, 0, R(0.05)}},  /* platform_inertia */
     {  /* rpr_base_point */
-        {R(-0.2576486461453918), R(0.7173779532087043), R(0.0)},
-        {R(-0.46476371659661553), R(-0.6378000115304618), R(0.0)},
-        {R(0.8124123627420069), R(-0.1395779416782425), R(0.0)},
+        {R(-0.2576486461453918), R(0.7173779532087043), 0},
+        {R(-0.46476371659661553), R(-0.6378000115304618), 0},
+        {R(0.8124123627420069), R(-0.1395779416782425), 0},
     },
     {  /* rpr_base_frame */
-        {{R(0.4349655341112302), R(0.9004471023526769), R(0.0)}, {R(-0.9004471023526769), R(0.4349655341112302), R(0.0)}, {R(0.0), R(0.0), R(1.0)}},
-        {{R(0.5623272983458902), R(-0.8269147534873302), R(0.0)}, {R(0.8269147534873302), R(0.5623272983458902), R(0.0)}, {R(0.0), R(0.0), R(1.0)}},
-        {{R(-0.99729283245712), R(-0.07353234886534676), R(0.0)}, {R(0.07353234886534676), R(-0.99729283245712), R(0.0)}, {R(0.0), R(0.0), R(1.0)}},
+        {{R(0.4349655341112302), R(0.9004471023526769), 0}, {R(-0.9004471023526769), R(0.4349655341112302), 0}, {0, 0, 1}},
+        {{R(0.5623272983458902), R(-0.8269147534873302), 0}, {R(0.8269147534873302), R(0.5623272983458902), 0}, {0, 0, 1}},
+        {{R(-0.99729283245712), R(-0.07353234886534676), 0}, {R(0.07353234886534676), R(-0.99729283245712), 0}, {0, 0, 1}},
     },
     {  /* rpr_platform_point */
-        {R(1.1021821192326179e-17), R(0.18), R(0.0)},
-        {R(-0.15588457268119899), R(-0.08999999999999994), R(0.0)},
-        {R(0.1558845726811989), R(-0.09000000000000008), R(0.0)},
+        {R(1.1021821192326179e-17), R(0.18), 0},
+        {R(-0.15588457268119899), R(-0.08999999999999994), 0},
+        {R(0.1558845726811989), R(-0.09000000000000008), 0},
     },
     {  /* rpr_link1_mass */
         R(2.0),
@@ -451,14 +458,14 @@ const planar_3rpr_params planar_3rpr_default_params = {
         R(2.0),
     },
     {  /* rpr_link1_centre_of_mass */
-        {R(0.175), R(0.0), R(0.0)},
-        {R(0.175), R(0.0), R(0.0)},
-        {R(0.175), R(0.0), R(0.0)},
+        {R(0.175), 0, 0},
+        {R(0.175), 0, 0},
+        {R(0.175), 0, 0},
     },
     {  /* rpr_link1_inertia */
-        {{R(0.0004), R(0.0), R(0.0)}, {R(0.0), R(0.020616666666666665), R(0.0)}, {R(0.0), R(0.0), R(0.020616666666666665)}},
-        {{R(0.0004), R(0.0), R(0.0)}, {R(0.0), R(0.020616666666666665), R(0.0)}, {R(0.0), R(0.0), R(0.020616666666666665)}},
-        {{R(0.0004), R(0.0), R(0.0)}, {R(0.0), R(0.020616666666666665), R(0.0)}, {R(0.0), R(0.0), R(0.020616666666666665)}},
+        {{R(0.0004), 0, 0}, {0, R(0.020616666666666665), 0}, {0, 0, R(0.020616666666666665)}},
+        {{R(0.0004), 0, 0}, {0, R(0.020616666666666665), 0}, {0, 0, R(0.020616666666666665)}},
+        {{R(0.0004), 0, 0}, {0, R(0.020616666666666665), 0}, {0, 0, R(0.020616666666666665)}},
     },
     {  /* rpr_link2_mass */
         R(1.2),
@@ -466,19 +473,19 @@ const planar_3rpr_params planar_3rpr_default_params = {
         R(1.2),
     },
     {  /* rpr_link2_centre_of_mass */
-        {R(-0.2), R(0.0), R(0.0)},
-        {R(-0.2), R(0.0), R(0.0)},
-        {R(-0.2), R(0.0), R(0.0)},
+        {R(-0.2), 0, 0},
+        {R(-0.2), 0, 0},
+        {R(-0.2), 0, 0},
     },
     {  /* rpr_link2_inertia */
-        {{R(0.00024), R(0.0), R(0.0)}, {R(0.0), R(0.016120000000000002), R(0.0)}, {R(0.0), R(0.0), R(0.016120000000000002)}},
-        {{R(0.00024), R(0.0), R(0.0)}, {R(0.0), R(0.016120000000000002), R(0.0)}, {R(0.0), R(0.0), R(0.016120000000000002)}},
-        {{R(0.00024), R(0.0), R(0.0)}, {R(0.0), R(0.016120000000000002), R(0.0)}, {R(0.0), R(0.0), R(0.016120000000000002)}},
+        {{R(0.00024), 0, 0}, {0, R(0.016120000000000002), 0}, {0, 0, R(0.016120000000000002)}},
+        {{R(0.00024), 0, 0}, {0, R(0.016120000000000002), 0}, {0, 0, R(0.016120000000000002)}},
+        {{R(0.00024), 0, 0}, {0, R(0.016120000000000002), 0}, {0, 0, R(0.016120000000000002)}},
     },
 };
 
 const planar_3rpr_real planar_3rpr_HOME_X[PLANAR_3RPR_NQ] = {R(0.03), R(-0.02), R(0.09999999999999999)};
-const planar_3rpr_real planar_3rpr_HOME_Q[PLANAR_3RPR_NJ] = {R(0.0), R(0.62), R(0.0), R(0.62), R(0.0), R(0.62)};
+const planar_3rpr_real planar_3rpr_HOME_Q[PLANAR_3RPR_NJ] = {0, R(0.62), 0, R(0.62), 0, R(0.62)};
 const size_t planar_3rpr_ACTUATED[PLANAR_3RPR_NU] = {1, 3, 5};
 const char *const planar_3rpr_ACTUATOR_NAMES[PLANAR_3RPR_NU] = {
     "leg1_joint2",
@@ -519,6 +526,9 @@ static int acceptable(const planar_3rpr_params *p)
     return ok;
 }
 
+#define KEEP(name) model->name = name
+#define KEEP_OF_LEG(name) model->name[leg] = name
+
 int planar_3rpr_prepare(const planar_3rpr_params *params, planar_3rpr_model *model)
 {
     if (!acceptable(params)) {
@@ -550,10 +560,10 @@ int planar_3rpr_prepare(const planar_3rpr_params *params, planar_3rpr_model *mod
     const real spread_t = R(0.3333333333333333)*root(3);
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = R(1.073871500692704)*spread_t;
-    model->gravity_x = gravity_x;
-    model->gravity_y = gravity_y;
-    model->legs_size = legs_size;
-    model->spread_t = spread_t;
+    KEEP(gravity_x);
+    KEEP(gravity_y);
+    KEEP(legs_size);
+    KEEP(spread_t);
     for (size_t leg = 0; leg < FILLED(LEGS_OF_rpr); ++leg) {
         const size_t own = leg < LEGS_OF_rpr ? leg : 0;
         const real rpr_base_point_x = params->rpr_base_point[own][0];
@@ -603,26 +613,26 @@ int planar_3rpr_prepare(const planar_3rpr_params *params, planar_3rpr_model *mod
             rpr_base_frame_yx*rpr_base_point_y;
         const real rpr_potential_t_2 = rpr_base_frame_xy*rpr_base_point_x +
             rpr_base_frame_yy*rpr_base_point_y;
-        model->rpr_J_group_1_in_axes1_zz[leg] = rpr_J_group_1_in_axes1_zz;
-        model->rpr_acc_2_t[leg] = rpr_acc_2_t;
-        model->rpr_acc_2_t_2[leg] = rpr_acc_2_t_2;
-        model->rpr_base_frame_xx[leg] = rpr_base_frame_xx;
-        model->rpr_base_frame_xy[leg] = rpr_base_frame_xy;
-        model->rpr_base_frame_yx[leg] = rpr_base_frame_yx;
-        model->rpr_base_frame_yy[leg] = rpr_base_frame_yy;
-        model->rpr_base_point_x[leg] = rpr_base_point_x;
-        model->rpr_base_point_y[leg] = rpr_base_point_y;
-        model->rpr_branch_1[leg] = rpr_branch_1;
-        model->rpr_h_1_in_spec1_x[leg] = rpr_h_1_in_spec1_x;
-        model->rpr_h_1_in_spec1_y[leg] = rpr_h_1_in_spec1_y;
-        model->rpr_h_2_in_spec1_x[leg] = rpr_h_2_in_spec1_x;
-        model->rpr_h_2_in_spec1_y[leg] = rpr_h_2_in_spec1_y;
-        model->rpr_link1_mass[leg] = rpr_link1_mass;
-        model->rpr_link2_mass[leg] = rpr_link2_mass;
-        model->rpr_platform_point_x[leg] = rpr_platform_point_x;
-        model->rpr_platform_point_y[leg] = rpr_platform_point_y;
-        model->rpr_potential_t[leg] = rpr_potential_t;
-        model->rpr_potential_t_2[leg] = rpr_potential_t_2;
+        KEEP_OF_LEG(rpr_J_group_1_in_axes1_zz);
+        KEEP_OF_LEG(rpr_acc_2_t);
+        KEEP_OF_LEG(rpr_acc_2_t_2);
+        KEEP_OF_LEG(rpr_base_frame_xx);
+        KEEP_OF_LEG(rpr_base_frame_xy);
+        KEEP_OF_LEG(rpr_base_frame_yx);
+        KEEP_OF_LEG(rpr_base_frame_yy);
+        KEEP_OF_LEG(rpr_base_point_x);
+        KEEP_OF_LEG(rpr_base_point_y);
+        KEEP_OF_LEG(rpr_branch_1);
+        KEEP_OF_LEG(rpr_h_1_in_spec1_x);
+        KEEP_OF_LEG(rpr_h_1_in_spec1_y);
+        KEEP_OF_LEG(rpr_h_2_in_spec1_x);
+        KEEP_OF_LEG(rpr_h_2_in_spec1_y);
+        KEEP_OF_LEG(rpr_link1_mass);
+        KEEP_OF_LEG(rpr_link2_mass);
+        KEEP_OF_LEG(rpr_platform_point_x);
+        KEEP_OF_LEG(rpr_platform_point_y);
+        KEEP_OF_LEG(rpr_potential_t);
+        KEEP_OF_LEG(rpr_potential_t_2);
         m_star_of_legs += leg < LEGS_OF_rpr ? rpr_link2_mass : 0;
         h_star_in_platform_x_of_legs += leg < LEGS_OF_rpr ? rpr_h_star_t : 0;
         h_star_in_platform_y_of_legs += leg < LEGS_OF_rpr ? rpr_h_star_t_2 : 0;
@@ -647,14 +657,14 @@ int planar_3rpr_prepare(const planar_3rpr_params *params, planar_3rpr_model *mod
     /* (b_c) centroid of the platform points */
     const real b_c_in_platform_x = R(0.3333333333333333)*b_c_rpr_in_platform_x;
     const real b_c_in_platform_y = R(0.3333333333333333)*b_c_rpr_in_platform_y;
-    model->J_star_zz = J_star_zz;
-    model->Z_p_t = Z_p_t;
-    model->Z_p_t_2 = Z_p_t_2;
-    model->b_c_in_platform_x = b_c_in_platform_x;
-    model->b_c_in_platform_y = b_c_in_platform_y;
-    model->h_star_in_platform_x = h_star_in_platform_x;
-    model->h_star_in_platform_y = h_star_in_platform_y;
-    model->m_star = m_star;
+    KEEP(J_star_zz);
+    KEEP(Z_p_t);
+    KEEP(Z_p_t_2);
+    KEEP(b_c_in_platform_x);
+    KEEP(b_c_in_platform_y);
+    KEEP(h_star_in_platform_x);
+    KEEP(h_star_in_platform_y);
+    KEEP(m_star);
     return OK;
 }
 
@@ -1149,9 +1159,9 @@ INLINE void stage_rpr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rpr_q_x = R_xx*m->rpr_platform_point_x[i] - R_yx*m->rpr_platform_point_y[i];
     const real rpr_q_y = R_xx*m->rpr_platform_point_y[i] + R_yx*m->rpr_platform_point_x[i];
     const real t_x = X[0*w + j];
-    const real rpr_S_x = rpr_q_x + t_x - m->rpr_base_point_x[i];
+    const real rpr_S_x = t_x - m->rpr_base_point_x[i] + rpr_q_x;
     const real t_y = X[1*w + j];
-    const real rpr_S_y = rpr_q_y + t_y - m->rpr_base_point_y[i];
+    const real rpr_S_y = t_y - m->rpr_base_point_y[i] + rpr_q_y;
     const real rpr_S_in_turn1_x = rpr_S_x*m->rpr_base_frame_xx[i] +
         rpr_S_y*m->rpr_base_frame_yx[i];
     const real rpr_S_in_turn1_y = rpr_S_x*m->rpr_base_frame_xy[i] +
@@ -1204,7 +1214,7 @@ INLINE void stage_rpr_V_X(size_t w, size_t j, const real *V, values_rpr *v)
     const real t_dot_x = V[0*w + j];
     const real rpr_S_dot_x = t_dot_x - rpr_S_dot_t;
     const real t_dot_y = V[1*w + j];
-    const real rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y;
+    const real rpr_S_dot_y = t_dot_y + rpr_S_dot_t_2;
     const real rpr_S_dot_in_axes1_x = v->axis_x_rpr_axes1_x*rpr_S_dot_x +
         v->axis_x_rpr_axes1_y*rpr_S_dot_y;
     /* (rpr-qd_1) rate of joint 1 */
@@ -1249,8 +1259,8 @@ INLINE void stage_rpr_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
         v->axis_x_rpr_axes1_y*m->gravity_y;
     const real rpr_g_in_axes1_y = v->axis_x_rpr_axes1_x*m->gravity_y -
         v->axis_x_rpr_axes1_y*m->gravity_x;
-    const real rpr_acc_2_o_in_axes1_x = v->axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x -
-        v->axis_x_rpr_axes1_x*rpr_u_1_t;
+    const real rpr_acc_2_o_in_axes1_x = v->axis_x_rpr_axes1_y*rpr_u_1_y -
+        v->axis_x_rpr_axes1_x*rpr_u_1_t - rpr_g_in_axes1_x;
     const real rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y;
     /* (rpr-phi_2_o) remainder of: inertia force of link 2 from its turning about its reference point
        */
@@ -1258,16 +1268,15 @@ INLINE void stage_rpr_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
         m->rpr_h_2_in_spec1_y[i]*rpr_qdd_1_o;
     /* (rpr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
-    const real rpr_mu_1_o_in_axes1_z = m->rpr_J_group_1_in_axes1_zz[i]*rpr_qdd_1_o +
-        rpr_acc_2_o_in_axes1_y*m->rpr_h_2_in_spec1_x[i] +
-        rpr_g_in_axes1_x*m->rpr_h_1_in_spec1_y[i] -
-        rpr_acc_2_o_in_axes1_x*m->rpr_h_2_in_spec1_y[i] -
-        rpr_g_in_axes1_y*m->rpr_h_1_in_spec1_x[i];
+    const real rpr_mu_1_o_in_axes1_z = rpr_g_in_axes1_x*m->rpr_h_1_in_spec1_y[i] -
+        rpr_g_in_axes1_y*m->rpr_h_1_in_spec1_x[i] +
+        rpr_acc_2_o_in_axes1_y*m->rpr_h_2_in_spec1_x[i] -
+        rpr_acc_2_o_in_axes1_x*m->rpr_h_2_in_spec1_y[i] +
+        m->rpr_J_group_1_in_axes1_zz[i]*rpr_qdd_1_o;
     /* (rpr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
-    const real rpr_c_o_in_axes1_y = -v->inv_rpr_q_2*rpr_mu_1_o_in_axes1_z -
-        v->rpr_W_1_in_axes1_xx*m->rpr_h_2_in_spec1_y[i] -
-        m->rpr_h_2_in_spec1_x[i]*rpr_qdd_1_o;
+    const real rpr_c_o_in_axes1_y = -v->rpr_W_1_in_axes1_xx*m->rpr_h_2_in_spec1_y[i] -
+        m->rpr_h_2_in_spec1_x[i]*rpr_qdd_1_o - v->inv_rpr_q_2*rpr_mu_1_o_in_axes1_z;
     /* (rpr-U) velocity and gravity terms of the leg force */
     const real rpr_U_x = v->axis_x_rpr_axes1_x*rpr_phi_2_o_in_axes1_x +
         v->axis_x_rpr_axes1_y*rpr_c_o_in_axes1_y;
@@ -1287,11 +1296,11 @@ INLINE void stage_rpr_inverse_kinematics_potential(const prepared *m, size_t w, 
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
     const real t_x = X[0*w + j];
-    const real rpr_S_x = t_x + R_xx*m->rpr_platform_point_x[i] - m->rpr_base_point_x[i] -
+    const real rpr_S_x = t_x - m->rpr_base_point_x[i] + R_xx*m->rpr_platform_point_x[i] -
         R_yx*m->rpr_platform_point_y[i];
     const real t_y = X[1*w + j];
-    const real rpr_S_y = t_y + R_xx*m->rpr_platform_point_y[i] +
-        R_yx*m->rpr_platform_point_x[i] - m->rpr_base_point_y[i];
+    const real rpr_S_y = t_y - m->rpr_base_point_y[i] + R_xx*m->rpr_platform_point_y[i] +
+        R_yx*m->rpr_platform_point_x[i];
     const real rpr_S_in_turn1_x = rpr_S_x*m->rpr_base_frame_xx[i] +
         rpr_S_y*m->rpr_base_frame_yx[i];
     const real rpr_S_in_turn1_y = rpr_S_x*m->rpr_base_frame_xy[i] +
@@ -1330,15 +1339,15 @@ INLINE void stage_rpr_legs_required(const prepared *m, size_t i, values_rpr *v)
         v->axis_x_rpr_axes1_y*v->rpr_S_ddot_y - rpr_g_in_axes1_x;
     const real rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y;
     /* (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-    const real rpr_mu_1_in_axes1_z = m->rpr_J_group_1_in_axes1_zz[i]*rpr_qdd_1 +
-        rpr_acc_2_in_axes1_y*m->rpr_h_2_in_spec1_x[i] +
-        rpr_g_in_axes1_x*m->rpr_h_1_in_spec1_y[i] -
-        rpr_acc_2_in_axes1_x*m->rpr_h_2_in_spec1_y[i] -
-        rpr_g_in_axes1_y*m->rpr_h_1_in_spec1_x[i];
+    const real rpr_mu_1_in_axes1_z = rpr_g_in_axes1_x*m->rpr_h_1_in_spec1_y[i] -
+        rpr_g_in_axes1_y*m->rpr_h_1_in_spec1_x[i] +
+        rpr_acc_2_in_axes1_y*m->rpr_h_2_in_spec1_x[i] -
+        rpr_acc_2_in_axes1_x*m->rpr_h_2_in_spec1_y[i] +
+        m->rpr_J_group_1_in_axes1_zz[i]*rpr_qdd_1;
     /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rpr_c_in_axes1_y = -v->inv_rpr_q_2*rpr_mu_1_in_axes1_z -
-        v->rpr_W_1_in_axes1_xx*m->rpr_h_2_in_spec1_y[i] - m->rpr_h_2_in_spec1_x[i]*rpr_qdd_1;
+    const real rpr_c_in_axes1_y = -v->rpr_W_1_in_axes1_xx*m->rpr_h_2_in_spec1_y[i] -
+        m->rpr_h_2_in_spec1_x[i]*rpr_qdd_1 - v->inv_rpr_q_2*rpr_mu_1_in_axes1_z;
     v->rpr_qdd_1 = rpr_qdd_1;
     v->rpr_acc_2_in_axes1_x = rpr_acc_2_in_axes1_x;
     v->rpr_acc_2_in_axes1_y = rpr_acc_2_in_axes1_y;
@@ -1348,21 +1357,25 @@ INLINE void stage_rpr_legs_required(const prepared *m, size_t i, values_rpr *v)
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    real *s)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s)
 {
-    values v;
-    stage_V(w, k, V, &v);
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+    s[2*w + k] = v->h_star_x;
+    s[3*w + k] = v->h_star_y;
+}
+
+INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
+    *s)
+{
+    stage_V(w, k, V, v);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_x = v.W_p_xx*v.h_star_x - m->Z_p_t;
-    const real Z_p_y = v.W_p_xx*v.h_star_y - m->Z_p_t_2;
+    const real Z_p_x = v->W_p_xx*v->h_star_x - m->Z_p_t;
+    const real Z_p_y = v->W_p_xx*v->h_star_y - m->Z_p_t_2;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real Z_q_z = m->gravity_x*v.h_star_y - m->gravity_y*v.h_star_x;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
-    s[2*w + k] = v.h_star_x;
-    s[3*w + k] = v.h_star_y;
+    const real Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x;
     s[4*w + k] = Z_p_x;
     s[5*w + k] = Z_p_y;
     s[6*w + k] = Z_q_z;
@@ -1385,8 +1398,8 @@ INLINE void dynamics_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, s
     const real rpr_Q_t = R(0.5)*rpr_d_c_in_axes1_yy;
     const real rpr_Q_t_2 = v.axis_x_rpr_axes1_y*rpr_Q_t -
         v.axis_x_rpr_axes1_x*rpr_d_c_in_axes1_xy;
-    const real rpr_Q_t_3 = v.axis_x_rpr_axes1_x*rpr_Q_t +
-        v.axis_x_rpr_axes1_y*rpr_d_c_in_axes1_xy;
+    const real rpr_Q_t_3 = v.axis_x_rpr_axes1_y*rpr_d_c_in_axes1_xy +
+        v.axis_x_rpr_axes1_x*rpr_Q_t;
     const real rpr_Q_xx = -2*v.axis_x_rpr_axes1_y*rpr_Q_t_2;
     const real rpr_Q_xy = v.axis_x_rpr_axes1_x*rpr_Q_t_2 + v.axis_x_rpr_axes1_y*rpr_Q_t_3;
     const real rpr_Q_yy = -2*v.axis_x_rpr_axes1_x*rpr_Q_t_3;
@@ -1436,16 +1449,16 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     /* (M_ta) */
     const real M_ta_xz_of_legs = sums[3*w + k];
     const real h_star_y = s[3*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yz_of_legs = sums[4*w + k];
     const real h_star_x = s[2*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     /* (M_aa) */
     const real M_aa_zz_of_legs = sums[5*w + k];
     const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
@@ -1459,7 +1472,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     /* (Z_a) */
     const real Z_a_z_of_legs = sums[8*w + k];
     const real Z_q_z = s[6*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
     const real M_tt_xy = sums[1*w + k];
@@ -1487,7 +1500,8 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 {
     real s[7] = {0}, sums[9] = {0};
     real terms_rpr[9*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
-    dynamics_before(m, 1, 0, X, V, s);
+    values v;
+    dynamics_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         dynamics_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, V, terms_rpr, o_rpr);
     }
@@ -1497,6 +1511,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t n = 0; n < 9; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
+    dynamics_between(m, 1, 0, V, &v, s);
     dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
@@ -1506,7 +1521,9 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real s[7*LANES], sums[9*LANES];
     real o_rpr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        dynamics_before(m, LANES, k, X, V, s);
+        values v;
+        dynamics_before(m, LANES, k, X, &v, s);
+        dynamics_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 9*LANES);
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
@@ -1523,14 +1540,13 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
-    s[2*w + k] = v.h_star_x;
-    s[3*w + k] = v.h_star_y;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+    s[2*w + k] = v->h_star_x;
+    s[3*w + k] = v->h_star_y;
 }
 
 INLINE void M_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -1547,7 +1563,7 @@ INLINE void M_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     /* (rpr-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real rpr_Q_t = R(0.5)*rpr_d_c_in_axes1_yy;
     const real rpr_Q_t_2 = rpr_Q_t*v.rpr_w_2_y - rpr_d_c_in_axes1_xy*v.rpr_w_2_x;
-    const real rpr_Q_t_3 = rpr_Q_t*v.rpr_w_2_x + rpr_d_c_in_axes1_xy*v.rpr_w_2_y;
+    const real rpr_Q_t_3 = rpr_d_c_in_axes1_xy*v.rpr_w_2_y + rpr_Q_t*v.rpr_w_2_x;
     const real rpr_Q_xx = -2*rpr_Q_t_2*v.rpr_w_2_y;
     const real rpr_Q_xy = rpr_Q_t_2*v.rpr_w_2_x + rpr_Q_t_3*v.rpr_w_2_y;
     const real rpr_Q_yy = -2*rpr_Q_t_3*v.rpr_w_2_x;
@@ -1579,16 +1595,16 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     /* (M_ta) */
     const real M_ta_xz_of_legs = sums[3*w + k];
     const real h_star_y = s[3*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yz_of_legs = sums[4*w + k];
     const real h_star_x = s[2*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     /* (M_aa) */
     const real M_aa_zz_of_legs = sums[5*w + k];
     const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
@@ -1612,7 +1628,8 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
     real s[4] = {0}, sums[6] = {0};
     real terms_rpr[6*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
-    M_before(m, 1, 0, X, s);
+    values v;
+    M_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         M_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, terms_rpr, o_rpr);
     }
@@ -1630,7 +1647,8 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
     real s[4*LANES], sums[6*LANES];
     real o_rpr[LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        M_before(m, LANES, k, X, s);
+        values v;
+        M_before(m, LANES, k, X, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
@@ -1647,18 +1665,21 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s)
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
-    values v;
-    stage_V(w, k, V, &v);
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+}
+
+INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
+{
+    stage_V(w, k, V, v);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_x = v.W_p_xx*v.h_star_x - m->Z_p_t;
-    const real Z_p_y = v.W_p_xx*v.h_star_y - m->Z_p_t_2;
+    const real Z_p_x = v->W_p_xx*v->h_star_x - m->Z_p_t;
+    const real Z_p_y = v->W_p_xx*v->h_star_y - m->Z_p_t_2;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real Z_q_z = m->gravity_x*v.h_star_y - m->gravity_y*v.h_star_x;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    const real Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x;
     s[2*w + k] = Z_p_x;
     s[3*w + k] = Z_p_y;
     s[4*w + k] = Z_q_z;
@@ -1697,7 +1718,7 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     /* (Z_a) */
     const real Z_a_z_of_legs = sums[2*w + k];
     const real Z_q_z = s[4*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
     Z[1*w + k] = Z_t_y;
@@ -1710,7 +1731,8 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 {
     real s[5] = {0}, sums[3] = {0};
     real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
-    Z_before(m, 1, 0, X, V, s);
+    values v;
+    Z_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         Z_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, V, terms_rpr, o_rpr);
     }
@@ -1720,6 +1742,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
+    Z_between(m, 1, 0, V, &v, s);
     Z_after(1, 0, s, sums, Z, t);
 }
 
@@ -1729,7 +1752,9 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real s[5*LANES], sums[3*LANES];
     real o_rpr[LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        Z_before(m, LANES, k, X, V, s);
+        values v;
+        Z_before(m, LANES, k, X, &v, s);
+        Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 3*LANES);
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
@@ -1746,12 +1771,11 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void H_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -1785,7 +1809,8 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
     real s[2] = {0};
     real o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
-    H_before(m, 1, 0, X, s);
+    values v;
+    H_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         H_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, o_rpr);
     }
@@ -1799,7 +1824,8 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
     real s[2*LANES];
     real o_rpr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        H_before(m, LANES, k, X, s);
+        values v;
+        H_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -1812,12 +1838,18 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, real *s)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s)
 {
-    values v;
-    stage_V(w, k, V, &v);
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+}
+
+INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
+    values *v, real *s)
+{
+    stage_V(w, k, V, v);
     /* (a_t) acceleration of the platform origin, less gravity */
     const real t_ddot_x = A[0*w + k];
     const real a_t_x = t_ddot_x - m->gravity_x;
@@ -1825,12 +1857,10 @@ INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X
     const real a_t_y = t_ddot_y - m->gravity_y;
     /* (f_p) inertia force of the platform less its weight */
     const real alpha_z = A[2*w + k];
-    const real f_p_x = v.W_p_xx*v.h_star_x + a_t_x*m->m_star - alpha_z*v.h_star_y;
-    const real f_p_y = v.W_p_xx*v.h_star_y + a_t_y*m->m_star + alpha_z*v.h_star_x;
+    const real f_p_x = a_t_x*m->m_star + v->W_p_xx*v->h_star_x - alpha_z*v->h_star_y;
+    const real f_p_y = a_t_y*m->m_star + v->W_p_xx*v->h_star_y + alpha_z*v->h_star_x;
     /* (mu_p) inertia moment of the platform less that of its weight */
-    const real mu_p_z = m->J_star_zz*alpha_z + a_t_y*v.h_star_x - a_t_x*v.h_star_y;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    const real mu_p_z = m->J_star_zz*alpha_z + a_t_y*v->h_star_x - a_t_x*v->h_star_y;
     s[2*w + k] = f_p_x;
     s[3*w + k] = f_p_y;
     s[4*w + k] = mu_p_z;
@@ -1894,7 +1924,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     /* (R_a) */
     const real R_a_z_of_legs = sums[2*w + k];
     const real mu_p_z = s[4*w + k];
-    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
     required[1*w + k] = R_t_y;
@@ -1902,12 +1932,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[2*w + k] = R_a_z;
 }
 
-APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
     real s[5] = {0}, sums[3] = {0};
     real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
-    required_before(m, 1, 0, X, V, A, s);
+    values v;
+    required_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         required_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, V, A, terms_rpr, o_rpr);
     }
@@ -1917,6 +1948,7 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
+    required_between(m, 1, 0, V, A, &v, s);
     required_after(1, 0, s, sums, required);
 }
 
@@ -1926,7 +1958,9 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real s[5*LANES], sums[3*LANES];
     real o_rpr[4*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        required_before(m, LANES, k, X, V, A, s);
+        values v;
+        required_before(m, LANES, k, X, &v, s);
+        required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 3*LANES);
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
@@ -1943,13 +1977,12 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
+    *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k,
@@ -1982,7 +2015,8 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 {
     real s[2] = {0};
     real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
-    inverse_kinematics_before(m, 1, 0, X, s);
+    values v;
+    inverse_kinematics_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         inverse_kinematics_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, o_rpr);
     }
@@ -1997,7 +2031,8 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real s[2*LANES];
     real o_rpr[4*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        inverse_kinematics_before(m, LANES, k, X, s);
+        values v;
+        inverse_kinematics_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2010,12 +2045,12 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void joint_rates_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2056,7 +2091,8 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 {
     real s[2] = {0};
     real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
-    joint_rates_before(m, 1, 0, X, s);
+    values v;
+    joint_rates_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         joint_rates_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, V, o_rpr);
     }
@@ -2071,7 +2107,8 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real s[2*LANES];
     real o_rpr[4*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_rates_before(m, LANES, k, X, s);
+        values v;
+        joint_rates_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2084,13 +2121,12 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
+    values *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void joint_accelerations_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t
@@ -2131,7 +2167,8 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 {
     real s[2] = {0};
     real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
-    joint_accelerations_before(m, 1, 0, X, s);
+    values v;
+    joint_accelerations_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         joint_accelerations_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, V, A, o_rpr);
     }
@@ -2146,7 +2183,8 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real s[2*LANES];
     real o_rpr[4*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_accelerations_before(m, LANES, k, X, s);
+        values v;
+        joint_accelerations_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2159,12 +2197,11 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void legs_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2178,14 +2215,14 @@ INLINE void legs_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_
     stage_rpr_legs_required(m, i, &v);
     /* (rpr-c_true) leg force on the platform without actuation, the last link's mass included */
     const real rpr_c_true_in_axes1_x = m->rpr_h_2_in_spec1_y[i]*v.rpr_qdd_1 -
-        v.rpr_W_1_in_axes1_xx*m->rpr_h_2_in_spec1_x[i] -
-        v.rpr_acc_2_in_axes1_x*m->rpr_link2_mass[i];
+        v.rpr_acc_2_in_axes1_x*m->rpr_link2_mass[i] -
+        v.rpr_W_1_in_axes1_xx*m->rpr_h_2_in_spec1_x[i];
     const real rpr_c_true_in_axes1_y = v.rpr_c_in_axes1_y -
         v.rpr_acc_2_in_axes1_y*m->rpr_link2_mass[i];
     const real rpr_c_true_x = v.axis_x_rpr_axes1_x*rpr_c_true_in_axes1_x -
         v.axis_x_rpr_axes1_y*rpr_c_true_in_axes1_y;
-    const real rpr_c_true_y = v.axis_x_rpr_axes1_x*rpr_c_true_in_axes1_y +
-        v.axis_x_rpr_axes1_y*rpr_c_true_in_axes1_x;
+    const real rpr_c_true_y = v.axis_x_rpr_axes1_y*rpr_c_true_in_axes1_x +
+        v.axis_x_rpr_axes1_x*rpr_c_true_in_axes1_y;
     /* (rpr-c_true) */
     o[0*count + k] = rpr_c_true_x;
     o[1*count + k] = rpr_c_true_y;
@@ -2213,7 +2250,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     real o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
     clear(leg_force, 3*NL);
     clear(actuator, 9);
-    legs_before(m, 1, 0, X, s);
+    values v;
+    legs_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         legs_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, V, A, o_rpr);
     }
@@ -2223,18 +2261,23 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+}
+
+INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s)
+{
     /* (potential) potential energy */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
-    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x + m->m_star*t_x -
-        v.R_yx*m->h_star_in_platform_y) + m->gravity_y*(v.R_xx*m->h_star_in_platform_y +
-        v.R_yx*m->h_star_in_platform_x + m->m_star*t_y);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    const real potential_t = m->gravity_x*(m->m_star*t_x + v->R_xx*m->h_star_in_platform_x -
+        v->R_yx*m->h_star_in_platform_y) + m->gravity_y*(m->m_star*t_y +
+        v->R_xx*m->h_star_in_platform_y + v->R_yx*m->h_star_in_platform_x);
     s[2*w + k] = potential_t;
 }
 
@@ -2271,7 +2314,7 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     /* (potential) */
     const real potential_of_legs = sums[0*w + k];
     const real potential_t = s[2*w + k];
-    const real potential_ = -potential_of_legs - potential_t;
+    const real potential_ = -potential_t - potential_of_legs;
     /* (potential) */
     potential[0*w + k] = potential_;
 }
@@ -2280,7 +2323,8 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 {
     real s[3] = {0}, sums[1] = {0};
     real terms_rpr[LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
-    potential_before(m, 1, 0, X, s);
+    values v;
+    potential_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         potential_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, terms_rpr, o_rpr);
     }
@@ -2290,17 +2334,17 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
+    potential_between(m, 1, 0, X, &v, s);
     potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
-    *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, real *lengths, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
@@ -2365,7 +2409,8 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     real s[2] = {0}, sums[1] = {0};
     real terms_rpr[LEGS(LEGS_OF_rpr)] = {0}, o_rpr[6*LEGS(LEGS_OF_rpr)] = {0};
     clear(reach, NL);
-    condition_before(m, 1, 0, X, s, lengths, t);
+    values v;
+    condition_before(m, 1, 0, X, &v, s, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         condition_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, terms_rpr, o_rpr);
     }
@@ -2389,11 +2434,7 @@ int planar_3rpr_M(const prepared *m, const real *X, real *M_out)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-    }
-    return code;
+    return settled(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -2420,11 +2461,7 @@ int planar_3rpr_Z(const prepared *m, const real *X, const real *V, real *Z_out)
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, Z_out);
-    }
-    return code;
+    return settled(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -2448,11 +2485,7 @@ int planar_3rpr_H(const prepared *m, const real *X, real *H_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -2475,11 +2508,7 @@ int planar_3rpr_inverse_kinematics(const prepared *m, const real *X, real *q_out
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, q_out);
-    }
-    return code;
+    return settled(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -2506,11 +2535,7 @@ int planar_3rpr_joint_rates(const prepared *m, const real *X, const real *V, rea
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qd_out);
-    }
-    return code;
+    return settled(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -2541,11 +2566,7 @@ int planar_3rpr_joint_accelerations(const prepared *m, const real *X, const real
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qdd_out);
-    }
-    return code;
+    return settled(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -2578,13 +2599,9 @@ int planar_3rpr_dynamics(const prepared *m, const real *X, const real *V, real *
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-        refuse(NV, Z_out);
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    settled(&why, NV*NV, M_out);
+    settled(&why, NV, Z_out);
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -2655,7 +2672,8 @@ static const real sizes_tau[] = {1.0, 1.0, 0.0625};
 int planar_3rpr_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out)
 {
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    static const real no_wrench[NW] = {0};
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
@@ -2665,7 +2683,7 @@ int planar_3rpr_inverse_dynamics(const prepared *m, const real *X, const real *V
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -2679,11 +2697,7 @@ int planar_3rpr_inverse_dynamics(const prepared *m, const real *X, const real *V
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, tau_out);
-    }
-    return code;
+    return settled(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -2712,8 +2726,9 @@ static const real sizes_A[] = {4.0, 4.0, 0.25};
 int planar_3rpr_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau,
     const real *wrench, real *A_out)
 {
-    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] =
-        {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    static const real no_wrench[NW] = {0};
+    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
+        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
@@ -2722,7 +2737,7 @@ int planar_3rpr_forward_dynamics(const prepared *m, const real *X, const real *V
         check(NV, 1, V, why.invalid);
         check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     for (size_t i = 0; i < NV; ++i) {
@@ -2740,11 +2755,7 @@ int planar_3rpr_forward_dynamics(const prepared *m, const real *X, const real *V
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, A_out);
-    }
-    return code;
+    return settled(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -2785,18 +2796,15 @@ int planar_3rpr_complete_acceleration(const prepared *m, const real *X, const re
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, completed_out);
-    }
-    return code;
+    return settled(&why, NV, completed_out);
 }
 
 int planar_3rpr_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out)
 {
+    static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2};
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
         unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[9] = {0}, forces[NL*NL] = {0},
         work[NV*PADDED(NV)];
     verdict why;
@@ -2807,7 +2815,7 @@ int planar_3rpr_leg_reactions(const prepared *m, const real *X, const real *V, c
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -2825,11 +2833,7 @@ int planar_3rpr_leg_reactions(const prepared *m, const real *X, const real *V, c
     add_forces(NL, 3, 1, places_forces, solve_1, actuator, forces);
     check(NL*NL, 1, forces, why.overflow);
     copy(NL*NL, forces, forces_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NL*NL, forces_out);
-    }
-    return code;
+    return settled(&why, NL*NL, forces_out);
 }
 
 int planar_3rpr_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
@@ -2851,25 +2855,22 @@ int planar_3rpr_energy(const prepared *m, const real *X, const real *V, real *ki
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, kinetic_out);
-        refuse(1, potential_out);
-    }
-    return code;
+    settled(&why, 1, kinetic_out);
+    return settled(&why, 1, potential_out);
 }
 
 int planar_3rpr_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
     const real *length = NULL;
+    static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {2};
-    real length_in[1], H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
+        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, length, 0, length_in, why.invalid);
+    length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
@@ -2887,12 +2888,8 @@ int planar_3rpr_condition(const prepared *m, const real *X, real *sigma_out, rea
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, sigma_out);
-        refuse(NL, legs_out);
-    }
-    return code;
+    settled(&why, NV, sigma_out);
+    return settled(&why, NL, legs_out);
 }
 
 int planar_3rpr_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -2926,12 +2923,8 @@ int planar_3rpr_manipulability(const prepared *m, const real *X, real *measure_o
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, measure_out);
-        refuse(1, isotropy_out);
-    }
-    return code;
+    settled(&why, 1, measure_out);
+    return settled(&why, 1, isotropy_out);
 }
 
 int planar_3rpr_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
@@ -2965,12 +2958,8 @@ int planar_3rpr_singularity_distance(const prepared *m, const real *X, real *act
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, actuators_out);
-        refuse(1, legs_out);
-    }
-    return code;
+    settled(&why, 1, actuators_out);
+    return settled(&why, 1, legs_out);
 }
 
 static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
@@ -2990,11 +2979,7 @@ static int mismatch_one(const prepared *m, const real *X, const real *q_actuated
     }
     check(NU, 1, gap, why.overflow);
     copy(NU, gap, gap_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, gap_out);
-    }
-    return code;
+    return settled(&why, NU, gap_out);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
@@ -3006,11 +2991,7 @@ static int slope_one(const prepared *m, const real *X, real *slope_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, slope_out);
-    }
-    return code;
+    return settled(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -3072,11 +3053,7 @@ int planar_3rpr_forward_kinematics(const prepared *m, const real *q_actuated, co
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int planar_3rpr_dissipation(const prepared *m, const real *X, const real *V, real
@@ -3094,11 +3071,7 @@ int planar_3rpr_dissipation(const prepared *m, const real *X, const real *V, rea
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, dissipation_out);
-    }
-    return code;
+    return settled(&why, 1, dissipation_out);
 }
 
 int planar_3rpr_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
@@ -3115,11 +3088,7 @@ int planar_3rpr_momentum(const prepared *m, const real *X, const real *V, real *
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, momentum_out);
-    }
-    return code;
+    return settled(&why, NV, momentum_out);
 }
 
 int planar_3rpr_joint_margins(const prepared *m, const real *X, real *margins_out)
@@ -3135,11 +3104,7 @@ int planar_3rpr_joint_margins(const prepared *m, const real *X, real *margins_ou
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, margins_out);
-    }
-    return code;
+    return settled(&why, NJ, margins_out);
 }
 
 int planar_3rpr_within_limits(const prepared *m, const real *X, real *within_out)
@@ -3155,11 +3120,7 @@ int planar_3rpr_within_limits(const prepared *m, const real *X, real *within_out
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, within_out);
-    }
-    return code;
+    return settled(&why, 1, within_out);
 }
 
 int planar_3rpr_actuator_positions(const prepared *m, const real *X, real *q_out)
@@ -3172,11 +3133,7 @@ int planar_3rpr_actuator_positions(const prepared *m, const real *X, real *q_out
     take(NU, 1, planar_3rpr_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, q_out);
-    }
-    return code;
+    return settled(&why, NU, q_out);
 }
 
 int planar_3rpr_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
@@ -3193,11 +3150,7 @@ int planar_3rpr_actuator_rates(const prepared *m, const real *X, const real *V, 
     take(NU, 1, planar_3rpr_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qd_out);
-    }
-    return code;
+    return settled(&why, NU, qd_out);
 }
 
 int planar_3rpr_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
@@ -3216,11 +3169,7 @@ int planar_3rpr_actuator_accelerations(const prepared *m, const real *X, const r
     take(NU, 1, planar_3rpr_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qdd_out);
-    }
-    return code;
+    return settled(&why, NU, qdd_out);
 }
 
 int planar_3rpr_power(const prepared *m, const real *X, const real *V, const real *tau, real
@@ -3240,11 +3189,7 @@ int planar_3rpr_power(const prepared *m, const real *X, const real *V, const rea
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, power_out);
-    }
-    return code;
+    return settled(&why, 1, power_out);
 }
 
 int planar_3rpr_rotation(const real *X, real *R_out)
@@ -3257,11 +3202,7 @@ int planar_3rpr_rotation(const real *X, real *R_out)
     rotation_of_angle(X_from_2, R);
     check(4, 1, R, why.overflow);
     copy(4, R, R_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(4, R_out);
-    }
-    return code;
+    return settled(&why, 4, R_out);
 }
 
 int planar_3rpr_pose(const real *t, const real *R, real *X_out)
@@ -3279,11 +3220,7 @@ int planar_3rpr_pose(const real *t, const real *R, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int planar_3rpr_X_dot(const real *X, const real *V, real *X_dot_out)
@@ -3298,11 +3235,7 @@ int planar_3rpr_X_dot(const real *X, const real *V, real *X_dot_out)
     const real *const X_dot = V;
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_dot_out);
-    }
-    return code;
+    return settled(&why, NQ, X_dot_out);
 }
 
 int planar_3rpr_retract(const real *X, const real *step, real *X_moved_out)
@@ -3320,11 +3253,7 @@ int planar_3rpr_retract(const real *X, const real *step, real *X_moved_out)
     }
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_moved_out);
-    }
-    return code;
+    return settled(&why, NQ, X_moved_out);
 }
 
 int planar_3rpr_difference(const real *X0, const real *X1, real *step_out)
@@ -3347,11 +3276,7 @@ int planar_3rpr_difference(const real *X0, const real *X1, real *step_out)
     wrap_turns(1, 1, places_step, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, step_out);
-    }
-    return code;
+    return settled(&why, NV, step_out);
 }
 
 int planar_3rpr_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
@@ -3381,11 +3306,7 @@ int planar_3rpr_interpolate(const real *X0, const real *X1, const real *s, real 
     }
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 /* ---- one state, and batches ---- */

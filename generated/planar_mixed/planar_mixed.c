@@ -236,15 +236,12 @@ INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *t
 }
 
 /* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
-INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+INLINE const real *optional(size_t size, const real *x, const real *none, real *flags)
 {
-    for (size_t e = 0; e < size && !x; ++e) {
-        own[e] = none;
-    }
     if (x) {
         check(size, 1, x, flags);
     }
-    return x ? x : own;
+    return x ? x : none;
 }
 
 INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
@@ -301,6 +298,16 @@ APART void refuse(size_t size, real *out)
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
     }
+}
+
+/* The status of a state; an output is refused where it is impossible. */
+INLINE int settled(const verdict *t, size_t size, real *out)
+{
+    const int code = judge(t);
+    if (code != OK) {
+        refuse(size, out);
+    }
+    return code;
 }
 
 /* Outputs of a state where the user wants them, and of states side by side, state by state. */
@@ -428,99 +435,99 @@ INLINE int all_planar_inertias(const real *x, size_t n)
 /* ---- parameters ---- */
 
 const planar_mixed_params planar_mixed_default_params = {
-    {R(0.0), R(-9.81), R(0.0)},  /* gravity */
+    {0, R(-9.81), 0},  /* gravity */
     R(4.0),  /* platform_mass */
-    {R(0.01), R(0.02), R(0.0)},  /* platform_centre_of_mass */
-    {{R(0.02), R(0.0), R(0.0)}, {R(0.0), R(0.02), R(0.0)}, {R(0.0), R(0.0), R(0.05)}},  /* platform_inertia */
+    {R(0.01), R(0.02), 0},  /* platform_centre_of_mass */
+    {{R(0.02), 0, 0}, {0, R(0.02), 0}, {0, 0, R(0.05)}},  /* platform_inertia */
     {  /* rpr_base_point */
-        {R(-0.2576486461453918), R(0.7173779532087043), R(0.0)},
+        {R(-0.2576486461453918), R(0.7173779532087043), 0},
     },
     {  /* rpr_base_frame */
-        {{R(0.4349655341112302), R(0.9004471023526769), R(0.0)}, {R(-0.9004471023526769), R(0.4349655341112302), R(0.0)}, {R(0.0), R(0.0), R(1.0)}},
+        {{R(0.4349655341112302), R(0.9004471023526769), 0}, {R(-0.9004471023526769), R(0.4349655341112302), 0}, {0, 0, 1}},
     },
     {  /* rpr_platform_point */
-        {R(1.1021821192326179e-17), R(0.18), R(0.0)},
+        {R(1.1021821192326179e-17), R(0.18), 0},
     },
     {  /* rpr_link1_mass */
         R(2.0),
     },
     {  /* rpr_link1_centre_of_mass */
-        {R(0.175), R(0.0), R(0.0)},
+        {R(0.175), 0, 0},
     },
     {  /* rpr_link1_inertia */
-        {{R(0.0004), R(0.0), R(0.0)}, {R(0.0), R(0.020616666666666665), R(0.0)}, {R(0.0), R(0.0), R(0.020616666666666665)}},
+        {{R(0.0004), 0, 0}, {0, R(0.020616666666666665), 0}, {0, 0, R(0.020616666666666665)}},
     },
     {  /* rpr_link2_mass */
         R(1.2),
     },
     {  /* rpr_link2_centre_of_mass */
-        {R(-0.2), R(0.0), R(0.0)},
+        {R(-0.2), 0, 0},
     },
     {  /* rpr_link2_inertia */
-        {{R(0.00024), R(0.0), R(0.0)}, {R(0.0), R(0.016120000000000002), R(0.0)}, {R(0.0), R(0.0), R(0.016120000000000002)}},
+        {{R(0.00024), 0, 0}, {0, R(0.016120000000000002), 0}, {0, 0, R(0.016120000000000002)}},
     },
     {  /* rrr_base_point */
-        {R(-0.6589202629404637), R(-0.5294900885547645), R(0.0)},
+        {R(-0.6589202629404637), R(-0.5294900885547645), 0},
     },
     {  /* rrr_base_frame */
-        {{R(0.866025403784439), R(-0.4999999999999993), R(0.0)}, {R(0.4999999999999993), R(0.866025403784439), R(0.0)}, {R(0.0), R(0.0), R(1.0)}},
+        {{R(0.866025403784439), R(-0.4999999999999993), 0}, {R(0.4999999999999993), R(0.866025403784439), 0}, {0, 0, 1}},
     },
     {  /* rrr_platform_point */
-        {R(-0.15588457268119899), R(-0.08999999999999994), R(0.0)},
+        {R(-0.15588457268119899), R(-0.08999999999999994), 0},
     },
     {  /* rrr_joint2_offset */
-        {R(0.42), R(0.0), R(0.0)},
+        {R(0.42), 0, 0},
     },
     {  /* rrr_platform_joint_offset */
-        {R(0.4), R(0.0), R(0.0)},
+        {R(0.4), 0, 0},
     },
     {  /* rrr_link1_mass */
         R(1.5),
     },
     {  /* rrr_link1_centre_of_mass */
-        {R(0.21), R(0.0), R(0.0)},
+        {R(0.21), 0, 0},
     },
     {  /* rrr_link1_inertia */
-        {{R(0.0003), R(0.0), R(0.0)}, {R(0.0), R(0.022199999999999998), R(0.0)}, {R(0.0), R(0.0), R(0.022199999999999998)}},
+        {{R(0.0003), 0, 0}, {0, R(0.022199999999999998), 0}, {0, 0, R(0.022199999999999998)}},
     },
     {  /* rrr_link2_mass */
-        R(1.0),
+        1,
     },
     {  /* rrr_link2_centre_of_mass */
-        {R(0.2), R(0.0), R(0.0)},
+        {R(0.2), 0, 0},
     },
     {  /* rrr_link2_inertia */
-        {{R(0.0002), R(0.0), R(0.0)}, {R(0.0), R(0.013433333333333337), R(0.0)}, {R(0.0), R(0.0), R(0.013433333333333337)}},
+        {{R(0.0002), 0, 0}, {0, R(0.013433333333333337), 0}, {0, 0, R(0.013433333333333337)}},
     },
     {  /* prr_base_point */
-        {R(0.7392557947972639), R(0.20604788541372687), R(0.0)},
+        {R(0.7392557947972639), R(0.20604788541372687), 0},
     },
     {  /* prr_base_frame */
-        {{R(-0.4999999999999998), R(0.8660254037844387), R(0.0)}, {R(-0.8660254037844387), R(-0.4999999999999998), R(0.0)}, {R(0.0), R(0.0), R(1.0)}},
+        {{R(-0.4999999999999998), R(0.8660254037844387), 0}, {R(-0.8660254037844387), R(-0.4999999999999998), 0}, {0, 0, 1}},
     },
     {  /* prr_platform_point */
-        {R(0.1558845726811989), R(-0.09000000000000008), R(0.0)},
+        {R(0.1558845726811989), R(-0.09000000000000008), 0},
     },
     {  /* prr_platform_joint_offset */
-        {R(0.5), R(0.0), R(0.0)},
+        {R(0.5), 0, 0},
     },
     {  /* prr_link1_mass */
         R(1.8),
     },
     {  /* prr_link1_centre_of_mass */
-        {R(0.0), R(0.0), R(0.0)},
+        {0, 0, 0},
     },
     {  /* prr_link1_inertia */
-        {{R(0.01), R(0.0), R(0.0)}, {R(0.0), R(0.01), R(0.0)}, {R(0.0), R(0.0), R(0.01)}},
+        {{R(0.01), 0, 0}, {0, R(0.01), 0}, {0, 0, R(0.01)}},
     },
     {  /* prr_link2_mass */
-        R(1.0),
+        1,
     },
     {  /* prr_link2_centre_of_mass */
-        {R(0.25), R(0.0), R(0.0)},
+        {R(0.25), 0, 0},
     },
     {  /* prr_link2_inertia */
-        {{R(0.0002), R(0.0), R(0.0)}, {R(0.0), R(0.02093333333333333), R(0.0)}, {R(0.0), R(0.0), R(0.02093333333333333)}},
+        {{R(0.0002), 0, 0}, {0, R(0.02093333333333333), 0}, {0, 0, R(0.02093333333333333)}},
     },
 };
 
@@ -613,6 +620,9 @@ static int acceptable(const planar_mixed_params *p)
     return ok;
 }
 
+#define KEEP(name) model->name = name
+#define KEEP_OF_LEG(name) model->name[leg] = name
+
 int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *model)
 {
     if (!acceptable(params)) {
@@ -646,8 +656,8 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
     const real J_star_t_2 = J_star_t + platform_centre_of_mass_x*platform_centre_of_mass_x;
     const real J_star_t_3 = J_star_t*platform_mass;
     const real J_star_t_4 = J_star_t_2*platform_mass;
-    model->gravity_x = gravity_x;
-    model->gravity_y = gravity_y;
+    KEEP(gravity_x);
+    KEEP(gravity_y);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
         const size_t own = leg;
         const real rpr_base_point_x = params->rpr_base_point[own][0];
@@ -697,26 +707,26 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
             rpr_base_frame_yx*rpr_base_point_y;
         const real rpr_potential_t_2 = rpr_base_frame_xy*rpr_base_point_x +
             rpr_base_frame_yy*rpr_base_point_y;
-        model->rpr_J_group_1_in_axes1_zz[leg] = rpr_J_group_1_in_axes1_zz;
-        model->rpr_acc_2_t[leg] = rpr_acc_2_t;
-        model->rpr_acc_2_t_2[leg] = rpr_acc_2_t_2;
-        model->rpr_base_frame_xx[leg] = rpr_base_frame_xx;
-        model->rpr_base_frame_xy[leg] = rpr_base_frame_xy;
-        model->rpr_base_frame_yx[leg] = rpr_base_frame_yx;
-        model->rpr_base_frame_yy[leg] = rpr_base_frame_yy;
-        model->rpr_base_point_x[leg] = rpr_base_point_x;
-        model->rpr_base_point_y[leg] = rpr_base_point_y;
-        model->rpr_branch_1[leg] = rpr_branch_1;
-        model->rpr_h_1_in_spec1_x[leg] = rpr_h_1_in_spec1_x;
-        model->rpr_h_1_in_spec1_y[leg] = rpr_h_1_in_spec1_y;
-        model->rpr_h_2_in_spec1_x[leg] = rpr_h_2_in_spec1_x;
-        model->rpr_h_2_in_spec1_y[leg] = rpr_h_2_in_spec1_y;
-        model->rpr_link1_mass[leg] = rpr_link1_mass;
-        model->rpr_link2_mass[leg] = rpr_link2_mass;
-        model->rpr_platform_point_x[leg] = rpr_platform_point_x;
-        model->rpr_platform_point_y[leg] = rpr_platform_point_y;
-        model->rpr_potential_t[leg] = rpr_potential_t;
-        model->rpr_potential_t_2[leg] = rpr_potential_t_2;
+        KEEP_OF_LEG(rpr_J_group_1_in_axes1_zz);
+        KEEP_OF_LEG(rpr_acc_2_t);
+        KEEP_OF_LEG(rpr_acc_2_t_2);
+        KEEP_OF_LEG(rpr_base_frame_xx);
+        KEEP_OF_LEG(rpr_base_frame_xy);
+        KEEP_OF_LEG(rpr_base_frame_yx);
+        KEEP_OF_LEG(rpr_base_frame_yy);
+        KEEP_OF_LEG(rpr_base_point_x);
+        KEEP_OF_LEG(rpr_base_point_y);
+        KEEP_OF_LEG(rpr_branch_1);
+        KEEP_OF_LEG(rpr_h_1_in_spec1_x);
+        KEEP_OF_LEG(rpr_h_1_in_spec1_y);
+        KEEP_OF_LEG(rpr_h_2_in_spec1_x);
+        KEEP_OF_LEG(rpr_h_2_in_spec1_y);
+        KEEP_OF_LEG(rpr_link1_mass);
+        KEEP_OF_LEG(rpr_link2_mass);
+        KEEP_OF_LEG(rpr_platform_point_x);
+        KEEP_OF_LEG(rpr_platform_point_y);
+        KEEP_OF_LEG(rpr_potential_t);
+        KEEP_OF_LEG(rpr_potential_t_2);
         m_star_of_legs += rpr_link2_mass;
         h_star_in_platform_x_of_legs += rpr_h_star_t;
         h_star_in_platform_y_of_legs += rpr_h_star_t_2;
@@ -815,43 +825,43 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
             rrr_base_frame_yx*rrr_base_point_y;
         const real rrr_potential_t_2 = rrr_base_frame_xy*rrr_base_point_x +
             rrr_base_frame_yy*rrr_base_point_y;
-        model->inv_rrr_rho2_1_t[leg] = inv_rrr_rho2_1_t;
-        model->inv_rrr_size[leg] = inv_rrr_size;
-        model->inv_rrr_size_t[leg] = inv_rrr_size_t;
-        model->inv_rrr_size_t_2[leg] = inv_rrr_size_t_2;
-        model->rrr_J_1_in_spec1_zz[leg] = rrr_J_1_in_spec1_zz;
-        model->rrr_J_2_in_spec2_zz[leg] = rrr_J_2_in_spec2_zz;
-        model->rrr_Jc_1_in_axes1_zz[leg] = rrr_Jc_1_in_axes1_zz;
-        model->rrr_Kd_1_t[leg] = rrr_Kd_1_t;
-        model->rrr_Kd_1_t_2[leg] = rrr_Kd_1_t_2;
-        model->rrr_base_frame_xx[leg] = rrr_base_frame_xx;
-        model->rrr_base_frame_xy[leg] = rrr_base_frame_xy;
-        model->rrr_base_frame_yx[leg] = rrr_base_frame_yx;
-        model->rrr_base_frame_yy[leg] = rrr_base_frame_yy;
-        model->rrr_base_point_x[leg] = rrr_base_point_x;
-        model->rrr_base_point_y[leg] = rrr_base_point_y;
-        model->rrr_branch_1[leg] = rrr_branch_1;
-        model->rrr_d_Gamma_2_in_axes2_y[leg] = rrr_d_Gamma_2_in_axes2_y;
-        model->rrr_d_Gamma_2_t[leg] = rrr_d_Gamma_2_t;
-        model->rrr_d_c_in_axes2_yy[leg] = rrr_d_c_in_axes2_yy;
-        model->rrr_d_phi_2_t[leg] = rrr_d_phi_2_t;
-        model->rrr_h_1_in_spec1_x[leg] = rrr_h_1_in_spec1_x;
-        model->rrr_h_1_in_spec1_y[leg] = rrr_h_1_in_spec1_y;
-        model->rrr_h_2_in_spec2_x[leg] = rrr_h_2_in_spec2_x;
-        model->rrr_h_2_in_spec2_y[leg] = rrr_h_2_in_spec2_y;
-        model->rrr_joint2_offset_x[leg] = rrr_joint2_offset_x;
-        model->rrr_link1_mass[leg] = rrr_link1_mass;
-        model->rrr_link2_mass[leg] = rrr_link2_mass;
-        model->rrr_mu_1_t[leg] = rrr_mu_1_t;
-        model->rrr_mu_1_t_2[leg] = rrr_mu_1_t_2;
-        model->rrr_platform_joint_offset_x[leg] = rrr_platform_joint_offset_x;
-        model->rrr_platform_point_x[leg] = rrr_platform_point_x;
-        model->rrr_platform_point_y[leg] = rrr_platform_point_y;
-        model->rrr_potential_t[leg] = rrr_potential_t;
-        model->rrr_potential_t_2[leg] = rrr_potential_t_2;
-        model->rrr_rho2_1_t[leg] = rrr_rho2_1_t;
-        model->rrr_size[leg] = rrr_size;
-        model->rrr_w_2_in_axes2_y[leg] = rrr_w_2_in_axes2_y;
+        KEEP_OF_LEG(inv_rrr_rho2_1_t);
+        KEEP_OF_LEG(inv_rrr_size);
+        KEEP_OF_LEG(inv_rrr_size_t);
+        KEEP_OF_LEG(inv_rrr_size_t_2);
+        KEEP_OF_LEG(rrr_J_1_in_spec1_zz);
+        KEEP_OF_LEG(rrr_J_2_in_spec2_zz);
+        KEEP_OF_LEG(rrr_Jc_1_in_axes1_zz);
+        KEEP_OF_LEG(rrr_Kd_1_t);
+        KEEP_OF_LEG(rrr_Kd_1_t_2);
+        KEEP_OF_LEG(rrr_base_frame_xx);
+        KEEP_OF_LEG(rrr_base_frame_xy);
+        KEEP_OF_LEG(rrr_base_frame_yx);
+        KEEP_OF_LEG(rrr_base_frame_yy);
+        KEEP_OF_LEG(rrr_base_point_x);
+        KEEP_OF_LEG(rrr_base_point_y);
+        KEEP_OF_LEG(rrr_branch_1);
+        KEEP_OF_LEG(rrr_d_Gamma_2_in_axes2_y);
+        KEEP_OF_LEG(rrr_d_Gamma_2_t);
+        KEEP_OF_LEG(rrr_d_c_in_axes2_yy);
+        KEEP_OF_LEG(rrr_d_phi_2_t);
+        KEEP_OF_LEG(rrr_h_1_in_spec1_x);
+        KEEP_OF_LEG(rrr_h_1_in_spec1_y);
+        KEEP_OF_LEG(rrr_h_2_in_spec2_x);
+        KEEP_OF_LEG(rrr_h_2_in_spec2_y);
+        KEEP_OF_LEG(rrr_joint2_offset_x);
+        KEEP_OF_LEG(rrr_link1_mass);
+        KEEP_OF_LEG(rrr_link2_mass);
+        KEEP_OF_LEG(rrr_mu_1_t);
+        KEEP_OF_LEG(rrr_mu_1_t_2);
+        KEEP_OF_LEG(rrr_platform_joint_offset_x);
+        KEEP_OF_LEG(rrr_platform_point_x);
+        KEEP_OF_LEG(rrr_platform_point_y);
+        KEEP_OF_LEG(rrr_potential_t);
+        KEEP_OF_LEG(rrr_potential_t_2);
+        KEEP_OF_LEG(rrr_rho2_1_t);
+        KEEP_OF_LEG(rrr_size);
+        KEEP_OF_LEG(rrr_w_2_in_axes2_y);
         m_star_of_legs += rrr_link2_mass;
         h_star_in_platform_x_of_legs += rrr_h_star_t;
         h_star_in_platform_y_of_legs += rrr_h_star_t_2;
@@ -920,31 +930,31 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
             prr_base_frame_yx*prr_base_point_y;
         const real prr_potential_t = prr_link1_mass*(prr_base_frame_xy*prr_base_point_x +
             prr_base_frame_yy*prr_base_point_y);
-        model->inv_prr_size[leg] = inv_prr_size;
-        model->inv_prr_size_t[leg] = inv_prr_size_t;
-        model->prr_J_2_in_spec2_zz[leg] = prr_J_2_in_spec2_zz;
-        model->prr_b_in_axes0_x[leg] = prr_b_in_axes0_x;
-        model->prr_base_frame_xx[leg] = prr_base_frame_xx;
-        model->prr_base_frame_xy[leg] = prr_base_frame_xy;
-        model->prr_base_frame_yx[leg] = prr_base_frame_yx;
-        model->prr_base_frame_yy[leg] = prr_base_frame_yy;
-        model->prr_base_point_x[leg] = prr_base_point_x;
-        model->prr_base_point_y[leg] = prr_base_point_y;
-        model->prr_branch_1[leg] = prr_branch_1;
-        model->prr_g_in_axes0_x[leg] = prr_g_in_axes0_x;
-        model->prr_g_in_axes0_y[leg] = prr_g_in_axes0_y;
-        model->prr_h_1_in_spec0_x[leg] = prr_h_1_in_spec0_x;
-        model->prr_h_1_in_spec0_y[leg] = prr_h_1_in_spec0_y;
-        model->prr_h_2_in_spec2_x[leg] = prr_h_2_in_spec2_x;
-        model->prr_h_2_in_spec2_y[leg] = prr_h_2_in_spec2_y;
-        model->prr_link1_mass[leg] = prr_link1_mass;
-        model->prr_link2_mass[leg] = prr_link2_mass;
-        model->prr_platform_joint_offset_x[leg] = prr_platform_joint_offset_x;
-        model->prr_platform_point_x[leg] = prr_platform_point_x;
-        model->prr_platform_point_y[leg] = prr_platform_point_y;
-        model->prr_potential_t[leg] = prr_potential_t;
-        model->prr_size[leg] = prr_size;
-        model->prr_size_t[leg] = prr_size_t;
+        KEEP_OF_LEG(inv_prr_size);
+        KEEP_OF_LEG(inv_prr_size_t);
+        KEEP_OF_LEG(prr_J_2_in_spec2_zz);
+        KEEP_OF_LEG(prr_b_in_axes0_x);
+        KEEP_OF_LEG(prr_base_frame_xx);
+        KEEP_OF_LEG(prr_base_frame_xy);
+        KEEP_OF_LEG(prr_base_frame_yx);
+        KEEP_OF_LEG(prr_base_frame_yy);
+        KEEP_OF_LEG(prr_base_point_x);
+        KEEP_OF_LEG(prr_base_point_y);
+        KEEP_OF_LEG(prr_branch_1);
+        KEEP_OF_LEG(prr_g_in_axes0_x);
+        KEEP_OF_LEG(prr_g_in_axes0_y);
+        KEEP_OF_LEG(prr_h_1_in_spec0_x);
+        KEEP_OF_LEG(prr_h_1_in_spec0_y);
+        KEEP_OF_LEG(prr_h_2_in_spec2_x);
+        KEEP_OF_LEG(prr_h_2_in_spec2_y);
+        KEEP_OF_LEG(prr_link1_mass);
+        KEEP_OF_LEG(prr_link2_mass);
+        KEEP_OF_LEG(prr_platform_joint_offset_x);
+        KEEP_OF_LEG(prr_platform_point_x);
+        KEEP_OF_LEG(prr_platform_point_y);
+        KEEP_OF_LEG(prr_potential_t);
+        KEEP_OF_LEG(prr_size);
+        KEEP_OF_LEG(prr_size_t);
         m_star_of_legs += prr_link2_mass;
         h_star_in_platform_x_of_legs += prr_h_star_t;
         h_star_in_platform_y_of_legs += prr_h_star_t_2;
@@ -977,15 +987,15 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = root(R(0.12813333333333332) + R(0.3333333333333333)*legs_size_prr +
         R(0.3333333333333333)*legs_size_rrr);
-    model->J_star_zz = J_star_zz;
-    model->Z_p_t = Z_p_t;
-    model->Z_p_t_2 = Z_p_t_2;
-    model->b_c_in_platform_x = b_c_in_platform_x;
-    model->b_c_in_platform_y = b_c_in_platform_y;
-    model->h_star_in_platform_x = h_star_in_platform_x;
-    model->h_star_in_platform_y = h_star_in_platform_y;
-    model->legs_size = legs_size;
-    model->m_star = m_star;
+    KEEP(J_star_zz);
+    KEEP(Z_p_t);
+    KEEP(Z_p_t_2);
+    KEEP(b_c_in_platform_x);
+    KEEP(b_c_in_platform_y);
+    KEEP(h_star_in_platform_x);
+    KEEP(h_star_in_platform_y);
+    KEEP(legs_size);
+    KEEP(m_star);
     return OK;
 }
 
@@ -1484,14 +1494,14 @@ INLINE void stage_prr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real prr_q_x = R_xx*m->prr_platform_point_x[i] - R_yx*m->prr_platform_point_y[i];
     const real prr_q_y = R_xx*m->prr_platform_point_y[i] + R_yx*m->prr_platform_point_x[i];
     const real t_x = X[0*w + j];
-    const real prr_S_x = prr_q_x + t_x - m->prr_base_point_x[i];
+    const real prr_S_x = t_x - m->prr_base_point_x[i] + prr_q_x;
     const real t_y = X[1*w + j];
-    const real prr_S_y = prr_q_y + t_y - m->prr_base_point_y[i];
+    const real prr_S_y = t_y - m->prr_base_point_y[i] + prr_q_y;
     const real prr_S_in_axes0_x = prr_S_x*m->prr_base_frame_xx[i] +
         prr_S_y*m->prr_base_frame_yx[i];
     /* (prr-disc_1) discriminant of the distance equation */
     const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-    const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + m->prr_size_t[i] -
+    const real prr_disc_1 = m->prr_size_t[i] + prr_S_in_axes0_x*prr_S_in_axes0_x -
         prr_disc_1_t;
     /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
     const real prr_c_2 =
@@ -1557,7 +1567,7 @@ INLINE void stage_prr_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real t_dot_x = V[0*w + j];
     const real prr_S_dot_x = t_dot_x - prr_S_dot_t;
     const real t_dot_y = V[1*w + j];
-    const real prr_S_dot_y = prr_S_dot_t_2 + t_dot_y;
+    const real prr_S_dot_y = t_dot_y + prr_S_dot_t_2;
     /* (prr-qd_2) rate of joint 2 */
     const real prr_qd_2 = -v->prr_w_1_t*(prr_S_dot_x*m->prr_base_frame_xy[i] +
         prr_S_dot_y*m->prr_base_frame_yy[i]);
@@ -1623,9 +1633,8 @@ INLINE void stage_prr_M_dynamics(const prepared *m, size_t i, values_prr *v)
     const real prr_d_c_in_axes2_xx = prr_d_Gamma_2_in_axes2_x*prr_w_2_t -
         m->prr_h_2_in_spec2_y[i]*prr_w_2_t -
         v->prr_w_1_in_axes2_x*(v->prr_c_2*m->prr_link1_mass[i] + prr_d_Gamma_1_t*v->prr_s_2);
-    const real prr_d_c_in_axes2_xy = prr_d_Gamma_2_in_axes2_y*prr_w_2_t +
-        m->prr_h_2_in_spec2_y[i]*prr_w_2_in_axes2_y -
-        prr_d_Gamma_1_in_axes2_y*v->prr_w_1_in_axes2_x;
+    const real prr_d_c_in_axes2_xy = m->prr_h_2_in_spec2_y[i]*prr_w_2_in_axes2_y +
+        prr_d_Gamma_2_in_axes2_y*prr_w_2_t - prr_d_Gamma_1_in_axes2_y*v->prr_w_1_in_axes2_x;
     v->prr_w_2_in_axes2_y = prr_w_2_in_axes2_y;
     v->prr_d_Gamma_2_in_axes2_y = prr_d_Gamma_2_in_axes2_y;
     v->prr_d_Gamma_1_in_axes2_y = prr_d_Gamma_1_in_axes2_y;
@@ -1645,10 +1654,10 @@ INLINE void stage_prr_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real prr_u_1_in_axes2_y = v->axis_y_prr_axes2_x*prr_u_1_x -
         v->axis_x_prr_axes2_x*prr_u_1_t;
     /* (prr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real prr_acc_2_o_in_axes2_x = prr_u_1_in_axes2_x - v->prr_c_2*m->prr_g_in_axes0_x[i]
-        - m->prr_g_in_axes0_y[i]*v->prr_s_2;
-    const real prr_acc_2_o_in_axes2_y = prr_u_1_in_axes2_y + m->prr_g_in_axes0_x[i]*v->prr_s_2
-        - v->prr_c_2*m->prr_g_in_axes0_y[i];
+    const real prr_acc_2_o_in_axes2_x = prr_u_1_in_axes2_x - m->prr_g_in_axes0_y[i]*v->prr_s_2
+        - v->prr_c_2*m->prr_g_in_axes0_x[i];
+    const real prr_acc_2_o_in_axes2_y = m->prr_g_in_axes0_x[i]*v->prr_s_2 -
+        v->prr_c_2*m->prr_g_in_axes0_y[i] + prr_u_1_in_axes2_y;
     v->prr_u_1_in_axes2_x = prr_u_1_in_axes2_x;
     v->prr_u_1_in_axes2_y = prr_u_1_in_axes2_y;
     v->prr_acc_2_o_in_axes2_x = prr_acc_2_o_in_axes2_x;
@@ -1662,16 +1671,16 @@ INLINE void stage_prr_inverse_kinematics_potential(const prepared *m, size_t w, 
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
     const real t_x = X[0*w + j];
-    const real prr_S_x = t_x + R_xx*m->prr_platform_point_x[i] - m->prr_base_point_x[i] -
+    const real prr_S_x = t_x - m->prr_base_point_x[i] + R_xx*m->prr_platform_point_x[i] -
         R_yx*m->prr_platform_point_y[i];
     const real t_y = X[1*w + j];
-    const real prr_S_y = t_y + R_xx*m->prr_platform_point_y[i] +
-        R_yx*m->prr_platform_point_x[i] - m->prr_base_point_y[i];
+    const real prr_S_y = t_y - m->prr_base_point_y[i] + R_xx*m->prr_platform_point_y[i] +
+        R_yx*m->prr_platform_point_x[i];
     const real prr_S_in_axes0_x = prr_S_x*m->prr_base_frame_xx[i] +
         prr_S_y*m->prr_base_frame_yx[i];
     /* (prr-disc_1) discriminant of the distance equation */
     const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-    const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + m->prr_size_t[i] -
+    const real prr_disc_1 = m->prr_size_t[i] + prr_S_in_axes0_x*prr_S_in_axes0_x -
         prr_disc_1_t;
     /* (prr-q_1) displacement of joint 1 */
     const real prr_q_1_t = -m->prr_branch_1[i]*root(prr_disc_1);
@@ -1695,29 +1704,29 @@ INLINE void stage_prr_legs_required(const prepared *m, size_t i, values_prr *v)
     const real prr_B_2_in_axes2_xy = v->prr_w_1_t*(v->prr_S_ddot_in_axes2_y*v->prr_c_2 +
         prr_rel_in_axes2_x*v->prr_s_2);
     /* (prr-acc_1) acceleration of the reference point of link 1, less gravity */
-    const real prr_acc_1_in_axes0_x = prr_B_2_in_axes2_xy*v->prr_v_2_in_axes0_x +
-        v->prr_c_2*prr_rel_in_axes2_x - m->prr_g_in_axes0_x[i] -
-        v->prr_S_ddot_in_axes2_y*v->prr_s_2;
+    const real prr_acc_1_in_axes0_x = v->prr_c_2*prr_rel_in_axes2_x - m->prr_g_in_axes0_x[i] -
+        v->prr_S_ddot_in_axes2_y*v->prr_s_2 + prr_B_2_in_axes2_xy*v->prr_v_2_in_axes0_x;
     /* (prr-f_1) inertia force of link 1 less its weight */
     const real prr_f_1_in_axes0_x = prr_acc_1_in_axes0_x*m->prr_link1_mass[i];
     /* (prr-acc_2) acceleration of the reference point of link 2, less gravity */
     const real prr_acc_2_in_axes2_x = prr_S_ddot_in_axes2_x -
-        v->prr_c_2*m->prr_g_in_axes0_x[i] - m->prr_g_in_axes0_y[i]*v->prr_s_2;
-    const real prr_acc_2_in_axes2_y = v->prr_S_ddot_in_axes2_y +
-        m->prr_g_in_axes0_x[i]*v->prr_s_2 - v->prr_c_2*m->prr_g_in_axes0_y[i];
+        m->prr_g_in_axes0_y[i]*v->prr_s_2 - v->prr_c_2*m->prr_g_in_axes0_x[i];
+    const real prr_acc_2_in_axes2_y = m->prr_g_in_axes0_x[i]*v->prr_s_2 -
+        v->prr_c_2*m->prr_g_in_axes0_y[i] + v->prr_S_ddot_in_axes2_y;
     /* (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real prr_mu_2_in_axes2_z = prr_acc_2_in_axes2_y*m->prr_h_2_in_spec2_x[i] -
-        prr_B_2_in_axes2_xy*m->prr_J_2_in_spec2_zz[i] -
-        prr_acc_2_in_axes2_x*m->prr_h_2_in_spec2_y[i];
+        prr_acc_2_in_axes2_x*m->prr_h_2_in_spec2_y[i] -
+        prr_B_2_in_axes2_xy*m->prr_J_2_in_spec2_zz[i];
     /* (prr-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real prr_c_t = v->prr_w_1_t*(prr_mu_2_in_axes2_z -
         prr_f_1_in_axes0_x*v->prr_v_2_in_axes0_x);
-    const real prr_c_in_axes2_x = v->prr_W_2_t*m->prr_h_2_in_spec2_x[i] + prr_c_t*v->prr_s_2 -
-        prr_B_2_in_axes2_xy*m->prr_h_2_in_spec2_y[i] - v->prr_c_2*prr_f_1_in_axes0_x;
-    const real prr_c_in_axes2_y = prr_B_2_in_axes2_xy*m->prr_h_2_in_spec2_x[i] +
-        v->prr_W_2_t*m->prr_h_2_in_spec2_y[i] + v->prr_c_2*prr_c_t +
-        prr_f_1_in_axes0_x*v->prr_s_2;
+    const real prr_c_in_axes2_x = v->prr_W_2_t*m->prr_h_2_in_spec2_x[i] -
+        prr_B_2_in_axes2_xy*m->prr_h_2_in_spec2_y[i] - v->prr_c_2*prr_f_1_in_axes0_x +
+        prr_c_t*v->prr_s_2;
+    const real prr_c_in_axes2_y = v->prr_W_2_t*m->prr_h_2_in_spec2_y[i] +
+        prr_B_2_in_axes2_xy*m->prr_h_2_in_spec2_x[i] + prr_f_1_in_axes0_x*v->prr_s_2 +
+        v->prr_c_2*prr_c_t;
     v->prr_acc_2_in_axes2_x = prr_acc_2_in_axes2_x;
     v->prr_acc_2_in_axes2_y = prr_acc_2_in_axes2_y;
     v->prr_c_in_axes2_x = prr_c_in_axes2_x;
@@ -1741,9 +1750,9 @@ INLINE void stage_rpr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rpr_q_x = R_xx*m->rpr_platform_point_x[i] - R_yx*m->rpr_platform_point_y[i];
     const real rpr_q_y = R_xx*m->rpr_platform_point_y[i] + R_yx*m->rpr_platform_point_x[i];
     const real t_x = X[0*w + j];
-    const real rpr_S_x = rpr_q_x + t_x - m->rpr_base_point_x[i];
+    const real rpr_S_x = t_x - m->rpr_base_point_x[i] + rpr_q_x;
     const real t_y = X[1*w + j];
-    const real rpr_S_y = rpr_q_y + t_y - m->rpr_base_point_y[i];
+    const real rpr_S_y = t_y - m->rpr_base_point_y[i] + rpr_q_y;
     const real rpr_S_in_turn1_x = rpr_S_x*m->rpr_base_frame_xx[i] +
         rpr_S_y*m->rpr_base_frame_yx[i];
     const real rpr_S_in_turn1_y = rpr_S_x*m->rpr_base_frame_xy[i] +
@@ -1796,7 +1805,7 @@ INLINE void stage_rpr_V_X(size_t w, size_t j, const real *V, values_rpr *v)
     const real t_dot_x = V[0*w + j];
     const real rpr_S_dot_x = t_dot_x - rpr_S_dot_t;
     const real t_dot_y = V[1*w + j];
-    const real rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y;
+    const real rpr_S_dot_y = t_dot_y + rpr_S_dot_t_2;
     const real rpr_S_dot_in_axes1_x = v->axis_x_rpr_axes1_x*rpr_S_dot_x +
         v->axis_x_rpr_axes1_y*rpr_S_dot_y;
     /* (rpr-qd_1) rate of joint 1 */
@@ -1841,8 +1850,8 @@ INLINE void stage_rpr_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
         v->axis_x_rpr_axes1_y*m->gravity_y;
     const real rpr_g_in_axes1_y = v->axis_x_rpr_axes1_x*m->gravity_y -
         v->axis_x_rpr_axes1_y*m->gravity_x;
-    const real rpr_acc_2_o_in_axes1_x = v->axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x -
-        v->axis_x_rpr_axes1_x*rpr_u_1_t;
+    const real rpr_acc_2_o_in_axes1_x = v->axis_x_rpr_axes1_y*rpr_u_1_y -
+        v->axis_x_rpr_axes1_x*rpr_u_1_t - rpr_g_in_axes1_x;
     const real rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y;
     /* (rpr-phi_2_o) remainder of: inertia force of link 2 from its turning about its reference point
        */
@@ -1850,16 +1859,15 @@ INLINE void stage_rpr_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
         m->rpr_h_2_in_spec1_y[i]*rpr_qdd_1_o;
     /* (rpr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
-    const real rpr_mu_1_o_in_axes1_z = m->rpr_J_group_1_in_axes1_zz[i]*rpr_qdd_1_o +
-        rpr_acc_2_o_in_axes1_y*m->rpr_h_2_in_spec1_x[i] +
-        rpr_g_in_axes1_x*m->rpr_h_1_in_spec1_y[i] -
-        rpr_acc_2_o_in_axes1_x*m->rpr_h_2_in_spec1_y[i] -
-        rpr_g_in_axes1_y*m->rpr_h_1_in_spec1_x[i];
+    const real rpr_mu_1_o_in_axes1_z = rpr_g_in_axes1_x*m->rpr_h_1_in_spec1_y[i] -
+        rpr_g_in_axes1_y*m->rpr_h_1_in_spec1_x[i] +
+        rpr_acc_2_o_in_axes1_y*m->rpr_h_2_in_spec1_x[i] -
+        rpr_acc_2_o_in_axes1_x*m->rpr_h_2_in_spec1_y[i] +
+        m->rpr_J_group_1_in_axes1_zz[i]*rpr_qdd_1_o;
     /* (rpr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
-    const real rpr_c_o_in_axes1_y = -v->inv_rpr_q_2*rpr_mu_1_o_in_axes1_z -
-        v->rpr_W_1_in_axes1_xx*m->rpr_h_2_in_spec1_y[i] -
-        m->rpr_h_2_in_spec1_x[i]*rpr_qdd_1_o;
+    const real rpr_c_o_in_axes1_y = -v->rpr_W_1_in_axes1_xx*m->rpr_h_2_in_spec1_y[i] -
+        m->rpr_h_2_in_spec1_x[i]*rpr_qdd_1_o - v->inv_rpr_q_2*rpr_mu_1_o_in_axes1_z;
     /* (rpr-U) velocity and gravity terms of the leg force */
     const real rpr_U_x = v->axis_x_rpr_axes1_x*rpr_phi_2_o_in_axes1_x +
         v->axis_x_rpr_axes1_y*rpr_c_o_in_axes1_y;
@@ -1879,11 +1887,11 @@ INLINE void stage_rpr_inverse_kinematics_potential(const prepared *m, size_t w, 
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
     const real t_x = X[0*w + j];
-    const real rpr_S_x = t_x + R_xx*m->rpr_platform_point_x[i] - m->rpr_base_point_x[i] -
+    const real rpr_S_x = t_x - m->rpr_base_point_x[i] + R_xx*m->rpr_platform_point_x[i] -
         R_yx*m->rpr_platform_point_y[i];
     const real t_y = X[1*w + j];
-    const real rpr_S_y = t_y + R_xx*m->rpr_platform_point_y[i] +
-        R_yx*m->rpr_platform_point_x[i] - m->rpr_base_point_y[i];
+    const real rpr_S_y = t_y - m->rpr_base_point_y[i] + R_xx*m->rpr_platform_point_y[i] +
+        R_yx*m->rpr_platform_point_x[i];
     const real rpr_S_in_turn1_x = rpr_S_x*m->rpr_base_frame_xx[i] +
         rpr_S_y*m->rpr_base_frame_yx[i];
     const real rpr_S_in_turn1_y = rpr_S_x*m->rpr_base_frame_xy[i] +
@@ -1922,15 +1930,15 @@ INLINE void stage_rpr_legs_required(const prepared *m, size_t i, values_rpr *v)
         v->axis_x_rpr_axes1_y*v->rpr_S_ddot_y - rpr_g_in_axes1_x;
     const real rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y;
     /* (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-    const real rpr_mu_1_in_axes1_z = m->rpr_J_group_1_in_axes1_zz[i]*rpr_qdd_1 +
-        rpr_acc_2_in_axes1_y*m->rpr_h_2_in_spec1_x[i] +
-        rpr_g_in_axes1_x*m->rpr_h_1_in_spec1_y[i] -
-        rpr_acc_2_in_axes1_x*m->rpr_h_2_in_spec1_y[i] -
-        rpr_g_in_axes1_y*m->rpr_h_1_in_spec1_x[i];
+    const real rpr_mu_1_in_axes1_z = rpr_g_in_axes1_x*m->rpr_h_1_in_spec1_y[i] -
+        rpr_g_in_axes1_y*m->rpr_h_1_in_spec1_x[i] +
+        rpr_acc_2_in_axes1_y*m->rpr_h_2_in_spec1_x[i] -
+        rpr_acc_2_in_axes1_x*m->rpr_h_2_in_spec1_y[i] +
+        m->rpr_J_group_1_in_axes1_zz[i]*rpr_qdd_1;
     /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rpr_c_in_axes1_y = -v->inv_rpr_q_2*rpr_mu_1_in_axes1_z -
-        v->rpr_W_1_in_axes1_xx*m->rpr_h_2_in_spec1_y[i] - m->rpr_h_2_in_spec1_x[i]*rpr_qdd_1;
+    const real rpr_c_in_axes1_y = -v->rpr_W_1_in_axes1_xx*m->rpr_h_2_in_spec1_y[i] -
+        m->rpr_h_2_in_spec1_x[i]*rpr_qdd_1 - v->inv_rpr_q_2*rpr_mu_1_in_axes1_z;
     v->rpr_qdd_1 = rpr_qdd_1;
     v->rpr_acc_2_in_axes1_x = rpr_acc_2_in_axes1_x;
     v->rpr_acc_2_in_axes1_y = rpr_acc_2_in_axes1_y;
@@ -1958,13 +1966,13 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rrr_q_x = R_xx*m->rrr_platform_point_x[i] - R_yx*m->rrr_platform_point_y[i];
     const real rrr_q_y = R_xx*m->rrr_platform_point_y[i] + R_yx*m->rrr_platform_point_x[i];
     const real t_x = X[0*w + j];
-    const real rrr_S_x = rrr_q_x + t_x - m->rrr_base_point_x[i];
+    const real rrr_S_x = t_x - m->rrr_base_point_x[i] + rrr_q_x;
     const real t_y = X[1*w + j];
-    const real rrr_S_y = rrr_q_y + t_y - m->rrr_base_point_y[i];
+    const real rrr_S_y = t_y - m->rrr_base_point_y[i] + rrr_q_y;
     /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 1 */
     const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-    const real rrr_Kd_1 = m->rrr_Kd_1_t[i] + R(0.5)*rrr_Kd_1_t_3 - m->rrr_Kd_1_t_2[i];
+    const real rrr_Kd_1 = m->rrr_Kd_1_t[i] - m->rrr_Kd_1_t_2[i] + R(0.5)*rrr_Kd_1_t_3;
     /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
     const real rrr_Kc_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xx[i] +
         rrr_S_y*m->rrr_base_frame_yx[i]);
@@ -1981,7 +1989,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
     const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
     /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+    const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kd_1*rrr_Ks_1 + rrr_Kc_1*rrr_root_1);
     /* (rrr-x_2) from the origin of joint 2 to the connection point */
     const real rrr_x_2_in_axes1_x = m->inv_rrr_size_t[i]*rrr_Kd_1*m->rrr_joint2_offset_x[i] -
         m->rrr_joint2_offset_x[i];
@@ -1998,7 +2006,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
     const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
     /* (rrr-w_1) reciprocal vector 1 */
-    const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+    const real rrr_w_1_t = rrr_c_2*rrr_s_1 + rrr_c_1*rrr_s_2;
     const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
     const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*rrr_w_1_t_2 -
         m->rrr_base_frame_xx[i]*rrr_w_1_t;
@@ -2008,7 +2016,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x;
     const real rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x;
     /* (rrr-qd_1) rate of joint 1 */
-    const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+    const real rrr_qd_1_t = rrr_c_2*rrr_s_1 + rrr_c_1*rrr_s_2;
     const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
     v->rrr_q_x = rrr_q_x;
     v->rrr_q_y = rrr_q_y;
@@ -2055,7 +2063,7 @@ INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real t_dot_x = V[0*w + j];
     const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
     const real t_dot_y = V[1*w + j];
-    const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
+    const real rrr_S_dot_y = t_dot_y + rrr_S_dot_t_2;
     /* (rrr-qd_1) rate of joint 1 */
     const real rrr_qd_1 = v->rrr_w_1_in_axes2_x*(v->axis_x_rrr_axes2_x*rrr_S_dot_x -
         v->axis_y_rrr_axes2_x*rrr_S_dot_y);
@@ -2068,8 +2076,8 @@ INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     /* (rrr-W_2) centripetal tensor of link 2 */
     const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
     /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_bias_in_axes2_x = -rrr_W_2_t*m->rrr_platform_joint_offset_x[i] -
-        rrr_W_1_t*v->rrr_c_2*m->rrr_joint2_offset_x[i];
+    const real rrr_bias_in_axes2_x = -rrr_W_1_t*v->rrr_c_2*m->rrr_joint2_offset_x[i] -
+        rrr_W_2_t*m->rrr_platform_joint_offset_x[i];
     v->rrr_S_dot_t = rrr_S_dot_t;
     v->rrr_S_dot_t_2 = rrr_S_dot_t_2;
     v->rrr_S_dot_x = rrr_S_dot_x;
@@ -2140,15 +2148,15 @@ INLINE void stage_rrr_inverse_kinematics_potential(const prepared *m, size_t w, 
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
     const real t_x = X[0*w + j];
-    const real rrr_S_x = t_x + R_xx*m->rrr_platform_point_x[i] - m->rrr_base_point_x[i] -
+    const real rrr_S_x = t_x - m->rrr_base_point_x[i] + R_xx*m->rrr_platform_point_x[i] -
         R_yx*m->rrr_platform_point_y[i];
     const real t_y = X[1*w + j];
-    const real rrr_S_y = t_y + R_xx*m->rrr_platform_point_y[i] +
-        R_yx*m->rrr_platform_point_x[i] - m->rrr_base_point_y[i];
+    const real rrr_S_y = t_y - m->rrr_base_point_y[i] + R_xx*m->rrr_platform_point_y[i] +
+        R_yx*m->rrr_platform_point_x[i];
     /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 1 */
     const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-    const real rrr_Kd_1 = m->rrr_Kd_1_t[i] + R(0.5)*rrr_Kd_1_t_3 - m->rrr_Kd_1_t_2[i];
+    const real rrr_Kd_1 = m->rrr_Kd_1_t[i] - m->rrr_Kd_1_t_2[i] + R(0.5)*rrr_Kd_1_t_3;
     /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
     const real rrr_Kc_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xx[i] +
         rrr_S_y*m->rrr_base_frame_yx[i]);
@@ -2193,19 +2201,19 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
     const real rrr_alpha_2_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_in_axes2_y +
         rrr_B_1_in_axes1_xy*v->rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
     /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
-    const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x +
-        v->axis_y_rrr_axes2_x*m->gravity_y - v->axis_x_rrr_axes2_x*m->gravity_x;
+    const real rrr_acc_2_in_axes2_x = v->axis_y_rrr_axes2_x*m->gravity_y -
+        v->axis_x_rrr_axes2_x*m->gravity_x + rrr_S_ddot_in_axes2_x;
     const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y -
         v->axis_x_rrr_axes2_x*m->gravity_y - v->axis_y_rrr_axes2_x*m->gravity_x;
     /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real rrr_mu_2_in_axes2_z = m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_in_axes2_z +
-        rrr_acc_2_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
-        rrr_acc_2_in_axes2_x*m->rrr_h_2_in_spec2_y[i];
+    const real rrr_mu_2_in_axes2_z = rrr_acc_2_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
+        rrr_acc_2_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
+        m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_in_axes2_z;
     /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
     const real rrr_mu_1_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v->rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*v->rrr_s_1) - rrr_B_1_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i] -
-        m->rrr_h_1_in_spec1_x[i]*(v->rrr_c_1*m->rrr_mu_1_t_2[i] -
-        m->rrr_mu_1_t[i]*v->rrr_s_1);
+        m->rrr_mu_1_t_2[i]*v->rrr_s_1) -
+        m->rrr_h_1_in_spec1_x[i]*(v->rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v->rrr_s_1)
+        - rrr_B_1_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i];
     /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
@@ -2217,8 +2225,8 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
     const real rrr_c_in_axes2_x = v->rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
         rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
         v->rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*v->rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
-    const real rrr_c_in_axes2_y = v->rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] - rrr_G_in_axes2_y -
-        rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_x[i];
+    const real rrr_c_in_axes2_y = v->rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
+        rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_in_axes2_y;
     v->rrr_acc_2_in_axes2_x = rrr_acc_2_in_axes2_x;
     v->rrr_acc_2_in_axes2_y = rrr_acc_2_in_axes2_y;
     v->rrr_c_in_axes2_x = rrr_c_in_axes2_x;
@@ -2228,21 +2236,25 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    real *s)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s)
 {
-    values v;
-    stage_V(w, k, V, &v);
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+    s[2*w + k] = v->h_star_x;
+    s[3*w + k] = v->h_star_y;
+}
+
+INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
+    *s)
+{
+    stage_V(w, k, V, v);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_x = v.W_p_xx*v.h_star_x - m->Z_p_t;
-    const real Z_p_y = v.W_p_xx*v.h_star_y - m->Z_p_t_2;
+    const real Z_p_x = v->W_p_xx*v->h_star_x - m->Z_p_t;
+    const real Z_p_y = v->W_p_xx*v->h_star_y - m->Z_p_t_2;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real Z_q_z = m->gravity_x*v.h_star_y - m->gravity_y*v.h_star_x;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
-    s[2*w + k] = v.h_star_x;
-    s[3*w + k] = v.h_star_y;
+    const real Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x;
     s[4*w + k] = Z_p_x;
     s[5*w + k] = Z_p_y;
     s[6*w + k] = Z_q_z;
@@ -2265,8 +2277,8 @@ INLINE void dynamics_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, s
     const real rpr_Q_t = R(0.5)*rpr_d_c_in_axes1_yy;
     const real rpr_Q_t_2 = v.axis_x_rpr_axes1_y*rpr_Q_t -
         v.axis_x_rpr_axes1_x*rpr_d_c_in_axes1_xy;
-    const real rpr_Q_t_3 = v.axis_x_rpr_axes1_x*rpr_Q_t +
-        v.axis_x_rpr_axes1_y*rpr_d_c_in_axes1_xy;
+    const real rpr_Q_t_3 = v.axis_x_rpr_axes1_y*rpr_d_c_in_axes1_xy +
+        v.axis_x_rpr_axes1_x*rpr_Q_t;
     const real rpr_Q_xx = -2*v.axis_x_rpr_axes1_y*rpr_Q_t_2;
     const real rpr_Q_xy = v.axis_x_rpr_axes1_x*rpr_Q_t_2 + v.axis_x_rpr_axes1_y*rpr_Q_t_3;
     const real rpr_Q_yy = -2*v.axis_x_rpr_axes1_x*rpr_Q_t_3;
@@ -2337,20 +2349,20 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     const real rrr_alpha_2_o_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_o_in_axes2_y +
         rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
     /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + v.axis_y_rrr_axes2_x*m->gravity_y
-        - v.axis_x_rrr_axes2_x*m->gravity_x;
+    const real rrr_acc_2_o_in_axes2_x = v.axis_y_rrr_axes2_x*m->gravity_y -
+        v.axis_x_rrr_axes2_x*m->gravity_x + rrr_u_1_in_axes2_x;
     const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - v.axis_x_rrr_axes2_x*m->gravity_y
         - v.axis_y_rrr_axes2_x*m->gravity_x;
     /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
-    const real rrr_mu_2_o_in_axes2_z = m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z +
-        rrr_acc_2_o_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
-        rrr_acc_2_o_in_axes2_x*m->rrr_h_2_in_spec2_y[i];
+    const real rrr_mu_2_o_in_axes2_z = rrr_acc_2_o_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
+        rrr_acc_2_o_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
+        m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z;
     /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
     const real rrr_mu_1_o_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i] -
-        m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v.rrr_s_1);
+        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i]
+        - m->rrr_mu_1_t[i]*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i];
     /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
        connection point left out */
     const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
@@ -2362,24 +2374,24 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     const real rrr_c_o_in_axes2_x = v.rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
         rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
         v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
-    const real rrr_c_o_in_axes2_y = v.rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] - rrr_G_o_in_axes2_y
-        - rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i];
+    const real rrr_c_o_in_axes2_y = v.rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_o_in_axes2_y;
     /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real rrr_Q_t = m->rrr_h_2_in_spec2_y[i]*(v.rrr_w_1_in_axes2_x +
         v.rrr_w_2_in_axes2_x) - m->rrr_d_c_in_axes2_yy[i] -
         v.rrr_d_Gamma_1_in_axes2_x*v.rrr_w_1_in_axes2_x -
         v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
     const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
-    const real rrr_Q_t_3 = v.axis_x_rrr_axes2_x*rrr_Q_t_2 +
-        v.axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+    const real rrr_Q_t_3 = v.axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy +
+        v.axis_x_rrr_axes2_x*rrr_Q_t_2;
     const real rrr_Q_t_4 = v.axis_y_rrr_axes2_x*rrr_Q_t_2 -
         v.axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
     const real rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v.axis_x_rrr_axes2_x*rrr_Q_t_3;
     const real rrr_Q_xy = v.axis_x_rrr_axes2_x*rrr_Q_t_4 + v.axis_y_rrr_axes2_x*rrr_Q_t_3;
     const real rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v.axis_y_rrr_axes2_x*rrr_Q_t_4;
     /* (rrr-U) velocity and gravity terms of the leg force */
-    const real rrr_U_x = -v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
-        v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
+    const real rrr_U_x = -v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y -
+        v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x;
     const real rrr_U_y = v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
         v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
     /* (M_ta) */
@@ -2443,35 +2455,35 @@ INLINE void dynamics_legs_prr(const prepared *m, size_t w, size_t i, size_t j, s
     const real prr_B_2_o_in_axes2_xy = v.prr_w_1_t*(v.prr_c_2*v.prr_u_1_in_axes2_y +
         prr_rel_o_in_axes2_x*v.prr_s_2);
     /* (prr-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
-    const real prr_acc_1_o_in_axes0_x = prr_B_2_o_in_axes2_xy*v.prr_v_2_in_axes0_x +
-        v.prr_c_2*prr_rel_o_in_axes2_x - m->prr_g_in_axes0_x[i] -
-        v.prr_s_2*v.prr_u_1_in_axes2_y;
+    const real prr_acc_1_o_in_axes0_x = v.prr_c_2*prr_rel_o_in_axes2_x -
+        m->prr_g_in_axes0_x[i] - v.prr_s_2*v.prr_u_1_in_axes2_y +
+        prr_B_2_o_in_axes2_xy*v.prr_v_2_in_axes0_x;
     /* (prr-f_1_o) remainder of: inertia force of link 1 less its weight */
     const real prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*m->prr_link1_mass[i];
     /* (prr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real prr_mu_2_o_in_axes2_z = v.prr_acc_2_o_in_axes2_y*m->prr_h_2_in_spec2_x[i] -
-        prr_B_2_o_in_axes2_xy*m->prr_J_2_in_spec2_zz[i] -
-        v.prr_acc_2_o_in_axes2_x*m->prr_h_2_in_spec2_y[i];
+        v.prr_acc_2_o_in_axes2_x*m->prr_h_2_in_spec2_y[i] -
+        prr_B_2_o_in_axes2_xy*m->prr_J_2_in_spec2_zz[i];
     /* (prr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
     const real prr_c_o_t = v.prr_w_1_t*(prr_mu_2_o_in_axes2_z -
         prr_f_1_o_in_axes0_x*v.prr_v_2_in_axes0_x);
-    const real prr_c_o_in_axes2_x = v.prr_W_2_t*m->prr_h_2_in_spec2_x[i] + prr_c_o_t*v.prr_s_2
-        - prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_y[i] - v.prr_c_2*prr_f_1_o_in_axes0_x;
-    const real prr_c_o_in_axes2_y = prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_x[i] +
-        v.prr_W_2_t*m->prr_h_2_in_spec2_y[i] + v.prr_c_2*prr_c_o_t +
-        prr_f_1_o_in_axes0_x*v.prr_s_2;
+    const real prr_c_o_in_axes2_x = v.prr_W_2_t*m->prr_h_2_in_spec2_x[i] -
+        prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_y[i] - v.prr_c_2*prr_f_1_o_in_axes0_x +
+        prr_c_o_t*v.prr_s_2;
+    const real prr_c_o_in_axes2_y = v.prr_W_2_t*m->prr_h_2_in_spec2_y[i] +
+        prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_x[i] + prr_f_1_o_in_axes0_x*v.prr_s_2 +
+        v.prr_c_2*prr_c_o_t;
     /* (prr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real prr_Q_t = v.prr_d_c_in_axes2_xx +
-        v.prr_d_Gamma_1_in_axes2_y*v.prr_w_1_in_axes2_y +
+    const real prr_Q_t = m->prr_h_2_in_spec2_x[i]*v.prr_w_2_in_axes2_y +
         v.prr_d_Gamma_2_in_axes2_y*v.prr_w_2_in_axes2_y +
-        m->prr_h_2_in_spec2_x[i]*v.prr_w_2_in_axes2_y;
+        v.prr_d_Gamma_1_in_axes2_y*v.prr_w_1_in_axes2_y + v.prr_d_c_in_axes2_xx;
     const real prr_Q_t_2 = R(0.5)*prr_Q_t;
     const real prr_Q_t_3 = v.axis_y_prr_axes2_x*prr_Q_t_2 -
         v.axis_x_prr_axes2_x*v.prr_d_c_in_axes2_xy;
-    const real prr_Q_t_4 = v.axis_x_prr_axes2_x*prr_Q_t_2 +
-        v.axis_y_prr_axes2_x*v.prr_d_c_in_axes2_xy;
+    const real prr_Q_t_4 = v.axis_y_prr_axes2_x*v.prr_d_c_in_axes2_xy +
+        v.axis_x_prr_axes2_x*prr_Q_t_2;
     const real prr_Q_xx = 2*v.axis_y_prr_axes2_x*prr_Q_t_3 - v.prr_d_c_in_axes2_xx;
     const real prr_Q_xy = v.axis_x_prr_axes2_x*prr_Q_t_3 + v.axis_y_prr_axes2_x*prr_Q_t_4;
     const real prr_Q_yy = 2*v.axis_x_prr_axes2_x*prr_Q_t_4 - v.prr_d_c_in_axes2_xx;
@@ -2529,16 +2541,16 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     /* (M_ta) */
     const real M_ta_xz_of_legs = sums[3*w + k];
     const real h_star_y = s[3*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yz_of_legs = sums[4*w + k];
     const real h_star_x = s[2*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     /* (M_aa) */
     const real M_aa_zz_of_legs = sums[5*w + k];
     const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
@@ -2552,7 +2564,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     /* (Z_a) */
     const real Z_a_z_of_legs = sums[8*w + k];
     const real Z_q_z = s[6*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
     const real M_tt_xy = sums[1*w + k];
@@ -2582,7 +2594,8 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     real terms_rpr[9*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
     real terms_rrr[9*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
     real terms_prr[9*LEGS(LEGS_OF_prr)] = {0}, o_prr[6*LEGS(LEGS_OF_prr)] = {0};
-    dynamics_before(m, 1, 0, X, V, s);
+    values v;
+    dynamics_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         dynamics_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, V, terms_rpr, o_rpr);
     }
@@ -2614,6 +2627,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
             sums[n] += terms_prr[n*LEGS(LEGS_OF_prr) + leg];
         }
     }
+    dynamics_between(m, 1, 0, V, &v, s);
     dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
@@ -2625,7 +2639,9 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real o_rrr[6*LANES];
     real o_prr[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        dynamics_before(m, LANES, k, X, V, s);
+        values v;
+        dynamics_before(m, LANES, k, X, &v, s);
+        dynamics_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 9*LANES);
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
@@ -2658,14 +2674,13 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
-    s[2*w + k] = v.h_star_x;
-    s[3*w + k] = v.h_star_y;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+    s[2*w + k] = v->h_star_x;
+    s[3*w + k] = v->h_star_y;
 }
 
 INLINE void M_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2682,7 +2697,7 @@ INLINE void M_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     /* (rpr-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real rpr_Q_t = R(0.5)*rpr_d_c_in_axes1_yy;
     const real rpr_Q_t_2 = rpr_Q_t*v.rpr_w_2_y - rpr_d_c_in_axes1_xy*v.rpr_w_2_x;
-    const real rpr_Q_t_3 = rpr_Q_t*v.rpr_w_2_x + rpr_d_c_in_axes1_xy*v.rpr_w_2_y;
+    const real rpr_Q_t_3 = rpr_d_c_in_axes1_xy*v.rpr_w_2_y + rpr_Q_t*v.rpr_w_2_x;
     const real rpr_Q_xx = -2*rpr_Q_t_2*v.rpr_w_2_y;
     const real rpr_Q_xy = rpr_Q_t_2*v.rpr_w_2_x + rpr_Q_t_3*v.rpr_w_2_y;
     const real rpr_Q_yy = -2*rpr_Q_t_3*v.rpr_w_2_x;
@@ -2716,7 +2731,7 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_M_dynamics(m, i, &v);
     /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_Q_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
+    const real rrr_Q_t = v.rrr_c_2*v.rrr_s_1 + v.rrr_c_1*v.rrr_s_2;
     const real rrr_Q_t_2 = v.rrr_c_1*v.rrr_c_2 - v.rrr_s_1*v.rrr_s_2;
     const real axis_y_rrr_axes2_x = rrr_Q_t_2*m->rrr_base_frame_xy[i] -
         rrr_Q_t*m->rrr_base_frame_xx[i];
@@ -2727,8 +2742,8 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
         v.rrr_d_Gamma_1_in_axes2_x*v.rrr_w_1_in_axes2_x -
         v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
     const real rrr_Q_t_4 = R(0.5)*rrr_Q_t_3;
-    const real rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 +
-        axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+    const real rrr_Q_t_5 = axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy +
+        axis_x_rrr_axes2_x*rrr_Q_t_4;
     const real rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 -
         axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
     const real rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*axis_x_rrr_axes2_x*rrr_Q_t_5;
@@ -2766,15 +2781,15 @@ INLINE void M_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_prr_X(m, w, i, j, s, X, &v);
     stage_prr_M_dynamics(m, i, &v);
     /* (prr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real prr_Q_t = v.prr_d_c_in_axes2_xx +
-        v.prr_d_Gamma_1_in_axes2_y*(v.prr_c_2*v.prr_w_1_t_2 - v.prr_s_2) +
+    const real prr_Q_t = m->prr_h_2_in_spec2_x[i]*v.prr_w_2_in_axes2_y +
         v.prr_d_Gamma_2_in_axes2_y*v.prr_w_2_in_axes2_y +
-        m->prr_h_2_in_spec2_x[i]*v.prr_w_2_in_axes2_y;
+        v.prr_d_Gamma_1_in_axes2_y*(v.prr_c_2*v.prr_w_1_t_2 - v.prr_s_2) +
+        v.prr_d_c_in_axes2_xx;
     const real prr_Q_t_2 = R(0.5)*prr_Q_t;
     const real prr_Q_t_3 = v.axis_y_prr_axes2_x*prr_Q_t_2 -
         v.axis_x_prr_axes2_x*v.prr_d_c_in_axes2_xy;
-    const real prr_Q_t_4 = v.axis_x_prr_axes2_x*prr_Q_t_2 +
-        v.axis_y_prr_axes2_x*v.prr_d_c_in_axes2_xy;
+    const real prr_Q_t_4 = v.axis_y_prr_axes2_x*v.prr_d_c_in_axes2_xy +
+        v.axis_x_prr_axes2_x*prr_Q_t_2;
     const real prr_Q_xx = 2*v.axis_y_prr_axes2_x*prr_Q_t_3 - v.prr_d_c_in_axes2_xx;
     const real prr_Q_xy = v.axis_x_prr_axes2_x*prr_Q_t_3 + v.axis_y_prr_axes2_x*prr_Q_t_4;
     const real prr_Q_yy = 2*v.axis_x_prr_axes2_x*prr_Q_t_4 - v.prr_d_c_in_axes2_xx;
@@ -2807,16 +2822,16 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     /* (M_ta) */
     const real M_ta_xz_of_legs = sums[3*w + k];
     const real h_star_y = s[3*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yz_of_legs = sums[4*w + k];
     const real h_star_x = s[2*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     /* (M_aa) */
     const real M_aa_zz_of_legs = sums[5*w + k];
     const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
@@ -2842,7 +2857,8 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     real terms_rpr[6*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
     real terms_rrr[6*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
     real terms_prr[6*LEGS(LEGS_OF_prr)] = {0}, o_prr[2*LEGS(LEGS_OF_prr)] = {0};
-    M_before(m, 1, 0, X, s);
+    values v;
+    M_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         M_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, terms_rpr, o_rpr);
     }
@@ -2884,7 +2900,8 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
     real o_rrr[2*LANES];
     real o_prr[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        M_before(m, LANES, k, X, s);
+        values v;
+        M_before(m, LANES, k, X, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
@@ -2917,18 +2934,21 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s)
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
-    values v;
-    stage_V(w, k, V, &v);
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+}
+
+INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
+{
+    stage_V(w, k, V, v);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_x = v.W_p_xx*v.h_star_x - m->Z_p_t;
-    const real Z_p_y = v.W_p_xx*v.h_star_y - m->Z_p_t_2;
+    const real Z_p_x = v->W_p_xx*v->h_star_x - m->Z_p_t;
+    const real Z_p_y = v->W_p_xx*v->h_star_y - m->Z_p_t_2;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real Z_q_z = m->gravity_x*v.h_star_y - m->gravity_y*v.h_star_x;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    const real Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x;
     s[2*w + k] = Z_p_x;
     s[3*w + k] = Z_p_y;
     s[4*w + k] = Z_q_z;
@@ -2985,8 +3005,8 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x -
         axis_x_rrr_axes2_x*rrr_u_1_t;
     /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_bias_in_axes2_x = -rrr_W_2_t*m->rrr_platform_joint_offset_x[i] -
-        rrr_W_1_t*v.rrr_c_2*m->rrr_joint2_offset_x[i];
+    const real rrr_bias_in_axes2_x = -rrr_W_1_t*v.rrr_c_2*m->rrr_joint2_offset_x[i] -
+        rrr_W_2_t*m->rrr_platform_joint_offset_x[i];
     /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
        */
     const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x;
@@ -2998,20 +3018,20 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real rrr_alpha_2_o_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_o_in_axes2_y +
         rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
     /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*m->gravity_y -
-        axis_x_rrr_axes2_x*m->gravity_x;
+    const real rrr_acc_2_o_in_axes2_x = axis_y_rrr_axes2_x*m->gravity_y -
+        axis_x_rrr_axes2_x*m->gravity_x + rrr_u_1_in_axes2_x;
     const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*m->gravity_y -
         axis_y_rrr_axes2_x*m->gravity_x;
     /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
-    const real rrr_mu_2_o_in_axes2_z = m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z +
-        rrr_acc_2_o_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
-        rrr_acc_2_o_in_axes2_x*m->rrr_h_2_in_spec2_y[i];
+    const real rrr_mu_2_o_in_axes2_z = rrr_acc_2_o_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
+        rrr_acc_2_o_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
+        m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z;
     /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
     const real rrr_mu_1_o_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i] -
-        m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v.rrr_s_1);
+        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i]
+        - m->rrr_mu_1_t[i]*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i];
     /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
        connection point left out */
     const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
@@ -3023,11 +3043,11 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real rrr_c_o_in_axes2_x = rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
         rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
         v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
-    const real rrr_c_o_in_axes2_y = rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] - rrr_G_o_in_axes2_y -
-        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i];
+    const real rrr_c_o_in_axes2_y = rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_o_in_axes2_y;
     /* (rrr-U) velocity and gravity terms of the leg force */
-    const real rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
-        axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
+    const real rrr_U_x = -axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y -
+        axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x;
     const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
         axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
     /* (Z_a) */
@@ -3069,25 +3089,26 @@ INLINE void Z_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real prr_B_2_o_in_axes2_xy = prr_qd_2_t*(v.prr_c_2*v.prr_u_1_in_axes2_y +
         prr_rel_o_in_axes2_x*v.prr_s_2);
     /* (prr-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
-    const real prr_acc_1_o_in_axes0_x = prr_B_2_o_in_axes2_xy*v.prr_v_2_in_axes0_x +
-        v.prr_c_2*prr_rel_o_in_axes2_x - m->prr_g_in_axes0_x[i] -
-        v.prr_s_2*v.prr_u_1_in_axes2_y;
+    const real prr_acc_1_o_in_axes0_x = v.prr_c_2*prr_rel_o_in_axes2_x -
+        m->prr_g_in_axes0_x[i] - v.prr_s_2*v.prr_u_1_in_axes2_y +
+        prr_B_2_o_in_axes2_xy*v.prr_v_2_in_axes0_x;
     /* (prr-f_1_o) remainder of: inertia force of link 1 less its weight */
     const real prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*m->prr_link1_mass[i];
     /* (prr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real prr_mu_2_o_in_axes2_z = v.prr_acc_2_o_in_axes2_y*m->prr_h_2_in_spec2_x[i] -
-        prr_B_2_o_in_axes2_xy*m->prr_J_2_in_spec2_zz[i] -
-        v.prr_acc_2_o_in_axes2_x*m->prr_h_2_in_spec2_y[i];
+        v.prr_acc_2_o_in_axes2_x*m->prr_h_2_in_spec2_y[i] -
+        prr_B_2_o_in_axes2_xy*m->prr_J_2_in_spec2_zz[i];
     /* (prr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
     const real prr_c_o_t = prr_qd_2_t*(prr_mu_2_o_in_axes2_z -
         prr_f_1_o_in_axes0_x*v.prr_v_2_in_axes0_x);
-    const real prr_c_o_in_axes2_x = prr_W_2_t*m->prr_h_2_in_spec2_x[i] + prr_c_o_t*v.prr_s_2 -
-        prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_y[i] - v.prr_c_2*prr_f_1_o_in_axes0_x;
-    const real prr_c_o_in_axes2_y = prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_x[i] +
-        prr_W_2_t*m->prr_h_2_in_spec2_y[i] + v.prr_c_2*prr_c_o_t +
-        prr_f_1_o_in_axes0_x*v.prr_s_2;
+    const real prr_c_o_in_axes2_x = prr_W_2_t*m->prr_h_2_in_spec2_x[i] -
+        prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_y[i] - v.prr_c_2*prr_f_1_o_in_axes0_x +
+        prr_c_o_t*v.prr_s_2;
+    const real prr_c_o_in_axes2_y = prr_W_2_t*m->prr_h_2_in_spec2_y[i] +
+        prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_x[i] + prr_f_1_o_in_axes0_x*v.prr_s_2 +
+        v.prr_c_2*prr_c_o_t;
     /* (prr-U) velocity and gravity terms of the leg force */
     const real prr_U_x = -v.axis_x_prr_axes2_x*prr_c_o_in_axes2_x -
         v.axis_y_prr_axes2_x*prr_c_o_in_axes2_y;
@@ -3122,7 +3143,7 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     /* (Z_a) */
     const real Z_a_z_of_legs = sums[2*w + k];
     const real Z_q_z = s[4*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
     Z[1*w + k] = Z_t_y;
@@ -3137,7 +3158,8 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
     real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
     real terms_prr[3*LEGS(LEGS_OF_prr)] = {0}, o_prr[2*LEGS(LEGS_OF_prr)] = {0};
-    Z_before(m, 1, 0, X, V, s);
+    values v;
+    Z_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         Z_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, V, terms_rpr, o_rpr);
     }
@@ -3169,6 +3191,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
             sums[n] += terms_prr[n*LEGS(LEGS_OF_prr) + leg];
         }
     }
+    Z_between(m, 1, 0, V, &v, s);
     Z_after(1, 0, s, sums, Z, t);
 }
 
@@ -3180,7 +3203,9 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real o_rrr[2*LANES];
     real o_prr[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        Z_before(m, LANES, k, X, V, s);
+        values v;
+        Z_before(m, LANES, k, X, &v, s);
+        Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 3*LANES);
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
@@ -3213,12 +3238,11 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void H_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3309,7 +3333,8 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
     real o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
     real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
     real o_prr[6*LEGS(LEGS_OF_prr)] = {0};
-    H_before(m, 1, 0, X, s);
+    values v;
+    H_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         H_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, o_rpr);
     }
@@ -3337,7 +3362,8 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
     real o_rrr[6*LANES];
     real o_prr[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        H_before(m, LANES, k, X, s);
+        values v;
+        H_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3366,12 +3392,18 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, real *s)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s)
 {
-    values v;
-    stage_V(w, k, V, &v);
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+}
+
+INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
+    values *v, real *s)
+{
+    stage_V(w, k, V, v);
     /* (a_t) acceleration of the platform origin, less gravity */
     const real t_ddot_x = A[0*w + k];
     const real a_t_x = t_ddot_x - m->gravity_x;
@@ -3379,12 +3411,10 @@ INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X
     const real a_t_y = t_ddot_y - m->gravity_y;
     /* (f_p) inertia force of the platform less its weight */
     const real alpha_z = A[2*w + k];
-    const real f_p_x = v.W_p_xx*v.h_star_x + a_t_x*m->m_star - alpha_z*v.h_star_y;
-    const real f_p_y = v.W_p_xx*v.h_star_y + a_t_y*m->m_star + alpha_z*v.h_star_x;
+    const real f_p_x = a_t_x*m->m_star + v->W_p_xx*v->h_star_x - alpha_z*v->h_star_y;
+    const real f_p_y = a_t_y*m->m_star + v->W_p_xx*v->h_star_y + alpha_z*v->h_star_x;
     /* (mu_p) inertia moment of the platform less that of its weight */
-    const real mu_p_z = m->J_star_zz*alpha_z + a_t_y*v.h_star_x - a_t_x*v.h_star_y;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    const real mu_p_z = m->J_star_zz*alpha_z + a_t_y*v->h_star_x - a_t_x*v->h_star_y;
     s[2*w + k] = f_p_x;
     s[3*w + k] = f_p_y;
     s[4*w + k] = mu_p_z;
@@ -3448,8 +3478,8 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     stage_rrr_legs_required(m, i, &v);
     /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rrr_c_x = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_x +
-        v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_y;
+    const real rrr_c_x = v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_y +
+        v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_x;
     const real rrr_c_y = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_y -
         v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_x;
     /* (R_a) */
@@ -3537,7 +3567,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     /* (R_a) */
     const real R_a_z_of_legs = sums[2*w + k];
     const real mu_p_z = s[4*w + k];
-    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
     required[1*w + k] = R_t_y;
@@ -3545,14 +3575,15 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[2*w + k] = R_a_z;
 }
 
-APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
     real s[5] = {0}, sums[3] = {0};
     real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
     real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
     real terms_prr[3*LEGS(LEGS_OF_prr)] = {0}, o_prr[5*LEGS(LEGS_OF_prr)] = {0};
-    required_before(m, 1, 0, X, V, A, s);
+    values v;
+    required_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         required_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, V, A, terms_rpr, o_rpr);
     }
@@ -3584,6 +3615,7 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
             sums[n] += terms_prr[n*LEGS(LEGS_OF_prr) + leg];
         }
     }
+    required_between(m, 1, 0, V, A, &v, s);
     required_after(1, 0, s, sums, required);
 }
 
@@ -3595,7 +3627,9 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real o_rrr[5*LANES];
     real o_prr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        required_before(m, LANES, k, X, V, A, s);
+        values v;
+        required_before(m, LANES, k, X, &v, s);
+        required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 3*LANES);
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
@@ -3628,13 +3662,12 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
+    *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k,
@@ -3669,8 +3702,8 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t i, s
     values_rrr v;
     stage_rrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
     /* (rrr-q_1) displacement of joint 1 */
-    const real rrr_q_1 = angle(v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_root_1 +
-        v.rrr_Kd_1*v.rrr_Ks_1), v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 -
+    const real rrr_q_1 = angle(v.inv_rrr_rho2_1*(v.rrr_Kd_1*v.rrr_Ks_1 +
+        v.rrr_Kc_1*v.rrr_root_1), v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 -
         v.rrr_Ks_1*v.rrr_root_1));
     /* (rrr-q_2) displacement of joint 2 */
     const real rrr_q_2 =
@@ -3728,7 +3761,8 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
     real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
     real o_prr[4*LEGS(LEGS_OF_prr)] = {0};
-    inverse_kinematics_before(m, 1, 0, X, s);
+    values v;
+    inverse_kinematics_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         inverse_kinematics_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, o_rpr);
     }
@@ -3757,7 +3791,8 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real o_rrr[5*LANES];
     real o_prr[4*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        inverse_kinematics_before(m, LANES, k, X, s);
+        values v;
+        inverse_kinematics_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3786,12 +3821,12 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void joint_rates_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3916,7 +3951,8 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
     real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
     real o_prr[5*LEGS(LEGS_OF_prr)] = {0};
-    joint_rates_before(m, 1, 0, X, s);
+    values v;
+    joint_rates_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         joint_rates_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, V, o_rpr);
     }
@@ -3945,7 +3981,8 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real o_rrr[5*LANES];
     real o_prr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_rates_before(m, LANES, k, X, s);
+        values v;
+        joint_rates_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3974,13 +4011,12 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
+    values *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void joint_accelerations_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t
@@ -4038,12 +4074,11 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t i, 
         m->rrr_w_2_in_axes2_y[i]*(axis_x_rrr_axes2_x*v.rrr_S_dot_y +
         axis_y_rrr_axes2_x*v.rrr_S_dot_x - rrr_qd_1*v.rrr_r_1_in_axes2_x);
     /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_bias_in_axes2_x =
-        -rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*m->rrr_platform_joint_offset_x[i] -
-        rrr_W_1_t*v.rrr_c_2*m->rrr_joint2_offset_x[i];
+    const real rrr_bias_in_axes2_x = -rrr_W_1_t*v.rrr_c_2*m->rrr_joint2_offset_x[i] -
+        rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*m->rrr_platform_joint_offset_x[i];
     /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-    const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*v.rrr_S_ddot_x - rrr_bias_in_axes2_x -
-        axis_y_rrr_axes2_x*v.rrr_S_ddot_y;
+    const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*v.rrr_S_ddot_x -
+        axis_y_rrr_axes2_x*v.rrr_S_ddot_y - rrr_bias_in_axes2_x;
     const real rrr_rel_in_axes2_y = axis_x_rrr_axes2_x*v.rrr_S_ddot_y +
         axis_y_rrr_axes2_x*v.rrr_S_ddot_x - rrr_W_1_t*m->rrr_joint2_offset_x[i]*v.rrr_s_2;
     /* (rrr-qdd_1) acceleration of joint 1 */
@@ -4084,9 +4119,9 @@ INLINE void joint_accelerations_legs_prr(const prepared *m, size_t w, size_t i, 
     const real prr_qd_2 = -prr_qd_2_t*(v.prr_S_dot_x*m->prr_base_frame_xy[i] +
         v.prr_S_dot_y*m->prr_base_frame_yy[i]);
     /* (prr-rel) acceleration of the connection point left to the joint accelerations */
-    const real prr_rel_in_axes2_x = v.axis_x_prr_axes2_x*v.prr_S_ddot_x +
-        m->prr_platform_joint_offset_x[i]*prr_qd_2*prr_qd_2 -
-        v.axis_y_prr_axes2_x*v.prr_S_ddot_y;
+    const real prr_rel_in_axes2_x = v.axis_x_prr_axes2_x*v.prr_S_ddot_x -
+        v.axis_y_prr_axes2_x*v.prr_S_ddot_y +
+        m->prr_platform_joint_offset_x[i]*prr_qd_2*prr_qd_2;
     /* (prr-qdd_1) acceleration of joint 1 */
     const real prr_qdd_1_t = prr_qd_2_t*(v.prr_S_ddot_in_axes2_y*v.prr_c_2 +
         prr_rel_in_axes2_x*v.prr_s_2);
@@ -4118,7 +4153,8 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
     real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
     real o_prr[5*LEGS(LEGS_OF_prr)] = {0};
-    joint_accelerations_before(m, 1, 0, X, s);
+    values v;
+    joint_accelerations_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         joint_accelerations_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, V, A, o_rpr);
     }
@@ -4147,7 +4183,8 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real o_rrr[5*LANES];
     real o_prr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_accelerations_before(m, LANES, k, X, s);
+        values v;
+        joint_accelerations_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -4176,12 +4213,11 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void legs_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -4195,14 +4231,14 @@ INLINE void legs_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_
     stage_rpr_legs_required(m, i, &v);
     /* (rpr-c_true) leg force on the platform without actuation, the last link's mass included */
     const real rpr_c_true_in_axes1_x = m->rpr_h_2_in_spec1_y[i]*v.rpr_qdd_1 -
-        v.rpr_W_1_in_axes1_xx*m->rpr_h_2_in_spec1_x[i] -
-        v.rpr_acc_2_in_axes1_x*m->rpr_link2_mass[i];
+        v.rpr_acc_2_in_axes1_x*m->rpr_link2_mass[i] -
+        v.rpr_W_1_in_axes1_xx*m->rpr_h_2_in_spec1_x[i];
     const real rpr_c_true_in_axes1_y = v.rpr_c_in_axes1_y -
         v.rpr_acc_2_in_axes1_y*m->rpr_link2_mass[i];
     const real rpr_c_true_x = v.axis_x_rpr_axes1_x*rpr_c_true_in_axes1_x -
         v.axis_x_rpr_axes1_y*rpr_c_true_in_axes1_y;
-    const real rpr_c_true_y = v.axis_x_rpr_axes1_x*rpr_c_true_in_axes1_y +
-        v.axis_x_rpr_axes1_y*rpr_c_true_in_axes1_x;
+    const real rpr_c_true_y = v.axis_x_rpr_axes1_y*rpr_c_true_in_axes1_x +
+        v.axis_x_rpr_axes1_x*rpr_c_true_in_axes1_y;
     /* (rpr-c_true) */
     o[0*count + k] = rpr_c_true_x;
     o[1*count + k] = rpr_c_true_y;
@@ -4237,8 +4273,8 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_
         v.rrr_acc_2_in_axes2_x*m->rrr_link2_mass[i];
     const real rrr_c_true_in_axes2_y = v.rrr_c_in_axes2_y -
         v.rrr_acc_2_in_axes2_y*m->rrr_link2_mass[i];
-    const real rrr_c_true_x = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x +
-        v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y;
+    const real rrr_c_true_x = v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y +
+        v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x;
     const real rrr_c_true_y = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y -
         v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x;
     /* (rrr-c_true) */
@@ -4311,7 +4347,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     real o_prr[6*LEGS(LEGS_OF_prr)] = {0};
     clear(leg_force, 3*NL);
     clear(actuator, 9);
-    legs_before(m, 1, 0, X, s);
+    values v;
+    legs_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         legs_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, V, A, o_rpr);
     }
@@ -4333,18 +4370,23 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+}
+
+INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s)
+{
     /* (potential) potential energy */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
-    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x + m->m_star*t_x -
-        v.R_yx*m->h_star_in_platform_y) + m->gravity_y*(v.R_xx*m->h_star_in_platform_y +
-        v.R_yx*m->h_star_in_platform_x + m->m_star*t_y);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    const real potential_t = m->gravity_x*(m->m_star*t_x + v->R_xx*m->h_star_in_platform_x -
+        v->R_yx*m->h_star_in_platform_y) + m->gravity_y*(m->m_star*t_y +
+        v->R_xx*m->h_star_in_platform_y + v->R_yx*m->h_star_in_platform_x);
     s[2*w + k] = potential_t;
 }
 
@@ -4384,7 +4426,7 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
     /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
     const real rrr_c_1 = v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 - v.rrr_Ks_1*v.rrr_root_1);
     /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rrr_s_1 = v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_root_1 + v.rrr_Kd_1*v.rrr_Ks_1);
+    const real rrr_s_1 = v.inv_rrr_rho2_1*(v.rrr_Kd_1*v.rrr_Ks_1 + v.rrr_Kc_1*v.rrr_root_1);
     /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
     const real rrr_c_2 =
         m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_x_2_in_axes1_x;
@@ -4397,9 +4439,9 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
         rrr_c_2*m->rrr_h_2_in_spec2_x[i] + m->rrr_link1_mass[i]*(rrr_c_1*m->rrr_potential_t[i]
         + m->rrr_potential_t_2[i]*rrr_s_1) - m->rrr_h_2_in_spec2_y[i]*rrr_s_2) +
         (rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*rrr_s_1)*(m->rrr_h_1_in_spec1_y[i] +
-        rrr_c_2*m->rrr_h_2_in_spec2_y[i] + m->rrr_h_2_in_spec2_x[i]*rrr_s_2 +
-        m->rrr_link1_mass[i]*(rrr_c_1*m->rrr_potential_t_2[i] -
-        m->rrr_potential_t[i]*rrr_s_1));
+        rrr_c_2*m->rrr_h_2_in_spec2_y[i] +
+        m->rrr_link1_mass[i]*(rrr_c_1*m->rrr_potential_t_2[i] - m->rrr_potential_t[i]*rrr_s_1)
+        + m->rrr_h_2_in_spec2_x[i]*rrr_s_2);
     /* (potential) */
     gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_3 */
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
@@ -4424,11 +4466,11 @@ INLINE void potential_legs_prr(const prepared *m, size_t w, size_t i, size_t j, 
         m->inv_prr_size_t[i]*m->prr_platform_joint_offset_x[i]*(v.prr_S_x*m->prr_base_frame_xy[i]
         + v.prr_S_y*m->prr_base_frame_yy[i]);
     /* (potential) */
-    const real prr_potential_t_2 = m->prr_g_in_axes0_x[i]*(m->prr_h_1_in_spec0_x[i] +
-        prr_c_2*m->prr_h_2_in_spec2_x[i] + m->prr_link1_mass[i]*(m->prr_b_in_axes0_x[i] +
-        v.prr_q_1) - m->prr_h_2_in_spec2_y[i]*prr_s_2) +
-        m->prr_g_in_axes0_y[i]*(m->prr_h_1_in_spec0_y[i] + m->prr_potential_t[i] +
-        prr_c_2*m->prr_h_2_in_spec2_y[i] + m->prr_h_2_in_spec2_x[i]*prr_s_2);
+    const real prr_potential_t_2 = m->prr_g_in_axes0_y[i]*(m->prr_h_1_in_spec0_y[i] +
+        m->prr_potential_t[i] + m->prr_h_2_in_spec2_x[i]*prr_s_2 +
+        prr_c_2*m->prr_h_2_in_spec2_y[i]) + m->prr_g_in_axes0_x[i]*(m->prr_h_1_in_spec0_x[i] -
+        m->prr_h_2_in_spec2_y[i]*prr_s_2 + prr_c_2*m->prr_h_2_in_spec2_x[i] +
+        m->prr_link1_mass[i]*(m->prr_b_in_axes0_x[i] + v.prr_q_1));
     /* (potential) */
     gather(&terms[2*count + k], add, -prr_potential_t_2);  /* potential_of_legs */
     o[0*count + k] = UNLESS(v.prr_disc_1 >= 0);
@@ -4457,7 +4499,8 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
     real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
     real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
     real terms_prr[3*LEGS(LEGS_OF_prr)] = {0}, o_prr[LEGS(LEGS_OF_prr)] = {0};
-    potential_before(m, 1, 0, X, s);
+    values v;
+    potential_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         potential_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, terms_rpr, o_rpr);
     }
@@ -4489,17 +4532,17 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
             sums[n] += terms_prr[n*LEGS(LEGS_OF_prr) + leg];
         }
     }
+    potential_between(m, 1, 0, X, &v, s);
     potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
-    *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, real *lengths, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
@@ -4657,7 +4700,8 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[8*LEGS(LEGS_OF_rrr)] = {0};
     real terms_prr[3*LEGS(LEGS_OF_prr)] = {0}, o_prr[8*LEGS(LEGS_OF_prr)] = {0};
     clear(reach, NL);
-    condition_before(m, 1, 0, X, s, lengths, t);
+    values v;
+    condition_before(m, 1, 0, X, &v, s, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         condition_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, terms_rpr, o_rpr);
     }
@@ -4703,11 +4747,7 @@ int planar_mixed_M(const prepared *m, const real *X, real *M_out)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-    }
-    return code;
+    return settled(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -4734,11 +4774,7 @@ int planar_mixed_Z(const prepared *m, const real *X, const real *V, real *Z_out)
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, Z_out);
-    }
-    return code;
+    return settled(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -4762,11 +4798,7 @@ int planar_mixed_H(const prepared *m, const real *X, real *H_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -4789,11 +4821,7 @@ int planar_mixed_inverse_kinematics(const prepared *m, const real *X, real *q_ou
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, q_out);
-    }
-    return code;
+    return settled(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -4820,11 +4848,7 @@ int planar_mixed_joint_rates(const prepared *m, const real *X, const real *V, re
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qd_out);
-    }
-    return code;
+    return settled(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -4855,11 +4879,7 @@ int planar_mixed_joint_accelerations(const prepared *m, const real *X, const rea
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qdd_out);
-    }
-    return code;
+    return settled(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4892,13 +4912,9 @@ int planar_mixed_dynamics(const prepared *m, const real *X, const real *V, real 
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-        refuse(NV, Z_out);
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    settled(&why, NV*NV, M_out);
+    settled(&why, NV, Z_out);
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -4969,7 +4985,8 @@ static const real sizes_tau[] = {1.0, 4.0, 0.25};
 int planar_mixed_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out)
 {
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    static const real no_wrench[NW] = {0};
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
@@ -4979,7 +4996,7 @@ int planar_mixed_inverse_dynamics(const prepared *m, const real *X, const real *
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -4993,11 +5010,7 @@ int planar_mixed_inverse_dynamics(const prepared *m, const real *X, const real *
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, tau_out);
-    }
-    return code;
+    return settled(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -5026,8 +5039,9 @@ static const real sizes_A[] = {16.0, 4.0, 0.25};
 int planar_mixed_forward_dynamics(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out)
 {
-    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] =
-        {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    static const real no_wrench[NW] = {0};
+    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
+        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
@@ -5036,7 +5050,7 @@ int planar_mixed_forward_dynamics(const prepared *m, const real *X, const real *
         check(NV, 1, V, why.invalid);
         check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     for (size_t i = 0; i < NV; ++i) {
@@ -5054,11 +5068,7 @@ int planar_mixed_forward_dynamics(const prepared *m, const real *X, const real *
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, A_out);
-    }
-    return code;
+    return settled(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -5099,18 +5109,15 @@ int planar_mixed_complete_acceleration(const prepared *m, const real *X, const r
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, completed_out);
-    }
-    return code;
+    return settled(&why, NV, completed_out);
 }
 
 int planar_mixed_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out)
 {
+    static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2};
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
         unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[9] = {0}, forces[NL*NL] = {0},
         work[NV*PADDED(NV)];
     verdict why;
@@ -5121,7 +5128,7 @@ int planar_mixed_leg_reactions(const prepared *m, const real *X, const real *V, 
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -5139,11 +5146,7 @@ int planar_mixed_leg_reactions(const prepared *m, const real *X, const real *V, 
     add_forces(NL, 3, 1, places_forces, solve_1, actuator, forces);
     check(NL*NL, 1, forces, why.overflow);
     copy(NL*NL, forces, forces_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NL*NL, forces_out);
-    }
-    return code;
+    return settled(&why, NL*NL, forces_out);
 }
 
 int planar_mixed_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
@@ -5165,25 +5168,22 @@ int planar_mixed_energy(const prepared *m, const real *X, const real *V, real *k
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, kinetic_out);
-        refuse(1, potential_out);
-    }
-    return code;
+    settled(&why, 1, kinetic_out);
+    return settled(&why, 1, potential_out);
 }
 
 int planar_mixed_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
     const real *length = NULL;
+    static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {2};
-    real length_in[1], H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
+        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, length, 0, length_in, why.invalid);
+    length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
@@ -5201,12 +5201,8 @@ int planar_mixed_condition(const prepared *m, const real *X, real *sigma_out, re
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, sigma_out);
-        refuse(NL, legs_out);
-    }
-    return code;
+    settled(&why, NV, sigma_out);
+    return settled(&why, NL, legs_out);
 }
 
 int planar_mixed_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -5240,12 +5236,8 @@ int planar_mixed_manipulability(const prepared *m, const real *X, real *measure_
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, measure_out);
-        refuse(1, isotropy_out);
-    }
-    return code;
+    settled(&why, 1, measure_out);
+    return settled(&why, 1, isotropy_out);
 }
 
 int planar_mixed_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
@@ -5279,12 +5271,8 @@ int planar_mixed_singularity_distance(const prepared *m, const real *X, real *ac
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, actuators_out);
-        refuse(1, legs_out);
-    }
-    return code;
+    settled(&why, 1, actuators_out);
+    return settled(&why, 1, legs_out);
 }
 
 static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
@@ -5309,11 +5297,7 @@ static int mismatch_one(const prepared *m, const real *X, const real *q_actuated
     wrap_turns(1, 1, places_gap, gap);
     check(NU, 1, gap, why.overflow);
     copy(NU, gap, gap_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, gap_out);
-    }
-    return code;
+    return settled(&why, NU, gap_out);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
@@ -5325,11 +5309,7 @@ static int slope_one(const prepared *m, const real *X, real *slope_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, slope_out);
-    }
-    return code;
+    return settled(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -5391,11 +5371,7 @@ int planar_mixed_forward_kinematics(const prepared *m, const real *q_actuated, c
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int planar_mixed_dissipation(const prepared *m, const real *X, const real *V, real
@@ -5413,11 +5389,7 @@ int planar_mixed_dissipation(const prepared *m, const real *X, const real *V, re
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, dissipation_out);
-    }
-    return code;
+    return settled(&why, 1, dissipation_out);
 }
 
 int planar_mixed_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
@@ -5434,11 +5406,7 @@ int planar_mixed_momentum(const prepared *m, const real *X, const real *V, real 
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, momentum_out);
-    }
-    return code;
+    return settled(&why, NV, momentum_out);
 }
 
 int planar_mixed_joint_margins(const prepared *m, const real *X, real *margins_out)
@@ -5454,11 +5422,7 @@ int planar_mixed_joint_margins(const prepared *m, const real *X, real *margins_o
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, margins_out);
-    }
-    return code;
+    return settled(&why, NJ, margins_out);
 }
 
 int planar_mixed_within_limits(const prepared *m, const real *X, real *within_out)
@@ -5474,11 +5438,7 @@ int planar_mixed_within_limits(const prepared *m, const real *X, real *within_ou
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, within_out);
-    }
-    return code;
+    return settled(&why, 1, within_out);
 }
 
 int planar_mixed_actuator_positions(const prepared *m, const real *X, real *q_out)
@@ -5491,11 +5451,7 @@ int planar_mixed_actuator_positions(const prepared *m, const real *X, real *q_ou
     take(NU, 1, planar_mixed_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, q_out);
-    }
-    return code;
+    return settled(&why, NU, q_out);
 }
 
 int planar_mixed_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
@@ -5512,11 +5468,7 @@ int planar_mixed_actuator_rates(const prepared *m, const real *X, const real *V,
     take(NU, 1, planar_mixed_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qd_out);
-    }
-    return code;
+    return settled(&why, NU, qd_out);
 }
 
 int planar_mixed_actuator_accelerations(const prepared *m, const real *X, const real *V, const
@@ -5535,11 +5487,7 @@ int planar_mixed_actuator_accelerations(const prepared *m, const real *X, const 
     take(NU, 1, planar_mixed_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qdd_out);
-    }
-    return code;
+    return settled(&why, NU, qdd_out);
 }
 
 int planar_mixed_power(const prepared *m, const real *X, const real *V, const real *tau, real
@@ -5559,11 +5507,7 @@ int planar_mixed_power(const prepared *m, const real *X, const real *V, const re
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, power_out);
-    }
-    return code;
+    return settled(&why, 1, power_out);
 }
 
 int planar_mixed_rotation(const real *X, real *R_out)
@@ -5576,11 +5520,7 @@ int planar_mixed_rotation(const real *X, real *R_out)
     rotation_of_angle(X_from_2, R);
     check(4, 1, R, why.overflow);
     copy(4, R, R_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(4, R_out);
-    }
-    return code;
+    return settled(&why, 4, R_out);
 }
 
 int planar_mixed_pose(const real *t, const real *R, real *X_out)
@@ -5598,11 +5538,7 @@ int planar_mixed_pose(const real *t, const real *R, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int planar_mixed_X_dot(const real *X, const real *V, real *X_dot_out)
@@ -5617,11 +5553,7 @@ int planar_mixed_X_dot(const real *X, const real *V, real *X_dot_out)
     const real *const X_dot = V;
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_dot_out);
-    }
-    return code;
+    return settled(&why, NQ, X_dot_out);
 }
 
 int planar_mixed_retract(const real *X, const real *step, real *X_moved_out)
@@ -5639,11 +5571,7 @@ int planar_mixed_retract(const real *X, const real *step, real *X_moved_out)
     }
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_moved_out);
-    }
-    return code;
+    return settled(&why, NQ, X_moved_out);
 }
 
 int planar_mixed_difference(const real *X0, const real *X1, real *step_out)
@@ -5666,11 +5594,7 @@ int planar_mixed_difference(const real *X0, const real *X1, real *step_out)
     wrap_turns(1, 1, places_step, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, step_out);
-    }
-    return code;
+    return settled(&why, NV, step_out);
 }
 
 int planar_mixed_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
@@ -5700,11 +5624,7 @@ int planar_mixed_interpolate(const real *X0, const real *X1, const real *s, real
     }
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 /* ---- one state, and batches ---- */

@@ -232,15 +232,12 @@ INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *t
 }
 
 /* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
-INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+INLINE const real *optional(size_t size, const real *x, const real *none, real *flags)
 {
-    for (size_t e = 0; e < size && !x; ++e) {
-        own[e] = none;
-    }
     if (x) {
         check(size, 1, x, flags);
     }
-    return x ? x : own;
+    return x ? x : none;
 }
 
 INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
@@ -297,6 +294,16 @@ APART void refuse(size_t size, real *out)
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
     }
+}
+
+/* The status of a state; an output is refused where it is impossible. */
+INLINE int settled(const verdict *t, size_t size, real *out)
+{
+    const int code = judge(t);
+    if (code != OK) {
+        refuse(size, out);
+    }
+    return code;
 }
 
 /* Outputs of a state where the user wants them, and of states side by side, state by state. */
@@ -424,95 +431,95 @@ INLINE int all_planar_inertias(const real *x, size_t n)
 /* ---- parameters ---- */
 
 const planar_redundant_params planar_redundant_default_params = {
-    {R(0.0), R(-9.81), R(0.0)},  /* gravity */
+    {0, R(-9.81), 0},  /* gravity */
     R(4.0),  /* platform_mass */
-    {R(0.01), R(0.02), R(0.0)},  /* platform_centre_of_mass */
-    {{R(0.02), R(0.0), R(0.0)}, {R(0.0), R(0.02), R(0.0)}, {R(0.0), R(0.0), R(0.05)}},  /* platform_inertia */
+    {R(0.01), R(0.02), 0},  /* platform_centre_of_mass */
+    {{R(0.02), 0, 0}, {0, R(0.02), 0}, {0, 0, R(0.05)}},  /* platform_inertia */
     {  /* prrr_base_point */
-        {R(-0.16677122819457796), R(0.8313674931656788), R(0.0)},
+        {R(-0.16677122819457796), R(0.8313674931656788), 0},
     },
     {  /* prrr_base_frame */
-        {{R(-2.220446049250313e-16), R(1.0), R(0.0)}, {R(-1.0), R(-2.220446049250313e-16), R(0.0)}, {R(0.0), R(0.0), R(1.0)}},
+        {{R(-2.220446049250313e-16), 1, 0}, {R(-1.0), R(-2.220446049250313e-16), 0}, {0, 0, 1}},
     },
     {  /* prrr_platform_point */
-        {R(1.1021821192326179e-17), R(0.18), R(0.0)},
+        {R(1.1021821192326179e-17), R(0.18), 0},
     },
     {  /* prrr_joint3_offset */
-        {R(0.42), R(0.0), R(0.0)},
+        {R(0.42), 0, 0},
     },
     {  /* prrr_platform_joint_offset */
-        {R(0.4), R(0.0), R(0.0)},
+        {R(0.4), 0, 0},
     },
     {  /* prrr_link1_mass */
         R(1.8),
     },
     {  /* prrr_link1_centre_of_mass */
-        {R(0.0), R(0.0), R(0.0)},
+        {0, 0, 0},
     },
     {  /* prrr_link1_inertia */
-        {{R(0.01), R(0.0), R(0.0)}, {R(0.0), R(0.01), R(0.0)}, {R(0.0), R(0.0), R(0.01)}},
+        {{R(0.01), 0, 0}, {0, R(0.01), 0}, {0, 0, R(0.01)}},
     },
     {  /* prrr_link2_mass */
         R(1.5),
     },
     {  /* prrr_link2_centre_of_mass */
-        {R(0.21), R(0.0), R(0.0)},
+        {R(0.21), 0, 0},
     },
     {  /* prrr_link2_inertia */
-        {{R(0.0003), R(0.0), R(0.0)}, {R(0.0), R(0.022199999999999998), R(0.0)}, {R(0.0), R(0.0), R(0.022199999999999998)}},
+        {{R(0.0003), 0, 0}, {0, R(0.022199999999999998), 0}, {0, 0, R(0.022199999999999998)}},
     },
     {  /* prrr_link3_mass */
-        R(1.0),
+        1,
     },
     {  /* prrr_link3_centre_of_mass */
-        {R(0.2), R(0.0), R(0.0)},
+        {R(0.2), 0, 0},
     },
     {  /* prrr_link3_inertia */
-        {{R(0.0002), R(0.0), R(0.0)}, {R(0.0), R(0.013433333333333337), R(0.0)}, {R(0.0), R(0.0), R(0.013433333333333337)}},
+        {{R(0.0002), 0, 0}, {0, R(0.013433333333333337), 0}, {0, 0, R(0.013433333333333337)}},
     },
     {  /* rrr_base_point */
-        {R(-0.6589202629404637), R(-0.5294900885547645), R(0.0)},
-        {R(0.8156914911350414), R(-0.3618774046109139), R(0.0)},
+        {R(-0.6589202629404637), R(-0.5294900885547645), 0},
+        {R(0.8156914911350414), R(-0.3618774046109139), 0},
     },
     {  /* rrr_base_frame */
-        {{R(0.866025403784439), R(-0.4999999999999993), R(0.0)}, {R(0.4999999999999993), R(0.866025403784439), R(0.0)}, {R(0.0), R(0.0), R(1.0)}},
-        {{R(-0.8660254037844388), R(-0.4999999999999998), R(0.0)}, {R(0.4999999999999998), R(-0.8660254037844388), R(0.0)}, {R(0.0), R(0.0), R(1.0)}},
+        {{R(0.866025403784439), R(-0.4999999999999993), 0}, {R(0.4999999999999993), R(0.866025403784439), 0}, {0, 0, 1}},
+        {{R(-0.8660254037844388), R(-0.4999999999999998), 0}, {R(0.4999999999999998), R(-0.8660254037844388), 0}, {0, 0, 1}},
     },
     {  /* rrr_platform_point */
-        {R(-0.15588457268119899), R(-0.08999999999999994), R(0.0)},
-        {R(0.1558845726811989), R(-0.09000000000000008), R(0.0)},
+        {R(-0.15588457268119899), R(-0.08999999999999994), 0},
+        {R(0.1558845726811989), R(-0.09000000000000008), 0},
     },
     {  /* rrr_joint2_offset */
-        {R(0.42), R(0.0), R(0.0)},
-        {R(0.42), R(0.0), R(0.0)},
+        {R(0.42), 0, 0},
+        {R(0.42), 0, 0},
     },
     {  /* rrr_platform_joint_offset */
-        {R(0.4), R(0.0), R(0.0)},
-        {R(0.4), R(0.0), R(0.0)},
+        {R(0.4), 0, 0},
+        {R(0.4), 0, 0},
     },
     {  /* rrr_link1_mass */
         R(1.5),
         R(1.5),
     },
     {  /* rrr_link1_centre_of_mass */
-        {R(0.21), R(0.0), R(0.0)},
-        {R(0.21), R(0.0), R(0.0)},
+        {R(0.21), 0, 0},
+        {R(0.21), 0, 0},
     },
     {  /* rrr_link1_inertia */
-        {{R(0.0003), R(0.0), R(0.0)}, {R(0.0), R(0.022199999999999998), R(0.0)}, {R(0.0), R(0.0), R(0.022199999999999998)}},
-        {{R(0.0003), R(0.0), R(0.0)}, {R(0.0), R(0.022199999999999998), R(0.0)}, {R(0.0), R(0.0), R(0.022199999999999998)}},
+        {{R(0.0003), 0, 0}, {0, R(0.022199999999999998), 0}, {0, 0, R(0.022199999999999998)}},
+        {{R(0.0003), 0, 0}, {0, R(0.022199999999999998), 0}, {0, 0, R(0.022199999999999998)}},
     },
     {  /* rrr_link2_mass */
-        R(1.0),
-        R(1.0),
+        1,
+        1,
     },
     {  /* rrr_link2_centre_of_mass */
-        {R(0.2), R(0.0), R(0.0)},
-        {R(0.2), R(0.0), R(0.0)},
+        {R(0.2), 0, 0},
+        {R(0.2), 0, 0},
     },
     {  /* rrr_link2_inertia */
-        {{R(0.0002), R(0.0), R(0.0)}, {R(0.0), R(0.013433333333333337), R(0.0)}, {R(0.0), R(0.0), R(0.013433333333333337)}},
-        {{R(0.0002), R(0.0), R(0.0)}, {R(0.0), R(0.013433333333333337), R(0.0)}, {R(0.0), R(0.0), R(0.013433333333333337)}},
+        {{R(0.0002), 0, 0}, {0, R(0.013433333333333337), 0}, {0, 0, R(0.013433333333333337)}},
+        {{R(0.0002), 0, 0}, {0, R(0.013433333333333337), 0}, {0, 0, R(0.013433333333333337)}},
     },
 };
 
@@ -596,6 +603,9 @@ static int acceptable(const planar_redundant_params *p)
     return ok;
 }
 
+#define KEEP(name) model->name = name
+#define KEEP_OF_LEG(name) model->name[leg] = name
+
 int planar_redundant_prepare(const planar_redundant_params *params, planar_redundant_model *model)
 {
     if (!acceptable(params)) {
@@ -627,8 +637,8 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
     const real J_star_t_2 = J_star_t + platform_centre_of_mass_x*platform_centre_of_mass_x;
     const real J_star_t_3 = J_star_t*platform_mass;
     const real J_star_t_4 = J_star_t_2*platform_mass;
-    model->gravity_x = gravity_x;
-    model->gravity_y = gravity_y;
+    KEEP(gravity_x);
+    KEEP(gravity_y);
     for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
         const size_t own = leg;
         const real prrr_base_point_x = params->prrr_base_point[own][0];
@@ -736,50 +746,50 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
             prrr_base_frame_yx*prrr_base_point_y;
         const real prrr_potential_t = prrr_b_in_axes0_y*prrr_link1_mass;
         const real prrr_potential_t_2 = prrr_b_in_axes0_y*prrr_link2_mass;
-        model->inv_prrr_rho2_2_t[leg] = inv_prrr_rho2_2_t;
-        model->inv_prrr_size[leg] = inv_prrr_size;
-        model->inv_prrr_size_t[leg] = inv_prrr_size_t;
-        model->inv_prrr_size_t_2[leg] = inv_prrr_size_t_2;
-        model->prrr_J_2_in_spec2_zz[leg] = prrr_J_2_in_spec2_zz;
-        model->prrr_J_3_in_spec3_zz[leg] = prrr_J_3_in_spec3_zz;
-        model->prrr_Jc_2_in_axes2_zz[leg] = prrr_Jc_2_in_axes2_zz;
-        model->prrr_Kd_2_t[leg] = prrr_Kd_2_t;
-        model->prrr_Kd_2_t_2[leg] = prrr_Kd_2_t_2;
-        model->prrr_P_c_1_in_axes0_x[leg] = prrr_P_c_1_in_axes0_x;
-        model->prrr_acc_1_in_axes0_y[leg] = prrr_acc_1_in_axes0_y;
-        model->prrr_b_in_axes0_x[leg] = prrr_b_in_axes0_x;
-        model->prrr_base_frame_xx[leg] = prrr_base_frame_xx;
-        model->prrr_base_frame_xy[leg] = prrr_base_frame_xy;
-        model->prrr_base_frame_yx[leg] = prrr_base_frame_yx;
-        model->prrr_base_frame_yy[leg] = prrr_base_frame_yy;
-        model->prrr_base_point_x[leg] = prrr_base_point_x;
-        model->prrr_base_point_y[leg] = prrr_base_point_y;
-        model->prrr_branch_2[leg] = prrr_branch_2;
-        model->prrr_d_G_in_axes3_yy[leg] = prrr_d_G_in_axes3_yy;
-        model->prrr_d_Gamma_3_in_axes3_y[leg] = prrr_d_Gamma_3_in_axes3_y;
-        model->prrr_d_Gamma_3_t[leg] = prrr_d_Gamma_3_t;
-        model->prrr_d_c_in_axes3_yy[leg] = prrr_d_c_in_axes3_yy;
-        model->prrr_d_phi_3_t[leg] = prrr_d_phi_3_t;
-        model->prrr_f_1_o_in_axes0_x[leg] = prrr_f_1_o_in_axes0_x;
-        model->prrr_g_in_axes0_x[leg] = prrr_g_in_axes0_x;
-        model->prrr_h_1_in_spec0_x[leg] = prrr_h_1_in_spec0_x;
-        model->prrr_h_1_in_spec0_y[leg] = prrr_h_1_in_spec0_y;
-        model->prrr_h_2_in_spec2_x[leg] = prrr_h_2_in_spec2_x;
-        model->prrr_h_2_in_spec2_y[leg] = prrr_h_2_in_spec2_y;
-        model->prrr_h_3_in_spec3_x[leg] = prrr_h_3_in_spec3_x;
-        model->prrr_h_3_in_spec3_y[leg] = prrr_h_3_in_spec3_y;
-        model->prrr_joint3_offset_x[leg] = prrr_joint3_offset_x;
-        model->prrr_link1_mass[leg] = prrr_link1_mass;
-        model->prrr_link2_mass[leg] = prrr_link2_mass;
-        model->prrr_link3_mass[leg] = prrr_link3_mass;
-        model->prrr_platform_joint_offset_x[leg] = prrr_platform_joint_offset_x;
-        model->prrr_platform_point_x[leg] = prrr_platform_point_x;
-        model->prrr_platform_point_y[leg] = prrr_platform_point_y;
-        model->prrr_potential_t[leg] = prrr_potential_t;
-        model->prrr_potential_t_2[leg] = prrr_potential_t_2;
-        model->prrr_rho2_2_t[leg] = prrr_rho2_2_t;
-        model->prrr_size[leg] = prrr_size;
-        model->prrr_w_3_in_axes3_y[leg] = prrr_w_3_in_axes3_y;
+        KEEP_OF_LEG(inv_prrr_rho2_2_t);
+        KEEP_OF_LEG(inv_prrr_size);
+        KEEP_OF_LEG(inv_prrr_size_t);
+        KEEP_OF_LEG(inv_prrr_size_t_2);
+        KEEP_OF_LEG(prrr_J_2_in_spec2_zz);
+        KEEP_OF_LEG(prrr_J_3_in_spec3_zz);
+        KEEP_OF_LEG(prrr_Jc_2_in_axes2_zz);
+        KEEP_OF_LEG(prrr_Kd_2_t);
+        KEEP_OF_LEG(prrr_Kd_2_t_2);
+        KEEP_OF_LEG(prrr_P_c_1_in_axes0_x);
+        KEEP_OF_LEG(prrr_acc_1_in_axes0_y);
+        KEEP_OF_LEG(prrr_b_in_axes0_x);
+        KEEP_OF_LEG(prrr_base_frame_xx);
+        KEEP_OF_LEG(prrr_base_frame_xy);
+        KEEP_OF_LEG(prrr_base_frame_yx);
+        KEEP_OF_LEG(prrr_base_frame_yy);
+        KEEP_OF_LEG(prrr_base_point_x);
+        KEEP_OF_LEG(prrr_base_point_y);
+        KEEP_OF_LEG(prrr_branch_2);
+        KEEP_OF_LEG(prrr_d_G_in_axes3_yy);
+        KEEP_OF_LEG(prrr_d_Gamma_3_in_axes3_y);
+        KEEP_OF_LEG(prrr_d_Gamma_3_t);
+        KEEP_OF_LEG(prrr_d_c_in_axes3_yy);
+        KEEP_OF_LEG(prrr_d_phi_3_t);
+        KEEP_OF_LEG(prrr_f_1_o_in_axes0_x);
+        KEEP_OF_LEG(prrr_g_in_axes0_x);
+        KEEP_OF_LEG(prrr_h_1_in_spec0_x);
+        KEEP_OF_LEG(prrr_h_1_in_spec0_y);
+        KEEP_OF_LEG(prrr_h_2_in_spec2_x);
+        KEEP_OF_LEG(prrr_h_2_in_spec2_y);
+        KEEP_OF_LEG(prrr_h_3_in_spec3_x);
+        KEEP_OF_LEG(prrr_h_3_in_spec3_y);
+        KEEP_OF_LEG(prrr_joint3_offset_x);
+        KEEP_OF_LEG(prrr_link1_mass);
+        KEEP_OF_LEG(prrr_link2_mass);
+        KEEP_OF_LEG(prrr_link3_mass);
+        KEEP_OF_LEG(prrr_platform_joint_offset_x);
+        KEEP_OF_LEG(prrr_platform_point_x);
+        KEEP_OF_LEG(prrr_platform_point_y);
+        KEEP_OF_LEG(prrr_potential_t);
+        KEEP_OF_LEG(prrr_potential_t_2);
+        KEEP_OF_LEG(prrr_rho2_2_t);
+        KEEP_OF_LEG(prrr_size);
+        KEEP_OF_LEG(prrr_w_3_in_axes3_y);
         m_star_of_legs += prrr_link3_mass;
         h_star_in_platform_x_of_legs += prrr_h_star_t;
         h_star_in_platform_y_of_legs += prrr_h_star_t_2;
@@ -879,43 +889,43 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
             rrr_base_frame_yx*rrr_base_point_y;
         const real rrr_potential_t_2 = rrr_base_frame_xy*rrr_base_point_x +
             rrr_base_frame_yy*rrr_base_point_y;
-        model->inv_rrr_rho2_1_t[leg] = inv_rrr_rho2_1_t;
-        model->inv_rrr_size[leg] = inv_rrr_size;
-        model->inv_rrr_size_t[leg] = inv_rrr_size_t;
-        model->inv_rrr_size_t_2[leg] = inv_rrr_size_t_2;
-        model->rrr_J_1_in_spec1_zz[leg] = rrr_J_1_in_spec1_zz;
-        model->rrr_J_2_in_spec2_zz[leg] = rrr_J_2_in_spec2_zz;
-        model->rrr_Jc_1_in_axes1_zz[leg] = rrr_Jc_1_in_axes1_zz;
-        model->rrr_Kd_1_t[leg] = rrr_Kd_1_t;
-        model->rrr_Kd_1_t_2[leg] = rrr_Kd_1_t_2;
-        model->rrr_base_frame_xx[leg] = rrr_base_frame_xx;
-        model->rrr_base_frame_xy[leg] = rrr_base_frame_xy;
-        model->rrr_base_frame_yx[leg] = rrr_base_frame_yx;
-        model->rrr_base_frame_yy[leg] = rrr_base_frame_yy;
-        model->rrr_base_point_x[leg] = rrr_base_point_x;
-        model->rrr_base_point_y[leg] = rrr_base_point_y;
-        model->rrr_branch_1[leg] = rrr_branch_1;
-        model->rrr_d_Gamma_2_in_axes2_y[leg] = rrr_d_Gamma_2_in_axes2_y;
-        model->rrr_d_Gamma_2_t[leg] = rrr_d_Gamma_2_t;
-        model->rrr_d_c_in_axes2_yy[leg] = rrr_d_c_in_axes2_yy;
-        model->rrr_d_phi_2_in_axes2_xy[leg] = rrr_d_phi_2_in_axes2_xy;
-        model->rrr_h_1_in_spec1_x[leg] = rrr_h_1_in_spec1_x;
-        model->rrr_h_1_in_spec1_y[leg] = rrr_h_1_in_spec1_y;
-        model->rrr_h_2_in_spec2_x[leg] = rrr_h_2_in_spec2_x;
-        model->rrr_h_2_in_spec2_y[leg] = rrr_h_2_in_spec2_y;
-        model->rrr_joint2_offset_x[leg] = rrr_joint2_offset_x;
-        model->rrr_link1_mass[leg] = rrr_link1_mass;
-        model->rrr_link2_mass[leg] = rrr_link2_mass;
-        model->rrr_mu_1_t[leg] = rrr_mu_1_t;
-        model->rrr_mu_1_t_2[leg] = rrr_mu_1_t_2;
-        model->rrr_platform_joint_offset_x[leg] = rrr_platform_joint_offset_x;
-        model->rrr_platform_point_x[leg] = rrr_platform_point_x;
-        model->rrr_platform_point_y[leg] = rrr_platform_point_y;
-        model->rrr_potential_t[leg] = rrr_potential_t;
-        model->rrr_potential_t_2[leg] = rrr_potential_t_2;
-        model->rrr_rho2_1_t[leg] = rrr_rho2_1_t;
-        model->rrr_size[leg] = rrr_size;
-        model->rrr_w_2_in_axes2_y[leg] = rrr_w_2_in_axes2_y;
+        KEEP_OF_LEG(inv_rrr_rho2_1_t);
+        KEEP_OF_LEG(inv_rrr_size);
+        KEEP_OF_LEG(inv_rrr_size_t);
+        KEEP_OF_LEG(inv_rrr_size_t_2);
+        KEEP_OF_LEG(rrr_J_1_in_spec1_zz);
+        KEEP_OF_LEG(rrr_J_2_in_spec2_zz);
+        KEEP_OF_LEG(rrr_Jc_1_in_axes1_zz);
+        KEEP_OF_LEG(rrr_Kd_1_t);
+        KEEP_OF_LEG(rrr_Kd_1_t_2);
+        KEEP_OF_LEG(rrr_base_frame_xx);
+        KEEP_OF_LEG(rrr_base_frame_xy);
+        KEEP_OF_LEG(rrr_base_frame_yx);
+        KEEP_OF_LEG(rrr_base_frame_yy);
+        KEEP_OF_LEG(rrr_base_point_x);
+        KEEP_OF_LEG(rrr_base_point_y);
+        KEEP_OF_LEG(rrr_branch_1);
+        KEEP_OF_LEG(rrr_d_Gamma_2_in_axes2_y);
+        KEEP_OF_LEG(rrr_d_Gamma_2_t);
+        KEEP_OF_LEG(rrr_d_c_in_axes2_yy);
+        KEEP_OF_LEG(rrr_d_phi_2_in_axes2_xy);
+        KEEP_OF_LEG(rrr_h_1_in_spec1_x);
+        KEEP_OF_LEG(rrr_h_1_in_spec1_y);
+        KEEP_OF_LEG(rrr_h_2_in_spec2_x);
+        KEEP_OF_LEG(rrr_h_2_in_spec2_y);
+        KEEP_OF_LEG(rrr_joint2_offset_x);
+        KEEP_OF_LEG(rrr_link1_mass);
+        KEEP_OF_LEG(rrr_link2_mass);
+        KEEP_OF_LEG(rrr_mu_1_t);
+        KEEP_OF_LEG(rrr_mu_1_t_2);
+        KEEP_OF_LEG(rrr_platform_joint_offset_x);
+        KEEP_OF_LEG(rrr_platform_point_x);
+        KEEP_OF_LEG(rrr_platform_point_y);
+        KEEP_OF_LEG(rrr_potential_t);
+        KEEP_OF_LEG(rrr_potential_t_2);
+        KEEP_OF_LEG(rrr_rho2_1_t);
+        KEEP_OF_LEG(rrr_size);
+        KEEP_OF_LEG(rrr_w_2_in_axes2_y);
         m_star_of_legs += rrr_link2_mass;
         h_star_in_platform_x_of_legs += rrr_h_star_t;
         h_star_in_platform_y_of_legs += rrr_h_star_t_2;
@@ -946,15 +956,15 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = root(R(0.3333333333333333)*legs_size_prrr +
         R(0.3333333333333333)*legs_size_rrr);
-    model->J_star_zz = J_star_zz;
-    model->Z_p_t = Z_p_t;
-    model->Z_p_t_2 = Z_p_t_2;
-    model->b_c_in_platform_x = b_c_in_platform_x;
-    model->b_c_in_platform_y = b_c_in_platform_y;
-    model->h_star_in_platform_x = h_star_in_platform_x;
-    model->h_star_in_platform_y = h_star_in_platform_y;
-    model->legs_size = legs_size;
-    model->m_star = m_star;
+    KEEP(J_star_zz);
+    KEEP(Z_p_t);
+    KEEP(Z_p_t_2);
+    KEEP(b_c_in_platform_x);
+    KEEP(b_c_in_platform_y);
+    KEEP(h_star_in_platform_x);
+    KEEP(h_star_in_platform_y);
+    KEEP(legs_size);
+    KEEP(m_star);
     return OK;
 }
 
@@ -1455,20 +1465,20 @@ INLINE void stage_prrr_X(const prepared *m, size_t w, size_t i, size_t j, const 
     const real prrr_q_x = R_xx*m->prrr_platform_point_x[i] - R_yx*m->prrr_platform_point_y[i];
     const real prrr_q_y = R_xx*m->prrr_platform_point_y[i] + R_yx*m->prrr_platform_point_x[i];
     const real t_x = X[0*w + j];
-    const real prrr_S_x = prrr_q_x + t_x - m->prrr_base_point_x[i];
+    const real prrr_S_x = t_x - m->prrr_base_point_x[i] + prrr_q_x;
     const real t_y = X[1*w + j];
-    const real prrr_S_y = prrr_q_y + t_y - m->prrr_base_point_y[i];
+    const real prrr_S_y = t_y - m->prrr_base_point_y[i] + prrr_q_y;
     const real prrr_S_in_axes0_y = -prrr_S_x*m->prrr_base_frame_xx[i] -
         prrr_S_y*m->prrr_base_frame_yx[i];
     /* (prrr-x_2) from the origin of joint 2 to the connection point */
     const real prrr_y_1_extra = X[3*w + j];
-    const real prrr_x_2_in_axes0_x = prrr_S_x*m->prrr_base_frame_xy[i] +
-        prrr_S_y*m->prrr_base_frame_yy[i] - prrr_y_1_extra;
+    const real prrr_x_2_in_axes0_x = prrr_S_x*m->prrr_base_frame_xy[i] - prrr_y_1_extra +
+        prrr_S_y*m->prrr_base_frame_yy[i];
     /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 2 */
     const real prrr_Kd_2_t_3 = prrr_S_in_axes0_y*prrr_S_in_axes0_y +
         prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x;
-    const real prrr_Kd_2 = m->prrr_Kd_2_t[i] + R(0.5)*prrr_Kd_2_t_3 - m->prrr_Kd_2_t_2[i];
+    const real prrr_Kd_2 = m->prrr_Kd_2_t[i] - m->prrr_Kd_2_t_2[i] + R(0.5)*prrr_Kd_2_t_3;
     /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
     const real prrr_Kc_2 = -prrr_S_in_axes0_y*m->prrr_joint3_offset_x[i];
     /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
@@ -1483,7 +1493,7 @@ INLINE void stage_prrr_X(const prepared *m, size_t w, size_t i, size_t j, const 
     const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
     const real prrr_c_2 = -inv_prrr_rho2_2*(prrr_Ks_2*prrr_root_2 - prrr_Kc_2*prrr_Kd_2);
     /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
-    const real prrr_s_2 = -inv_prrr_rho2_2*(-prrr_Kc_2*prrr_root_2 - prrr_Kd_2*prrr_Ks_2);
+    const real prrr_s_2 = -inv_prrr_rho2_2*(-prrr_Kd_2*prrr_Ks_2 - prrr_Kc_2*prrr_root_2);
     /* (prrr-x_3) from the origin of joint 3 to the connection point */
     const real prrr_x_3_in_axes2_x =
         m->inv_prrr_size_t[i]*prrr_Kd_2*m->prrr_joint3_offset_x[i] -
@@ -1556,7 +1566,7 @@ INLINE void stage_prrr_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
     const real t_dot_x = V[0*w + j];
     const real prrr_S_dot_x = t_dot_x - prrr_S_dot_t;
     const real t_dot_y = V[1*w + j];
-    const real prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y;
+    const real prrr_S_dot_y = t_dot_y + prrr_S_dot_t_2;
     /* (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra */
     const real prrr_yd_1 = V[3*w + j];
     const real prrr_S_dot_rest_x = prrr_S_dot_x - m->prrr_base_frame_xy[i]*prrr_yd_1;
@@ -1645,7 +1655,7 @@ INLINE void stage_prrr_M_dynamics(const prepared *m, size_t i, values_prrr *v)
     const real prrr_d_c_in_axes3_xy = m->prrr_d_phi_3_t[i] - prrr_d_G_in_axes3_xy;
     /* (prrr-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real prrr_Q_t = m->prrr_h_3_in_spec3_y[i]*(prrr_w_3_in_axes3_x -
-        v->inv_prrr_r_2_in_axes3_y) - prrr_d_G_in_axes3_xx - m->prrr_d_c_in_axes3_yy[i];
+        v->inv_prrr_r_2_in_axes3_y) - m->prrr_d_c_in_axes3_yy[i] - prrr_d_G_in_axes3_xx;
     const real prrr_Q_t_2 = R(0.5)*prrr_Q_t;
     v->prrr_P_c_2_in_axes0_x = prrr_P_c_2_in_axes0_x;
     v->prrr_d_Gamma_3_in_axes3_x = prrr_d_Gamma_3_in_axes3_x;
@@ -1680,22 +1690,22 @@ INLINE void stage_prrr_inverse_kinematics_potential(const prepared *m, size_t w,
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
     const real t_x = X[0*w + j];
-    const real prrr_S_x = t_x + R_xx*m->prrr_platform_point_x[i] - m->prrr_base_point_x[i] -
+    const real prrr_S_x = t_x - m->prrr_base_point_x[i] + R_xx*m->prrr_platform_point_x[i] -
         R_yx*m->prrr_platform_point_y[i];
     const real t_y = X[1*w + j];
-    const real prrr_S_y = t_y + R_xx*m->prrr_platform_point_y[i] +
-        R_yx*m->prrr_platform_point_x[i] - m->prrr_base_point_y[i];
+    const real prrr_S_y = t_y - m->prrr_base_point_y[i] + R_xx*m->prrr_platform_point_y[i] +
+        R_yx*m->prrr_platform_point_x[i];
     const real prrr_S_in_axes0_y = -prrr_S_x*m->prrr_base_frame_xx[i] -
         prrr_S_y*m->prrr_base_frame_yx[i];
     /* (prrr-x_2) from the origin of joint 2 to the connection point */
     const real prrr_y_1_extra = X[3*w + j];
-    const real prrr_x_2_in_axes0_x = prrr_S_x*m->prrr_base_frame_xy[i] +
-        prrr_S_y*m->prrr_base_frame_yy[i] - prrr_y_1_extra;
+    const real prrr_x_2_in_axes0_x = prrr_S_x*m->prrr_base_frame_xy[i] - prrr_y_1_extra +
+        prrr_S_y*m->prrr_base_frame_yy[i];
     /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 2 */
     const real prrr_Kd_2_t_3 = prrr_S_in_axes0_y*prrr_S_in_axes0_y +
         prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x;
-    const real prrr_Kd_2 = m->prrr_Kd_2_t[i] + R(0.5)*prrr_Kd_2_t_3 - m->prrr_Kd_2_t_2[i];
+    const real prrr_Kd_2 = m->prrr_Kd_2_t[i] - m->prrr_Kd_2_t_2[i] + R(0.5)*prrr_Kd_2_t_3;
     /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
     const real prrr_Kc_2 = -prrr_S_in_axes0_y*m->prrr_joint3_offset_x[i];
     /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
@@ -1732,7 +1742,7 @@ INLINE void stage_prrr_legs_required(const prepared *m, size_t w, size_t i, size
         v->axis_y_prrr_axes3_x*v->prrr_S_ddot_x;
     /* (prrr-rel) acceleration of the connection point left to the joint accelerations */
     const real prrr_ydd_1 = A[3*w + j];
-    const real prrr_rel_in_axes3_x = prrr_S_ddot_in_axes3_x + v->prrr_w_2_t*prrr_ydd_1 -
+    const real prrr_rel_in_axes3_x = v->prrr_w_2_t*prrr_ydd_1 + prrr_S_ddot_in_axes3_x -
         v->prrr_bias_in_axes3_x;
     const real prrr_rel_in_axes3_y = prrr_S_ddot_in_axes3_y -
         v->prrr_e_1_in_axes3_y*prrr_ydd_1 -
@@ -1748,18 +1758,18 @@ INLINE void stage_prrr_legs_required(const prepared *m, size_t w, size_t i, size
     const real prrr_acc_2_in_axes2_y = m->prrr_acc_1_in_axes0_y[i]*v->prrr_s_2 +
         v->prrr_c_2*prrr_ydd_1 - v->prrr_c_2*m->prrr_g_in_axes0_x[i];
     /* (prrr-acc_3) acceleration of the reference point of link 3, less gravity */
-    const real prrr_acc_3_in_axes3_x = prrr_S_ddot_in_axes3_x +
-        v->axis_y_prrr_axes3_x*m->gravity_y - v->axis_x_prrr_axes3_x*m->gravity_x;
+    const real prrr_acc_3_in_axes3_x = v->axis_y_prrr_axes3_x*m->gravity_y -
+        v->axis_x_prrr_axes3_x*m->gravity_x + prrr_S_ddot_in_axes3_x;
     const real prrr_acc_3_in_axes3_y = prrr_S_ddot_in_axes3_y -
         v->axis_x_prrr_axes3_x*m->gravity_y - v->axis_y_prrr_axes3_x*m->gravity_x;
     /* (prrr-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-    const real prrr_mu_3_in_axes3_z = m->prrr_J_3_in_spec3_zz[i]*prrr_alpha_3_in_axes3_z +
-        prrr_acc_3_in_axes3_y*m->prrr_h_3_in_spec3_x[i] -
-        prrr_acc_3_in_axes3_x*m->prrr_h_3_in_spec3_y[i];
+    const real prrr_mu_3_in_axes3_z = prrr_acc_3_in_axes3_y*m->prrr_h_3_in_spec3_x[i] -
+        prrr_acc_3_in_axes3_x*m->prrr_h_3_in_spec3_y[i] +
+        m->prrr_J_3_in_spec3_zz[i]*prrr_alpha_3_in_axes3_z;
     /* (prrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real prrr_mu_2_in_axes2_z = prrr_acc_2_in_axes2_y*m->prrr_h_2_in_spec2_x[i] -
-        prrr_B_2_in_axes2_xy*m->prrr_J_2_in_spec2_zz[i] -
-        prrr_acc_2_in_axes2_x*m->prrr_h_2_in_spec2_y[i];
+        prrr_acc_2_in_axes2_x*m->prrr_h_2_in_spec2_y[i] -
+        prrr_B_2_in_axes2_xy*m->prrr_J_2_in_spec2_zz[i];
     /* (prrr-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
        left out */
     const real prrr_N_2_in_axes2_z = prrr_mu_2_in_axes2_z + prrr_mu_3_in_axes3_z;
@@ -1768,8 +1778,8 @@ INLINE void stage_prrr_legs_required(const prepared *m, size_t w, size_t i, size
     const real prrr_G_in_axes3_y = prrr_mu_3_in_axes3_z*m->prrr_w_3_in_axes3_y[i];
     /* (prrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real prrr_c_in_axes3_y = v->prrr_W_3_t*m->prrr_h_3_in_spec3_y[i] - prrr_G_in_axes3_y
-        - prrr_alpha_3_in_axes3_z*m->prrr_h_3_in_spec3_x[i];
+    const real prrr_c_in_axes3_y = v->prrr_W_3_t*m->prrr_h_3_in_spec3_y[i] -
+        prrr_alpha_3_in_axes3_z*m->prrr_h_3_in_spec3_x[i] - prrr_G_in_axes3_y;
     v->prrr_B_2_in_axes2_xy = prrr_B_2_in_axes2_xy;
     v->prrr_alpha_3_in_axes3_z = prrr_alpha_3_in_axes3_z;
     v->prrr_acc_2_in_axes2_x = prrr_acc_2_in_axes2_x;
@@ -1802,13 +1812,13 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rrr_q_x = R_xx*m->rrr_platform_point_x[i] - R_yx*m->rrr_platform_point_y[i];
     const real rrr_q_y = R_xx*m->rrr_platform_point_y[i] + R_yx*m->rrr_platform_point_x[i];
     const real t_x = X[0*w + j];
-    const real rrr_S_x = rrr_q_x + t_x - m->rrr_base_point_x[i];
+    const real rrr_S_x = t_x - m->rrr_base_point_x[i] + rrr_q_x;
     const real t_y = X[1*w + j];
-    const real rrr_S_y = rrr_q_y + t_y - m->rrr_base_point_y[i];
+    const real rrr_S_y = t_y - m->rrr_base_point_y[i] + rrr_q_y;
     /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 1 */
     const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-    const real rrr_Kd_1 = m->rrr_Kd_1_t[i] + R(0.5)*rrr_Kd_1_t_3 - m->rrr_Kd_1_t_2[i];
+    const real rrr_Kd_1 = m->rrr_Kd_1_t[i] - m->rrr_Kd_1_t_2[i] + R(0.5)*rrr_Kd_1_t_3;
     /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
     const real rrr_Kc_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xx[i] +
         rrr_S_y*m->rrr_base_frame_yx[i]);
@@ -1825,7 +1835,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
     const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
     /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+    const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kd_1*rrr_Ks_1 + rrr_Kc_1*rrr_root_1);
     /* (rrr-x_2) from the origin of joint 2 to the connection point */
     const real rrr_x_2_in_axes1_x = m->inv_rrr_size_t[i]*rrr_Kd_1*m->rrr_joint2_offset_x[i] -
         m->rrr_joint2_offset_x[i];
@@ -1842,7 +1852,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
     const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
     /* (rrr-w_1) reciprocal vector 1 */
-    const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+    const real rrr_w_1_t = rrr_c_2*rrr_s_1 + rrr_c_1*rrr_s_2;
     const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
     const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*rrr_w_1_t_2 -
         m->rrr_base_frame_xx[i]*rrr_w_1_t;
@@ -1897,7 +1907,7 @@ INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real t_dot_x = V[0*w + j];
     const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
     const real t_dot_y = V[1*w + j];
-    const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
+    const real rrr_S_dot_y = t_dot_y + rrr_S_dot_t_2;
     /* (rrr-qd_1) rate of joint 1 */
     const real rrr_qd_1_t = v->inv_rrr_r_1_in_axes2_y*(v->axis_x_rrr_axes2_x*rrr_S_dot_x -
         v->axis_y_rrr_axes2_x*rrr_S_dot_y);
@@ -1910,8 +1920,8 @@ INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     /* (rrr-W_2) centripetal tensor of link 2 */
     const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
     /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_bias_in_axes2_x = -rrr_W_2_t*m->rrr_platform_joint_offset_x[i] -
-        rrr_W_1_t*v->rrr_c_2*m->rrr_joint2_offset_x[i];
+    const real rrr_bias_in_axes2_x = -rrr_W_1_t*v->rrr_c_2*m->rrr_joint2_offset_x[i] -
+        rrr_W_2_t*m->rrr_platform_joint_offset_x[i];
     v->rrr_S_dot_t = rrr_S_dot_t;
     v->rrr_S_dot_t_2 = rrr_S_dot_t_2;
     v->rrr_S_dot_x = rrr_S_dot_x;
@@ -1981,15 +1991,15 @@ INLINE void stage_rrr_inverse_kinematics_potential(const prepared *m, size_t w, 
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
     const real t_x = X[0*w + j];
-    const real rrr_S_x = t_x + R_xx*m->rrr_platform_point_x[i] - m->rrr_base_point_x[i] -
+    const real rrr_S_x = t_x - m->rrr_base_point_x[i] + R_xx*m->rrr_platform_point_x[i] -
         R_yx*m->rrr_platform_point_y[i];
     const real t_y = X[1*w + j];
-    const real rrr_S_y = t_y + R_xx*m->rrr_platform_point_y[i] +
-        R_yx*m->rrr_platform_point_x[i] - m->rrr_base_point_y[i];
+    const real rrr_S_y = t_y - m->rrr_base_point_y[i] + R_xx*m->rrr_platform_point_y[i] +
+        R_yx*m->rrr_platform_point_x[i];
     /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 1 */
     const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-    const real rrr_Kd_1 = m->rrr_Kd_1_t[i] + R(0.5)*rrr_Kd_1_t_3 - m->rrr_Kd_1_t_2[i];
+    const real rrr_Kd_1 = m->rrr_Kd_1_t[i] - m->rrr_Kd_1_t_2[i] + R(0.5)*rrr_Kd_1_t_3;
     /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
     const real rrr_Kc_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xx[i] +
         rrr_S_y*m->rrr_base_frame_yx[i]);
@@ -2034,19 +2044,19 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
     const real rrr_alpha_2_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_in_axes2_y +
         rrr_B_1_in_axes1_xy*v->rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
     /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
-    const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x +
-        v->axis_y_rrr_axes2_x*m->gravity_y - v->axis_x_rrr_axes2_x*m->gravity_x;
+    const real rrr_acc_2_in_axes2_x = v->axis_y_rrr_axes2_x*m->gravity_y -
+        v->axis_x_rrr_axes2_x*m->gravity_x + rrr_S_ddot_in_axes2_x;
     const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y -
         v->axis_x_rrr_axes2_x*m->gravity_y - v->axis_y_rrr_axes2_x*m->gravity_x;
     /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real rrr_mu_2_in_axes2_z = m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_in_axes2_z +
-        rrr_acc_2_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
-        rrr_acc_2_in_axes2_x*m->rrr_h_2_in_spec2_y[i];
+    const real rrr_mu_2_in_axes2_z = rrr_acc_2_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
+        rrr_acc_2_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
+        m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_in_axes2_z;
     /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
     const real rrr_mu_1_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v->rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*v->rrr_s_1) - rrr_B_1_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i] -
-        m->rrr_h_1_in_spec1_x[i]*(v->rrr_c_1*m->rrr_mu_1_t_2[i] -
-        m->rrr_mu_1_t[i]*v->rrr_s_1);
+        m->rrr_mu_1_t_2[i]*v->rrr_s_1) -
+        m->rrr_h_1_in_spec1_x[i]*(v->rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v->rrr_s_1)
+        - rrr_B_1_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i];
     /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
@@ -2059,8 +2069,8 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
         rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_y[i] -
         v->inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*v->rrr_r_1_in_axes2_x -
         rrr_N_1_in_axes1_z);
-    const real rrr_c_in_axes2_y = v->rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] - rrr_G_in_axes2_y -
-        rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_x[i];
+    const real rrr_c_in_axes2_y = v->rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
+        rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_in_axes2_y;
     v->rrr_acc_2_in_axes2_x = rrr_acc_2_in_axes2_x;
     v->rrr_acc_2_in_axes2_y = rrr_acc_2_in_axes2_y;
     v->rrr_c_in_axes2_x = rrr_c_in_axes2_x;
@@ -2070,21 +2080,25 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    real *s)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s)
 {
-    values v;
-    stage_V(w, k, V, &v);
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+    s[2*w + k] = v->h_star_x;
+    s[3*w + k] = v->h_star_y;
+}
+
+INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
+    *s)
+{
+    stage_V(w, k, V, v);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_x = v.W_p_xx*v.h_star_x - m->Z_p_t;
-    const real Z_p_y = v.W_p_xx*v.h_star_y - m->Z_p_t_2;
+    const real Z_p_x = v->W_p_xx*v->h_star_x - m->Z_p_t;
+    const real Z_p_y = v->W_p_xx*v->h_star_y - m->Z_p_t_2;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real Z_q_z = m->gravity_x*v.h_star_y - m->gravity_y*v.h_star_x;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
-    s[2*w + k] = v.h_star_x;
-    s[3*w + k] = v.h_star_y;
+    const real Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x;
     s[4*w + k] = Z_p_x;
     s[5*w + k] = Z_p_y;
     s[6*w + k] = Z_q_z;
@@ -2116,22 +2130,22 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, 
     const real prrr_alpha_3_o_in_axes3_z = m->prrr_w_3_in_axes3_y[i]*(prrr_rel_o_in_axes3_y +
         prrr_B_2_o_in_axes2_xy*v.prrr_r_2_in_axes3_x) - prrr_B_2_o_in_axes2_xy;
     /* (prrr-f_2_o) remainder of: inertia force of link 2 less its weight */
-    const real prrr_f_2_o_in_axes2_x = prrr_B_2_o_in_axes2_xy*m->prrr_h_2_in_spec2_y[i] +
-        v.prrr_W_2_in_axes2_xx*m->prrr_h_2_in_spec2_x[i] -
-        v.prrr_g_in_axes2_x*m->prrr_link2_mass[i];
+    const real prrr_f_2_o_in_axes2_x = v.prrr_W_2_in_axes2_xx*m->prrr_h_2_in_spec2_x[i] -
+        v.prrr_g_in_axes2_x*m->prrr_link2_mass[i] +
+        prrr_B_2_o_in_axes2_xy*m->prrr_h_2_in_spec2_y[i];
     const real prrr_f_2_o_in_axes2_y = v.prrr_W_2_in_axes2_xx*m->prrr_h_2_in_spec2_y[i] -
-        prrr_B_2_o_in_axes2_xy*m->prrr_h_2_in_spec2_x[i] -
-        v.prrr_g_in_axes2_y*m->prrr_link2_mass[i];
+        v.prrr_g_in_axes2_y*m->prrr_link2_mass[i] -
+        prrr_B_2_o_in_axes2_xy*m->prrr_h_2_in_spec2_x[i];
     /* (prrr-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real prrr_acc_3_o_in_axes3_x = prrr_u_1_in_axes3_x +
-        v.axis_y_prrr_axes3_x*m->gravity_y - v.axis_x_prrr_axes3_x*m->gravity_x;
+    const real prrr_acc_3_o_in_axes3_x = v.axis_y_prrr_axes3_x*m->gravity_y -
+        v.axis_x_prrr_axes3_x*m->gravity_x + prrr_u_1_in_axes3_x;
     const real prrr_acc_3_o_in_axes3_y = prrr_u_1_in_axes3_y -
         v.axis_x_prrr_axes3_x*m->gravity_y - v.axis_y_prrr_axes3_x*m->gravity_x;
     /* (prrr-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
        reference points */
-    const real prrr_mu_3_o_in_axes3_z = m->prrr_J_3_in_spec3_zz[i]*prrr_alpha_3_o_in_axes3_z +
-        prrr_acc_3_o_in_axes3_y*m->prrr_h_3_in_spec3_x[i] -
-        prrr_acc_3_o_in_axes3_x*m->prrr_h_3_in_spec3_y[i];
+    const real prrr_mu_3_o_in_axes3_z = prrr_acc_3_o_in_axes3_y*m->prrr_h_3_in_spec3_x[i] -
+        prrr_acc_3_o_in_axes3_x*m->prrr_h_3_in_spec3_y[i] +
+        m->prrr_J_3_in_spec3_zz[i]*prrr_alpha_3_o_in_axes3_z;
     /* (prrr-dy_1_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
        links' inertia and weight */
     const real prrr_dy_1_Gamma_3_t =
@@ -2142,8 +2156,8 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, 
     /* (prrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real prrr_mu_2_o_in_axes2_z = v.prrr_g_in_axes2_x*m->prrr_h_2_in_spec2_y[i] -
-        prrr_B_2_o_in_axes2_xy*m->prrr_J_2_in_spec2_zz[i] -
-        v.prrr_g_in_axes2_y*m->prrr_h_2_in_spec2_x[i];
+        v.prrr_g_in_axes2_y*m->prrr_h_2_in_spec2_x[i] -
+        prrr_B_2_o_in_axes2_xy*m->prrr_J_2_in_spec2_zz[i];
     /* (prrr-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
        connection point left out */
     const real prrr_N_2_o_in_axes2_z = prrr_mu_2_o_in_axes2_z + prrr_mu_3_o_in_axes3_z;
@@ -2173,10 +2187,10 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, 
     const real prrr_c_o_in_axes3_x = v.prrr_W_3_t*m->prrr_h_3_in_spec3_x[i] +
         prrr_alpha_3_o_in_axes3_z*m->prrr_h_3_in_spec3_y[i] - prrr_G_o_in_axes3_x;
     const real prrr_c_o_in_axes3_y = v.prrr_W_3_t*m->prrr_h_3_in_spec3_y[i] -
-        prrr_G_o_in_axes3_y - prrr_alpha_3_o_in_axes3_z*m->prrr_h_3_in_spec3_x[i];
+        prrr_alpha_3_o_in_axes3_z*m->prrr_h_3_in_spec3_x[i] - prrr_G_o_in_axes3_y;
     /* (prrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real prrr_Q_t_3 = v.axis_x_prrr_axes3_x*v.prrr_Q_t_2 +
-        v.axis_y_prrr_axes3_x*v.prrr_d_c_in_axes3_xy;
+    const real prrr_Q_t_3 = v.axis_y_prrr_axes3_x*v.prrr_d_c_in_axes3_xy +
+        v.axis_x_prrr_axes3_x*v.prrr_Q_t_2;
     const real prrr_Q_t_4 = v.axis_y_prrr_axes3_x*v.prrr_Q_t_2 -
         v.axis_x_prrr_axes3_x*v.prrr_d_c_in_axes3_xy;
     const real prrr_Q_xx = -m->prrr_d_c_in_axes3_yy[i] - 2*v.axis_x_prrr_axes3_x*prrr_Q_t_3;
@@ -2184,8 +2198,8 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, 
         v.axis_y_prrr_axes3_x*prrr_Q_t_3;
     const real prrr_Q_yy = -m->prrr_d_c_in_axes3_yy[i] - 2*v.axis_y_prrr_axes3_x*prrr_Q_t_4;
     /* (prrr-U) velocity and gravity terms of the leg force */
-    const real prrr_U_x = -v.axis_x_prrr_axes3_x*prrr_c_o_in_axes3_x -
-        v.axis_y_prrr_axes3_x*prrr_c_o_in_axes3_y;
+    const real prrr_U_x = -v.axis_y_prrr_axes3_x*prrr_c_o_in_axes3_y -
+        v.axis_x_prrr_axes3_x*prrr_c_o_in_axes3_x;
     const real prrr_U_y = v.axis_y_prrr_axes3_x*prrr_c_o_in_axes3_x -
         v.axis_x_prrr_axes3_x*prrr_c_o_in_axes3_y;
     /* (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the
@@ -2209,7 +2223,7 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, 
        joint 1 */
     const real prrr_P_1_o_t = prrr_G_o_in_axes3_x*v.prrr_w_2_t -
         prrr_G_o_in_axes3_y*v.prrr_e_1_in_axes3_y;
-    const real prrr_P_1_o = prrr_P_1_o_t + prrr_T_1_o_in_axes0_x;
+    const real prrr_P_1_o = prrr_T_1_o_in_axes0_x + prrr_P_1_o_t;
     /* (M_ta) coupling block of M */
     const real prrr_M_ta_t = prrr_Q_xy*v.prrr_q_x - prrr_Q_xx*v.prrr_q_y;
     const real prrr_M_ta_t_2 = prrr_Q_yy*v.prrr_q_x - prrr_Q_xy*v.prrr_q_y;
@@ -2311,20 +2325,20 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     const real rrr_alpha_2_o_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_o_in_axes2_y +
         rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
     /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + v.axis_y_rrr_axes2_x*m->gravity_y
-        - v.axis_x_rrr_axes2_x*m->gravity_x;
+    const real rrr_acc_2_o_in_axes2_x = v.axis_y_rrr_axes2_x*m->gravity_y -
+        v.axis_x_rrr_axes2_x*m->gravity_x + rrr_u_1_in_axes2_x;
     const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - v.axis_x_rrr_axes2_x*m->gravity_y
         - v.axis_y_rrr_axes2_x*m->gravity_x;
     /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
-    const real rrr_mu_2_o_in_axes2_z = m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z +
-        rrr_acc_2_o_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
-        rrr_acc_2_o_in_axes2_x*m->rrr_h_2_in_spec2_y[i];
+    const real rrr_mu_2_o_in_axes2_z = rrr_acc_2_o_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
+        rrr_acc_2_o_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
+        m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z;
     /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
     const real rrr_mu_1_o_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i] -
-        m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v.rrr_s_1);
+        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i]
+        - m->rrr_mu_1_t[i]*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i];
     /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
        connection point left out */
     const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
@@ -2337,23 +2351,23 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
         rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] -
         v.inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x -
         rrr_N_1_o_in_axes1_z);
-    const real rrr_c_o_in_axes2_y = v.rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] - rrr_G_o_in_axes2_y
-        - rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i];
+    const real rrr_c_o_in_axes2_y = v.rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_o_in_axes2_y;
     /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_Q_t = v.inv_rrr_r_1_in_axes2_y*v.rrr_d_Gamma_1_in_axes2_x +
-        m->rrr_h_2_in_spec2_y[i]*(v.rrr_w_2_in_axes2_x - v.inv_rrr_r_1_in_axes2_y) -
-        m->rrr_d_c_in_axes2_yy[i] - v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
+    const real rrr_Q_t = v.inv_rrr_r_1_in_axes2_y*v.rrr_d_Gamma_1_in_axes2_x -
+        m->rrr_d_c_in_axes2_yy[i] - v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x +
+        m->rrr_h_2_in_spec2_y[i]*(v.rrr_w_2_in_axes2_x - v.inv_rrr_r_1_in_axes2_y);
     const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
-    const real rrr_Q_t_3 = v.axis_x_rrr_axes2_x*rrr_Q_t_2 +
-        v.axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+    const real rrr_Q_t_3 = v.axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy +
+        v.axis_x_rrr_axes2_x*rrr_Q_t_2;
     const real rrr_Q_t_4 = v.axis_y_rrr_axes2_x*rrr_Q_t_2 -
         v.axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
     const real rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v.axis_x_rrr_axes2_x*rrr_Q_t_3;
     const real rrr_Q_xy = v.axis_x_rrr_axes2_x*rrr_Q_t_4 + v.axis_y_rrr_axes2_x*rrr_Q_t_3;
     const real rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v.axis_y_rrr_axes2_x*rrr_Q_t_4;
     /* (rrr-U) velocity and gravity terms of the leg force */
-    const real rrr_U_x = -v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
-        v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
+    const real rrr_U_x = -v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y -
+        v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x;
     const real rrr_U_y = v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
         v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
     /* (M_ta) */
@@ -2406,16 +2420,16 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     /* (M_ta) */
     const real M_ta_xz_of_legs = sums[3*w + k];
     const real h_star_y = s[3*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yz_of_legs = sums[4*w + k];
     const real h_star_x = s[2*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     /* (M_aa) */
     const real M_aa_zz_of_legs = sums[5*w + k];
     const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
@@ -2429,7 +2443,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     /* (Z_a) */
     const real Z_a_z_of_legs = sums[8*w + k];
     const real Z_q_z = s[6*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
     const real M_tt_xy = sums[1*w + k];
@@ -2459,7 +2473,8 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     real terms_prrr[9*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[16*LEGS(LEGS_OF_prrr)] = {0};
     real terms_rrr[9*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
     clear(H, NV*NU);
-    dynamics_before(m, 1, 0, X, V, s);
+    values v;
+    dynamics_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
         dynamics_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), 0, s, X, V, terms_prrr, o_prrr);
     }
@@ -2480,6 +2495,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
+    dynamics_between(m, 1, 0, V, &v, s);
     dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
@@ -2491,7 +2507,9 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real o_rrr[6*LANES];
     clear(H, NV*NU*LANES);
     for (size_t k = 0; k < LANES; ++k) {
-        dynamics_before(m, LANES, k, X, V, s);
+        values v;
+        dynamics_before(m, LANES, k, X, &v, s);
+        dynamics_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 9*LANES);
     for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
@@ -2516,14 +2534,13 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
-    s[2*w + k] = v.h_star_x;
-    s[3*w + k] = v.h_star_y;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+    s[2*w + k] = v->h_star_x;
+    s[3*w + k] = v->h_star_y;
 }
 
 INLINE void M_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2560,8 +2577,8 @@ INLINE void M_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t 
         m->prrr_base_frame_xy[i]*v.prrr_e_1_in_axes3_y;
     const real axis_x_prrr_axes3_x = m->prrr_base_frame_yx[i]*prrr_dy_1_rel_in_axes3_x +
         m->prrr_base_frame_yy[i]*v.prrr_e_1_in_axes3_y;
-    const real prrr_Q_t_3 = axis_x_prrr_axes3_x*v.prrr_Q_t_2 +
-        axis_y_prrr_axes3_x*v.prrr_d_c_in_axes3_xy;
+    const real prrr_Q_t_3 = axis_y_prrr_axes3_x*v.prrr_d_c_in_axes3_xy +
+        axis_x_prrr_axes3_x*v.prrr_Q_t_2;
     const real prrr_Q_t_4 = axis_y_prrr_axes3_x*v.prrr_Q_t_2 -
         axis_x_prrr_axes3_x*v.prrr_d_c_in_axes3_xy;
     const real prrr_Q_xx = -m->prrr_d_c_in_axes3_yy[i] - 2*axis_x_prrr_axes3_x*prrr_Q_t_3;
@@ -2639,18 +2656,18 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_M_dynamics(m, i, &v);
     /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_Q_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
+    const real rrr_Q_t = v.rrr_c_2*v.rrr_s_1 + v.rrr_c_1*v.rrr_s_2;
     const real rrr_Q_t_2 = v.rrr_c_1*v.rrr_c_2 - v.rrr_s_1*v.rrr_s_2;
     const real axis_y_rrr_axes2_x = rrr_Q_t_2*m->rrr_base_frame_xy[i] -
         rrr_Q_t*m->rrr_base_frame_xx[i];
     const real axis_x_rrr_axes2_x = rrr_Q_t_2*m->rrr_base_frame_yy[i] -
         rrr_Q_t*m->rrr_base_frame_yx[i];
-    const real rrr_Q_t_3 = v.inv_rrr_r_1_in_axes2_y*v.rrr_d_Gamma_1_in_axes2_x +
-        m->rrr_h_2_in_spec2_y[i]*(v.rrr_w_2_in_axes2_x - v.inv_rrr_r_1_in_axes2_y) -
-        m->rrr_d_c_in_axes2_yy[i] - v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
+    const real rrr_Q_t_3 = v.inv_rrr_r_1_in_axes2_y*v.rrr_d_Gamma_1_in_axes2_x -
+        m->rrr_d_c_in_axes2_yy[i] - v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x +
+        m->rrr_h_2_in_spec2_y[i]*(v.rrr_w_2_in_axes2_x - v.inv_rrr_r_1_in_axes2_y);
     const real rrr_Q_t_4 = R(0.5)*rrr_Q_t_3;
-    const real rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 +
-        axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+    const real rrr_Q_t_5 = axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy +
+        axis_x_rrr_axes2_x*rrr_Q_t_4;
     const real rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 -
         axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
     const real rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*axis_x_rrr_axes2_x*rrr_Q_t_5;
@@ -2686,16 +2703,16 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     /* (M_ta) */
     const real M_ta_xz_of_legs = sums[3*w + k];
     const real h_star_y = s[3*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yz_of_legs = sums[4*w + k];
     const real h_star_x = s[2*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     /* (M_aa) */
     const real M_aa_zz_of_legs = sums[5*w + k];
     const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
@@ -2720,7 +2737,8 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     real s[4] = {0}, sums[6] = {0};
     real terms_prrr[6*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[10*LEGS(LEGS_OF_prrr)] = {0};
     real terms_rrr[6*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    M_before(m, 1, 0, X, s);
+    values v;
+    M_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
         M_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), 0, s, X, terms_prrr, o_prrr);
     }
@@ -2750,7 +2768,8 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
     real o_prrr[10*LANES];
     real o_rrr[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        M_before(m, LANES, k, X, s);
+        values v;
+        M_before(m, LANES, k, X, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
@@ -2775,18 +2794,21 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s)
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
-    values v;
-    stage_V(w, k, V, &v);
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+}
+
+INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
+{
+    stage_V(w, k, V, v);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_x = v.W_p_xx*v.h_star_x - m->Z_p_t;
-    const real Z_p_y = v.W_p_xx*v.h_star_y - m->Z_p_t_2;
+    const real Z_p_x = v->W_p_xx*v->h_star_x - m->Z_p_t;
+    const real Z_p_y = v->W_p_xx*v->h_star_y - m->Z_p_t_2;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real Z_q_z = m->gravity_x*v.h_star_y - m->gravity_y*v.h_star_x;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    const real Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x;
     s[2*w + k] = Z_p_x;
     s[3*w + k] = Z_p_y;
     s[4*w + k] = Z_q_z;
@@ -2834,27 +2856,27 @@ INLINE void Z_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t 
     const real prrr_alpha_3_o_in_axes3_z = m->prrr_w_3_in_axes3_y[i]*(prrr_rel_o_in_axes3_y +
         prrr_B_2_o_in_axes2_xy*v.prrr_r_2_in_axes3_x) - prrr_B_2_o_in_axes2_xy;
     /* (prrr-f_2_o) remainder of: inertia force of link 2 less its weight */
-    const real prrr_f_2_o_in_axes2_x = prrr_B_2_o_in_axes2_xy*m->prrr_h_2_in_spec2_y[i] +
-        prrr_W_2_in_axes2_xx*m->prrr_h_2_in_spec2_x[i] -
-        v.prrr_g_in_axes2_x*m->prrr_link2_mass[i];
+    const real prrr_f_2_o_in_axes2_x = prrr_W_2_in_axes2_xx*m->prrr_h_2_in_spec2_x[i] -
+        v.prrr_g_in_axes2_x*m->prrr_link2_mass[i] +
+        prrr_B_2_o_in_axes2_xy*m->prrr_h_2_in_spec2_y[i];
     const real prrr_f_2_o_in_axes2_y = prrr_W_2_in_axes2_xx*m->prrr_h_2_in_spec2_y[i] -
-        prrr_B_2_o_in_axes2_xy*m->prrr_h_2_in_spec2_x[i] -
-        v.prrr_g_in_axes2_y*m->prrr_link2_mass[i];
+        v.prrr_g_in_axes2_y*m->prrr_link2_mass[i] -
+        prrr_B_2_o_in_axes2_xy*m->prrr_h_2_in_spec2_x[i];
     /* (prrr-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real prrr_acc_3_o_in_axes3_x = prrr_u_1_in_axes3_x +
-        axis_y_prrr_axes3_x*m->gravity_y - axis_x_prrr_axes3_x*m->gravity_x;
+    const real prrr_acc_3_o_in_axes3_x = axis_y_prrr_axes3_x*m->gravity_y -
+        axis_x_prrr_axes3_x*m->gravity_x + prrr_u_1_in_axes3_x;
     const real prrr_acc_3_o_in_axes3_y = prrr_u_1_in_axes3_y -
         axis_x_prrr_axes3_x*m->gravity_y - axis_y_prrr_axes3_x*m->gravity_x;
     /* (prrr-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
        reference points */
-    const real prrr_mu_3_o_in_axes3_z = m->prrr_J_3_in_spec3_zz[i]*prrr_alpha_3_o_in_axes3_z +
-        prrr_acc_3_o_in_axes3_y*m->prrr_h_3_in_spec3_x[i] -
-        prrr_acc_3_o_in_axes3_x*m->prrr_h_3_in_spec3_y[i];
+    const real prrr_mu_3_o_in_axes3_z = prrr_acc_3_o_in_axes3_y*m->prrr_h_3_in_spec3_x[i] -
+        prrr_acc_3_o_in_axes3_x*m->prrr_h_3_in_spec3_y[i] +
+        m->prrr_J_3_in_spec3_zz[i]*prrr_alpha_3_o_in_axes3_z;
     /* (prrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real prrr_mu_2_o_in_axes2_z = v.prrr_g_in_axes2_x*m->prrr_h_2_in_spec2_y[i] -
-        prrr_B_2_o_in_axes2_xy*m->prrr_J_2_in_spec2_zz[i] -
-        v.prrr_g_in_axes2_y*m->prrr_h_2_in_spec2_x[i];
+        v.prrr_g_in_axes2_y*m->prrr_h_2_in_spec2_x[i] -
+        prrr_B_2_o_in_axes2_xy*m->prrr_J_2_in_spec2_zz[i];
     /* (prrr-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
        connection point left out */
     const real prrr_N_2_o_in_axes2_z = prrr_mu_2_o_in_axes2_z + prrr_mu_3_o_in_axes3_z;
@@ -2873,17 +2895,17 @@ INLINE void Z_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t 
     const real prrr_c_o_in_axes3_x = prrr_W_3_t*m->prrr_h_3_in_spec3_x[i] +
         prrr_alpha_3_o_in_axes3_z*m->prrr_h_3_in_spec3_y[i] - prrr_G_o_in_axes3_x;
     const real prrr_c_o_in_axes3_y = prrr_W_3_t*m->prrr_h_3_in_spec3_y[i] -
-        prrr_G_o_in_axes3_y - prrr_alpha_3_o_in_axes3_z*m->prrr_h_3_in_spec3_x[i];
+        prrr_alpha_3_o_in_axes3_z*m->prrr_h_3_in_spec3_x[i] - prrr_G_o_in_axes3_y;
     /* (prrr-U) velocity and gravity terms of the leg force */
-    const real prrr_U_x = -axis_x_prrr_axes3_x*prrr_c_o_in_axes3_x -
-        axis_y_prrr_axes3_x*prrr_c_o_in_axes3_y;
+    const real prrr_U_x = -axis_y_prrr_axes3_x*prrr_c_o_in_axes3_y -
+        axis_x_prrr_axes3_x*prrr_c_o_in_axes3_x;
     const real prrr_U_y = axis_y_prrr_axes3_x*prrr_c_o_in_axes3_x -
         axis_x_prrr_axes3_x*prrr_c_o_in_axes3_y;
     /* (prrr-P_1_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
        joint 1 */
     const real prrr_P_1_o_t = prrr_G_o_in_axes3_x*v.prrr_qd_2_t -
         prrr_G_o_in_axes3_y*v.prrr_e_1_in_axes3_y;
-    const real prrr_P_1_o = prrr_P_1_o_t + prrr_T_1_o_in_axes0_x;
+    const real prrr_P_1_o = prrr_T_1_o_in_axes0_x + prrr_P_1_o_t;
     /* (Z_a) rotational part of Z */
     const real prrr_Z_a_t = prrr_U_y*v.prrr_q_x - prrr_U_x*v.prrr_q_y;
     /* (Z_t) translational part of Z */
@@ -2916,7 +2938,7 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
     /* (rrr-qd_1) rate of joint 1 */
-    const real rrr_qd_1_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
+    const real rrr_qd_1_t = v.rrr_c_2*v.rrr_s_1 + v.rrr_c_1*v.rrr_s_2;
     const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*v.rrr_qd_1_t_2 -
         m->rrr_base_frame_xx[i]*rrr_qd_1_t;
     const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*v.rrr_qd_1_t_2 -
@@ -2940,8 +2962,8 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x -
         axis_x_rrr_axes2_x*rrr_u_1_t;
     /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_bias_in_axes2_x = -rrr_W_2_t*m->rrr_platform_joint_offset_x[i] -
-        rrr_W_1_t*v.rrr_c_2*m->rrr_joint2_offset_x[i];
+    const real rrr_bias_in_axes2_x = -rrr_W_1_t*v.rrr_c_2*m->rrr_joint2_offset_x[i] -
+        rrr_W_2_t*m->rrr_platform_joint_offset_x[i];
     /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
        */
     const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x;
@@ -2953,20 +2975,20 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real rrr_alpha_2_o_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_o_in_axes2_y +
         rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
     /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*m->gravity_y -
-        axis_x_rrr_axes2_x*m->gravity_x;
+    const real rrr_acc_2_o_in_axes2_x = axis_y_rrr_axes2_x*m->gravity_y -
+        axis_x_rrr_axes2_x*m->gravity_x + rrr_u_1_in_axes2_x;
     const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*m->gravity_y -
         axis_y_rrr_axes2_x*m->gravity_x;
     /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
-    const real rrr_mu_2_o_in_axes2_z = m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z +
-        rrr_acc_2_o_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
-        rrr_acc_2_o_in_axes2_x*m->rrr_h_2_in_spec2_y[i];
+    const real rrr_mu_2_o_in_axes2_z = rrr_acc_2_o_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
+        rrr_acc_2_o_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
+        m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z;
     /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
     const real rrr_mu_1_o_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i] -
-        m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v.rrr_s_1);
+        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i]
+        - m->rrr_mu_1_t[i]*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i];
     /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
        connection point left out */
     const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
@@ -2979,11 +3001,11 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
         rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] -
         v.inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x -
         rrr_N_1_o_in_axes1_z);
-    const real rrr_c_o_in_axes2_y = rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] - rrr_G_o_in_axes2_y -
-        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i];
+    const real rrr_c_o_in_axes2_y = rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_o_in_axes2_y;
     /* (rrr-U) velocity and gravity terms of the leg force */
-    const real rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
-        axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
+    const real rrr_U_x = -axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y -
+        axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x;
     const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
         axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
     /* (Z_a) */
@@ -3016,7 +3038,7 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     /* (Z_a) */
     const real Z_a_z_of_legs = sums[2*w + k];
     const real Z_q_z = s[4*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
     Z[1*w + k] = Z_t_y;
@@ -3030,7 +3052,8 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     real s[5] = {0}, sums[3] = {0};
     real terms_prrr[3*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[4*LEGS(LEGS_OF_prrr)] = {0};
     real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    Z_before(m, 1, 0, X, V, s);
+    values v;
+    Z_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
         Z_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), 0, s, X, V, terms_prrr, o_prrr);
     }
@@ -3051,6 +3074,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
+    Z_between(m, 1, 0, V, &v, s);
     Z_after(1, 0, s, sums, Z, t);
 }
 
@@ -3061,7 +3085,9 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real o_prrr[4*LANES];
     real o_rrr[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        Z_before(m, LANES, k, X, V, s);
+        values v;
+        Z_before(m, LANES, k, X, &v, s);
+        Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 3*LANES);
     for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
@@ -3086,12 +3112,11 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void H_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3163,7 +3188,8 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
     real o_prrr[8*LEGS(LEGS_OF_prrr)] = {0};
     real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
     clear(H, NV*NU);
-    H_before(m, 1, 0, X, s);
+    values v;
+    H_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
         H_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), s, X, o_prrr);
     }
@@ -3185,7 +3211,8 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
     real o_rrr[6*LANES];
     clear(H, NV*NU*LANES);
     for (size_t k = 0; k < LANES; ++k) {
-        H_before(m, LANES, k, X, s);
+        values v;
+        H_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3206,12 +3233,18 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, real *s)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s)
 {
-    values v;
-    stage_V(w, k, V, &v);
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+}
+
+INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
+    values *v, real *s)
+{
+    stage_V(w, k, V, v);
     /* (a_t) acceleration of the platform origin, less gravity */
     const real t_ddot_x = A[0*w + k];
     const real a_t_x = t_ddot_x - m->gravity_x;
@@ -3219,12 +3252,10 @@ INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X
     const real a_t_y = t_ddot_y - m->gravity_y;
     /* (f_p) inertia force of the platform less its weight */
     const real alpha_z = A[2*w + k];
-    const real f_p_x = v.W_p_xx*v.h_star_x + a_t_x*m->m_star - alpha_z*v.h_star_y;
-    const real f_p_y = v.W_p_xx*v.h_star_y + a_t_y*m->m_star + alpha_z*v.h_star_x;
+    const real f_p_x = a_t_x*m->m_star + v->W_p_xx*v->h_star_x - alpha_z*v->h_star_y;
+    const real f_p_y = a_t_y*m->m_star + v->W_p_xx*v->h_star_y + alpha_z*v->h_star_x;
     /* (mu_p) inertia moment of the platform less that of its weight */
-    const real mu_p_z = m->J_star_zz*alpha_z + a_t_y*v.h_star_x - a_t_x*v.h_star_y;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    const real mu_p_z = m->J_star_zz*alpha_z + a_t_y*v->h_star_x - a_t_x*v->h_star_y;
     s[2*w + k] = f_p_x;
     s[3*w + k] = f_p_y;
     s[4*w + k] = mu_p_z;
@@ -3246,11 +3277,11 @@ INLINE void required_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, 
     const real prrr_ydd_1 = A[3*w + j];
     const real prrr_acc_1_in_axes0_x = prrr_ydd_1 - m->prrr_g_in_axes0_x[i];
     /* (prrr-f_2) inertia force of link 2 less its weight */
-    const real prrr_f_2_in_axes2_x = v.prrr_B_2_in_axes2_xy*m->prrr_h_2_in_spec2_y[i] +
+    const real prrr_f_2_in_axes2_x = v.prrr_acc_2_in_axes2_x*m->prrr_link2_mass[i] +
         v.prrr_W_2_in_axes2_xx*m->prrr_h_2_in_spec2_x[i] +
-        v.prrr_acc_2_in_axes2_x*m->prrr_link2_mass[i];
-    const real prrr_f_2_in_axes2_y = v.prrr_W_2_in_axes2_xx*m->prrr_h_2_in_spec2_y[i] +
-        v.prrr_acc_2_in_axes2_y*m->prrr_link2_mass[i] -
+        v.prrr_B_2_in_axes2_xy*m->prrr_h_2_in_spec2_y[i];
+    const real prrr_f_2_in_axes2_y = v.prrr_acc_2_in_axes2_y*m->prrr_link2_mass[i] +
+        v.prrr_W_2_in_axes2_xx*m->prrr_h_2_in_spec2_y[i] -
         v.prrr_B_2_in_axes2_xy*m->prrr_h_2_in_spec2_x[i];
     /* (prrr-T_1) inertia force of the links from 1 outwards, the last link left out */
     const real prrr_T_1_in_axes0_x = prrr_acc_1_in_axes0_x*m->prrr_link1_mass[i] +
@@ -3264,14 +3295,14 @@ INLINE void required_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, 
        point */
     const real prrr_c_in_axes3_x = v.prrr_W_3_t*m->prrr_h_3_in_spec3_x[i] +
         v.prrr_alpha_3_in_axes3_z*m->prrr_h_3_in_spec3_y[i] - prrr_G_in_axes3_x;
-    const real prrr_c_x = v.axis_x_prrr_axes3_x*prrr_c_in_axes3_x +
-        v.axis_y_prrr_axes3_x*v.prrr_c_in_axes3_y;
+    const real prrr_c_x = v.axis_y_prrr_axes3_x*v.prrr_c_in_axes3_y +
+        v.axis_x_prrr_axes3_x*prrr_c_in_axes3_x;
     const real prrr_c_y = v.axis_x_prrr_axes3_x*v.prrr_c_in_axes3_y -
         v.axis_y_prrr_axes3_x*prrr_c_in_axes3_x;
     /* (prrr-P_1) inertia and weight of the leg along the extra degree of freedom of joint 1 */
     const real prrr_P_1_t = prrr_G_in_axes3_x*v.prrr_w_2_t -
         v.prrr_G_in_axes3_y*v.prrr_e_1_in_axes3_y;
-    const real prrr_P_1 = prrr_P_1_t + prrr_T_1_in_axes0_x;
+    const real prrr_P_1 = prrr_T_1_in_axes0_x + prrr_P_1_t;
     /* (R_a) moment that actuators and external wrench must give */
     const real prrr_R_a_t = prrr_c_x*v.prrr_q_y - prrr_c_y*v.prrr_q_x;
     /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
@@ -3323,8 +3354,8 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     stage_rrr_legs_required(m, i, &v);
     /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rrr_c_x = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_x +
-        v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_y;
+    const real rrr_c_x = v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_y +
+        v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_x;
     const real rrr_c_y = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_y -
         v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_x;
     /* (R_a) */
@@ -3368,7 +3399,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     /* (R_a) */
     const real R_a_z_of_legs = sums[2*w + k];
     const real mu_p_z = s[4*w + k];
-    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
     required[1*w + k] = R_t_y;
@@ -3376,14 +3407,15 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[2*w + k] = R_a_z;
 }
 
-APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
     real s[5] = {0}, sums[3] = {0};
     real terms_prrr[3*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[8*LEGS(LEGS_OF_prrr)] = {0};
     real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
     clear(H, NV*NU);
-    required_before(m, 1, 0, X, V, A, s);
+    values v;
+    required_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
         required_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), 0, s, X, V, A, terms_prrr, o_prrr);
     }
@@ -3404,6 +3436,7 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
+    required_between(m, 1, 0, V, A, &v, s);
     required_after(1, 0, s, sums, required);
 }
 
@@ -3415,7 +3448,9 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real o_rrr[5*LANES];
     clear(H, NV*NU*LANES);
     for (size_t k = 0; k < LANES; ++k) {
-        required_before(m, LANES, k, X, V, A, s);
+        values v;
+        required_before(m, LANES, k, X, &v, s);
+        required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 3*LANES);
     for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
@@ -3440,13 +3475,12 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
+    *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void inverse_kinematics_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t
@@ -3455,8 +3489,8 @@ INLINE void inverse_kinematics_legs_prrr(const prepared *m, size_t w, size_t i, 
     values_prrr v;
     stage_prrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
     /* (prrr-q_2) displacement of joint 2 */
-    const real prrr_q_2 = angle(-v.inv_prrr_rho2_2*(-v.prrr_Kc_2*v.prrr_root_2 -
-        v.prrr_Kd_2*v.prrr_Ks_2), -v.inv_prrr_rho2_2*(v.prrr_Ks_2*v.prrr_root_2 -
+    const real prrr_q_2 = angle(-v.inv_prrr_rho2_2*(-v.prrr_Kd_2*v.prrr_Ks_2 -
+        v.prrr_Kc_2*v.prrr_root_2), -v.inv_prrr_rho2_2*(v.prrr_Ks_2*v.prrr_root_2 -
         v.prrr_Kc_2*v.prrr_Kd_2));
     /* (prrr-q_3) displacement of joint 3 */
     const real prrr_q_3 =
@@ -3492,8 +3526,8 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t i, s
     values_rrr v;
     stage_rrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
     /* (rrr-q_1) displacement of joint 1 */
-    const real rrr_q_1 = angle(v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_root_1 +
-        v.rrr_Kd_1*v.rrr_Ks_1), v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 -
+    const real rrr_q_1 = angle(v.inv_rrr_rho2_1*(v.rrr_Kd_1*v.rrr_Ks_1 +
+        v.rrr_Kc_1*v.rrr_root_1), v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 -
         v.rrr_Ks_1*v.rrr_root_1));
     /* (rrr-q_2) displacement of joint 2 */
     const real rrr_q_2 =
@@ -3523,7 +3557,8 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
     real s[2] = {0};
     real o_prrr[6*LEGS(LEGS_OF_prrr)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    inverse_kinematics_before(m, 1, 0, X, s);
+    values v;
+    inverse_kinematics_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
         inverse_kinematics_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), s, X, o_prrr);
     }
@@ -3545,7 +3580,8 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real o_prrr[6*LANES];
     real o_rrr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        inverse_kinematics_before(m, LANES, k, X, s);
+        values v;
+        inverse_kinematics_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3566,12 +3602,12 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void joint_rates_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t k,
@@ -3636,7 +3672,7 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t i, size_t j
     const real t_dot_y = V[1*w + j];
     const real rrr_S_dot_y = t_dot_y + omega_z*v.rrr_q_x;
     /* (rrr-qd_1) rate of joint 1 */
-    const real rrr_qd_1_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
+    const real rrr_qd_1_t = v.rrr_c_2*v.rrr_s_1 + v.rrr_c_1*v.rrr_s_2;
     const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*v.rrr_qd_1_t_2 -
         m->rrr_base_frame_xx[i]*rrr_qd_1_t;
     const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*v.rrr_qd_1_t_2 -
@@ -3672,7 +3708,8 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
     real s[2] = {0};
     real o_prrr[6*LEGS(LEGS_OF_prrr)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    joint_rates_before(m, 1, 0, X, s);
+    values v;
+    joint_rates_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
         joint_rates_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), s, X, V, o_prrr);
     }
@@ -3694,7 +3731,8 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real o_prrr[6*LANES];
     real o_rrr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_rates_before(m, LANES, k, X, s);
+        values v;
+        joint_rates_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3715,13 +3753,12 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
+    values *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void joint_accelerations_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t
@@ -3751,10 +3788,11 @@ INLINE void joint_accelerations_legs_prrr(const prepared *m, size_t w, size_t i,
         prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z*m->prrr_platform_joint_offset_x[i];
     /* (prrr-rel) acceleration of the connection point left to the joint accelerations */
     const real prrr_ydd_1 = A[3*w + j];
-    const real prrr_rel_in_axes3_x = axis_x_prrr_axes3_x*v.prrr_S_ddot_x +
-        v.prrr_qd_2_t*prrr_ydd_1 - prrr_bias_in_axes3_x - axis_y_prrr_axes3_x*v.prrr_S_ddot_y;
-    const real prrr_rel_in_axes3_y = axis_x_prrr_axes3_x*v.prrr_S_ddot_y +
-        axis_y_prrr_axes3_x*v.prrr_S_ddot_x - v.prrr_e_1_in_axes3_y*prrr_ydd_1 -
+    const real prrr_rel_in_axes3_x = v.prrr_qd_2_t*prrr_ydd_1 +
+        axis_x_prrr_axes3_x*v.prrr_S_ddot_x - axis_y_prrr_axes3_x*v.prrr_S_ddot_y -
+        prrr_bias_in_axes3_x;
+    const real prrr_rel_in_axes3_y = axis_x_prrr_axes3_x*v.prrr_S_ddot_y -
+        v.prrr_e_1_in_axes3_y*prrr_ydd_1 + axis_y_prrr_axes3_x*v.prrr_S_ddot_x -
         prrr_W_2_in_axes2_xx*m->prrr_joint3_offset_x[i]*v.prrr_s_3_t;
     /* (prrr-qdd_2) acceleration of joint 2 */
     const real prrr_qdd_2_t = v.inv_prrr_r_2_in_axes3_y*prrr_rel_in_axes3_x;
@@ -3794,7 +3832,7 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t i, 
     stage_rrr_V_X(m, w, i, j, V, &v);
     stage_rrr_A_V_X(w, j, V, &v);
     /* (rrr-qd_1) rate of joint 1 */
-    const real rrr_qd_1_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
+    const real rrr_qd_1_t = v.rrr_c_2*v.rrr_s_1 + v.rrr_c_1*v.rrr_s_2;
     const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*v.rrr_qd_1_t_2 -
         m->rrr_base_frame_xx[i]*rrr_qd_1_t;
     const real axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*v.rrr_qd_1_t_2 -
@@ -3808,12 +3846,11 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t i, 
         m->rrr_w_2_in_axes2_y[i]*(axis_x_rrr_axes2_x*v.rrr_S_dot_y +
         axis_y_rrr_axes2_x*v.rrr_S_dot_x + rrr_qd_1_t_3*v.rrr_r_1_in_axes2_x) - rrr_qd_1_t_3;
     /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_bias_in_axes2_x =
-        -rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*m->rrr_platform_joint_offset_x[i] -
-        rrr_W_1_t*v.rrr_c_2*m->rrr_joint2_offset_x[i];
+    const real rrr_bias_in_axes2_x = -rrr_W_1_t*v.rrr_c_2*m->rrr_joint2_offset_x[i] -
+        rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*m->rrr_platform_joint_offset_x[i];
     /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-    const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*v.rrr_S_ddot_x - rrr_bias_in_axes2_x -
-        axis_y_rrr_axes2_x*v.rrr_S_ddot_y;
+    const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*v.rrr_S_ddot_x -
+        axis_y_rrr_axes2_x*v.rrr_S_ddot_y - rrr_bias_in_axes2_x;
     const real rrr_rel_in_axes2_y = axis_x_rrr_axes2_x*v.rrr_S_ddot_y +
         axis_y_rrr_axes2_x*v.rrr_S_ddot_x - rrr_W_1_t*m->rrr_joint2_offset_x[i]*v.rrr_s_2;
     /* (rrr-qdd_1) acceleration of joint 1 */
@@ -3847,7 +3884,8 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
     real s[2] = {0};
     real o_prrr[6*LEGS(LEGS_OF_prrr)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    joint_accelerations_before(m, 1, 0, X, s);
+    values v;
+    joint_accelerations_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
         joint_accelerations_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), s, X, V, A, o_prrr);
     }
@@ -3869,7 +3907,8 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real o_prrr[6*LANES];
     real o_rrr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_accelerations_before(m, LANES, k, X, s);
+        values v;
+        joint_accelerations_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3890,12 +3929,11 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void legs_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3918,8 +3956,8 @@ INLINE void legs_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size
         v.prrr_acc_3_in_axes3_x*m->prrr_link3_mass[i];
     const real prrr_c_true_in_axes3_y = v.prrr_c_in_axes3_y -
         v.prrr_acc_3_in_axes3_y*m->prrr_link3_mass[i];
-    const real prrr_c_true_x = v.axis_x_prrr_axes3_x*prrr_c_true_in_axes3_x +
-        v.axis_y_prrr_axes3_x*prrr_c_true_in_axes3_y;
+    const real prrr_c_true_x = v.axis_y_prrr_axes3_x*prrr_c_true_in_axes3_y +
+        v.axis_x_prrr_axes3_x*prrr_c_true_in_axes3_x;
     const real prrr_c_true_y = v.axis_x_prrr_axes3_x*prrr_c_true_in_axes3_y -
         v.axis_y_prrr_axes3_x*prrr_c_true_in_axes3_x;
     /* (prrr-c_true) */
@@ -3959,8 +3997,8 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_
         v.rrr_acc_2_in_axes2_x*m->rrr_link2_mass[i];
     const real rrr_c_true_in_axes2_y = v.rrr_c_in_axes2_y -
         v.rrr_acc_2_in_axes2_y*m->rrr_link2_mass[i];
-    const real rrr_c_true_x = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x +
-        v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y;
+    const real rrr_c_true_x = v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y +
+        v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x;
     const real rrr_c_true_y = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y -
         v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x;
     /* (rrr-c_true) */
@@ -3993,7 +4031,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
     clear(leg_force, 3*NL);
     clear(actuator, 12);
-    legs_before(m, 1, 0, X, s);
+    values v;
+    legs_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
         legs_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), s, X, V, A, o_prrr);
     }
@@ -4009,18 +4048,23 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+}
+
+INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s)
+{
     /* (potential) potential energy */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
-    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x + m->m_star*t_x -
-        v.R_yx*m->h_star_in_platform_y) + m->gravity_y*(v.R_xx*m->h_star_in_platform_y +
-        v.R_yx*m->h_star_in_platform_x + m->m_star*t_y);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    const real potential_t = m->gravity_x*(m->m_star*t_x + v->R_xx*m->h_star_in_platform_x -
+        v->R_yx*m->h_star_in_platform_y) + m->gravity_y*(m->m_star*t_y +
+        v->R_xx*m->h_star_in_platform_y + v->R_yx*m->h_star_in_platform_x);
     s[2*w + k] = potential_t;
 }
 
@@ -4033,8 +4077,8 @@ INLINE void potential_legs_prrr(const prepared *m, size_t w, size_t i, size_t j,
     const real prrr_c_2 = -v.inv_prrr_rho2_2*(v.prrr_Ks_2*v.prrr_root_2 -
         v.prrr_Kc_2*v.prrr_Kd_2);
     /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
-    const real prrr_s_2 = -v.inv_prrr_rho2_2*(-v.prrr_Kc_2*v.prrr_root_2 -
-        v.prrr_Kd_2*v.prrr_Ks_2);
+    const real prrr_s_2 = -v.inv_prrr_rho2_2*(-v.prrr_Kd_2*v.prrr_Ks_2 -
+        v.prrr_Kc_2*v.prrr_root_2);
     /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
     const real prrr_c_3 =
         m->inv_prrr_size_t_2[i]*m->prrr_platform_joint_offset_x[i]*v.prrr_x_3_in_axes2_x;
@@ -4048,13 +4092,13 @@ INLINE void potential_legs_prrr(const prepared *m, size_t w, size_t i, size_t j,
         m->prrr_h_3_in_spec3_y[i]*prrr_s_3_t;
     const real prrr_potential_t_5 = prrr_c_3*m->prrr_h_3_in_spec3_y[i] -
         m->prrr_h_3_in_spec3_x[i]*prrr_s_3_t;
-    const real prrr_potential_t_6 = m->prrr_acc_1_in_axes0_y[i]*(m->prrr_h_1_in_spec0_x[i] +
-        prrr_c_2*m->prrr_h_2_in_spec2_x[i] + prrr_c_2*prrr_potential_t_4 -
-        m->prrr_potential_t[i] - m->prrr_potential_t_2[i] - m->prrr_h_2_in_spec2_y[i]*prrr_s_2
-        - prrr_potential_t_5*prrr_s_2) + m->prrr_g_in_axes0_x[i]*(m->prrr_h_1_in_spec0_y[i] +
-        prrr_c_2*m->prrr_h_2_in_spec2_y[i] + prrr_c_2*prrr_potential_t_5 +
-        m->prrr_h_2_in_spec2_x[i]*prrr_s_2 + m->prrr_link1_mass[i]*prrr_potential_t_3 +
-        m->prrr_link2_mass[i]*prrr_potential_t_3 + prrr_potential_t_4*prrr_s_2);
+    const real prrr_potential_t_6 = m->prrr_acc_1_in_axes0_y[i]*(m->prrr_h_1_in_spec0_x[i] -
+        m->prrr_potential_t[i] - m->prrr_potential_t_2[i] + prrr_c_2*m->prrr_h_2_in_spec2_x[i]
+        - m->prrr_h_2_in_spec2_y[i]*prrr_s_2 + prrr_c_2*prrr_potential_t_4 -
+        prrr_potential_t_5*prrr_s_2) + m->prrr_g_in_axes0_x[i]*(m->prrr_h_1_in_spec0_y[i] +
+        m->prrr_link1_mass[i]*prrr_potential_t_3 + m->prrr_link2_mass[i]*prrr_potential_t_3 +
+        prrr_c_2*m->prrr_h_2_in_spec2_y[i] + m->prrr_h_2_in_spec2_x[i]*prrr_s_2 +
+        prrr_c_2*prrr_potential_t_5 + prrr_potential_t_4*prrr_s_2);
     /* (potential) */
     gather(&terms[0*count + k], add, -prrr_potential_t_6);  /* potential_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.prrr_rho2_2) >
@@ -4076,7 +4120,7 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
     /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
     const real rrr_c_1 = v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 - v.rrr_Ks_1*v.rrr_root_1);
     /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rrr_s_1 = v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_root_1 + v.rrr_Kd_1*v.rrr_Ks_1);
+    const real rrr_s_1 = v.inv_rrr_rho2_1*(v.rrr_Kd_1*v.rrr_Ks_1 + v.rrr_Kc_1*v.rrr_root_1);
     /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
     const real rrr_c_2 =
         m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_x_2_in_axes1_x;
@@ -4089,9 +4133,9 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
         rrr_c_2*m->rrr_h_2_in_spec2_x[i] + m->rrr_link1_mass[i]*(rrr_c_1*m->rrr_potential_t[i]
         + m->rrr_potential_t_2[i]*rrr_s_1) - m->rrr_h_2_in_spec2_y[i]*rrr_s_2) +
         (rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*rrr_s_1)*(m->rrr_h_1_in_spec1_y[i] +
-        rrr_c_2*m->rrr_h_2_in_spec2_y[i] + m->rrr_h_2_in_spec2_x[i]*rrr_s_2 +
-        m->rrr_link1_mass[i]*(rrr_c_1*m->rrr_potential_t_2[i] -
-        m->rrr_potential_t[i]*rrr_s_1));
+        rrr_c_2*m->rrr_h_2_in_spec2_y[i] +
+        m->rrr_link1_mass[i]*(rrr_c_1*m->rrr_potential_t_2[i] - m->rrr_potential_t[i]*rrr_s_1)
+        + m->rrr_h_2_in_spec2_x[i]*rrr_s_2);
     /* (potential) */
     gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_2 */
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
@@ -4120,7 +4164,8 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
     real s[3] = {0}, sums[2] = {0};
     real terms_prrr[2*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[2*LEGS(LEGS_OF_prrr)] = {0};
     real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    potential_before(m, 1, 0, X, s);
+    values v;
+    potential_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
         potential_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), 0, s, X, terms_prrr, o_prrr);
     }
@@ -4141,17 +4186,17 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
+    potential_between(m, 1, 0, X, &v, s);
     potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
-    *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, real *lengths, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
@@ -4276,7 +4321,8 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     real terms_prrr[2*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[10*LEGS(LEGS_OF_prrr)] = {0};
     real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[8*LEGS(LEGS_OF_rrr)] = {0};
     clear(H, NV*NU);
-    condition_before(m, 1, 0, X, s, lengths, t);
+    values v;
+    condition_before(m, 1, 0, X, &v, s, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
         condition_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), 0, s, X, terms_prrr, o_prrr);
     }
@@ -4313,11 +4359,7 @@ int planar_redundant_M(const prepared *m, const real *X, real *M_out)
         check(NV*NV, 1, M, why.overflow);
     }
     copy(NV*NV, M, M_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-    }
-    return code;
+    return settled(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -4346,11 +4388,7 @@ int planar_redundant_Z(const prepared *m, const real *X, const real *V, real *Z_
         check(NV, 1, Z, why.overflow);
     }
     copy(NV, Z, Z_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, Z_out);
-    }
-    return code;
+    return settled(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -4376,11 +4414,7 @@ int planar_redundant_H(const prepared *m, const real *X, real *H_out)
         check(NV*NU, 1, H, why.overflow);
     }
     copy(NV*NU, H, H_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -4405,11 +4439,7 @@ int planar_redundant_inverse_kinematics(const prepared *m, const real *X, real *
         check(NJ, 1, q, why.overflow);
     }
     copy(NJ, q, q_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, q_out);
-    }
-    return code;
+    return settled(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -4438,11 +4468,7 @@ int planar_redundant_joint_rates(const prepared *m, const real *X, const real *V
         check(NJ, 1, qd, why.overflow);
     }
     copy(NJ, qd, qd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qd_out);
-    }
-    return code;
+    return settled(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -4475,11 +4501,7 @@ int planar_redundant_joint_accelerations(const prepared *m, const real *X, const
         check(NJ, 1, qdd, why.overflow);
     }
     copy(NJ, qdd, qdd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qdd_out);
-    }
-    return code;
+    return settled(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4516,13 +4538,9 @@ int planar_redundant_dynamics(const prepared *m, const real *X, const real *V, r
     copy(NV*NV, M, M_out);
     copy(NV, Z, Z_out);
     copy(NV*NU, H, H_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-        refuse(NV, Z_out);
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    settled(&why, NV*NV, M_out);
+    settled(&why, NV, Z_out);
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -4621,8 +4639,9 @@ static const real sizes_tau[] = {1.0, 4.0, 0.25, 4.0};
 int planar_redundant_inverse_dynamics(const prepared *m, const real *X, const real *V, const real
     *A, const real *wrench, real *tau_out)
 {
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, extend_1[4] = {0}, subtract_1[NV] = {0},
-        unsure_tau[1] = {0}, work[NV*PADDED(NV)];
+    static const real no_wrench[NW] = {0};
+    real required[NV] = {0}, H[NV*NU] = {0}, extend_1[4] = {0}, subtract_1[NV] = {0}, unsure_tau[1] =
+        {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
@@ -4631,7 +4650,7 @@ int planar_redundant_inverse_dynamics(const prepared *m, const real *X, const re
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < 4; ++i) {
         extend_1[i] = i < NW ? wrench[i] : 0;
@@ -4648,11 +4667,7 @@ int planar_redundant_inverse_dynamics(const prepared *m, const real *X, const re
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, tau_out);
-    }
-    return code;
+    return settled(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -4684,8 +4699,9 @@ static const real sizes_A[] = {4.0, 4.0, 0.25, 4.0};
 int planar_redundant_forward_dynamics(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out)
 {
-    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, extend_1[4] =
-        {0}, add_1[NV] = {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    static const real no_wrench[NW] = {0};
+    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, extend_1[4] = {0}, add_1[NV]
+        = {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
@@ -4694,7 +4710,7 @@ int planar_redundant_forward_dynamics(const prepared *m, const real *X, const re
         check(NV, 1, V, why.invalid);
         check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     for (size_t i = 0; i < 4; ++i) {
@@ -4715,11 +4731,7 @@ int planar_redundant_forward_dynamics(const prepared *m, const real *X, const re
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, A_out);
-    }
-    return code;
+    return settled(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4763,20 +4775,17 @@ int planar_redundant_complete_acceleration(const prepared *m, const real *X, con
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, completed_out);
-    }
-    return code;
+    return settled(&why, NV, completed_out);
 }
 
 int planar_redundant_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out)
 {
+    static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 0, 1, 2};
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, extend_1[4] = {0}, subtract_1[NV] = {0},
-        solve_1[NV] = {0}, unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[12] = {0},
-        forces[NL*NL] = {0}, work[NV*PADDED(NV)];
+    real required[NV] = {0}, H[NV*NU] = {0}, extend_1[4] = {0}, subtract_1[NV] = {0}, solve_1[NV] =
+        {0}, unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[12] = {0}, forces[NL*NL] = {0},
+        work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
@@ -4785,7 +4794,7 @@ int planar_redundant_leg_reactions(const prepared *m, const real *X, const real 
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < 4; ++i) {
         extend_1[i] = i < NW ? wrench[i] : 0;
@@ -4806,11 +4815,7 @@ int planar_redundant_leg_reactions(const prepared *m, const real *X, const real 
     add_forces(NV, 3, 1, places_forces, solve_1, actuator, forces);
     check(NL*NL, 1, forces, why.overflow);
     copy(NL*NL, forces, forces_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NL*NL, forces_out);
-    }
-    return code;
+    return settled(&why, NL*NL, forces_out);
 }
 
 int planar_redundant_energy(const prepared *m, const real *X, const real *V, real *kinetic_out,
@@ -4832,25 +4837,22 @@ int planar_redundant_energy(const prepared *m, const real *X, const real *V, rea
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, kinetic_out);
-        refuse(1, potential_out);
-    }
-    return code;
+    settled(&why, 1, kinetic_out);
+    return settled(&why, 1, potential_out);
 }
 
 int planar_redundant_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
     const real *length = NULL;
+    static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {2};
-    real length_in[1], H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
+        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, length, 0, length_in, why.invalid);
+    length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
@@ -4868,12 +4870,8 @@ int planar_redundant_condition(const prepared *m, const real *X, real *sigma_out
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, sigma_out);
-        refuse(NL, legs_out);
-    }
-    return code;
+    settled(&why, NV, sigma_out);
+    return settled(&why, NL, legs_out);
 }
 
 int planar_redundant_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -4907,12 +4905,8 @@ int planar_redundant_manipulability(const prepared *m, const real *X, real *meas
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, measure_out);
-        refuse(1, isotropy_out);
-    }
-    return code;
+    settled(&why, 1, measure_out);
+    return settled(&why, 1, isotropy_out);
 }
 
 int planar_redundant_singularity_distance(const prepared *m, const real *X, real *actuators_out,
@@ -4946,12 +4940,8 @@ int planar_redundant_singularity_distance(const prepared *m, const real *X, real
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, actuators_out);
-        refuse(1, legs_out);
-    }
-    return code;
+    settled(&why, 1, actuators_out);
+    return settled(&why, 1, legs_out);
 }
 
 static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
@@ -4976,11 +4966,7 @@ static int mismatch_one(const prepared *m, const real *X, const real *q_actuated
     wrap_turns(3, 1, places_gap, gap);
     check(NU, 1, gap, why.overflow);
     copy(NU, gap, gap_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, gap_out);
-    }
-    return code;
+    return settled(&why, NU, gap_out);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
@@ -4994,11 +4980,7 @@ static int slope_one(const prepared *m, const real *X, real *slope_out)
         check(NV*NU, 1, slope, why.overflow);
     }
     copy(NV*NU, slope, slope_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, slope_out);
-    }
-    return code;
+    return settled(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -5060,11 +5042,7 @@ int planar_redundant_forward_kinematics(const prepared *m, const real *q_actuate
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int planar_redundant_dissipation(const prepared *m, const real *X, const real *V, real
@@ -5082,11 +5060,7 @@ int planar_redundant_dissipation(const prepared *m, const real *X, const real *V
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, dissipation_out);
-    }
-    return code;
+    return settled(&why, 1, dissipation_out);
 }
 
 int planar_redundant_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
@@ -5103,11 +5077,7 @@ int planar_redundant_momentum(const prepared *m, const real *X, const real *V, r
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, momentum_out);
-    }
-    return code;
+    return settled(&why, NV, momentum_out);
 }
 
 int planar_redundant_joint_margins(const prepared *m, const real *X, real *margins_out)
@@ -5123,11 +5093,7 @@ int planar_redundant_joint_margins(const prepared *m, const real *X, real *margi
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, margins_out);
-    }
-    return code;
+    return settled(&why, NJ, margins_out);
 }
 
 int planar_redundant_within_limits(const prepared *m, const real *X, real *within_out)
@@ -5143,11 +5109,7 @@ int planar_redundant_within_limits(const prepared *m, const real *X, real *withi
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, within_out);
-    }
-    return code;
+    return settled(&why, 1, within_out);
 }
 
 int planar_redundant_actuator_positions(const prepared *m, const real *X, real *q_out)
@@ -5160,11 +5122,7 @@ int planar_redundant_actuator_positions(const prepared *m, const real *X, real *
     take(NU, 1, planar_redundant_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, q_out);
-    }
-    return code;
+    return settled(&why, NU, q_out);
 }
 
 int planar_redundant_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
@@ -5181,11 +5139,7 @@ int planar_redundant_actuator_rates(const prepared *m, const real *X, const real
     take(NU, 1, planar_redundant_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qd_out);
-    }
-    return code;
+    return settled(&why, NU, qd_out);
 }
 
 int planar_redundant_actuator_accelerations(const prepared *m, const real *X, const real *V, const
@@ -5204,11 +5158,7 @@ int planar_redundant_actuator_accelerations(const prepared *m, const real *X, co
     take(NU, 1, planar_redundant_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qdd_out);
-    }
-    return code;
+    return settled(&why, NU, qdd_out);
 }
 
 int planar_redundant_power(const prepared *m, const real *X, const real *V, const real *tau, real
@@ -5228,11 +5178,7 @@ int planar_redundant_power(const prepared *m, const real *X, const real *V, cons
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, power_out);
-    }
-    return code;
+    return settled(&why, 1, power_out);
 }
 
 int planar_redundant_rotation(const real *X, real *R_out)
@@ -5245,11 +5191,7 @@ int planar_redundant_rotation(const real *X, real *R_out)
     rotation_of_angle(X_from_2, R);
     check(4, 1, R, why.overflow);
     copy(4, R, R_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(4, R_out);
-    }
-    return code;
+    return settled(&why, 4, R_out);
 }
 
 int planar_redundant_pose(const real *t, const real *R, real *X_out)
@@ -5269,11 +5211,7 @@ int planar_redundant_pose(const real *t, const real *R, real *X_out)
     }
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int planar_redundant_X_dot(const real *X, const real *V, real *X_dot_out)
@@ -5288,11 +5226,7 @@ int planar_redundant_X_dot(const real *X, const real *V, real *X_dot_out)
     const real *const X_dot = V;
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_dot_out);
-    }
-    return code;
+    return settled(&why, NQ, X_dot_out);
 }
 
 int planar_redundant_retract(const real *X, const real *step, real *X_moved_out)
@@ -5310,11 +5244,7 @@ int planar_redundant_retract(const real *X, const real *step, real *X_moved_out)
     }
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_moved_out);
-    }
-    return code;
+    return settled(&why, NQ, X_moved_out);
 }
 
 int planar_redundant_difference(const real *X0, const real *X1, real *step_out)
@@ -5337,11 +5267,7 @@ int planar_redundant_difference(const real *X0, const real *X1, real *step_out)
     wrap_turns(1, 1, places_step, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, step_out);
-    }
-    return code;
+    return settled(&why, NV, step_out);
 }
 
 int planar_redundant_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
@@ -5371,11 +5297,7 @@ int planar_redundant_interpolate(const real *X0, const real *X1, const real *s, 
     }
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 /* ---- one state, and batches ---- */

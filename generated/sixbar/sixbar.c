@@ -232,15 +232,12 @@ INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *t
 }
 
 /* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
-INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+INLINE const real *optional(size_t size, const real *x, const real *none, real *flags)
 {
-    for (size_t e = 0; e < size && !x; ++e) {
-        own[e] = none;
-    }
     if (x) {
         check(size, 1, x, flags);
     }
-    return x ? x : own;
+    return x ? x : none;
 }
 
 INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
@@ -297,6 +294,16 @@ APART void refuse(size_t size, real *out)
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
     }
+}
+
+/* The status of a state; an output is refused where it is impossible. */
+INLINE int settled(const verdict *t, size_t size, real *out)
+{
+    const int code = judge(t);
+    if (code != OK) {
+        refuse(size, out);
+    }
+    return code;
 }
 
 /* Outputs of a state where the user wants them, and of states side by side, state by state. */
@@ -424,75 +431,75 @@ INLINE int all_planar_inertias(const real *x, size_t n)
 /* ---- parameters ---- */
 
 const sixbar_params sixbar_default_params = {
-    {R(0.0), R(-9.81), R(0.0)},  /* gravity */
+    {0, R(-9.81), 0},  /* gravity */
     R(4.0),  /* platform_mass */
-    {R(0.01), R(0.02), R(0.0)},  /* platform_centre_of_mass */
-    {{R(0.02), R(0.0), R(0.0)}, {R(0.0), R(0.02), R(0.0)}, {R(0.0), R(0.0), R(0.05)}},  /* platform_inertia */
+    {R(0.01), R(0.02), 0},  /* platform_centre_of_mass */
+    {{R(0.02), 0, 0}, {0, R(0.02), 0}, {0, 0, R(0.05)}},  /* platform_inertia */
     {  /* rrr_leg1_base_point */
-        {R(-0.06677122819457793), R(0.8313674931656788), R(0.0)},
+        {R(-0.06677122819457793), R(0.8313674931656788), 0},
     },
     {  /* rrr_leg1_base_frame */
-        {{R(-2.220446049250313e-16), R(1.0), R(0.0)}, {R(-1.0), R(-2.220446049250313e-16), R(0.0)}, {R(0.0), R(0.0), R(1.0)}},
+        {{R(-2.220446049250313e-16), 1, 0}, {R(-1.0), R(-2.220446049250313e-16), 0}, {0, 0, 1}},
     },
     {  /* rrr_leg1_platform_point */
-        {R(1.1021821192326179e-17), R(0.18), R(0.0)},
+        {R(1.1021821192326179e-17), R(0.18), 0},
     },
     {  /* rrr_leg1_joint2_offset */
-        {R(0.42), R(0.0), R(0.0)},
+        {R(0.42), 0, 0},
     },
     {  /* rrr_leg1_platform_joint_offset */
-        {R(0.4), R(0.0), R(0.0)},
+        {R(0.4), 0, 0},
     },
     {  /* rrr_leg1_link1_mass */
         R(1.5),
     },
     {  /* rrr_leg1_link1_centre_of_mass */
-        {R(0.21), R(0.0), R(0.0)},
+        {R(0.21), 0, 0},
     },
     {  /* rrr_leg1_link1_inertia */
-        {{R(0.0003), R(0.0), R(0.0)}, {R(0.0), R(0.022199999999999998), R(0.0)}, {R(0.0), R(0.0), R(0.022199999999999998)}},
+        {{R(0.0003), 0, 0}, {0, R(0.022199999999999998), 0}, {0, 0, R(0.022199999999999998)}},
     },
     {  /* rrr_leg1_link2_mass */
-        R(1.0),
+        1,
     },
     {  /* rrr_leg1_link2_centre_of_mass */
-        {R(0.2), R(0.0), R(0.0)},
+        {R(0.2), 0, 0},
     },
     {  /* rrr_leg1_link2_inertia */
-        {{R(0.0002), R(0.0), R(0.0)}, {R(0.0), R(0.013433333333333337), R(0.0)}, {R(0.0), R(0.0), R(0.013433333333333337)}},
+        {{R(0.0002), 0, 0}, {0, R(0.013433333333333337), 0}, {0, 0, R(0.013433333333333337)}},
     },
     {  /* rrr_base_point */
-        {R(0.12677122819457784), R(-0.871367493165679), R(0.0)},
+        {R(0.12677122819457784), R(-0.871367493165679), 0},
     },
     {  /* rrr_base_frame */
-        {{R(3.3306690738754696e-16), R(-1.0), R(0.0)}, {R(1.0), R(3.3306690738754696e-16), R(0.0)}, {R(0.0), R(0.0), R(1.0)}},
+        {{R(3.3306690738754696e-16), R(-1.0), 0}, {1, R(3.3306690738754696e-16), 0}, {0, 0, 1}},
     },
     {  /* rrr_platform_point */
-        {R(-3.306546357697853e-17), R(-0.18), R(0.0)},
+        {R(-3.306546357697853e-17), R(-0.18), 0},
     },
     {  /* rrr_joint2_offset */
-        {R(0.42), R(0.0), R(0.0)},
+        {R(0.42), 0, 0},
     },
     {  /* rrr_platform_joint_offset */
-        {R(0.4), R(0.0), R(0.0)},
+        {R(0.4), 0, 0},
     },
     {  /* rrr_link1_mass */
         R(1.5),
     },
     {  /* rrr_link1_centre_of_mass */
-        {R(0.21), R(0.0), R(0.0)},
+        {R(0.21), 0, 0},
     },
     {  /* rrr_link1_inertia */
-        {{R(0.0003), R(0.0), R(0.0)}, {R(0.0), R(0.022199999999999998), R(0.0)}, {R(0.0), R(0.0), R(0.022199999999999998)}},
+        {{R(0.0003), 0, 0}, {0, R(0.022199999999999998), 0}, {0, 0, R(0.022199999999999998)}},
     },
     {  /* rrr_link2_mass */
-        R(1.0),
+        1,
     },
     {  /* rrr_link2_centre_of_mass */
-        {R(0.2), R(0.0), R(0.0)},
+        {R(0.2), 0, 0},
     },
     {  /* rrr_link2_inertia */
-        {{R(0.0002), R(0.0), R(0.0)}, {R(0.0), R(0.013433333333333337), R(0.0)}, {R(0.0), R(0.0), R(0.013433333333333337)}},
+        {{R(0.0002), 0, 0}, {0, R(0.013433333333333337), 0}, {0, 0, R(0.013433333333333337)}},
     },
 };
 
@@ -569,6 +576,9 @@ static int acceptable(const sixbar_params *p)
     return ok;
 }
 
+#define KEEP(name) model->name = name
+#define KEEP_OF_LEG(name) model->name[leg] = name
+
 int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
 {
     if (!acceptable(params)) {
@@ -600,8 +610,8 @@ int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
     const real J_star_t_2 = J_star_t + platform_centre_of_mass_x*platform_centre_of_mass_x;
     const real J_star_t_3 = J_star_t*platform_mass;
     const real J_star_t_4 = J_star_t_2*platform_mass;
-    model->gravity_x = gravity_x;
-    model->gravity_y = gravity_y;
+    KEEP(gravity_x);
+    KEEP(gravity_y);
     for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
         const size_t own = leg;
         const real rrr_leg1_base_point_x = params->rrr_leg1_base_point[own][0];
@@ -703,43 +713,43 @@ int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
             rrr_leg1_base_frame_yx*rrr_leg1_base_point_y;
         const real rrr_leg1_potential_t_2 = rrr_leg1_base_frame_xy*rrr_leg1_base_point_x +
             rrr_leg1_base_frame_yy*rrr_leg1_base_point_y;
-        model->inv_rrr_leg1_rho2_1_t[leg] = inv_rrr_leg1_rho2_1_t;
-        model->inv_rrr_leg1_size[leg] = inv_rrr_leg1_size;
-        model->inv_rrr_leg1_size_t[leg] = inv_rrr_leg1_size_t;
-        model->inv_rrr_leg1_size_t_2[leg] = inv_rrr_leg1_size_t_2;
-        model->rrr_leg1_J_1_in_spec1_zz[leg] = rrr_leg1_J_1_in_spec1_zz;
-        model->rrr_leg1_J_2_in_spec2_zz[leg] = rrr_leg1_J_2_in_spec2_zz;
-        model->rrr_leg1_Jc_1_in_axes1_zz[leg] = rrr_leg1_Jc_1_in_axes1_zz;
-        model->rrr_leg1_Kd_1_t[leg] = rrr_leg1_Kd_1_t;
-        model->rrr_leg1_Kd_1_t_2[leg] = rrr_leg1_Kd_1_t_2;
-        model->rrr_leg1_base_frame_xx[leg] = rrr_leg1_base_frame_xx;
-        model->rrr_leg1_base_frame_xy[leg] = rrr_leg1_base_frame_xy;
-        model->rrr_leg1_base_frame_yx[leg] = rrr_leg1_base_frame_yx;
-        model->rrr_leg1_base_frame_yy[leg] = rrr_leg1_base_frame_yy;
-        model->rrr_leg1_base_point_x[leg] = rrr_leg1_base_point_x;
-        model->rrr_leg1_base_point_y[leg] = rrr_leg1_base_point_y;
-        model->rrr_leg1_branch_1[leg] = rrr_leg1_branch_1;
-        model->rrr_leg1_d_Gamma_2_in_axes2_y[leg] = rrr_leg1_d_Gamma_2_in_axes2_y;
-        model->rrr_leg1_d_Gamma_2_t[leg] = rrr_leg1_d_Gamma_2_t;
-        model->rrr_leg1_d_c_in_axes2_yy[leg] = rrr_leg1_d_c_in_axes2_yy;
-        model->rrr_leg1_d_phi_2_t[leg] = rrr_leg1_d_phi_2_t;
-        model->rrr_leg1_h_1_in_spec1_x[leg] = rrr_leg1_h_1_in_spec1_x;
-        model->rrr_leg1_h_1_in_spec1_y[leg] = rrr_leg1_h_1_in_spec1_y;
-        model->rrr_leg1_h_2_in_spec2_x[leg] = rrr_leg1_h_2_in_spec2_x;
-        model->rrr_leg1_h_2_in_spec2_y[leg] = rrr_leg1_h_2_in_spec2_y;
-        model->rrr_leg1_joint2_offset_x[leg] = rrr_leg1_joint2_offset_x;
-        model->rrr_leg1_link1_mass[leg] = rrr_leg1_link1_mass;
-        model->rrr_leg1_link2_mass[leg] = rrr_leg1_link2_mass;
-        model->rrr_leg1_mu_1_t[leg] = rrr_leg1_mu_1_t;
-        model->rrr_leg1_mu_1_t_2[leg] = rrr_leg1_mu_1_t_2;
-        model->rrr_leg1_platform_joint_offset_x[leg] = rrr_leg1_platform_joint_offset_x;
-        model->rrr_leg1_platform_point_x[leg] = rrr_leg1_platform_point_x;
-        model->rrr_leg1_platform_point_y[leg] = rrr_leg1_platform_point_y;
-        model->rrr_leg1_potential_t[leg] = rrr_leg1_potential_t;
-        model->rrr_leg1_potential_t_2[leg] = rrr_leg1_potential_t_2;
-        model->rrr_leg1_rho2_1_t[leg] = rrr_leg1_rho2_1_t;
-        model->rrr_leg1_size[leg] = rrr_leg1_size;
-        model->rrr_leg1_w_2_in_axes2_y[leg] = rrr_leg1_w_2_in_axes2_y;
+        KEEP_OF_LEG(inv_rrr_leg1_rho2_1_t);
+        KEEP_OF_LEG(inv_rrr_leg1_size);
+        KEEP_OF_LEG(inv_rrr_leg1_size_t);
+        KEEP_OF_LEG(inv_rrr_leg1_size_t_2);
+        KEEP_OF_LEG(rrr_leg1_J_1_in_spec1_zz);
+        KEEP_OF_LEG(rrr_leg1_J_2_in_spec2_zz);
+        KEEP_OF_LEG(rrr_leg1_Jc_1_in_axes1_zz);
+        KEEP_OF_LEG(rrr_leg1_Kd_1_t);
+        KEEP_OF_LEG(rrr_leg1_Kd_1_t_2);
+        KEEP_OF_LEG(rrr_leg1_base_frame_xx);
+        KEEP_OF_LEG(rrr_leg1_base_frame_xy);
+        KEEP_OF_LEG(rrr_leg1_base_frame_yx);
+        KEEP_OF_LEG(rrr_leg1_base_frame_yy);
+        KEEP_OF_LEG(rrr_leg1_base_point_x);
+        KEEP_OF_LEG(rrr_leg1_base_point_y);
+        KEEP_OF_LEG(rrr_leg1_branch_1);
+        KEEP_OF_LEG(rrr_leg1_d_Gamma_2_in_axes2_y);
+        KEEP_OF_LEG(rrr_leg1_d_Gamma_2_t);
+        KEEP_OF_LEG(rrr_leg1_d_c_in_axes2_yy);
+        KEEP_OF_LEG(rrr_leg1_d_phi_2_t);
+        KEEP_OF_LEG(rrr_leg1_h_1_in_spec1_x);
+        KEEP_OF_LEG(rrr_leg1_h_1_in_spec1_y);
+        KEEP_OF_LEG(rrr_leg1_h_2_in_spec2_x);
+        KEEP_OF_LEG(rrr_leg1_h_2_in_spec2_y);
+        KEEP_OF_LEG(rrr_leg1_joint2_offset_x);
+        KEEP_OF_LEG(rrr_leg1_link1_mass);
+        KEEP_OF_LEG(rrr_leg1_link2_mass);
+        KEEP_OF_LEG(rrr_leg1_mu_1_t);
+        KEEP_OF_LEG(rrr_leg1_mu_1_t_2);
+        KEEP_OF_LEG(rrr_leg1_platform_joint_offset_x);
+        KEEP_OF_LEG(rrr_leg1_platform_point_x);
+        KEEP_OF_LEG(rrr_leg1_platform_point_y);
+        KEEP_OF_LEG(rrr_leg1_potential_t);
+        KEEP_OF_LEG(rrr_leg1_potential_t_2);
+        KEEP_OF_LEG(rrr_leg1_rho2_1_t);
+        KEEP_OF_LEG(rrr_leg1_size);
+        KEEP_OF_LEG(rrr_leg1_w_2_in_axes2_y);
         m_star_of_legs += rrr_leg1_link2_mass;
         h_star_in_platform_x_of_legs += rrr_leg1_h_star_t;
         h_star_in_platform_y_of_legs += rrr_leg1_h_star_t_2;
@@ -839,43 +849,43 @@ int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
             rrr_base_frame_yx*rrr_base_point_y;
         const real rrr_potential_t_2 = rrr_base_frame_xy*rrr_base_point_x +
             rrr_base_frame_yy*rrr_base_point_y;
-        model->inv_rrr_rho2_1_t[leg] = inv_rrr_rho2_1_t;
-        model->inv_rrr_size[leg] = inv_rrr_size;
-        model->inv_rrr_size_t[leg] = inv_rrr_size_t;
-        model->inv_rrr_size_t_2[leg] = inv_rrr_size_t_2;
-        model->rrr_J_1_in_spec1_zz[leg] = rrr_J_1_in_spec1_zz;
-        model->rrr_J_2_in_spec2_zz[leg] = rrr_J_2_in_spec2_zz;
-        model->rrr_Jc_1_in_axes1_zz[leg] = rrr_Jc_1_in_axes1_zz;
-        model->rrr_Kd_1_t[leg] = rrr_Kd_1_t;
-        model->rrr_Kd_1_t_2[leg] = rrr_Kd_1_t_2;
-        model->rrr_base_frame_xx[leg] = rrr_base_frame_xx;
-        model->rrr_base_frame_xy[leg] = rrr_base_frame_xy;
-        model->rrr_base_frame_yx[leg] = rrr_base_frame_yx;
-        model->rrr_base_frame_yy[leg] = rrr_base_frame_yy;
-        model->rrr_base_point_x[leg] = rrr_base_point_x;
-        model->rrr_base_point_y[leg] = rrr_base_point_y;
-        model->rrr_branch_1[leg] = rrr_branch_1;
-        model->rrr_d_Gamma_2_in_axes2_y[leg] = rrr_d_Gamma_2_in_axes2_y;
-        model->rrr_d_Gamma_2_t[leg] = rrr_d_Gamma_2_t;
-        model->rrr_d_c_in_axes2_yy[leg] = rrr_d_c_in_axes2_yy;
-        model->rrr_d_phi_2_t[leg] = rrr_d_phi_2_t;
-        model->rrr_h_1_in_spec1_x[leg] = rrr_h_1_in_spec1_x;
-        model->rrr_h_1_in_spec1_y[leg] = rrr_h_1_in_spec1_y;
-        model->rrr_h_2_in_spec2_x[leg] = rrr_h_2_in_spec2_x;
-        model->rrr_h_2_in_spec2_y[leg] = rrr_h_2_in_spec2_y;
-        model->rrr_joint2_offset_x[leg] = rrr_joint2_offset_x;
-        model->rrr_link1_mass[leg] = rrr_link1_mass;
-        model->rrr_link2_mass[leg] = rrr_link2_mass;
-        model->rrr_mu_1_t[leg] = rrr_mu_1_t;
-        model->rrr_mu_1_t_2[leg] = rrr_mu_1_t_2;
-        model->rrr_platform_joint_offset_x[leg] = rrr_platform_joint_offset_x;
-        model->rrr_platform_point_x[leg] = rrr_platform_point_x;
-        model->rrr_platform_point_y[leg] = rrr_platform_point_y;
-        model->rrr_potential_t[leg] = rrr_potential_t;
-        model->rrr_potential_t_2[leg] = rrr_potential_t_2;
-        model->rrr_rho2_1_t[leg] = rrr_rho2_1_t;
-        model->rrr_size[leg] = rrr_size;
-        model->rrr_w_2_in_axes2_y[leg] = rrr_w_2_in_axes2_y;
+        KEEP_OF_LEG(inv_rrr_rho2_1_t);
+        KEEP_OF_LEG(inv_rrr_size);
+        KEEP_OF_LEG(inv_rrr_size_t);
+        KEEP_OF_LEG(inv_rrr_size_t_2);
+        KEEP_OF_LEG(rrr_J_1_in_spec1_zz);
+        KEEP_OF_LEG(rrr_J_2_in_spec2_zz);
+        KEEP_OF_LEG(rrr_Jc_1_in_axes1_zz);
+        KEEP_OF_LEG(rrr_Kd_1_t);
+        KEEP_OF_LEG(rrr_Kd_1_t_2);
+        KEEP_OF_LEG(rrr_base_frame_xx);
+        KEEP_OF_LEG(rrr_base_frame_xy);
+        KEEP_OF_LEG(rrr_base_frame_yx);
+        KEEP_OF_LEG(rrr_base_frame_yy);
+        KEEP_OF_LEG(rrr_base_point_x);
+        KEEP_OF_LEG(rrr_base_point_y);
+        KEEP_OF_LEG(rrr_branch_1);
+        KEEP_OF_LEG(rrr_d_Gamma_2_in_axes2_y);
+        KEEP_OF_LEG(rrr_d_Gamma_2_t);
+        KEEP_OF_LEG(rrr_d_c_in_axes2_yy);
+        KEEP_OF_LEG(rrr_d_phi_2_t);
+        KEEP_OF_LEG(rrr_h_1_in_spec1_x);
+        KEEP_OF_LEG(rrr_h_1_in_spec1_y);
+        KEEP_OF_LEG(rrr_h_2_in_spec2_x);
+        KEEP_OF_LEG(rrr_h_2_in_spec2_y);
+        KEEP_OF_LEG(rrr_joint2_offset_x);
+        KEEP_OF_LEG(rrr_link1_mass);
+        KEEP_OF_LEG(rrr_link2_mass);
+        KEEP_OF_LEG(rrr_mu_1_t);
+        KEEP_OF_LEG(rrr_mu_1_t_2);
+        KEEP_OF_LEG(rrr_platform_joint_offset_x);
+        KEEP_OF_LEG(rrr_platform_point_x);
+        KEEP_OF_LEG(rrr_platform_point_y);
+        KEEP_OF_LEG(rrr_potential_t);
+        KEEP_OF_LEG(rrr_potential_t_2);
+        KEEP_OF_LEG(rrr_rho2_1_t);
+        KEEP_OF_LEG(rrr_size);
+        KEEP_OF_LEG(rrr_w_2_in_axes2_y);
         m_star_of_legs += rrr_link2_mass;
         h_star_in_platform_x_of_legs += rrr_h_star_t;
         h_star_in_platform_y_of_legs += rrr_h_star_t_2;
@@ -905,15 +915,15 @@ int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
         R(0.5)*b_c_rrr_leg1_in_platform_y;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = root(R(0.5)*legs_size_rrr + R(0.5)*legs_size_rrr_leg1);
-    model->J_star_zz = J_star_zz;
-    model->Z_p_t = Z_p_t;
-    model->Z_p_t_2 = Z_p_t_2;
-    model->b_c_in_platform_x = b_c_in_platform_x;
-    model->b_c_in_platform_y = b_c_in_platform_y;
-    model->h_star_in_platform_x = h_star_in_platform_x;
-    model->h_star_in_platform_y = h_star_in_platform_y;
-    model->legs_size = legs_size;
-    model->m_star = m_star;
+    KEEP(J_star_zz);
+    KEEP(Z_p_t);
+    KEEP(Z_p_t_2);
+    KEEP(b_c_in_platform_x);
+    KEEP(b_c_in_platform_y);
+    KEEP(h_star_in_platform_x);
+    KEEP(h_star_in_platform_y);
+    KEEP(legs_size);
+    KEEP(m_star);
     return OK;
 }
 
@@ -1402,13 +1412,13 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rrr_q_x = R_xx*m->rrr_platform_point_x[i] - R_yx*m->rrr_platform_point_y[i];
     const real rrr_q_y = R_xx*m->rrr_platform_point_y[i] + R_yx*m->rrr_platform_point_x[i];
     const real t_x = X[0*w + j];
-    const real rrr_S_x = rrr_q_x + t_x - m->rrr_base_point_x[i];
+    const real rrr_S_x = t_x - m->rrr_base_point_x[i] + rrr_q_x;
     const real t_y = X[1*w + j];
-    const real rrr_S_y = rrr_q_y + t_y - m->rrr_base_point_y[i];
+    const real rrr_S_y = t_y - m->rrr_base_point_y[i] + rrr_q_y;
     /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 1 */
     const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-    const real rrr_Kd_1 = m->rrr_Kd_1_t[i] + R(0.5)*rrr_Kd_1_t_3 - m->rrr_Kd_1_t_2[i];
+    const real rrr_Kd_1 = m->rrr_Kd_1_t[i] - m->rrr_Kd_1_t_2[i] + R(0.5)*rrr_Kd_1_t_3;
     /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
     const real rrr_Kc_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xx[i] +
         rrr_S_y*m->rrr_base_frame_yx[i]);
@@ -1425,7 +1435,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
     const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
     /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+    const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kd_1*rrr_Ks_1 + rrr_Kc_1*rrr_root_1);
     /* (rrr-x_2) from the origin of joint 2 to the connection point */
     const real rrr_x_2_in_axes1_x = m->inv_rrr_size_t[i]*rrr_Kd_1*m->rrr_joint2_offset_x[i] -
         m->rrr_joint2_offset_x[i];
@@ -1442,7 +1452,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
     const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
     /* (rrr-w_1) reciprocal vector 1 */
-    const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+    const real rrr_w_1_t = rrr_c_2*rrr_s_1 + rrr_c_1*rrr_s_2;
     const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
     const real axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*rrr_w_1_t_2 -
         m->rrr_base_frame_xx[i]*rrr_w_1_t;
@@ -1452,7 +1462,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x;
     const real rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x;
     /* (rrr-qd_1) rate of joint 1 */
-    const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+    const real rrr_qd_1_t = rrr_c_2*rrr_s_1 + rrr_c_1*rrr_s_2;
     const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
     v->rrr_q_x = rrr_q_x;
     v->rrr_q_y = rrr_q_y;
@@ -1499,7 +1509,7 @@ INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real t_dot_x = V[0*w + j];
     const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
     const real t_dot_y = V[1*w + j];
-    const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
+    const real rrr_S_dot_y = t_dot_y + rrr_S_dot_t_2;
     /* (rrr-qd_1) rate of joint 1 */
     const real rrr_qd_1 = v->rrr_w_1_in_axes2_x*(v->axis_x_rrr_axes2_x*rrr_S_dot_x -
         v->axis_y_rrr_axes2_x*rrr_S_dot_y);
@@ -1512,8 +1522,8 @@ INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     /* (rrr-W_2) centripetal tensor of link 2 */
     const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
     /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_bias_in_axes2_x = -rrr_W_2_t*m->rrr_platform_joint_offset_x[i] -
-        rrr_W_1_t*v->rrr_c_2*m->rrr_joint2_offset_x[i];
+    const real rrr_bias_in_axes2_x = -rrr_W_1_t*v->rrr_c_2*m->rrr_joint2_offset_x[i] -
+        rrr_W_2_t*m->rrr_platform_joint_offset_x[i];
     v->rrr_S_dot_t = rrr_S_dot_t;
     v->rrr_S_dot_t_2 = rrr_S_dot_t_2;
     v->rrr_S_dot_x = rrr_S_dot_x;
@@ -1584,15 +1594,15 @@ INLINE void stage_rrr_inverse_kinematics_potential(const prepared *m, size_t w, 
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
     const real t_x = X[0*w + j];
-    const real rrr_S_x = t_x + R_xx*m->rrr_platform_point_x[i] - m->rrr_base_point_x[i] -
+    const real rrr_S_x = t_x - m->rrr_base_point_x[i] + R_xx*m->rrr_platform_point_x[i] -
         R_yx*m->rrr_platform_point_y[i];
     const real t_y = X[1*w + j];
-    const real rrr_S_y = t_y + R_xx*m->rrr_platform_point_y[i] +
-        R_yx*m->rrr_platform_point_x[i] - m->rrr_base_point_y[i];
+    const real rrr_S_y = t_y - m->rrr_base_point_y[i] + R_xx*m->rrr_platform_point_y[i] +
+        R_yx*m->rrr_platform_point_x[i];
     /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
        joint 1 */
     const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-    const real rrr_Kd_1 = m->rrr_Kd_1_t[i] + R(0.5)*rrr_Kd_1_t_3 - m->rrr_Kd_1_t_2[i];
+    const real rrr_Kd_1 = m->rrr_Kd_1_t[i] - m->rrr_Kd_1_t_2[i] + R(0.5)*rrr_Kd_1_t_3;
     /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
     const real rrr_Kc_1 = m->rrr_joint2_offset_x[i]*(rrr_S_x*m->rrr_base_frame_xx[i] +
         rrr_S_y*m->rrr_base_frame_yx[i]);
@@ -1637,19 +1647,19 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
     const real rrr_alpha_2_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_in_axes2_y +
         rrr_B_1_in_axes1_xy*v->rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
     /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
-    const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x +
-        v->axis_y_rrr_axes2_x*m->gravity_y - v->axis_x_rrr_axes2_x*m->gravity_x;
+    const real rrr_acc_2_in_axes2_x = v->axis_y_rrr_axes2_x*m->gravity_y -
+        v->axis_x_rrr_axes2_x*m->gravity_x + rrr_S_ddot_in_axes2_x;
     const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y -
         v->axis_x_rrr_axes2_x*m->gravity_y - v->axis_y_rrr_axes2_x*m->gravity_x;
     /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real rrr_mu_2_in_axes2_z = m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_in_axes2_z +
-        rrr_acc_2_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
-        rrr_acc_2_in_axes2_x*m->rrr_h_2_in_spec2_y[i];
+    const real rrr_mu_2_in_axes2_z = rrr_acc_2_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
+        rrr_acc_2_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
+        m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_in_axes2_z;
     /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
     const real rrr_mu_1_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v->rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*v->rrr_s_1) - rrr_B_1_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i] -
-        m->rrr_h_1_in_spec1_x[i]*(v->rrr_c_1*m->rrr_mu_1_t_2[i] -
-        m->rrr_mu_1_t[i]*v->rrr_s_1);
+        m->rrr_mu_1_t_2[i]*v->rrr_s_1) -
+        m->rrr_h_1_in_spec1_x[i]*(v->rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v->rrr_s_1)
+        - rrr_B_1_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i];
     /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
     const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
@@ -1661,8 +1671,8 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
     const real rrr_c_in_axes2_x = v->rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
         rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
         v->rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*v->rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
-    const real rrr_c_in_axes2_y = v->rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] - rrr_G_in_axes2_y -
-        rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_x[i];
+    const real rrr_c_in_axes2_y = v->rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
+        rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_in_axes2_y;
     v->rrr_acc_2_in_axes2_x = rrr_acc_2_in_axes2_x;
     v->rrr_acc_2_in_axes2_y = rrr_acc_2_in_axes2_y;
     v->rrr_c_in_axes2_x = rrr_c_in_axes2_x;
@@ -1695,14 +1705,14 @@ INLINE void stage_rrr_leg1_X(const prepared *m, size_t w, size_t i, size_t j, co
     const real rrr_leg1_q_y = R_xx*m->rrr_leg1_platform_point_y[i] +
         R_yx*m->rrr_leg1_platform_point_x[i];
     const real t_x = X[0*w + j];
-    const real rrr_leg1_S_x = rrr_leg1_q_x + t_x - m->rrr_leg1_base_point_x[i];
+    const real rrr_leg1_S_x = t_x - m->rrr_leg1_base_point_x[i] + rrr_leg1_q_x;
     const real t_y = X[1*w + j];
-    const real rrr_leg1_S_y = rrr_leg1_q_y + t_y - m->rrr_leg1_base_point_y[i];
+    const real rrr_leg1_S_y = t_y - m->rrr_leg1_base_point_y[i] + rrr_leg1_q_y;
     /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
        beyond joint 1 */
     const real rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
-    const real rrr_leg1_Kd_1 = m->rrr_leg1_Kd_1_t[i] + R(0.5)*rrr_leg1_Kd_1_t_3 -
-        m->rrr_leg1_Kd_1_t_2[i];
+    const real rrr_leg1_Kd_1 = m->rrr_leg1_Kd_1_t[i] - m->rrr_leg1_Kd_1_t_2[i] +
+        R(0.5)*rrr_leg1_Kd_1_t_3;
     /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
     const real rrr_leg1_Kc_1 =
         m->rrr_leg1_joint2_offset_x[i]*(rrr_leg1_S_x*m->rrr_leg1_base_frame_xx[i] +
@@ -1722,8 +1732,8 @@ INLINE void stage_rrr_leg1_X(const prepared *m, size_t w, size_t i, size_t j, co
     const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
         rrr_leg1_Ks_1*rrr_leg1_root_1);
     /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
-        rrr_leg1_Kd_1*rrr_leg1_Ks_1);
+    const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kd_1*rrr_leg1_Ks_1 +
+        rrr_leg1_Kc_1*rrr_leg1_root_1);
     /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
     const real rrr_leg1_x_2_in_axes1_x =
         m->inv_rrr_leg1_size_t[i]*rrr_leg1_Kd_1*m->rrr_leg1_joint2_offset_x[i] -
@@ -1743,7 +1753,7 @@ INLINE void stage_rrr_leg1_X(const prepared *m, size_t w, size_t i, size_t j, co
     const real rrr_leg1_r_1_in_axes2_y = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y -
         rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2;
     /* (rrr_leg1-w_1) reciprocal vector 1 */
-    const real rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1;
+    const real rrr_leg1_w_1_t = rrr_leg1_c_2*rrr_leg1_s_1 + rrr_leg1_c_1*rrr_leg1_s_2;
     const real rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2;
     const real axis_y_rrr_leg1_axes2_x = m->rrr_leg1_base_frame_xy[i]*rrr_leg1_w_1_t_2 -
         m->rrr_leg1_base_frame_xx[i]*rrr_leg1_w_1_t;
@@ -1755,14 +1765,14 @@ INLINE void stage_rrr_leg1_X(const prepared *m, size_t w, size_t i, size_t j, co
     /* (rrr_leg1-w_2) reciprocal vector 2 */
     const real rrr_leg1_w_2_in_axes2_x =
         -rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i];
-    const real rrr_leg1_w_2_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
-        axis_y_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i];
+    const real rrr_leg1_w_2_x = axis_y_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i] +
+        axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x;
     const real rrr_leg1_w_2_y = axis_x_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i] -
         axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x;
     /* (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin */
     const real rrr_leg1_H_a_1_z = rrr_leg1_q_x*rrr_leg1_w_1_y - rrr_leg1_q_y*rrr_leg1_w_1_x;
     /* (rrr_leg1-qd_1) rate of joint 1 */
-    const real rrr_leg1_qd_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1;
+    const real rrr_leg1_qd_1_t = rrr_leg1_c_2*rrr_leg1_s_1 + rrr_leg1_c_1*rrr_leg1_s_2;
     const real rrr_leg1_qd_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2;
     v->rrr_leg1_q_x = rrr_leg1_q_x;
     v->rrr_leg1_q_y = rrr_leg1_q_y;
@@ -1811,7 +1821,7 @@ INLINE void stage_rrr_leg1_V_X(const prepared *m, size_t w, size_t i, size_t j, 
     const real t_dot_x = V[0*w + j];
     const real rrr_leg1_S_dot_x = t_dot_x - rrr_leg1_S_dot_t;
     const real t_dot_y = V[1*w + j];
-    const real rrr_leg1_S_dot_y = rrr_leg1_S_dot_t_2 + t_dot_y;
+    const real rrr_leg1_S_dot_y = t_dot_y + rrr_leg1_S_dot_t_2;
     /* (rrr_leg1-qd_1) rate of joint 1 */
     const real rrr_leg1_qd_1 =
         v->rrr_leg1_w_1_in_axes2_x*(v->axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_x -
@@ -1827,8 +1837,8 @@ INLINE void stage_rrr_leg1_V_X(const prepared *m, size_t w, size_t i, size_t j, 
     const real rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z;
     /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
     const real rrr_leg1_bias_in_axes2_x =
-        -rrr_leg1_W_2_t*m->rrr_leg1_platform_joint_offset_x[i] -
-        rrr_leg1_W_1_t*v->rrr_leg1_c_2*m->rrr_leg1_joint2_offset_x[i];
+        -rrr_leg1_W_1_t*v->rrr_leg1_c_2*m->rrr_leg1_joint2_offset_x[i] -
+        rrr_leg1_W_2_t*m->rrr_leg1_platform_joint_offset_x[i];
     v->rrr_leg1_S_dot_t = rrr_leg1_S_dot_t;
     v->rrr_leg1_S_dot_t_2 = rrr_leg1_S_dot_t_2;
     v->rrr_leg1_S_dot_x = rrr_leg1_S_dot_x;
@@ -1854,8 +1864,8 @@ INLINE void stage_rrr_leg1_H_condition(const prepared *m, size_t i, values_rrr_l
     const real rrr_leg1_w_2_in_axes2_x =
         -v->rrr_leg1_w_1_in_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i]*(v->rrr_leg1_c_2*v->rrr_leg1_r_1_in_axes1_x
         + v->rrr_leg1_r_1_in_axes1_y*v->rrr_leg1_s_2);
-    const real rrr_leg1_w_2_x = v->axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
-        v->axis_y_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i];
+    const real rrr_leg1_w_2_x = v->axis_y_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i] +
+        v->axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x;
     const real rrr_leg1_w_2_y = v->axis_x_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i] -
         v->axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x;
     /* (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin */
@@ -1896,16 +1906,16 @@ INLINE void stage_rrr_leg1_inverse_kinematics_potential(const prepared *m, size_
     const real R_xx = s[0*w + j];
     const real R_yx = s[1*w + j];
     const real t_x = X[0*w + j];
-    const real rrr_leg1_S_x = t_x + R_xx*m->rrr_leg1_platform_point_x[i] -
-        m->rrr_leg1_base_point_x[i] - R_yx*m->rrr_leg1_platform_point_y[i];
+    const real rrr_leg1_S_x = t_x - m->rrr_leg1_base_point_x[i] +
+        R_xx*m->rrr_leg1_platform_point_x[i] - R_yx*m->rrr_leg1_platform_point_y[i];
     const real t_y = X[1*w + j];
-    const real rrr_leg1_S_y = t_y + R_xx*m->rrr_leg1_platform_point_y[i] +
-        R_yx*m->rrr_leg1_platform_point_x[i] - m->rrr_leg1_base_point_y[i];
+    const real rrr_leg1_S_y = t_y - m->rrr_leg1_base_point_y[i] +
+        R_xx*m->rrr_leg1_platform_point_y[i] + R_yx*m->rrr_leg1_platform_point_x[i];
     /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
        beyond joint 1 */
     const real rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
-    const real rrr_leg1_Kd_1 = m->rrr_leg1_Kd_1_t[i] + R(0.5)*rrr_leg1_Kd_1_t_3 -
-        m->rrr_leg1_Kd_1_t_2[i];
+    const real rrr_leg1_Kd_1 = m->rrr_leg1_Kd_1_t[i] - m->rrr_leg1_Kd_1_t_2[i] +
+        R(0.5)*rrr_leg1_Kd_1_t_3;
     /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
     const real rrr_leg1_Kc_1 =
         m->rrr_leg1_joint2_offset_x[i]*(rrr_leg1_S_x*m->rrr_leg1_base_frame_xx[i] +
@@ -1955,24 +1965,24 @@ INLINE void stage_rrr_leg1_legs_required(const prepared *m, size_t i, values_rrr
         m->rrr_leg1_w_2_in_axes2_y[i]*(rrr_leg1_rel_in_axes2_y +
         rrr_leg1_B_1_in_axes1_xy*v->rrr_leg1_r_1_in_axes2_x) - rrr_leg1_B_1_in_axes1_xy;
     /* (rrr_leg1-acc_2) acceleration of the reference point of link 2, less gravity */
-    const real rrr_leg1_acc_2_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x +
-        v->axis_y_rrr_leg1_axes2_x*m->gravity_y - v->axis_x_rrr_leg1_axes2_x*m->gravity_x;
+    const real rrr_leg1_acc_2_in_axes2_x = v->axis_y_rrr_leg1_axes2_x*m->gravity_y -
+        v->axis_x_rrr_leg1_axes2_x*m->gravity_x + rrr_leg1_S_ddot_in_axes2_x;
     const real rrr_leg1_acc_2_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y -
         v->axis_x_rrr_leg1_axes2_x*m->gravity_y - v->axis_y_rrr_leg1_axes2_x*m->gravity_x;
     /* (rrr_leg1-mu_2) inertia moment of the links that turn with link 2, about their reference points
        */
     const real rrr_leg1_mu_2_in_axes2_z =
-        m->rrr_leg1_J_2_in_spec2_zz[i]*rrr_leg1_alpha_2_in_axes2_z +
         rrr_leg1_acc_2_in_axes2_y*m->rrr_leg1_h_2_in_spec2_x[i] -
-        rrr_leg1_acc_2_in_axes2_x*m->rrr_leg1_h_2_in_spec2_y[i];
+        rrr_leg1_acc_2_in_axes2_x*m->rrr_leg1_h_2_in_spec2_y[i] +
+        m->rrr_leg1_J_2_in_spec2_zz[i]*rrr_leg1_alpha_2_in_axes2_z;
     /* (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
        */
     const real rrr_leg1_mu_1_in_axes1_z =
         m->rrr_leg1_h_1_in_spec1_y[i]*(v->rrr_leg1_c_1*m->rrr_leg1_mu_1_t[i] +
         m->rrr_leg1_mu_1_t_2[i]*v->rrr_leg1_s_1) -
-        rrr_leg1_B_1_in_axes1_xy*m->rrr_leg1_J_1_in_spec1_zz[i] -
         m->rrr_leg1_h_1_in_spec1_x[i]*(v->rrr_leg1_c_1*m->rrr_leg1_mu_1_t_2[i] -
-        m->rrr_leg1_mu_1_t[i]*v->rrr_leg1_s_1);
+        m->rrr_leg1_mu_1_t[i]*v->rrr_leg1_s_1) -
+        rrr_leg1_B_1_in_axes1_xy*m->rrr_leg1_J_1_in_spec1_zz[i];
     /* (rrr_leg1-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection
        point left out */
     const real rrr_leg1_N_1_in_axes1_z = rrr_leg1_mu_1_in_axes1_z + rrr_leg1_mu_2_in_axes2_z;
@@ -1986,7 +1996,7 @@ INLINE void stage_rrr_leg1_legs_required(const prepared *m, size_t i, values_rrr
         v->rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_in_axes2_y*v->rrr_leg1_r_1_in_axes2_x -
         rrr_leg1_N_1_in_axes1_z);
     const real rrr_leg1_c_in_axes2_y = v->rrr_leg1_W_2_t*m->rrr_leg1_h_2_in_spec2_y[i] -
-        rrr_leg1_G_in_axes2_y - rrr_leg1_alpha_2_in_axes2_z*m->rrr_leg1_h_2_in_spec2_x[i];
+        rrr_leg1_alpha_2_in_axes2_z*m->rrr_leg1_h_2_in_spec2_x[i] - rrr_leg1_G_in_axes2_y;
     v->rrr_leg1_acc_2_in_axes2_x = rrr_leg1_acc_2_in_axes2_x;
     v->rrr_leg1_acc_2_in_axes2_y = rrr_leg1_acc_2_in_axes2_y;
     v->rrr_leg1_c_in_axes2_x = rrr_leg1_c_in_axes2_x;
@@ -1996,21 +2006,25 @@ INLINE void stage_rrr_leg1_legs_required(const prepared *m, size_t i, values_rrr
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    real *s)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s)
 {
-    values v;
-    stage_V(w, k, V, &v);
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+    s[2*w + k] = v->h_star_x;
+    s[3*w + k] = v->h_star_y;
+}
+
+INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
+    *s)
+{
+    stage_V(w, k, V, v);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_x = v.W_p_xx*v.h_star_x - m->Z_p_t;
-    const real Z_p_y = v.W_p_xx*v.h_star_y - m->Z_p_t_2;
+    const real Z_p_x = v->W_p_xx*v->h_star_x - m->Z_p_t;
+    const real Z_p_y = v->W_p_xx*v->h_star_y - m->Z_p_t_2;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real Z_q_z = m->gravity_x*v.h_star_y - m->gravity_y*v.h_star_x;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
-    s[2*w + k] = v.h_star_x;
-    s[3*w + k] = v.h_star_y;
+    const real Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x;
     s[4*w + k] = Z_p_x;
     s[5*w + k] = Z_p_y;
     s[6*w + k] = Z_q_z;
@@ -2045,24 +2059,24 @@ INLINE void dynamics_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t
         m->rrr_leg1_w_2_in_axes2_y[i]*(rrr_leg1_rel_o_in_axes2_y +
         rrr_leg1_B_1_o_in_axes1_xy*v.rrr_leg1_r_1_in_axes2_x) - rrr_leg1_B_1_o_in_axes1_xy;
     /* (rrr_leg1-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real rrr_leg1_acc_2_o_in_axes2_x = rrr_leg1_u_1_in_axes2_x +
-        v.axis_y_rrr_leg1_axes2_x*m->gravity_y - v.axis_x_rrr_leg1_axes2_x*m->gravity_x;
+    const real rrr_leg1_acc_2_o_in_axes2_x = v.axis_y_rrr_leg1_axes2_x*m->gravity_y -
+        v.axis_x_rrr_leg1_axes2_x*m->gravity_x + rrr_leg1_u_1_in_axes2_x;
     const real rrr_leg1_acc_2_o_in_axes2_y = rrr_leg1_u_1_in_axes2_y -
         v.axis_x_rrr_leg1_axes2_x*m->gravity_y - v.axis_y_rrr_leg1_axes2_x*m->gravity_x;
     /* (rrr_leg1-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real rrr_leg1_mu_2_o_in_axes2_z =
-        m->rrr_leg1_J_2_in_spec2_zz[i]*rrr_leg1_alpha_2_o_in_axes2_z +
         rrr_leg1_acc_2_o_in_axes2_y*m->rrr_leg1_h_2_in_spec2_x[i] -
-        rrr_leg1_acc_2_o_in_axes2_x*m->rrr_leg1_h_2_in_spec2_y[i];
+        rrr_leg1_acc_2_o_in_axes2_x*m->rrr_leg1_h_2_in_spec2_y[i] +
+        m->rrr_leg1_J_2_in_spec2_zz[i]*rrr_leg1_alpha_2_o_in_axes2_z;
     /* (rrr_leg1-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
     const real rrr_leg1_mu_1_o_in_axes1_z =
         m->rrr_leg1_h_1_in_spec1_y[i]*(v.rrr_leg1_c_1*m->rrr_leg1_mu_1_t[i] +
         m->rrr_leg1_mu_1_t_2[i]*v.rrr_leg1_s_1) -
-        rrr_leg1_B_1_o_in_axes1_xy*m->rrr_leg1_J_1_in_spec1_zz[i] -
         m->rrr_leg1_h_1_in_spec1_x[i]*(v.rrr_leg1_c_1*m->rrr_leg1_mu_1_t_2[i] -
-        m->rrr_leg1_mu_1_t[i]*v.rrr_leg1_s_1);
+        m->rrr_leg1_mu_1_t[i]*v.rrr_leg1_s_1) -
+        rrr_leg1_B_1_o_in_axes1_xy*m->rrr_leg1_J_1_in_spec1_zz[i];
     /* (rrr_leg1-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at
        the connection point left out */
     const real rrr_leg1_N_1_o_in_axes1_z = rrr_leg1_mu_1_o_in_axes1_z +
@@ -2078,15 +2092,15 @@ INLINE void dynamics_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t
         v.rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_o_in_axes2_y*v.rrr_leg1_r_1_in_axes2_x -
         rrr_leg1_N_1_o_in_axes1_z);
     const real rrr_leg1_c_o_in_axes2_y = v.rrr_leg1_W_2_t*m->rrr_leg1_h_2_in_spec2_y[i] -
-        rrr_leg1_G_o_in_axes2_y - rrr_leg1_alpha_2_o_in_axes2_z*m->rrr_leg1_h_2_in_spec2_x[i];
+        rrr_leg1_alpha_2_o_in_axes2_z*m->rrr_leg1_h_2_in_spec2_x[i] - rrr_leg1_G_o_in_axes2_y;
     /* (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real rrr_leg1_Q_t = m->rrr_leg1_h_2_in_spec2_y[i]*(v.rrr_leg1_w_1_in_axes2_x +
         v.rrr_leg1_w_2_in_axes2_x) - m->rrr_leg1_d_c_in_axes2_yy[i] -
         v.rrr_leg1_d_Gamma_1_in_axes2_x*v.rrr_leg1_w_1_in_axes2_x -
         v.rrr_leg1_d_Gamma_2_in_axes2_x*v.rrr_leg1_w_2_in_axes2_x;
     const real rrr_leg1_Q_t_2 = R(0.5)*rrr_leg1_Q_t;
-    const real rrr_leg1_Q_t_3 = v.axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_2 +
-        v.axis_y_rrr_leg1_axes2_x*v.rrr_leg1_d_c_in_axes2_xy;
+    const real rrr_leg1_Q_t_3 = v.axis_y_rrr_leg1_axes2_x*v.rrr_leg1_d_c_in_axes2_xy +
+        v.axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_2;
     const real rrr_leg1_Q_t_4 = v.axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_2 -
         v.axis_x_rrr_leg1_axes2_x*v.rrr_leg1_d_c_in_axes2_xy;
     const real rrr_leg1_Q_xx = -m->rrr_leg1_d_c_in_axes2_yy[i] -
@@ -2096,8 +2110,8 @@ INLINE void dynamics_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t
     const real rrr_leg1_Q_yy = -m->rrr_leg1_d_c_in_axes2_yy[i] -
         2*v.axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4;
     /* (rrr_leg1-U) velocity and gravity terms of the leg force */
-    const real rrr_leg1_U_x = -v.axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x -
-        v.axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y;
+    const real rrr_leg1_U_x = -v.axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y -
+        v.axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x;
     const real rrr_leg1_U_y = v.axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x -
         v.axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y;
     /* (M_ta) coupling block of M */
@@ -2184,20 +2198,20 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     const real rrr_alpha_2_o_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_o_in_axes2_y +
         rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
     /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + v.axis_y_rrr_axes2_x*m->gravity_y
-        - v.axis_x_rrr_axes2_x*m->gravity_x;
+    const real rrr_acc_2_o_in_axes2_x = v.axis_y_rrr_axes2_x*m->gravity_y -
+        v.axis_x_rrr_axes2_x*m->gravity_x + rrr_u_1_in_axes2_x;
     const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - v.axis_x_rrr_axes2_x*m->gravity_y
         - v.axis_y_rrr_axes2_x*m->gravity_x;
     /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
-    const real rrr_mu_2_o_in_axes2_z = m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z +
-        rrr_acc_2_o_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
-        rrr_acc_2_o_in_axes2_x*m->rrr_h_2_in_spec2_y[i];
+    const real rrr_mu_2_o_in_axes2_z = rrr_acc_2_o_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
+        rrr_acc_2_o_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
+        m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z;
     /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
     const real rrr_mu_1_o_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i] -
-        m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v.rrr_s_1);
+        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i]
+        - m->rrr_mu_1_t[i]*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i];
     /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
        connection point left out */
     const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
@@ -2209,24 +2223,24 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     const real rrr_c_o_in_axes2_x = v.rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
         rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
         v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
-    const real rrr_c_o_in_axes2_y = v.rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] - rrr_G_o_in_axes2_y
-        - rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i];
+    const real rrr_c_o_in_axes2_y = v.rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_o_in_axes2_y;
     /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real rrr_Q_t = m->rrr_h_2_in_spec2_y[i]*(v.rrr_w_1_in_axes2_x +
         v.rrr_w_2_in_axes2_x) - m->rrr_d_c_in_axes2_yy[i] -
         v.rrr_d_Gamma_1_in_axes2_x*v.rrr_w_1_in_axes2_x -
         v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
     const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
-    const real rrr_Q_t_3 = v.axis_x_rrr_axes2_x*rrr_Q_t_2 +
-        v.axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+    const real rrr_Q_t_3 = v.axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy +
+        v.axis_x_rrr_axes2_x*rrr_Q_t_2;
     const real rrr_Q_t_4 = v.axis_y_rrr_axes2_x*rrr_Q_t_2 -
         v.axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
     const real rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v.axis_x_rrr_axes2_x*rrr_Q_t_3;
     const real rrr_Q_xy = v.axis_x_rrr_axes2_x*rrr_Q_t_4 + v.axis_y_rrr_axes2_x*rrr_Q_t_3;
     const real rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v.axis_y_rrr_axes2_x*rrr_Q_t_4;
     /* (rrr-U) velocity and gravity terms of the leg force */
-    const real rrr_U_x = -v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
-        v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
+    const real rrr_U_x = -v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y -
+        v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x;
     const real rrr_U_y = v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
         v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
     /* (M_ta) */
@@ -2279,16 +2293,16 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     /* (M_ta) */
     const real M_ta_xz_of_legs = sums[3*w + k];
     const real h_star_y = s[3*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yz_of_legs = sums[4*w + k];
     const real h_star_x = s[2*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     /* (M_aa) */
     const real M_aa_zz_of_legs = sums[5*w + k];
     const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
@@ -2302,7 +2316,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     /* (Z_a) */
     const real Z_a_z_of_legs = sums[8*w + k];
     const real Z_q_z = s[6*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
     const real M_tt_xy = sums[1*w + k];
@@ -2331,7 +2345,8 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     real s[7] = {0}, sums[9] = {0};
     real terms_rrr_leg1[9*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[9*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real terms_rrr[9*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
-    dynamics_before(m, 1, 0, X, V, s);
+    values v;
+    dynamics_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         dynamics_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, s, X, V, terms_rrr_leg1, o_rrr_leg1);
     }
@@ -2352,6 +2367,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
+    dynamics_between(m, 1, 0, V, &v, s);
     dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
@@ -2362,7 +2378,9 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real o_rrr_leg1[9*LANES];
     real o_rrr[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        dynamics_before(m, LANES, k, X, V, s);
+        values v;
+        dynamics_before(m, LANES, k, X, &v, s);
+        dynamics_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 9*LANES);
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
@@ -2387,14 +2405,13 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
-    s[2*w + k] = v.h_star_x;
-    s[3*w + k] = v.h_star_y;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+    s[2*w + k] = v->h_star_x;
+    s[3*w + k] = v->h_star_y;
 }
 
 INLINE void M_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2404,7 +2421,7 @@ INLINE void M_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, siz
     stage_rrr_leg1_X(m, w, i, j, s, X, &v);
     stage_rrr_leg1_M_dynamics(m, i, &v);
     /* (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_leg1_Q_t = v.rrr_leg1_c_1*v.rrr_leg1_s_2 + v.rrr_leg1_c_2*v.rrr_leg1_s_1;
+    const real rrr_leg1_Q_t = v.rrr_leg1_c_2*v.rrr_leg1_s_1 + v.rrr_leg1_c_1*v.rrr_leg1_s_2;
     const real rrr_leg1_Q_t_2 = v.rrr_leg1_c_1*v.rrr_leg1_c_2 - v.rrr_leg1_s_1*v.rrr_leg1_s_2;
     const real axis_y_rrr_leg1_axes2_x = rrr_leg1_Q_t_2*m->rrr_leg1_base_frame_xy[i] -
         rrr_leg1_Q_t*m->rrr_leg1_base_frame_xx[i];
@@ -2415,8 +2432,8 @@ INLINE void M_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, siz
         v.rrr_leg1_d_Gamma_1_in_axes2_x*v.rrr_leg1_w_1_in_axes2_x -
         v.rrr_leg1_d_Gamma_2_in_axes2_x*v.rrr_leg1_w_2_in_axes2_x;
     const real rrr_leg1_Q_t_4 = R(0.5)*rrr_leg1_Q_t_3;
-    const real rrr_leg1_Q_t_5 = axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 +
-        axis_y_rrr_leg1_axes2_x*v.rrr_leg1_d_c_in_axes2_xy;
+    const real rrr_leg1_Q_t_5 = axis_y_rrr_leg1_axes2_x*v.rrr_leg1_d_c_in_axes2_xy +
+        axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4;
     const real rrr_leg1_Q_t_6 = axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 -
         axis_x_rrr_leg1_axes2_x*v.rrr_leg1_d_c_in_axes2_xy;
     const real rrr_leg1_Q_xx = -m->rrr_leg1_d_c_in_axes2_yy[i] -
@@ -2460,7 +2477,7 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_M_dynamics(m, i, &v);
     /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_Q_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
+    const real rrr_Q_t = v.rrr_c_2*v.rrr_s_1 + v.rrr_c_1*v.rrr_s_2;
     const real rrr_Q_t_2 = v.rrr_c_1*v.rrr_c_2 - v.rrr_s_1*v.rrr_s_2;
     const real axis_y_rrr_axes2_x = rrr_Q_t_2*m->rrr_base_frame_xy[i] -
         rrr_Q_t*m->rrr_base_frame_xx[i];
@@ -2471,8 +2488,8 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
         v.rrr_d_Gamma_1_in_axes2_x*v.rrr_w_1_in_axes2_x -
         v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
     const real rrr_Q_t_4 = R(0.5)*rrr_Q_t_3;
-    const real rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 +
-        axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+    const real rrr_Q_t_5 = axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy +
+        axis_x_rrr_axes2_x*rrr_Q_t_4;
     const real rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 -
         axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
     const real rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*axis_x_rrr_axes2_x*rrr_Q_t_5;
@@ -2508,16 +2525,16 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[2*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     /* (M_ta) */
     const real M_ta_xz_of_legs = sums[3*w + k];
     const real h_star_y = s[3*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yz_of_legs = sums[4*w + k];
     const real h_star_x = s[2*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     /* (M_aa) */
     const real M_aa_zz_of_legs = sums[5*w + k];
     const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
@@ -2542,7 +2559,8 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     real s[4] = {0}, sums[6] = {0};
     real terms_rrr_leg1[6*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real terms_rrr[6*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    M_before(m, 1, 0, X, s);
+    values v;
+    M_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         M_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, s, X, terms_rrr_leg1, o_rrr_leg1);
     }
@@ -2572,7 +2590,8 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
     real o_rrr_leg1[2*LANES];
     real o_rrr[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        M_before(m, LANES, k, X, s);
+        values v;
+        M_before(m, LANES, k, X, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
@@ -2597,18 +2616,21 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s)
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
-    values v;
-    stage_V(w, k, V, &v);
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+}
+
+INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
+{
+    stage_V(w, k, V, v);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_x = v.W_p_xx*v.h_star_x - m->Z_p_t;
-    const real Z_p_y = v.W_p_xx*v.h_star_y - m->Z_p_t_2;
+    const real Z_p_x = v->W_p_xx*v->h_star_x - m->Z_p_t;
+    const real Z_p_y = v->W_p_xx*v->h_star_y - m->Z_p_t_2;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real Z_q_z = m->gravity_x*v.h_star_y - m->gravity_y*v.h_star_x;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    const real Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x;
     s[2*w + k] = Z_p_x;
     s[3*w + k] = Z_p_y;
     s[4*w + k] = Z_q_z;
@@ -2646,8 +2668,8 @@ INLINE void Z_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, siz
         axis_x_rrr_leg1_axes2_x*rrr_leg1_u_1_t;
     /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
     const real rrr_leg1_bias_in_axes2_x =
-        -rrr_leg1_W_2_t*m->rrr_leg1_platform_joint_offset_x[i] -
-        rrr_leg1_W_1_t*v.rrr_leg1_c_2*m->rrr_leg1_joint2_offset_x[i];
+        -rrr_leg1_W_1_t*v.rrr_leg1_c_2*m->rrr_leg1_joint2_offset_x[i] -
+        rrr_leg1_W_2_t*m->rrr_leg1_platform_joint_offset_x[i];
     /* (rrr_leg1-rel_o) remainder of: acceleration of the connection point left to the joint
        accelerations */
     const real rrr_leg1_rel_o_in_axes2_x = rrr_leg1_u_1_in_axes2_x - rrr_leg1_bias_in_axes2_x;
@@ -2661,24 +2683,24 @@ INLINE void Z_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, siz
         m->rrr_leg1_w_2_in_axes2_y[i]*(rrr_leg1_rel_o_in_axes2_y +
         rrr_leg1_B_1_o_in_axes1_xy*v.rrr_leg1_r_1_in_axes2_x) - rrr_leg1_B_1_o_in_axes1_xy;
     /* (rrr_leg1-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real rrr_leg1_acc_2_o_in_axes2_x = rrr_leg1_u_1_in_axes2_x +
-        axis_y_rrr_leg1_axes2_x*m->gravity_y - axis_x_rrr_leg1_axes2_x*m->gravity_x;
+    const real rrr_leg1_acc_2_o_in_axes2_x = axis_y_rrr_leg1_axes2_x*m->gravity_y -
+        axis_x_rrr_leg1_axes2_x*m->gravity_x + rrr_leg1_u_1_in_axes2_x;
     const real rrr_leg1_acc_2_o_in_axes2_y = rrr_leg1_u_1_in_axes2_y -
         axis_x_rrr_leg1_axes2_x*m->gravity_y - axis_y_rrr_leg1_axes2_x*m->gravity_x;
     /* (rrr_leg1-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real rrr_leg1_mu_2_o_in_axes2_z =
-        m->rrr_leg1_J_2_in_spec2_zz[i]*rrr_leg1_alpha_2_o_in_axes2_z +
         rrr_leg1_acc_2_o_in_axes2_y*m->rrr_leg1_h_2_in_spec2_x[i] -
-        rrr_leg1_acc_2_o_in_axes2_x*m->rrr_leg1_h_2_in_spec2_y[i];
+        rrr_leg1_acc_2_o_in_axes2_x*m->rrr_leg1_h_2_in_spec2_y[i] +
+        m->rrr_leg1_J_2_in_spec2_zz[i]*rrr_leg1_alpha_2_o_in_axes2_z;
     /* (rrr_leg1-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
     const real rrr_leg1_mu_1_o_in_axes1_z =
         m->rrr_leg1_h_1_in_spec1_y[i]*(v.rrr_leg1_c_1*m->rrr_leg1_mu_1_t[i] +
         m->rrr_leg1_mu_1_t_2[i]*v.rrr_leg1_s_1) -
-        rrr_leg1_B_1_o_in_axes1_xy*m->rrr_leg1_J_1_in_spec1_zz[i] -
         m->rrr_leg1_h_1_in_spec1_x[i]*(v.rrr_leg1_c_1*m->rrr_leg1_mu_1_t_2[i] -
-        m->rrr_leg1_mu_1_t[i]*v.rrr_leg1_s_1);
+        m->rrr_leg1_mu_1_t[i]*v.rrr_leg1_s_1) -
+        rrr_leg1_B_1_o_in_axes1_xy*m->rrr_leg1_J_1_in_spec1_zz[i];
     /* (rrr_leg1-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at
        the connection point left out */
     const real rrr_leg1_N_1_o_in_axes1_z = rrr_leg1_mu_1_o_in_axes1_z +
@@ -2694,10 +2716,10 @@ INLINE void Z_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, siz
         v.rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_o_in_axes2_y*v.rrr_leg1_r_1_in_axes2_x -
         rrr_leg1_N_1_o_in_axes1_z);
     const real rrr_leg1_c_o_in_axes2_y = rrr_leg1_W_2_t*m->rrr_leg1_h_2_in_spec2_y[i] -
-        rrr_leg1_G_o_in_axes2_y - rrr_leg1_alpha_2_o_in_axes2_z*m->rrr_leg1_h_2_in_spec2_x[i];
+        rrr_leg1_alpha_2_o_in_axes2_z*m->rrr_leg1_h_2_in_spec2_x[i] - rrr_leg1_G_o_in_axes2_y;
     /* (rrr_leg1-U) velocity and gravity terms of the leg force */
-    const real rrr_leg1_U_x = -axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x -
-        axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y;
+    const real rrr_leg1_U_x = -axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y -
+        axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x;
     const real rrr_leg1_U_y = axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x -
         axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y;
     /* (Z_a) rotational part of Z */
@@ -2749,8 +2771,8 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x -
         axis_x_rrr_axes2_x*rrr_u_1_t;
     /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_bias_in_axes2_x = -rrr_W_2_t*m->rrr_platform_joint_offset_x[i] -
-        rrr_W_1_t*v.rrr_c_2*m->rrr_joint2_offset_x[i];
+    const real rrr_bias_in_axes2_x = -rrr_W_1_t*v.rrr_c_2*m->rrr_joint2_offset_x[i] -
+        rrr_W_2_t*m->rrr_platform_joint_offset_x[i];
     /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
        */
     const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x;
@@ -2762,20 +2784,20 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real rrr_alpha_2_o_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_o_in_axes2_y +
         rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
     /* (rrr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*m->gravity_y -
-        axis_x_rrr_axes2_x*m->gravity_x;
+    const real rrr_acc_2_o_in_axes2_x = axis_y_rrr_axes2_x*m->gravity_y -
+        axis_x_rrr_axes2_x*m->gravity_x + rrr_u_1_in_axes2_x;
     const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*m->gravity_y -
         axis_y_rrr_axes2_x*m->gravity_x;
     /* (rrr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
-    const real rrr_mu_2_o_in_axes2_z = m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z +
-        rrr_acc_2_o_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
-        rrr_acc_2_o_in_axes2_x*m->rrr_h_2_in_spec2_y[i];
+    const real rrr_mu_2_o_in_axes2_z = rrr_acc_2_o_in_axes2_y*m->rrr_h_2_in_spec2_x[i] -
+        rrr_acc_2_o_in_axes2_x*m->rrr_h_2_in_spec2_y[i] +
+        m->rrr_J_2_in_spec2_zz[i]*rrr_alpha_2_o_in_axes2_z;
     /* (rrr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
     const real rrr_mu_1_o_in_axes1_z = m->rrr_h_1_in_spec1_y[i]*(v.rrr_c_1*m->rrr_mu_1_t[i] +
-        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i] -
-        m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*v.rrr_s_1);
+        m->rrr_mu_1_t_2[i]*v.rrr_s_1) - m->rrr_h_1_in_spec1_x[i]*(v.rrr_c_1*m->rrr_mu_1_t_2[i]
+        - m->rrr_mu_1_t[i]*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*m->rrr_J_1_in_spec1_zz[i];
     /* (rrr-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
        connection point left out */
     const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
@@ -2787,11 +2809,11 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real rrr_c_o_in_axes2_x = rrr_W_2_t*m->rrr_h_2_in_spec2_x[i] +
         rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
         v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
-    const real rrr_c_o_in_axes2_y = rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] - rrr_G_o_in_axes2_y -
-        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i];
+    const real rrr_c_o_in_axes2_y = rrr_W_2_t*m->rrr_h_2_in_spec2_y[i] -
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_o_in_axes2_y;
     /* (rrr-U) velocity and gravity terms of the leg force */
-    const real rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
-        axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
+    const real rrr_U_x = -axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y -
+        axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x;
     const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
         axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
     /* (Z_a) */
@@ -2824,7 +2846,7 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     /* (Z_a) */
     const real Z_a_z_of_legs = sums[2*w + k];
     const real Z_q_z = s[4*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
     Z[1*w + k] = Z_t_y;
@@ -2838,7 +2860,8 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     real s[5] = {0}, sums[3] = {0};
     real terms_rrr_leg1[3*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    Z_before(m, 1, 0, X, V, s);
+    values v;
+    Z_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         Z_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, s, X, V, terms_rrr_leg1, o_rrr_leg1);
     }
@@ -2859,6 +2882,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
+    Z_between(m, 1, 0, V, &v, s);
     Z_after(1, 0, s, sums, Z, t);
 }
 
@@ -2869,7 +2893,9 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real o_rrr_leg1[2*LANES];
     real o_rrr[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        Z_before(m, LANES, k, X, V, s);
+        values v;
+        Z_before(m, LANES, k, X, &v, s);
+        Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 3*LANES);
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
@@ -2894,12 +2920,11 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void H_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2973,7 +2998,8 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
     real s[2] = {0};
     real o_rrr_leg1[9*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
-    H_before(m, 1, 0, X, s);
+    values v;
+    H_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         H_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), s, X, o_rrr_leg1);
     }
@@ -2994,7 +3020,8 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
     real o_rrr_leg1[9*LANES];
     real o_rrr[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        H_before(m, LANES, k, X, s);
+        values v;
+        H_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3015,12 +3042,18 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, real *s)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s)
 {
-    values v;
-    stage_V(w, k, V, &v);
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+}
+
+INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
+    values *v, real *s)
+{
+    stage_V(w, k, V, v);
     /* (a_t) acceleration of the platform origin, less gravity */
     const real t_ddot_x = A[0*w + k];
     const real a_t_x = t_ddot_x - m->gravity_x;
@@ -3028,12 +3061,10 @@ INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X
     const real a_t_y = t_ddot_y - m->gravity_y;
     /* (f_p) inertia force of the platform less its weight */
     const real alpha_z = A[2*w + k];
-    const real f_p_x = v.W_p_xx*v.h_star_x + a_t_x*m->m_star - alpha_z*v.h_star_y;
-    const real f_p_y = v.W_p_xx*v.h_star_y + a_t_y*m->m_star + alpha_z*v.h_star_x;
+    const real f_p_x = a_t_x*m->m_star + v->W_p_xx*v->h_star_x - alpha_z*v->h_star_y;
+    const real f_p_y = a_t_y*m->m_star + v->W_p_xx*v->h_star_y + alpha_z*v->h_star_x;
     /* (mu_p) inertia moment of the platform less that of its weight */
-    const real mu_p_z = m->J_star_zz*alpha_z + a_t_y*v.h_star_x - a_t_x*v.h_star_y;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    const real mu_p_z = m->J_star_zz*alpha_z + a_t_y*v->h_star_x - a_t_x*v->h_star_y;
     s[2*w + k] = f_p_x;
     s[3*w + k] = f_p_y;
     s[4*w + k] = mu_p_z;
@@ -3051,8 +3082,8 @@ INLINE void required_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t
     stage_rrr_leg1_legs_required(m, i, &v);
     /* (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rrr_leg1_c_x = v.axis_x_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_x +
-        v.axis_y_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_y;
+    const real rrr_leg1_c_x = v.axis_y_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_y +
+        v.axis_x_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_x;
     const real rrr_leg1_c_y = v.axis_x_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_y -
         v.axis_y_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_x;
     /* (R_a) moment that actuators and external wrench must give */
@@ -3106,8 +3137,8 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     stage_rrr_legs_required(m, i, &v);
     /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real rrr_c_x = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_x +
-        v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_y;
+    const real rrr_c_x = v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_y +
+        v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_x;
     const real rrr_c_y = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_y -
         v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_x;
     /* (R_a) */
@@ -3151,7 +3182,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     /* (R_a) */
     const real R_a_z_of_legs = sums[2*w + k];
     const real mu_p_z = s[4*w + k];
-    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
     required[1*w + k] = R_t_y;
@@ -3159,13 +3190,14 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[2*w + k] = R_a_z;
 }
 
-APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
     real s[5] = {0}, sums[3] = {0};
     real terms_rrr_leg1[3*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[8*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    required_before(m, 1, 0, X, V, A, s);
+    values v;
+    required_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         required_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, s, X, V, A, terms_rrr_leg1, o_rrr_leg1);
     }
@@ -3186,6 +3218,7 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
+    required_between(m, 1, 0, V, A, &v, s);
     required_after(1, 0, s, sums, required);
 }
 
@@ -3196,7 +3229,9 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real o_rrr_leg1[8*LANES];
     real o_rrr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        required_before(m, LANES, k, X, V, A, s);
+        values v;
+        required_before(m, LANES, k, X, &v, s);
+        required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 3*LANES);
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
@@ -3221,13 +3256,12 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
+    *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void inverse_kinematics_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j,
@@ -3236,8 +3270,8 @@ INLINE void inverse_kinematics_legs_rrr_leg1(const prepared *m, size_t w, size_t
     values_rrr_leg1 v;
     stage_rrr_leg1_inverse_kinematics_potential(m, w, i, j, s, X, &v);
     /* (rrr_leg1-q_1) displacement of joint 1 */
-    const real rrr_leg1_q_1 = angle(v.inv_rrr_leg1_rho2_1*(v.rrr_leg1_Kc_1*v.rrr_leg1_root_1 +
-        v.rrr_leg1_Kd_1*v.rrr_leg1_Ks_1),
+    const real rrr_leg1_q_1 = angle(v.inv_rrr_leg1_rho2_1*(v.rrr_leg1_Kd_1*v.rrr_leg1_Ks_1 +
+        v.rrr_leg1_Kc_1*v.rrr_leg1_root_1),
         v.inv_rrr_leg1_rho2_1*(v.rrr_leg1_Kc_1*v.rrr_leg1_Kd_1 -
         v.rrr_leg1_Ks_1*v.rrr_leg1_root_1));
     /* (rrr_leg1-q_2) displacement of joint 2 */
@@ -3270,8 +3304,8 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t i, s
     values_rrr v;
     stage_rrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
     /* (rrr-q_1) displacement of joint 1 */
-    const real rrr_q_1 = angle(v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_root_1 +
-        v.rrr_Kd_1*v.rrr_Ks_1), v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 -
+    const real rrr_q_1 = angle(v.inv_rrr_rho2_1*(v.rrr_Kd_1*v.rrr_Ks_1 +
+        v.rrr_Kc_1*v.rrr_root_1), v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 -
         v.rrr_Ks_1*v.rrr_root_1));
     /* (rrr-q_2) displacement of joint 2 */
     const real rrr_q_2 =
@@ -3301,7 +3335,8 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
     real s[2] = {0};
     real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    inverse_kinematics_before(m, 1, 0, X, s);
+    values v;
+    inverse_kinematics_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         inverse_kinematics_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), s, X, o_rrr_leg1);
     }
@@ -3323,7 +3358,8 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real o_rrr_leg1[5*LANES];
     real o_rrr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        inverse_kinematics_before(m, LANES, k, X, s);
+        values v;
+        inverse_kinematics_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3344,12 +3380,12 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void joint_rates_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, size_t k,
@@ -3444,7 +3480,8 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
     real s[2] = {0};
     real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    joint_rates_before(m, 1, 0, X, s);
+    values v;
+    joint_rates_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         joint_rates_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), s, X, V, o_rrr_leg1);
     }
@@ -3466,7 +3503,8 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real o_rrr_leg1[5*LANES];
     real o_rrr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_rates_before(m, LANES, k, X, s);
+        values v;
+        joint_rates_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3487,13 +3525,12 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
+    values *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void joint_accelerations_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j,
@@ -3520,11 +3557,11 @@ INLINE void joint_accelerations_legs_rrr_leg1(const prepared *m, size_t w, size_
         axis_y_rrr_leg1_axes2_x*v.rrr_leg1_S_dot_x - rrr_leg1_qd_1*v.rrr_leg1_r_1_in_axes2_x);
     /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
     const real rrr_leg1_bias_in_axes2_x =
-        -rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z*m->rrr_leg1_platform_joint_offset_x[i]
-        - rrr_leg1_W_1_t*v.rrr_leg1_c_2*m->rrr_leg1_joint2_offset_x[i];
+        -rrr_leg1_W_1_t*v.rrr_leg1_c_2*m->rrr_leg1_joint2_offset_x[i] -
+        rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z*m->rrr_leg1_platform_joint_offset_x[i];
     /* (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations */
     const real rrr_leg1_rel_in_axes2_x = axis_x_rrr_leg1_axes2_x*v.rrr_leg1_S_ddot_x -
-        rrr_leg1_bias_in_axes2_x - axis_y_rrr_leg1_axes2_x*v.rrr_leg1_S_ddot_y;
+        axis_y_rrr_leg1_axes2_x*v.rrr_leg1_S_ddot_y - rrr_leg1_bias_in_axes2_x;
     const real rrr_leg1_rel_in_axes2_y = axis_x_rrr_leg1_axes2_x*v.rrr_leg1_S_ddot_y +
         axis_y_rrr_leg1_axes2_x*v.rrr_leg1_S_ddot_x -
         rrr_leg1_W_1_t*m->rrr_leg1_joint2_offset_x[i]*v.rrr_leg1_s_2;
@@ -3576,12 +3613,11 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t i, 
         m->rrr_w_2_in_axes2_y[i]*(axis_x_rrr_axes2_x*v.rrr_S_dot_y +
         axis_y_rrr_axes2_x*v.rrr_S_dot_x - rrr_qd_1*v.rrr_r_1_in_axes2_x);
     /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrr_bias_in_axes2_x =
-        -rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*m->rrr_platform_joint_offset_x[i] -
-        rrr_W_1_t*v.rrr_c_2*m->rrr_joint2_offset_x[i];
+    const real rrr_bias_in_axes2_x = -rrr_W_1_t*v.rrr_c_2*m->rrr_joint2_offset_x[i] -
+        rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*m->rrr_platform_joint_offset_x[i];
     /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-    const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*v.rrr_S_ddot_x - rrr_bias_in_axes2_x -
-        axis_y_rrr_axes2_x*v.rrr_S_ddot_y;
+    const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*v.rrr_S_ddot_x -
+        axis_y_rrr_axes2_x*v.rrr_S_ddot_y - rrr_bias_in_axes2_x;
     const real rrr_rel_in_axes2_y = axis_x_rrr_axes2_x*v.rrr_S_ddot_y +
         axis_y_rrr_axes2_x*v.rrr_S_ddot_x - rrr_W_1_t*m->rrr_joint2_offset_x[i]*v.rrr_s_2;
     /* (rrr-qdd_1) acceleration of joint 1 */
@@ -3615,7 +3651,8 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
     real s[2] = {0};
     real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    joint_accelerations_before(m, 1, 0, X, s);
+    values v;
+    joint_accelerations_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         joint_accelerations_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), s, X, V, A, o_rrr_leg1);
     }
@@ -3637,7 +3674,8 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real o_rrr_leg1[5*LANES];
     real o_rrr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_accelerations_before(m, LANES, k, X, s);
+        values v;
+        joint_accelerations_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3658,12 +3696,11 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
 }
 
 INLINE void legs_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3680,8 +3717,8 @@ INLINE void legs_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, 
         v.rrr_leg1_acc_2_in_axes2_x*m->rrr_leg1_link2_mass[i];
     const real rrr_leg1_c_true_in_axes2_y = v.rrr_leg1_c_in_axes2_y -
         v.rrr_leg1_acc_2_in_axes2_y*m->rrr_leg1_link2_mass[i];
-    const real rrr_leg1_c_true_x = v.axis_x_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_x +
-        v.axis_y_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_y;
+    const real rrr_leg1_c_true_x = v.axis_y_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_y +
+        v.axis_x_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_x;
     const real rrr_leg1_c_true_y = v.axis_x_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_y -
         v.axis_y_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_x;
     /* (rrr_leg1-c_true) */
@@ -3726,8 +3763,8 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_
         v.rrr_acc_2_in_axes2_x*m->rrr_link2_mass[i];
     const real rrr_c_true_in_axes2_y = v.rrr_c_in_axes2_y -
         v.rrr_acc_2_in_axes2_y*m->rrr_link2_mass[i];
-    const real rrr_c_true_x = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x +
-        v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y;
+    const real rrr_c_true_x = v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y +
+        v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x;
     const real rrr_c_true_y = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y -
         v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x;
     /* (rrr-c_true) */
@@ -3760,7 +3797,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
     clear(leg_force, 3*NL);
     clear(actuator, 9);
-    legs_before(m, 1, 0, X, s);
+    values v;
+    legs_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         legs_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), s, X, V, A, o_rrr_leg1);
     }
@@ -3776,18 +3814,23 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+}
+
+INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s)
+{
     /* (potential) potential energy */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
-    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x + m->m_star*t_x -
-        v.R_yx*m->h_star_in_platform_y) + m->gravity_y*(v.R_xx*m->h_star_in_platform_y +
-        v.R_yx*m->h_star_in_platform_x + m->m_star*t_y);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    const real potential_t = m->gravity_x*(m->m_star*t_x + v->R_xx*m->h_star_in_platform_x -
+        v->R_yx*m->h_star_in_platform_y) + m->gravity_y*(m->m_star*t_y +
+        v->R_xx*m->h_star_in_platform_y + v->R_yx*m->h_star_in_platform_x);
     s[2*w + k] = potential_t;
 }
 
@@ -3800,8 +3843,8 @@ INLINE void potential_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_
     const real rrr_leg1_c_1 = v.inv_rrr_leg1_rho2_1*(v.rrr_leg1_Kc_1*v.rrr_leg1_Kd_1 -
         v.rrr_leg1_Ks_1*v.rrr_leg1_root_1);
     /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rrr_leg1_s_1 = v.inv_rrr_leg1_rho2_1*(v.rrr_leg1_Kc_1*v.rrr_leg1_root_1 +
-        v.rrr_leg1_Kd_1*v.rrr_leg1_Ks_1);
+    const real rrr_leg1_s_1 = v.inv_rrr_leg1_rho2_1*(v.rrr_leg1_Kd_1*v.rrr_leg1_Ks_1 +
+        v.rrr_leg1_Kc_1*v.rrr_leg1_root_1);
     /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
     const real rrr_leg1_c_2 =
         m->inv_rrr_leg1_size_t_2[i]*m->rrr_leg1_platform_joint_offset_x[i]*v.rrr_leg1_x_2_in_axes1_x;
@@ -3817,9 +3860,9 @@ INLINE void potential_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_
         m->rrr_leg1_h_2_in_spec2_y[i]*rrr_leg1_s_2) + (rrr_leg1_c_1*m->rrr_leg1_mu_1_t_2[i] -
         m->rrr_leg1_mu_1_t[i]*rrr_leg1_s_1)*(m->rrr_leg1_h_1_in_spec1_y[i] +
         rrr_leg1_c_2*m->rrr_leg1_h_2_in_spec2_y[i] +
-        m->rrr_leg1_h_2_in_spec2_x[i]*rrr_leg1_s_2 +
         m->rrr_leg1_link1_mass[i]*(rrr_leg1_c_1*m->rrr_leg1_potential_t_2[i] -
-        m->rrr_leg1_potential_t[i]*rrr_leg1_s_1));
+        m->rrr_leg1_potential_t[i]*rrr_leg1_s_1) +
+        m->rrr_leg1_h_2_in_spec2_x[i]*rrr_leg1_s_2);
     /* (potential) */
     gather(&terms[0*count + k], add, -rrr_leg1_potential_t_3);  /* potential_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
@@ -3841,7 +3884,7 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
     /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
     const real rrr_c_1 = v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 - v.rrr_Ks_1*v.rrr_root_1);
     /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-    const real rrr_s_1 = v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_root_1 + v.rrr_Kd_1*v.rrr_Ks_1);
+    const real rrr_s_1 = v.inv_rrr_rho2_1*(v.rrr_Kd_1*v.rrr_Ks_1 + v.rrr_Kc_1*v.rrr_root_1);
     /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
     const real rrr_c_2 =
         m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*v.rrr_x_2_in_axes1_x;
@@ -3854,9 +3897,9 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
         rrr_c_2*m->rrr_h_2_in_spec2_x[i] + m->rrr_link1_mass[i]*(rrr_c_1*m->rrr_potential_t[i]
         + m->rrr_potential_t_2[i]*rrr_s_1) - m->rrr_h_2_in_spec2_y[i]*rrr_s_2) +
         (rrr_c_1*m->rrr_mu_1_t_2[i] - m->rrr_mu_1_t[i]*rrr_s_1)*(m->rrr_h_1_in_spec1_y[i] +
-        rrr_c_2*m->rrr_h_2_in_spec2_y[i] + m->rrr_h_2_in_spec2_x[i]*rrr_s_2 +
-        m->rrr_link1_mass[i]*(rrr_c_1*m->rrr_potential_t_2[i] -
-        m->rrr_potential_t[i]*rrr_s_1));
+        rrr_c_2*m->rrr_h_2_in_spec2_y[i] +
+        m->rrr_link1_mass[i]*(rrr_c_1*m->rrr_potential_t_2[i] - m->rrr_potential_t[i]*rrr_s_1)
+        + m->rrr_h_2_in_spec2_x[i]*rrr_s_2);
     /* (potential) */
     gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_2 */
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
@@ -3885,7 +3928,8 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
     real s[3] = {0}, sums[2] = {0};
     real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    potential_before(m, 1, 0, X, s);
+    values v;
+    potential_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         potential_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, s, X, terms_rrr_leg1, o_rrr_leg1);
     }
@@ -3906,17 +3950,17 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
     }
+    potential_between(m, 1, 0, X, &v, s);
     potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
-    *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, real *lengths, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_yx;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
@@ -4043,7 +4087,8 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     real s[2] = {0}, sums[2] = {0};
     real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[11*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[8*LEGS(LEGS_OF_rrr)] = {0};
-    condition_before(m, 1, 0, X, s, lengths, t);
+    values v;
+    condition_before(m, 1, 0, X, &v, s, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         condition_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, s, X, terms_rrr_leg1, o_rrr_leg1);
     }
@@ -4078,11 +4123,7 @@ int sixbar_M(const prepared *m, const real *X, real *M_out)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-    }
-    return code;
+    return settled(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -4109,11 +4150,7 @@ int sixbar_Z(const prepared *m, const real *X, const real *V, real *Z_out)
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, Z_out);
-    }
-    return code;
+    return settled(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -4137,11 +4174,7 @@ int sixbar_H(const prepared *m, const real *X, real *H_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -4164,11 +4197,7 @@ int sixbar_inverse_kinematics(const prepared *m, const real *X, real *q_out)
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, q_out);
-    }
-    return code;
+    return settled(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -4195,11 +4224,7 @@ int sixbar_joint_rates(const prepared *m, const real *X, const real *V, real *qd
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qd_out);
-    }
-    return code;
+    return settled(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -4230,11 +4255,7 @@ int sixbar_joint_accelerations(const prepared *m, const real *X, const real *V, 
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qdd_out);
-    }
-    return code;
+    return settled(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4267,13 +4288,9 @@ int sixbar_dynamics(const prepared *m, const real *X, const real *V, real *M_out
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-        refuse(NV, Z_out);
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    settled(&why, NV*NV, M_out);
+    settled(&why, NV, Z_out);
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -4344,7 +4361,8 @@ static const real sizes_tau[] = {1.0, 4.0, 0.25};
 int sixbar_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A, const
     real *wrench, real *tau_out)
 {
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    static const real no_wrench[NW] = {0};
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
@@ -4354,7 +4372,7 @@ int sixbar_inverse_dynamics(const prepared *m, const real *X, const real *V, con
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -4368,11 +4386,7 @@ int sixbar_inverse_dynamics(const prepared *m, const real *X, const real *V, con
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, tau_out);
-    }
-    return code;
+    return settled(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -4401,8 +4415,9 @@ static const real sizes_A[] = {4.0, 4.0, 0.0625};
 int sixbar_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau,
     const real *wrench, real *A_out)
 {
-    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] =
-        {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    static const real no_wrench[NW] = {0};
+    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
+        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
@@ -4411,7 +4426,7 @@ int sixbar_forward_dynamics(const prepared *m, const real *X, const real *V, con
         check(NV, 1, V, why.invalid);
         check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     for (size_t i = 0; i < NV; ++i) {
@@ -4429,11 +4444,7 @@ int sixbar_forward_dynamics(const prepared *m, const real *X, const real *V, con
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, A_out);
-    }
-    return code;
+    return settled(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4474,18 +4485,15 @@ int sixbar_complete_acceleration(const prepared *m, const real *X, const real *V
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, completed_out);
-    }
-    return code;
+    return settled(&why, NV, completed_out);
 }
 
 int sixbar_leg_reactions(const prepared *m, const real *X, const real *V, const real *A, const
     real *wrench, real *forces_out)
 {
+    static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 0, 1};
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
         unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[9] = {0}, forces[NL*NV] = {0},
         work[NV*PADDED(NV)];
     verdict why;
@@ -4496,7 +4504,7 @@ int sixbar_leg_reactions(const prepared *m, const real *X, const real *V, const 
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -4514,11 +4522,7 @@ int sixbar_leg_reactions(const prepared *m, const real *X, const real *V, const 
     add_forces(NV, 3, 1, places_forces, solve_1, actuator, forces);
     check(NL*NV, 1, forces, why.overflow);
     copy(NL*NV, forces, forces_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NL*NV, forces_out);
-    }
-    return code;
+    return settled(&why, NL*NV, forces_out);
 }
 
 int sixbar_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
@@ -4540,25 +4544,22 @@ int sixbar_energy(const prepared *m, const real *X, const real *V, real *kinetic
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, kinetic_out);
-        refuse(1, potential_out);
-    }
-    return code;
+    settled(&why, 1, kinetic_out);
+    return settled(&why, 1, potential_out);
 }
 
 int sixbar_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
     const real *length = NULL;
+    static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {2};
-    real length_in[1], H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
+        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, length, 0, length_in, why.invalid);
+    length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
@@ -4576,12 +4577,8 @@ int sixbar_condition(const prepared *m, const real *X, real *sigma_out, real *le
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, sigma_out);
-        refuse(NL, legs_out);
-    }
-    return code;
+    settled(&why, NV, sigma_out);
+    return settled(&why, NL, legs_out);
 }
 
 int sixbar_manipulability(const prepared *m, const real *X, real *measure_out, real *isotropy_out)
@@ -4614,12 +4611,8 @@ int sixbar_manipulability(const prepared *m, const real *X, real *measure_out, r
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, measure_out);
-        refuse(1, isotropy_out);
-    }
-    return code;
+    settled(&why, 1, measure_out);
+    return settled(&why, 1, isotropy_out);
 }
 
 int sixbar_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
@@ -4653,12 +4646,8 @@ int sixbar_singularity_distance(const prepared *m, const real *X, real *actuator
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, actuators_out);
-        refuse(1, legs_out);
-    }
-    return code;
+    settled(&why, 1, actuators_out);
+    return settled(&why, 1, legs_out);
 }
 
 static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
@@ -4682,11 +4671,7 @@ static int mismatch_one(const prepared *m, const real *X, const real *q_actuated
     wrap_turns(NU, 1, sixbar_ACTUATED, gap);
     check(NU, 1, gap, why.overflow);
     copy(NU, gap, gap_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, gap_out);
-    }
-    return code;
+    return settled(&why, NU, gap_out);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
@@ -4698,11 +4683,7 @@ static int slope_one(const prepared *m, const real *X, real *slope_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, slope_out);
-    }
-    return code;
+    return settled(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -4764,11 +4745,7 @@ int sixbar_forward_kinematics(const prepared *m, const real *q_actuated, const r
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int sixbar_dissipation(const prepared *m, const real *X, const real *V, real *dissipation_out)
@@ -4785,11 +4762,7 @@ int sixbar_dissipation(const prepared *m, const real *X, const real *V, real *di
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, dissipation_out);
-    }
-    return code;
+    return settled(&why, 1, dissipation_out);
 }
 
 int sixbar_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
@@ -4806,11 +4779,7 @@ int sixbar_momentum(const prepared *m, const real *X, const real *V, real *momen
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, momentum_out);
-    }
-    return code;
+    return settled(&why, NV, momentum_out);
 }
 
 int sixbar_joint_margins(const prepared *m, const real *X, real *margins_out)
@@ -4826,11 +4795,7 @@ int sixbar_joint_margins(const prepared *m, const real *X, real *margins_out)
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, margins_out);
-    }
-    return code;
+    return settled(&why, NJ, margins_out);
 }
 
 int sixbar_within_limits(const prepared *m, const real *X, real *within_out)
@@ -4846,11 +4811,7 @@ int sixbar_within_limits(const prepared *m, const real *X, real *within_out)
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, within_out);
-    }
-    return code;
+    return settled(&why, 1, within_out);
 }
 
 int sixbar_actuator_positions(const prepared *m, const real *X, real *q_out)
@@ -4863,11 +4824,7 @@ int sixbar_actuator_positions(const prepared *m, const real *X, real *q_out)
     const real *const q = q_of_inverse_kinematics;
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, q_out);
-    }
-    return code;
+    return settled(&why, NU, q_out);
 }
 
 int sixbar_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
@@ -4884,11 +4841,7 @@ int sixbar_actuator_rates(const prepared *m, const real *X, const real *V, real 
     const real *const qd = qd_of_joint_rates;
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qd_out);
-    }
-    return code;
+    return settled(&why, NU, qd_out);
 }
 
 int sixbar_actuator_accelerations(const prepared *m, const real *X, const real *V, const real *A,
@@ -4907,11 +4860,7 @@ int sixbar_actuator_accelerations(const prepared *m, const real *X, const real *
     const real *const qdd = qdd_of_joint_accelerations;
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qdd_out);
-    }
-    return code;
+    return settled(&why, NU, qdd_out);
 }
 
 int sixbar_power(const prepared *m, const real *X, const real *V, const real *tau, real
@@ -4931,11 +4880,7 @@ int sixbar_power(const prepared *m, const real *X, const real *V, const real *ta
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, power_out);
-    }
-    return code;
+    return settled(&why, 1, power_out);
 }
 
 int sixbar_rotation(const real *X, real *R_out)
@@ -4948,11 +4893,7 @@ int sixbar_rotation(const real *X, real *R_out)
     rotation_of_angle(X_from_2, R);
     check(4, 1, R, why.overflow);
     copy(4, R, R_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(4, R_out);
-    }
-    return code;
+    return settled(&why, 4, R_out);
 }
 
 int sixbar_pose(const real *t, const real *R, real *X_out)
@@ -4970,11 +4911,7 @@ int sixbar_pose(const real *t, const real *R, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int sixbar_X_dot(const real *X, const real *V, real *X_dot_out)
@@ -4989,11 +4926,7 @@ int sixbar_X_dot(const real *X, const real *V, real *X_dot_out)
     const real *const X_dot = V;
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_dot_out);
-    }
-    return code;
+    return settled(&why, NQ, X_dot_out);
 }
 
 int sixbar_retract(const real *X, const real *step, real *X_moved_out)
@@ -5011,11 +4944,7 @@ int sixbar_retract(const real *X, const real *step, real *X_moved_out)
     }
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_moved_out);
-    }
-    return code;
+    return settled(&why, NQ, X_moved_out);
 }
 
 int sixbar_difference(const real *X0, const real *X1, real *step_out)
@@ -5038,11 +4967,7 @@ int sixbar_difference(const real *X0, const real *X1, real *step_out)
     wrap_turns(1, 1, places_step, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, step_out);
-    }
-    return code;
+    return settled(&why, NV, step_out);
 }
 
 int sixbar_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
@@ -5072,11 +4997,7 @@ int sixbar_interpolate(const real *X0, const real *X1, const real *s, real *X_ou
     }
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 /* ---- one state, and batches ---- */

@@ -234,15 +234,12 @@ INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *t
 }
 
 /* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
-INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+INLINE const real *optional(size_t size, const real *x, const real *none, real *flags)
 {
-    for (size_t e = 0; e < size && !x; ++e) {
-        own[e] = none;
-    }
     if (x) {
         check(size, 1, x, flags);
     }
-    return x ? x : own;
+    return x ? x : none;
 }
 
 INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
@@ -299,6 +296,16 @@ APART void refuse(size_t size, real *out)
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
     }
+}
+
+/* The status of a state; an output is refused where it is impossible. */
+INLINE int settled(const verdict *t, size_t size, real *out)
+{
+    const int code = judge(t);
+    if (code != OK) {
+        refuse(size, out);
+    }
+    return code;
 }
 
 /* Outputs of a state where the user wants them, and of states side by side, state by state. */
@@ -420,19 +427,19 @@ INLINE int all_rotations(const real *x, size_t n)
 
 const spherical_3ups_params spherical_3ups_default_params = {
     {R(0.01), R(0.02), R(0.7)},  /* fixed_centre */
-    {R(0.0), R(0.0), R(-9.81)},  /* gravity */
+    {0, 0, R(-9.81)},  /* gravity */
     R(12.0),  /* platform_mass */
-    {R(0.0), R(0.0), R(0.04)},  /* platform_centre_of_mass */
-    {{R(0.35), R(0.0), R(0.0)}, {R(0.0), R(0.35), R(0.0)}, {R(0.0), R(0.0), R(0.6)}},  /* platform_inertia */
+    {0, 0, R(0.04)},  /* platform_centre_of_mass */
+    {{R(0.35), 0, 0}, {0, R(0.35), 0}, {0, 0, R(0.6)}},  /* platform_inertia */
     {  /* ups_base_point */
         {R(0.5783732477370664), R(0.5310095411773478), R(0.02055988531855868)},
         {R(-0.7167338681043464), R(0.25672090078309195), R(0.02055988531855868)},
         {R(0.16836062036727945), R(-0.7277304419604397), R(0.02055988531855868)},
     },
     {  /* ups_base_frame */
-        {{R(0.0), R(0.9950041652780258), R(-0.09983341664682815)}, {R(0.0), R(0.09983341664682815), R(0.9950041652780258)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.5839603576017622), R(-0.8117821756786866)}, {R(0.0), R(0.8117821756786866), R(-0.5839603576017622)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.4110438076762642), R(0.9116155923255144)}, {R(0.0), R(-0.9116155923255144), R(-0.4110438076762642)}, {R(1.0), R(0.0), R(0.0)}},
+        {{0, R(0.9950041652780258), R(-0.09983341664682815)}, {0, R(0.09983341664682815), R(0.9950041652780258)}, {1, 0, 0}},
+        {{0, R(-0.5839603576017622), R(-0.8117821756786866)}, {0, R(0.8117821756786866), R(-0.5839603576017622)}, {1, 0, 0}},
+        {{0, R(-0.4110438076762642), R(0.9116155923255144)}, {0, R(-0.9116155923255144), R(-0.4110438076762642)}, {1, 0, 0}},
     },
     {  /* ups_platform_point */
         {R(0.29850124958340774), R(0.029950024994048446), R(-0.1)},
@@ -445,14 +452,14 @@ const spherical_3ups_params spherical_3ups_default_params = {
         R(2.4),
     },
     {  /* ups_link2_centre_of_mass */
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
     },
     {  /* ups_link2_inertia */
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
     },
     {  /* ups_link3_mass */
         R(1.1),
@@ -460,18 +467,18 @@ const spherical_3ups_params spherical_3ups_default_params = {
         R(1.1),
     },
     {  /* ups_link3_centre_of_mass */
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
     },
     {  /* ups_link3_inertia */
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
     },
 };
 
-const spherical_3ups_real spherical_3ups_HOME_X[SPHERICAL_3UPS_NQ] = {R(0.0), R(0.0), R(0.0), R(1.0)};
+const spherical_3ups_real spherical_3ups_HOME_X[SPHERICAL_3UPS_NQ] = {0, 0, 0, 1};
 const spherical_3ups_real spherical_3ups_HOME_Q[SPHERICAL_3UPS_NJ] = {R(-0.5), R(0.6), R(0.8), R(-0.5), R(0.6), R(0.8), R(-0.5), R(0.6), R(0.8)};
 const size_t spherical_3ups_ACTUATED[SPHERICAL_3UPS_NU] = {2, 5, 8};
 const char *const spherical_3ups_ACTUATOR_NAMES[SPHERICAL_3UPS_NU] = {
@@ -506,6 +513,9 @@ static int acceptable(const spherical_3ups_params *p)
     ok &= all_inertias(&p->ups_link3_inertia[0][0][0], LEGS_OF_ups);
     return ok;
 }
+
+#define KEEP(name) model->name = name
+#define KEEP_OF_LEG(name) model->name[leg] = name
 
 int spherical_3ups_prepare(const spherical_3ups_params *params, spherical_3ups_model *model)
 {
@@ -561,14 +571,14 @@ int spherical_3ups_prepare(const spherical_3ups_params *params, spherical_3ups_m
     const real spread_t = R(0.3333333333333333)*root(3);
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = R(1.385640646055102)*spread_t;
-    model->fixed_centre_x = fixed_centre_x;
-    model->fixed_centre_y = fixed_centre_y;
-    model->fixed_centre_z = fixed_centre_z;
-    model->gravity_x = gravity_x;
-    model->gravity_y = gravity_y;
-    model->gravity_z = gravity_z;
-    model->legs_size = legs_size;
-    model->spread_t = spread_t;
+    KEEP(fixed_centre_x);
+    KEEP(fixed_centre_y);
+    KEEP(fixed_centre_z);
+    KEEP(gravity_x);
+    KEEP(gravity_y);
+    KEEP(gravity_z);
+    KEEP(legs_size);
+    KEEP(spread_t);
     for (size_t leg = 0; leg < FILLED(LEGS_OF_ups); ++leg) {
         const size_t own = leg < LEGS_OF_ups ? leg : 0;
         const real ups_base_point_x = params->ups_base_point[own][0];
@@ -683,46 +693,46 @@ int spherical_3ups_prepare(const spherical_3ups_params *params, spherical_3ups_m
             ups_base_frame_yy*ups_base_point_y + ups_base_frame_zy*ups_base_point_z;
         const real ups_potential_t_3 = ups_base_frame_xz*ups_base_point_x +
             ups_base_frame_yz*ups_base_point_y + ups_base_frame_zz*ups_base_point_z;
-        model->ups_J_group_2_in_axes2_xx[leg] = ups_J_group_2_in_axes2_xx;
-        model->ups_J_group_2_in_axes2_xy[leg] = ups_J_group_2_in_axes2_xy;
-        model->ups_J_group_2_in_axes2_xz[leg] = ups_J_group_2_in_axes2_xz;
-        model->ups_J_group_2_in_axes2_yy[leg] = ups_J_group_2_in_axes2_yy;
-        model->ups_J_group_2_in_axes2_yz[leg] = ups_J_group_2_in_axes2_yz;
-        model->ups_J_group_2_in_axes2_zz[leg] = ups_J_group_2_in_axes2_zz;
-        model->ups_Sigma_2_in_axes2_xx[leg] = ups_Sigma_2_in_axes2_xx;
-        model->ups_Sigma_2_in_axes2_yy[leg] = ups_Sigma_2_in_axes2_yy;
-        model->ups_Sigma_2_in_axes2_zz[leg] = ups_Sigma_2_in_axes2_zz;
-        model->ups_acc_3_t[leg] = ups_acc_3_t;
-        model->ups_acc_3_t_2[leg] = ups_acc_3_t_2;
-        model->ups_acc_3_t_3[leg] = ups_acc_3_t_3;
-        model->ups_base_frame_xx[leg] = ups_base_frame_xx;
-        model->ups_base_frame_xy[leg] = ups_base_frame_xy;
-        model->ups_base_frame_xz[leg] = ups_base_frame_xz;
-        model->ups_base_frame_yx[leg] = ups_base_frame_yx;
-        model->ups_base_frame_yy[leg] = ups_base_frame_yy;
-        model->ups_base_frame_yz[leg] = ups_base_frame_yz;
-        model->ups_base_frame_zx[leg] = ups_base_frame_zx;
-        model->ups_base_frame_zy[leg] = ups_base_frame_zy;
-        model->ups_base_frame_zz[leg] = ups_base_frame_zz;
-        model->ups_base_point_x[leg] = ups_base_point_x;
-        model->ups_base_point_y[leg] = ups_base_point_y;
-        model->ups_base_point_z[leg] = ups_base_point_z;
-        model->ups_branch_1[leg] = ups_branch_1;
-        model->ups_branch_2[leg] = ups_branch_2;
-        model->ups_h_2_in_spec2_x[leg] = ups_h_2_in_spec2_x;
-        model->ups_h_2_in_spec2_y[leg] = ups_h_2_in_spec2_y;
-        model->ups_h_2_in_spec2_z[leg] = ups_h_2_in_spec2_z;
-        model->ups_h_3_in_spec2_x[leg] = ups_h_3_in_spec2_x;
-        model->ups_h_3_in_spec2_y[leg] = ups_h_3_in_spec2_y;
-        model->ups_h_3_in_spec2_z[leg] = ups_h_3_in_spec2_z;
-        model->ups_link2_mass[leg] = ups_link2_mass;
-        model->ups_link3_mass[leg] = ups_link3_mass;
-        model->ups_platform_point_x[leg] = ups_platform_point_x;
-        model->ups_platform_point_y[leg] = ups_platform_point_y;
-        model->ups_platform_point_z[leg] = ups_platform_point_z;
-        model->ups_potential_t[leg] = ups_potential_t;
-        model->ups_potential_t_2[leg] = ups_potential_t_2;
-        model->ups_potential_t_3[leg] = ups_potential_t_3;
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_xx);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_xy);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_xz);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_yy);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_yz);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_zz);
+        KEEP_OF_LEG(ups_Sigma_2_in_axes2_xx);
+        KEEP_OF_LEG(ups_Sigma_2_in_axes2_yy);
+        KEEP_OF_LEG(ups_Sigma_2_in_axes2_zz);
+        KEEP_OF_LEG(ups_acc_3_t);
+        KEEP_OF_LEG(ups_acc_3_t_2);
+        KEEP_OF_LEG(ups_acc_3_t_3);
+        KEEP_OF_LEG(ups_base_frame_xx);
+        KEEP_OF_LEG(ups_base_frame_xy);
+        KEEP_OF_LEG(ups_base_frame_xz);
+        KEEP_OF_LEG(ups_base_frame_yx);
+        KEEP_OF_LEG(ups_base_frame_yy);
+        KEEP_OF_LEG(ups_base_frame_yz);
+        KEEP_OF_LEG(ups_base_frame_zx);
+        KEEP_OF_LEG(ups_base_frame_zy);
+        KEEP_OF_LEG(ups_base_frame_zz);
+        KEEP_OF_LEG(ups_base_point_x);
+        KEEP_OF_LEG(ups_base_point_y);
+        KEEP_OF_LEG(ups_base_point_z);
+        KEEP_OF_LEG(ups_branch_1);
+        KEEP_OF_LEG(ups_branch_2);
+        KEEP_OF_LEG(ups_h_2_in_spec2_x);
+        KEEP_OF_LEG(ups_h_2_in_spec2_y);
+        KEEP_OF_LEG(ups_h_2_in_spec2_z);
+        KEEP_OF_LEG(ups_h_3_in_spec2_x);
+        KEEP_OF_LEG(ups_h_3_in_spec2_y);
+        KEEP_OF_LEG(ups_h_3_in_spec2_z);
+        KEEP_OF_LEG(ups_link2_mass);
+        KEEP_OF_LEG(ups_link3_mass);
+        KEEP_OF_LEG(ups_platform_point_x);
+        KEEP_OF_LEG(ups_platform_point_y);
+        KEEP_OF_LEG(ups_platform_point_z);
+        KEEP_OF_LEG(ups_potential_t);
+        KEEP_OF_LEG(ups_potential_t_2);
+        KEEP_OF_LEG(ups_potential_t_3);
         m_star_of_legs += leg < LEGS_OF_ups ? ups_link3_mass : 0;
         h_star_in_platform_x_of_legs += leg < LEGS_OF_ups ? ups_h_star_t : 0;
         h_star_in_platform_y_of_legs += leg < LEGS_OF_ups ? ups_h_star_t_2 : 0;
@@ -768,23 +778,23 @@ int spherical_3ups_prepare(const spherical_3ups_params *params, spherical_3ups_m
     const real b_c_in_platform_x = R(0.3333333333333333)*b_c_ups_in_platform_x;
     const real b_c_in_platform_y = R(0.3333333333333333)*b_c_ups_in_platform_y;
     const real b_c_in_platform_z = R(0.3333333333333333)*b_c_ups_in_platform_z;
-    model->J_star_in_platform_xx = J_star_in_platform_xx;
-    model->J_star_in_platform_xy = J_star_in_platform_xy;
-    model->J_star_in_platform_xz = J_star_in_platform_xz;
-    model->J_star_in_platform_yy = J_star_in_platform_yy;
-    model->J_star_in_platform_yz = J_star_in_platform_yz;
-    model->J_star_in_platform_zz = J_star_in_platform_zz;
-    model->J_star_t_12 = J_star_t_12;
-    model->J_star_t_14 = J_star_t_14;
-    model->b_c_in_platform_x = b_c_in_platform_x;
-    model->b_c_in_platform_y = b_c_in_platform_y;
-    model->b_c_in_platform_z = b_c_in_platform_z;
-    model->h_star_in_platform_x = h_star_in_platform_x;
-    model->h_star_in_platform_y = h_star_in_platform_y;
-    model->h_star_in_platform_z = h_star_in_platform_z;
-    model->potential_t = potential_t;
-    model->potential_t_2 = potential_t_2;
-    model->potential_t_3 = potential_t_3;
+    KEEP(J_star_in_platform_xx);
+    KEEP(J_star_in_platform_xy);
+    KEEP(J_star_in_platform_xz);
+    KEEP(J_star_in_platform_yy);
+    KEEP(J_star_in_platform_yz);
+    KEEP(J_star_in_platform_zz);
+    KEEP(J_star_t_12);
+    KEEP(J_star_t_14);
+    KEEP(b_c_in_platform_x);
+    KEEP(b_c_in_platform_y);
+    KEEP(b_c_in_platform_z);
+    KEEP(h_star_in_platform_x);
+    KEEP(h_star_in_platform_y);
+    KEEP(h_star_in_platform_z);
+    KEEP(potential_t);
+    KEEP(potential_t_2);
+    KEEP(potential_t_3);
     return OK;
 }
 
@@ -1364,8 +1374,8 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real R_zy = quaternion_wx + quaternion_yz;
     const real R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real g_in_platform_x = R_xx*m->gravity_x + R_yx*m->gravity_y + R_zx*m->gravity_z;
-    const real g_in_platform_y = R_xy*m->gravity_x + R_yy*m->gravity_y + R_zy*m->gravity_z;
+    const real g_in_platform_x = R_yx*m->gravity_y + R_zx*m->gravity_z + R_xx*m->gravity_x;
+    const real g_in_platform_y = R_xy*m->gravity_x + R_zy*m->gravity_z + R_yy*m->gravity_y;
     const real g_in_platform_z = R_xz*m->gravity_x + R_yz*m->gravity_y + R_zz*m->gravity_z;
     v->quaternion_scale = quaternion_scale;
     v->R_xx = R_xx;
@@ -1388,8 +1398,8 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
     const real omega_x = V[0*w + k];
     const real omega_y = V[1*w + k];
     const real omega_z = V[2*w + k];
-    const real omega_in_platform_x = v->R_xx*omega_x + v->R_yx*omega_y + v->R_zx*omega_z;
-    const real omega_in_platform_y = v->R_xy*omega_x + v->R_yy*omega_y + v->R_zy*omega_z;
+    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
     const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
     v->omega_in_platform_x = omega_in_platform_x;
     v->omega_in_platform_y = omega_in_platform_y;
@@ -1399,24 +1409,24 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
 INLINE void stage_M_dynamics(const prepared *m, values *v)
 {
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_t = m->J_star_in_platform_xy*v->R_xx + m->J_star_in_platform_yz*v->R_xz
-        - m->J_star_t_12*v->R_xy;
+    const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
+        m->J_star_in_platform_xy*v->R_xx;
     const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
         m->J_star_in_platform_yz*v->R_yz - m->J_star_t_12*v->R_yy;
-    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx +
-        m->J_star_in_platform_yz*v->R_zz - m->J_star_t_12*v->R_zy;
+    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx - m->J_star_t_12*v->R_zy +
+        m->J_star_in_platform_yz*v->R_zz;
     const real J_star_t_4 = m->J_star_t_14*v->R_xz - m->J_star_in_platform_xz*v->R_xx;
     const real J_star_t_5 = m->J_star_t_14*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
     const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
-    const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
-        J_star_t_5*v->R_xz;
+    const real J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
+        J_star_t_4*v->R_yz;
     const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
     const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
     const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
-    const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
+    const real J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
     const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
     const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
@@ -1440,15 +1450,15 @@ INLINE void stage_Z_dynamics(const prepared *m, values *v)
     const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
         m->J_star_in_platform_yz*v->omega_in_platform_y +
         m->J_star_in_platform_zz*v->omega_in_platform_z;
-    const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
-        v->g_in_platform_y*m->h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
-        v->g_in_platform_z*m->h_star_in_platform_y;
-    const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
-        v->g_in_platform_z*m->h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
-        v->g_in_platform_x*m->h_star_in_platform_z;
-    const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
-        v->g_in_platform_x*m->h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
-        v->g_in_platform_y*m->h_star_in_platform_x;
+    const real Z_q_in_platform_x = v->g_in_platform_y*m->h_star_in_platform_z -
+        v->g_in_platform_z*m->h_star_in_platform_y + Z_q_t_3*v->omega_in_platform_y -
+        Z_q_t_2*v->omega_in_platform_z;
+    const real Z_q_in_platform_y = v->g_in_platform_z*m->h_star_in_platform_x -
+        v->g_in_platform_x*m->h_star_in_platform_z + Z_q_t*v->omega_in_platform_z -
+        Z_q_t_3*v->omega_in_platform_x;
+    const real Z_q_in_platform_z = v->g_in_platform_x*m->h_star_in_platform_y -
+        v->g_in_platform_y*m->h_star_in_platform_x + Z_q_t_2*v->omega_in_platform_x -
+        Z_q_t*v->omega_in_platform_y;
     const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
         v->R_xz*Z_q_in_platform_z;
     const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
@@ -1482,21 +1492,21 @@ INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real ups_q_x = R_xx*m->ups_platform_point_x[i] + R_xy*m->ups_platform_point_y[i] +
-        R_xz*m->ups_platform_point_z[i];
+    const real ups_q_x = R_xy*m->ups_platform_point_y[i] + R_xz*m->ups_platform_point_z[i] +
+        R_xx*m->ups_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real ups_q_y = R_yx*m->ups_platform_point_x[i] + R_yy*m->ups_platform_point_y[i] +
-        R_yz*m->ups_platform_point_z[i];
+    const real ups_q_y = R_yx*m->ups_platform_point_x[i] + R_yz*m->ups_platform_point_z[i] +
+        R_yy*m->ups_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real ups_q_z = R_zx*m->ups_platform_point_x[i] + R_zy*m->ups_platform_point_y[i] +
         R_zz*m->ups_platform_point_z[i];
-    const real ups_S_x = m->fixed_centre_x + ups_q_x - m->ups_base_point_x[i];
-    const real ups_S_y = m->fixed_centre_y + ups_q_y - m->ups_base_point_y[i];
-    const real ups_S_z = m->fixed_centre_z + ups_q_z - m->ups_base_point_z[i];
+    const real ups_S_x = m->fixed_centre_x - m->ups_base_point_x[i] + ups_q_x;
+    const real ups_S_y = m->fixed_centre_y - m->ups_base_point_y[i] + ups_q_y;
+    const real ups_S_z = m->fixed_centre_z - m->ups_base_point_z[i] + ups_q_z;
     const real ups_S_in_turn1_x = ups_S_x*m->ups_base_frame_xx[i] +
         ups_S_y*m->ups_base_frame_yx[i] + ups_S_z*m->ups_base_frame_zx[i];
     const real ups_S_in_turn1_y = ups_S_x*m->ups_base_frame_xy[i] +
@@ -1626,13 +1636,13 @@ INLINE void stage_ups_A_V_X(size_t w, size_t j, const real *V, const real *A, va
     const real alpha_z = A[2*w + j];
     const real omega_y = V[1*w + j];
     const real omega_z = V[2*w + j];
-    const real ups_S_ddot_x = alpha_y*v->ups_q_z + omega_y*v->ups_S_dot_z - alpha_z*v->ups_q_y
+    const real ups_S_ddot_x = alpha_y*v->ups_q_z - alpha_z*v->ups_q_y + omega_y*v->ups_S_dot_z
         - omega_z*v->ups_S_dot_y;
     const real alpha_x = A[0*w + j];
     const real omega_x = V[0*w + j];
-    const real ups_S_ddot_y = alpha_z*v->ups_q_x + omega_z*v->ups_S_dot_x - alpha_x*v->ups_q_z
+    const real ups_S_ddot_y = alpha_z*v->ups_q_x - alpha_x*v->ups_q_z + omega_z*v->ups_S_dot_x
         - omega_x*v->ups_S_dot_z;
-    const real ups_S_ddot_z = alpha_x*v->ups_q_y + omega_x*v->ups_S_dot_y - alpha_y*v->ups_q_x
+    const real ups_S_ddot_z = alpha_x*v->ups_q_y - alpha_y*v->ups_q_x + omega_x*v->ups_S_dot_y
         - omega_y*v->ups_S_dot_x;
     v->ups_S_ddot_x = ups_S_ddot_x;
     v->ups_S_ddot_y = ups_S_ddot_y;
@@ -1679,55 +1689,56 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
         m->ups_acc_3_t_3[i]*v->ups_c_2;
     const real ups_acc_3_o_in_axes2_x = v->axis_x_ups_axes2_x*ups_u_1_x +
         v->axis_x_ups_axes2_y*ups_u_1_y + v->axis_x_ups_axes2_z*ups_u_1_z - ups_g_in_axes2_x;
-    const real ups_acc_3_o_in_axes2_y = ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 -
-        ups_g_in_axes2_y;
+    const real ups_acc_3_o_in_axes2_y = ups_B_2_o_t - ups_g_in_axes2_y + ups_B_2_o_t_2 +
+        ups_B_2_o_t_3;
     const real ups_acc_3_o_in_axes2_z = ups_u_1_in_axes2_z - v->ups_g_in_axes2_z;
     /* (ups-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
        */
     const real ups_phi_3_o_t = v->ups_omega_1_in_axes2_y*v->ups_omega_1_in_axes2_y;
     const real ups_phi_3_o_t_2 = v->ups_qd_2*v->ups_qd_2;
-    const real ups_phi_3_o_in_axes2_x = ups_alpha_1_o_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
-        m->ups_h_3_in_spec2_x[i]*(-ups_phi_3_o_t - ups_phi_3_o_t_2) -
-        ups_B_2_o_in_axes2_xy*m->ups_h_3_in_spec2_z[i];
+    const real ups_phi_3_o_in_axes2_x = m->ups_h_3_in_spec2_x[i]*(-ups_phi_3_o_t -
+        ups_phi_3_o_t_2) - ups_B_2_o_in_axes2_xy*m->ups_h_3_in_spec2_z[i] +
+        ups_alpha_1_o_in_axes2_y*m->ups_h_3_in_spec2_y[i];
     /* (ups-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real ups_mu_2_o_t = v->ups_omega_1_in_axes2_x*v->ups_omega_1_in_axes2_x;
-    const real ups_mu_2_o_in_axes2_x = ups_B_2_o_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
-        ups_B_2_o_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] +
+    const real ups_mu_2_o_in_axes2_x = v->ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] +
+        ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] -
+        ups_acc_3_o_in_axes2_z*m->ups_h_3_in_spec2_z[i] -
+        ups_acc_3_o_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
+        ups_B_2_o_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
         m->ups_J_group_2_in_axes2_yz[i]*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
         m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_in_axes2_x +
-        ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] +
-        v->ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] -
-        ups_B_2_o_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i] -
-        ups_acc_3_o_in_axes2_y*m->ups_h_3_in_spec2_y[i] -
-        ups_acc_3_o_in_axes2_z*m->ups_h_3_in_spec2_z[i];
-    const real ups_mu_2_o_in_axes2_y = ups_B_2_o_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] +
-        m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_in_axes2_y +
-        ups_acc_3_o_in_axes2_x*m->ups_h_3_in_spec2_y[i] +
-        v->ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
-        ups_B_2_o_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] -
-        ups_B_2_o_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i] -
-        m->ups_J_group_2_in_axes2_xz[i]*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
+        ups_B_2_o_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
+        ups_B_2_o_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
+    const real ups_mu_2_o_in_axes2_y = v->ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
+        ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i] +
+        ups_acc_3_o_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
         ups_acc_3_o_in_axes2_z*m->ups_h_3_in_spec2_x[i] -
-        ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i];
-    const real ups_mu_2_o_in_axes2_z = ups_B_2_o_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
-        m->ups_J_group_2_in_axes2_xy[i]*(ups_mu_2_o_t - ups_phi_3_o_t) +
+        m->ups_J_group_2_in_axes2_xz[i]*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
+        ups_B_2_o_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
+        m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_in_axes2_y +
+        ups_B_2_o_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
+        ups_B_2_o_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
+    const real ups_mu_2_o_in_axes2_z = ups_acc_3_o_in_axes2_x*m->ups_h_3_in_spec2_z[i] -
+        ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] - ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i]
+        + ups_acc_3_o_in_axes2_y*m->ups_h_3_in_spec2_x[i] +
+        ups_B_2_o_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
+        m->ups_J_group_2_in_axes2_xy[i]*(ups_mu_2_o_t - ups_phi_3_o_t) -
+        ups_B_2_o_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] +
         m->ups_J_group_2_in_axes2_xz[i]*ups_alpha_1_o_in_axes2_x +
-        m->ups_J_group_2_in_axes2_yz[i]*ups_alpha_1_o_in_axes2_y +
-        ups_acc_3_o_in_axes2_x*m->ups_h_3_in_spec2_z[i] +
-        ups_acc_3_o_in_axes2_y*m->ups_h_3_in_spec2_x[i] -
-        ups_B_2_o_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] -
-        ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] - ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i];
+        m->ups_J_group_2_in_axes2_yz[i]*ups_alpha_1_o_in_axes2_y;
     /* (ups-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
     const real ups_c_o_in_axes2_y = ups_alpha_1_o_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        v->inv_ups_q_3*ups_mu_2_o_in_axes2_z - ups_B_2_o_in_axes2_yx*m->ups_h_3_in_spec2_x[i]
-        - m->ups_h_3_in_spec2_z[i]*(ups_mu_2_o_t + ups_phi_3_o_t_2);
-    const real ups_c_o_in_axes2_z = v->inv_ups_root_1*(v->ups_c_2*ups_mu_2_o_in_axes2_y -
-        v->ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x) +
-        ups_B_2_o_in_axes2_zy*m->ups_h_3_in_spec2_z[i] +
-        m->ups_h_3_in_spec2_y[i]*(ups_mu_2_o_t + ups_phi_3_o_t) -
-        ups_B_2_o_in_axes2_zx*m->ups_h_3_in_spec2_x[i];
+        ups_B_2_o_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
+        m->ups_h_3_in_spec2_z[i]*(ups_mu_2_o_t + ups_phi_3_o_t_2) -
+        v->inv_ups_q_3*ups_mu_2_o_in_axes2_z;
+    const real ups_c_o_in_axes2_z = m->ups_h_3_in_spec2_y[i]*(ups_mu_2_o_t + ups_phi_3_o_t) +
+        ups_B_2_o_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
+        ups_B_2_o_in_axes2_zx*m->ups_h_3_in_spec2_x[i] +
+        v->inv_ups_root_1*(v->ups_c_2*ups_mu_2_o_in_axes2_y -
+        v->ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x);
     /* (ups-U) velocity and gravity terms of the leg force */
     const real ups_U_x = v->axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x -
         v->axis_y_ups_axes2_x*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_x*ups_c_o_in_axes2_z;
@@ -1751,21 +1762,21 @@ INLINE void stage_ups_inverse_kinematics_potential(const prepared *m, size_t w, 
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real ups_S_x = m->fixed_centre_x + R_xx*m->ups_platform_point_x[i] +
-        R_xy*m->ups_platform_point_y[i] + R_xz*m->ups_platform_point_z[i] -
-        m->ups_base_point_x[i];
+    const real ups_S_x = m->fixed_centre_x - m->ups_base_point_x[i] +
+        R_xy*m->ups_platform_point_y[i] + R_xz*m->ups_platform_point_z[i] +
+        R_xx*m->ups_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real ups_S_y = m->fixed_centre_y + R_yx*m->ups_platform_point_x[i] +
-        R_yy*m->ups_platform_point_y[i] + R_yz*m->ups_platform_point_z[i] -
-        m->ups_base_point_y[i];
+    const real ups_S_y = m->fixed_centre_y - m->ups_base_point_y[i] +
+        R_yx*m->ups_platform_point_x[i] + R_yz*m->ups_platform_point_z[i] +
+        R_yy*m->ups_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
-    const real ups_S_z = m->fixed_centre_z + R_zx*m->ups_platform_point_x[i] +
-        R_zy*m->ups_platform_point_y[i] + R_zz*m->ups_platform_point_z[i] -
-        m->ups_base_point_z[i];
+    const real ups_S_z = m->fixed_centre_z - m->ups_base_point_z[i] +
+        R_zx*m->ups_platform_point_x[i] + R_zy*m->ups_platform_point_y[i] +
+        R_zz*m->ups_platform_point_z[i];
     const real ups_S_in_turn1_x = ups_S_x*m->ups_base_frame_xx[i] +
         ups_S_y*m->ups_base_frame_yx[i] + ups_S_z*m->ups_base_frame_zx[i];
     const real ups_S_in_turn1_y = ups_S_x*m->ups_base_frame_xy[i] +
@@ -1827,8 +1838,8 @@ INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
     const real ups_acc_3_in_axes2_x = v->axis_x_ups_axes2_x*v->ups_S_ddot_x +
         v->axis_x_ups_axes2_y*v->ups_S_ddot_y + v->axis_x_ups_axes2_z*v->ups_S_ddot_z -
         ups_g_in_axes2_x;
-    const real ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
-        ups_g_in_axes2_y;
+    const real ups_acc_3_in_axes2_y = ups_B_2_t - ups_g_in_axes2_y + ups_B_2_t_2 +
+        ups_B_2_t_3;
     const real ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - v->ups_g_in_axes2_z;
     /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real ups_mu_2_t = v->ups_omega_1_in_axes2_x*v->ups_omega_1_in_axes2_x;
@@ -1849,33 +1860,37 @@ INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    real *s, verdict *t)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_M_dynamics(m, &v);
-    stage_Z_dynamics(m, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.J_star_xx;
-    s[10*w + k] = v.J_star_xy;
-    s[11*w + k] = v.J_star_xz;
-    s[12*w + k] = v.J_star_yy;
-    s[13*w + k] = v.J_star_yz;
-    s[14*w + k] = v.J_star_zz;
-    s[15*w + k] = v.Z_q_x;
-    s[16*w + k] = v.Z_q_y;
-    s[17*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
+    *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_M_dynamics(m, v);
+    stage_Z_dynamics(m, v);
+    s[9*w + k] = v->J_star_xx;
+    s[10*w + k] = v->J_star_xy;
+    s[11*w + k] = v->J_star_xz;
+    s[12*w + k] = v->J_star_yy;
+    s[13*w + k] = v->J_star_yz;
+    s[14*w + k] = v->J_star_zz;
+    s[15*w + k] = v->Z_q_x;
+    s[16*w + k] = v->Z_q_y;
+    s[17*w + k] = v->Z_q_z;
 }
 
 INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -1913,9 +1928,9 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
         v.axis_y_ups_axes2_x*ups_Q_t - v.axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
     const real ups_Q_t_4 = v.axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy -
         v.axis_y_ups_axes2_y*ups_Q_t - v.axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_5 = v.axis_y_ups_axes2_z*ups_Q_t +
-        v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz -
-        v.axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy;
+    const real ups_Q_t_5 = v.axis_y_ups_axes2_z*ups_Q_t -
+        v.axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy +
+        v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz;
     const real ups_Q_t_6 = v.axis_x_ups_axes2_x*ups_d_c_in_axes2_xz +
         v.axis_z_ups_axes2_x*ups_Q_t_2;
     const real ups_Q_t_7 = v.axis_x_ups_axes2_y*ups_d_c_in_axes2_xz +
@@ -2009,13 +2024,13 @@ INLINE void dynamics_after(size_t w, size_t k, const real *s, const real *sums, 
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[6*w + k];
     const real Z_q_x = s[15*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[7*w + k];
     const real Z_q_y = s[16*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[8*w + k];
     const real Z_q_z = s[17*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_aa) */
     M[0*w + k] = M_aa_xx;
     M[1*w + k] = M_aa_xy;
@@ -2039,7 +2054,8 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 {
     real s[18] = {0}, sums[9] = {0};
     real terms_ups[9*LEGS(LEGS_OF_ups)] = {0}, o_ups[5*LEGS(LEGS_OF_ups)] = {0};
-    dynamics_before(m, 1, 0, X, V, s, t);
+    values v;
+    dynamics_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         dynamics_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, V, terms_ups, o_ups);
     }
@@ -2049,6 +2065,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t n = 0; n < 9; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
+    dynamics_between(m, 1, 0, V, &v, s);
     dynamics_after(1, 0, s, sums, M, Z, t);
 }
 
@@ -2058,7 +2075,9 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real s[18*LANES], sums[9*LANES];
     real o_ups[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        dynamics_before(m, LANES, k, X, V, s, t);
+        values v;
+        dynamics_before(m, LANES, k, X, &v, s, t);
+        dynamics_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 9*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
@@ -2075,27 +2094,31 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_M_dynamics(m, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.J_star_xx;
-    s[10*w + k] = v.J_star_xy;
-    s[11*w + k] = v.J_star_xz;
-    s[12*w + k] = v.J_star_yy;
-    s[13*w + k] = v.J_star_yz;
-    s[14*w + k] = v.J_star_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void M_between(const prepared *m, size_t w, size_t k, values *v, real *s)
+{
+    stage_M_dynamics(m, v);
+    s[9*w + k] = v->J_star_xx;
+    s[10*w + k] = v->J_star_xy;
+    s[11*w + k] = v->J_star_xz;
+    s[12*w + k] = v->J_star_yy;
+    s[13*w + k] = v->J_star_yz;
+    s[14*w + k] = v->J_star_zz;
 }
 
 INLINE void M_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2138,11 +2161,11 @@ INLINE void M_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
         v.axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
     const real ups_Q_t_4 = ups_d_phi_3_in_axes2_xy*v.ups_w_3_y - axis_y_ups_axes2_y*ups_Q_t -
         v.axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t +
-        v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz - ups_d_phi_3_in_axes2_xy*v.ups_w_3_z;
-    const real ups_Q_t_6 = v.axis_z_ups_axes2_x*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_x;
-    const real ups_Q_t_7 = v.axis_z_ups_axes2_y*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_y;
-    const real ups_Q_t_8 = v.axis_z_ups_axes2_z*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_z;
+    const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t - ups_d_phi_3_in_axes2_xy*v.ups_w_3_z +
+        v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_6 = ups_d_c_in_axes2_xz*v.ups_w_3_x + v.axis_z_ups_axes2_x*ups_Q_t_2;
+    const real ups_Q_t_7 = ups_d_c_in_axes2_xz*v.ups_w_3_y + v.axis_z_ups_axes2_y*ups_Q_t_2;
+    const real ups_Q_t_8 = ups_d_c_in_axes2_xz*v.ups_w_3_z + v.axis_z_ups_axes2_z*ups_Q_t_2;
     const real ups_Q_t_9 = v.axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3;
     const real ups_Q_xx = -2*ups_Q_t_9;
     const real ups_Q_xy = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 -
@@ -2225,7 +2248,8 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_ups[6*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
-    M_before(m, 1, 0, X, s, t);
+    values v;
+    M_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         M_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, terms_ups, o_ups);
     }
@@ -2235,6 +2259,7 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
+    M_between(m, 1, 0, &v, s);
     M_after(1, 0, s, sums, M, t);
 }
 
@@ -2243,7 +2268,9 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
     real s[15*LANES], sums[6*LANES];
     real o_ups[LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        M_before(m, LANES, k, X, s, t);
+        values v;
+        M_before(m, LANES, k, X, &v, s, t);
+        M_between(m, LANES, k, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
@@ -2260,26 +2287,29 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s,
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
     verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_Z_dynamics(m, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.Z_q_x;
-    s[10*w + k] = v.Z_q_y;
-    s[11*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_Z_dynamics(m, v);
+    s[9*w + k] = v->Z_q_x;
+    s[10*w + k] = v->Z_q_y;
+    s[11*w + k] = v->Z_q_z;
 }
 
 INLINE void Z_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2308,13 +2338,13 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[0*w + k];
     const real Z_q_x = s[9*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[1*w + k];
     const real Z_q_y = s[10*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[2*w + k];
     const real Z_q_z = s[11*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_a) */
     Z[0*w + k] = Z_a_x;
     Z[1*w + k] = Z_a_y;
@@ -2326,7 +2356,8 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 {
     real s[12] = {0}, sums[3] = {0};
     real terms_ups[3*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
-    Z_before(m, 1, 0, X, V, s, t);
+    values v;
+    Z_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         Z_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, V, terms_ups, o_ups);
     }
@@ -2336,6 +2367,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
+    Z_between(m, 1, 0, V, &v, s);
     Z_after(1, 0, s, sums, Z, t);
 }
 
@@ -2345,7 +2377,9 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real s[12*LANES], sums[3*LANES];
     real o_ups[LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        Z_before(m, LANES, k, X, V, s, t);
+        values v;
+        Z_before(m, LANES, k, X, &v, s, t);
+        Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 3*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
@@ -2362,20 +2396,20 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void H_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2410,7 +2444,8 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
     real s[9] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
-    H_before(m, 1, 0, X, s, t);
+    values v;
+    H_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         H_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, o_ups);
     }
@@ -2424,7 +2459,8 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
     real s[9*LANES];
     real o_ups[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        H_before(m, LANES, k, X, s, t);
+        values v;
+        H_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2437,62 +2473,69 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, real *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
+    values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
     /* (mu_p) inertia moment of the platform less that of its weight */
-    const real mu_p_t = m->J_star_in_platform_xx*v.omega_in_platform_x +
-        m->J_star_in_platform_xy*v.omega_in_platform_y +
-        m->J_star_in_platform_xz*v.omega_in_platform_z;
-    const real mu_p_t_2 = m->J_star_in_platform_xy*v.omega_in_platform_x +
-        m->J_star_in_platform_yy*v.omega_in_platform_y +
-        m->J_star_in_platform_yz*v.omega_in_platform_z;
-    const real mu_p_t_3 = m->J_star_in_platform_xz*v.omega_in_platform_x +
-        m->J_star_in_platform_yz*v.omega_in_platform_y +
-        m->J_star_in_platform_zz*v.omega_in_platform_z;
+    const real mu_p_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
+        m->J_star_in_platform_xy*v->omega_in_platform_y +
+        m->J_star_in_platform_xz*v->omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
+        m->J_star_in_platform_yy*v->omega_in_platform_y +
+        m->J_star_in_platform_yz*v->omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
+        m->J_star_in_platform_yz*v->omega_in_platform_y +
+        m->J_star_in_platform_zz*v->omega_in_platform_z;
     const real alpha_x = A[0*w + k];
     const real alpha_y = A[1*w + k];
     const real alpha_z = A[2*w + k];
-    const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
-    const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
-    const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+    const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
+    const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
+    const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
     const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
         m->J_star_in_platform_xy*alpha_in_platform_y +
         m->J_star_in_platform_xz*alpha_in_platform_z +
-        v.g_in_platform_y*m->h_star_in_platform_z + mu_p_t_3*v.omega_in_platform_y -
-        v.g_in_platform_z*m->h_star_in_platform_y - mu_p_t_2*v.omega_in_platform_z;
+        v->g_in_platform_y*m->h_star_in_platform_z -
+        v->g_in_platform_z*m->h_star_in_platform_y + mu_p_t_3*v->omega_in_platform_y -
+        mu_p_t_2*v->omega_in_platform_z;
     const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
         m->J_star_in_platform_yz*alpha_in_platform_z +
-        v.g_in_platform_z*m->h_star_in_platform_x + mu_p_t*v.omega_in_platform_z -
-        v.g_in_platform_x*m->h_star_in_platform_z - mu_p_t_3*v.omega_in_platform_x;
+        v->g_in_platform_z*m->h_star_in_platform_x -
+        v->g_in_platform_x*m->h_star_in_platform_z + mu_p_t*v->omega_in_platform_z -
+        mu_p_t_3*v->omega_in_platform_x;
     const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
         m->J_star_in_platform_zz*alpha_in_platform_z +
-        v.g_in_platform_x*m->h_star_in_platform_y + mu_p_t_2*v.omega_in_platform_x -
-        v.g_in_platform_y*m->h_star_in_platform_x - mu_p_t*v.omega_in_platform_y;
-    const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
-        v.R_xz*mu_p_in_platform_z;
-    const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
-        v.R_yz*mu_p_in_platform_z;
-    const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
-        v.R_zz*mu_p_in_platform_z;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+        v->g_in_platform_x*m->h_star_in_platform_y -
+        v->g_in_platform_y*m->h_star_in_platform_x + mu_p_t_2*v->omega_in_platform_x -
+        mu_p_t*v->omega_in_platform_y;
+    const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
+        v->R_xz*mu_p_in_platform_z;
+    const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
+        v->R_yz*mu_p_in_platform_z;
+    const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
+        v->R_zz*mu_p_in_platform_z;
     s[9*w + k] = mu_p_x;
     s[10*w + k] = mu_p_y;
     s[11*w + k] = mu_p_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void required_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2506,53 +2549,54 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
     /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
     const real ups_phi_3_t = v.ups_omega_1_in_axes2_y*v.ups_omega_1_in_axes2_y;
     const real ups_phi_3_t_2 = v.ups_qd_2*v.ups_qd_2;
-    const real ups_phi_3_in_axes2_x = v.ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
-        m->ups_h_3_in_spec2_x[i]*(-ups_phi_3_t - ups_phi_3_t_2) -
-        v.ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i];
+    const real ups_phi_3_in_axes2_x = m->ups_h_3_in_spec2_x[i]*(-ups_phi_3_t - ups_phi_3_t_2)
+        - v.ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i] +
+        v.ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i];
     /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real ups_mu_2_in_axes2_x = v.ups_B_2_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
-        v.ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] +
+    const real ups_mu_2_in_axes2_x = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] +
+        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] -
+        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_z[i] -
+        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
+        v.ups_B_2_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
         m->ups_J_group_2_in_axes2_yz[i]*(ups_phi_3_t - ups_phi_3_t_2) +
         m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_x +
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] +
-        v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i] -
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_y[i] -
-        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_z[i];
-    const real ups_mu_2_in_axes2_y = v.ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] +
-        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_y +
-        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_y[i] +
-        v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
-        v.ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i] -
-        m->ups_J_group_2_in_axes2_xz[i]*(v.ups_mu_2_t - ups_phi_3_t_2) -
+        v.ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
+    const real ups_mu_2_in_axes2_y = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
+        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i] +
+        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
         v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_x[i] -
-        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i];
-    const real ups_mu_2_in_axes2_z = v.ups_B_2_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
-        m->ups_J_group_2_in_axes2_xy[i]*(v.ups_mu_2_t - ups_phi_3_t) +
-        m->ups_J_group_2_in_axes2_xz[i]*v.ups_alpha_1_in_axes2_x +
-        m->ups_J_group_2_in_axes2_yz[i]*v.ups_alpha_1_in_axes2_y +
-        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_z[i] +
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_x[i] -
-        v.ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] -
+        m->ups_J_group_2_in_axes2_xz[i]*(v.ups_mu_2_t - ups_phi_3_t_2) -
+        v.ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
+        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_y +
+        v.ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
+    const real ups_mu_2_in_axes2_z = v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_z[i] -
         v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] -
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i];
+        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i] +
+        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_x[i] +
+        v.ups_B_2_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
+        m->ups_J_group_2_in_axes2_xy[i]*(v.ups_mu_2_t - ups_phi_3_t) -
+        v.ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] +
+        m->ups_J_group_2_in_axes2_xz[i]*v.ups_alpha_1_in_axes2_x +
+        m->ups_J_group_2_in_axes2_yz[i]*v.ups_alpha_1_in_axes2_y;
     /* (ups-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real ups_c_in_axes2_y = v.ups_alpha_1_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        v.inv_ups_q_3*ups_mu_2_in_axes2_z - v.ups_B_2_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
-        m->ups_h_3_in_spec2_z[i]*(v.ups_mu_2_t + ups_phi_3_t_2);
-    const real ups_c_in_axes2_z = v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
-        v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) +
-        v.ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] +
-        m->ups_h_3_in_spec2_y[i]*(v.ups_mu_2_t + ups_phi_3_t) -
-        v.ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i];
-    const real ups_c_x = v.axis_y_ups_axes2_x*ups_c_in_axes2_y +
-        v.axis_z_ups_axes2_x*ups_c_in_axes2_z - v.axis_x_ups_axes2_x*ups_phi_3_in_axes2_x;
-    const real ups_c_y = v.axis_y_ups_axes2_y*ups_c_in_axes2_y +
-        v.axis_z_ups_axes2_y*ups_c_in_axes2_z - v.axis_x_ups_axes2_y*ups_phi_3_in_axes2_x;
-    const real ups_c_z = v.axis_y_ups_axes2_z*ups_c_in_axes2_y +
-        v.axis_z_ups_axes2_z*ups_c_in_axes2_z - v.axis_x_ups_axes2_z*ups_phi_3_in_axes2_x;
+        v.ups_B_2_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
+        m->ups_h_3_in_spec2_z[i]*(v.ups_mu_2_t + ups_phi_3_t_2) -
+        v.inv_ups_q_3*ups_mu_2_in_axes2_z;
+    const real ups_c_in_axes2_z = m->ups_h_3_in_spec2_y[i]*(v.ups_mu_2_t + ups_phi_3_t) +
+        v.ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i] +
+        v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
+        v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x);
+    const real ups_c_x = v.axis_y_ups_axes2_x*ups_c_in_axes2_y -
+        v.axis_x_ups_axes2_x*ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_x*ups_c_in_axes2_z;
+    const real ups_c_y = v.axis_y_ups_axes2_y*ups_c_in_axes2_y -
+        v.axis_x_ups_axes2_y*ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_y*ups_c_in_axes2_z;
+    const real ups_c_z = v.axis_y_ups_axes2_z*ups_c_in_axes2_y -
+        v.axis_x_ups_axes2_z*ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_z*ups_c_in_axes2_z;
     /* (R_a) moment that actuators and external wrench must give */
     const real ups_R_a_t = ups_c_y*v.ups_q_z - ups_c_z*v.ups_q_y;
     const real ups_R_a_t_2 = ups_c_z*v.ups_q_x - ups_c_x*v.ups_q_z;
@@ -2588,25 +2632,26 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     /* (R_a) */
     const real R_a_x_of_legs = sums[0*w + k];
     const real mu_p_x = s[9*w + k];
-    const real R_a_x = R_a_x_of_legs + mu_p_x;
+    const real R_a_x = mu_p_x + R_a_x_of_legs;
     const real R_a_y_of_legs = sums[1*w + k];
     const real mu_p_y = s[10*w + k];
-    const real R_a_y = R_a_y_of_legs + mu_p_y;
+    const real R_a_y = mu_p_y + R_a_y_of_legs;
     const real R_a_z_of_legs = sums[2*w + k];
     const real mu_p_z = s[11*w + k];
-    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_a) */
     required[0*w + k] = R_a_x;
     required[1*w + k] = R_a_y;
     required[2*w + k] = R_a_z;
 }
 
-APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
     real s[12] = {0}, sums[3] = {0};
     real terms_ups[3*LEGS(LEGS_OF_ups)] = {0}, o_ups[4*LEGS(LEGS_OF_ups)] = {0};
-    required_before(m, 1, 0, X, V, A, s, t);
+    values v;
+    required_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         required_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, V, A, terms_ups, o_ups);
     }
@@ -2616,6 +2661,7 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
+    required_between(m, 1, 0, V, A, &v, s);
     required_after(1, 0, s, sums, required);
 }
 
@@ -2625,7 +2671,9 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real s[12*LANES], sums[3*LANES];
     real o_ups[4*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        required_before(m, LANES, k, X, V, A, s, t);
+        values v;
+        required_before(m, LANES, k, X, &v, s, t);
+        required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 3*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
@@ -2642,21 +2690,20 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s, verdict *t)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
+    *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k,
@@ -2694,7 +2741,8 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 {
     real s[9] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
-    inverse_kinematics_before(m, 1, 0, X, s, t);
+    values v;
+    inverse_kinematics_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         inverse_kinematics_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, o_ups);
     }
@@ -2709,7 +2757,8 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real s[9*LANES];
     real o_ups[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        inverse_kinematics_before(m, LANES, k, X, s, t);
+        values v;
+        inverse_kinematics_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2722,21 +2771,20 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2779,7 +2827,8 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 {
     real s[9] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
-    joint_rates_before(m, 1, 0, X, s, t);
+    values v;
+    joint_rates_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         joint_rates_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, V, o_ups);
     }
@@ -2794,7 +2843,8 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real s[9*LANES];
     real o_ups[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_rates_before(m, LANES, k, X, s, t);
+        values v;
+        joint_rates_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2807,21 +2857,20 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
+    values *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t
@@ -2840,7 +2889,7 @@ INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t i, 
     /* (ups-rel) acceleration of the connection point left to the joint accelerations */
     const real ups_rel_in_axes2_x = v.axis_x_ups_axes2_x*v.ups_S_ddot_x +
         v.axis_x_ups_axes2_y*v.ups_S_ddot_y + v.axis_x_ups_axes2_z*v.ups_S_ddot_z -
-        v.ups_q_3*(-ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y - v.ups_qd_2*v.ups_qd_2);
+        v.ups_q_3*(-v.ups_qd_2*v.ups_qd_2 - ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y);
     const real ups_rel_in_axes2_z = v.axis_z_ups_axes2_x*v.ups_S_ddot_x +
         v.axis_z_ups_axes2_y*v.ups_S_ddot_y + v.axis_z_ups_axes2_z*v.ups_S_ddot_z -
         ups_bias_in_axes2_z;
@@ -2877,7 +2926,8 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 {
     real s[9] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
-    joint_accelerations_before(m, 1, 0, X, s, t);
+    values v;
+    joint_accelerations_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         joint_accelerations_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, V, A, o_ups);
     }
@@ -2892,7 +2942,8 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real s[9*LANES];
     real o_ups[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_accelerations_before(m, LANES, k, X, s, t);
+        values v;
+        joint_accelerations_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2905,20 +2956,20 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void legs_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2932,48 +2983,48 @@ INLINE void legs_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_
     /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real ups_mu_2_t_2 = v.ups_omega_1_in_axes2_y*v.ups_omega_1_in_axes2_y;
     const real ups_mu_2_t_3 = v.ups_qd_2*v.ups_qd_2;
-    const real ups_mu_2_in_axes2_x = v.ups_B_2_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
-        v.ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] +
+    const real ups_mu_2_in_axes2_x = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] +
+        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] -
+        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_z[i] -
+        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
+        v.ups_B_2_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
         m->ups_J_group_2_in_axes2_yz[i]*(ups_mu_2_t_2 - ups_mu_2_t_3) +
         m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_x +
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] +
-        v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i] -
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_y[i] -
-        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_z[i];
-    const real ups_mu_2_in_axes2_y = v.ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] +
-        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_y +
-        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_y[i] +
-        v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
-        v.ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i] -
-        m->ups_J_group_2_in_axes2_xz[i]*(v.ups_mu_2_t - ups_mu_2_t_3) -
+        v.ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
+    const real ups_mu_2_in_axes2_y = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
+        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i] +
+        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
         v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_x[i] -
-        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i];
-    const real ups_mu_2_in_axes2_z = v.ups_B_2_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
-        m->ups_J_group_2_in_axes2_xy[i]*(v.ups_mu_2_t - ups_mu_2_t_2) +
-        m->ups_J_group_2_in_axes2_xz[i]*v.ups_alpha_1_in_axes2_x +
-        m->ups_J_group_2_in_axes2_yz[i]*v.ups_alpha_1_in_axes2_y +
-        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_z[i] +
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_x[i] -
-        v.ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] -
+        m->ups_J_group_2_in_axes2_xz[i]*(v.ups_mu_2_t - ups_mu_2_t_3) -
+        v.ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
+        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_y +
+        v.ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
+    const real ups_mu_2_in_axes2_z = v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_z[i] -
         v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] -
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i];
+        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i] +
+        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_x[i] +
+        v.ups_B_2_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
+        m->ups_J_group_2_in_axes2_xy[i]*(v.ups_mu_2_t - ups_mu_2_t_2) -
+        v.ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] +
+        m->ups_J_group_2_in_axes2_xz[i]*v.ups_alpha_1_in_axes2_x +
+        m->ups_J_group_2_in_axes2_yz[i]*v.ups_alpha_1_in_axes2_y;
     /* (ups-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real ups_c_in_axes2_y = v.ups_alpha_1_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        v.inv_ups_q_3*ups_mu_2_in_axes2_z - v.ups_B_2_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
-        m->ups_h_3_in_spec2_z[i]*(v.ups_mu_2_t + ups_mu_2_t_3);
-    const real ups_c_in_axes2_z = v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
-        v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) +
-        v.ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] +
-        m->ups_h_3_in_spec2_y[i]*(v.ups_mu_2_t + ups_mu_2_t_2) -
-        v.ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i];
+        v.ups_B_2_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
+        m->ups_h_3_in_spec2_z[i]*(v.ups_mu_2_t + ups_mu_2_t_3) -
+        v.inv_ups_q_3*ups_mu_2_in_axes2_z;
+    const real ups_c_in_axes2_z = m->ups_h_3_in_spec2_y[i]*(v.ups_mu_2_t + ups_mu_2_t_2) +
+        v.ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i] +
+        v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
+        v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x);
     /* (ups-c_true) leg force on the platform without actuation, the last link's mass included */
     const real ups_c_true_in_axes2_x = v.ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i] -
-        v.ups_acc_3_in_axes2_x*m->ups_link3_mass[i] -
-        v.ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i] -
-        m->ups_h_3_in_spec2_x[i]*(-ups_mu_2_t_2 - ups_mu_2_t_3);
+        v.ups_acc_3_in_axes2_x*m->ups_link3_mass[i] - m->ups_h_3_in_spec2_x[i]*(-ups_mu_2_t_2
+        - ups_mu_2_t_3) - v.ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i];
     const real ups_c_true_in_axes2_y = ups_c_in_axes2_y -
         v.ups_acc_3_in_axes2_y*m->ups_link3_mass[i];
     const real ups_c_true_in_axes2_z = ups_c_in_axes2_z -
@@ -3017,7 +3068,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 {
     real s[9] = {0};
     real o_ups[7*LEGS(LEGS_OF_ups)] = {0};
-    legs_before(m, 1, 0, X, s, t);
+    values v;
+    legs_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         legs_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, V, A, o_ups);
     }
@@ -3027,29 +3079,32 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void potential_between(const prepared *m, size_t w, size_t k, values *v, real *s)
+{
     /* (potential) potential energy */
-    const real potential_t_4 = m->gravity_x*(m->potential_t + v.R_xx*m->h_star_in_platform_x +
-        v.R_xy*m->h_star_in_platform_y + v.R_xz*m->h_star_in_platform_z) +
-        m->gravity_y*(m->potential_t_2 + v.R_yx*m->h_star_in_platform_x +
-        v.R_yy*m->h_star_in_platform_y + v.R_yz*m->h_star_in_platform_z) +
-        m->gravity_z*(m->potential_t_3 + v.R_zx*m->h_star_in_platform_x +
-        v.R_zy*m->h_star_in_platform_y + v.R_zz*m->h_star_in_platform_z);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+    const real potential_t_4 = m->gravity_x*(m->potential_t + v->R_xy*m->h_star_in_platform_y
+        + v->R_xz*m->h_star_in_platform_z + v->R_xx*m->h_star_in_platform_x) +
+        m->gravity_y*(m->potential_t_2 + v->R_yx*m->h_star_in_platform_x +
+        v->R_yz*m->h_star_in_platform_z + v->R_yy*m->h_star_in_platform_y) +
+        m->gravity_z*(m->potential_t_3 + v->R_zx*m->h_star_in_platform_x +
+        v->R_zy*m->h_star_in_platform_y + v->R_zz*m->h_star_in_platform_z);
     s[9*w + k] = potential_t_4;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void potential_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3103,7 +3158,8 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 {
     real s[10] = {0}, sums[1] = {0};
     real terms_ups[LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
-    potential_before(m, 1, 0, X, s, t);
+    values v;
+    potential_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         potential_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, terms_ups, o_ups);
     }
@@ -3113,28 +3169,28 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
+    potential_between(m, 1, 0, &v, s);
     potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
-    *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, real *lengths, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void condition_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3202,7 +3258,8 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     real s[9] = {0}, sums[1] = {0};
     real terms_ups[LEGS(LEGS_OF_ups)] = {0}, o_ups[6*LEGS(LEGS_OF_ups)] = {0};
     clear(reach, NL);
-    condition_before(m, 1, 0, X, s, lengths, t);
+    values v;
+    condition_before(m, 1, 0, X, &v, s, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         condition_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, terms_ups, o_ups);
     }
@@ -3226,11 +3283,7 @@ int spherical_3ups_M(const prepared *m, const real *X, real *M_out)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-    }
-    return code;
+    return settled(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -3257,11 +3310,7 @@ int spherical_3ups_Z(const prepared *m, const real *X, const real *V, real *Z_ou
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, Z_out);
-    }
-    return code;
+    return settled(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -3285,11 +3334,7 @@ int spherical_3ups_H(const prepared *m, const real *X, real *H_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -3312,11 +3357,7 @@ int spherical_3ups_inverse_kinematics(const prepared *m, const real *X, real *q_
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, q_out);
-    }
-    return code;
+    return settled(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -3343,11 +3384,7 @@ int spherical_3ups_joint_rates(const prepared *m, const real *X, const real *V, 
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qd_out);
-    }
-    return code;
+    return settled(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -3378,11 +3415,7 @@ int spherical_3ups_joint_accelerations(const prepared *m, const real *X, const r
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qdd_out);
-    }
-    return code;
+    return settled(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -3415,13 +3448,9 @@ int spherical_3ups_dynamics(const prepared *m, const real *X, const real *V, rea
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-        refuse(NV, Z_out);
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    settled(&why, NV*NV, M_out);
+    settled(&why, NV, Z_out);
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -3492,7 +3521,8 @@ static const real sizes_tau[] = {0.25, 0.25, 0.25};
 int spherical_3ups_inverse_dynamics(const prepared *m, const real *X, const real *V, const real
     *A, const real *wrench, real *tau_out)
 {
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    static const real no_wrench[NW] = {0};
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
@@ -3502,7 +3532,7 @@ int spherical_3ups_inverse_dynamics(const prepared *m, const real *X, const real
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -3516,11 +3546,7 @@ int spherical_3ups_inverse_dynamics(const prepared *m, const real *X, const real
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, tau_out);
-    }
-    return code;
+    return settled(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -3549,8 +3575,9 @@ static const real sizes_A[] = {1.0, 1.0, 1.0};
 int spherical_3ups_forward_dynamics(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out)
 {
-    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] =
-        {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    static const real no_wrench[NW] = {0};
+    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
+        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
@@ -3559,7 +3586,7 @@ int spherical_3ups_forward_dynamics(const prepared *m, const real *X, const real
         check(NV, 1, V, why.invalid);
         check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     for (size_t i = 0; i < NV; ++i) {
@@ -3577,11 +3604,7 @@ int spherical_3ups_forward_dynamics(const prepared *m, const real *X, const real
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, A_out);
-    }
-    return code;
+    return settled(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -3622,18 +3645,15 @@ int spherical_3ups_complete_acceleration(const prepared *m, const real *X, const
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, completed_out);
-    }
-    return code;
+    return settled(&why, NV, completed_out);
 }
 
 int spherical_3ups_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out)
 {
+    static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2};
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
         unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[9] = {0}, forces[NL*NL] = {0},
         work[NV*PADDED(NV)];
     verdict why;
@@ -3644,7 +3664,7 @@ int spherical_3ups_leg_reactions(const prepared *m, const real *X, const real *V
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -3662,11 +3682,7 @@ int spherical_3ups_leg_reactions(const prepared *m, const real *X, const real *V
     add_forces(NL, 3, 1, places_forces, solve_1, actuator, forces);
     check(NL*NL, 1, forces, why.overflow);
     copy(NL*NL, forces, forces_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NL*NL, forces_out);
-    }
-    return code;
+    return settled(&why, NL*NL, forces_out);
 }
 
 int spherical_3ups_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
@@ -3688,25 +3704,22 @@ int spherical_3ups_energy(const prepared *m, const real *X, const real *V, real 
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, kinetic_out);
-        refuse(1, potential_out);
-    }
-    return code;
+    settled(&why, 1, kinetic_out);
+    return settled(&why, 1, potential_out);
 }
 
 int spherical_3ups_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
     const real *length = NULL;
+    static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {0, 1, 2};
-    real length_in[1], H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
+        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, length, 0, length_in, why.invalid);
+    length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
@@ -3724,12 +3737,8 @@ int spherical_3ups_condition(const prepared *m, const real *X, real *sigma_out, 
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, sigma_out);
-        refuse(NL, legs_out);
-    }
-    return code;
+    settled(&why, NV, sigma_out);
+    return settled(&why, NL, legs_out);
 }
 
 int spherical_3ups_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -3763,12 +3772,8 @@ int spherical_3ups_manipulability(const prepared *m, const real *X, real *measur
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, measure_out);
-        refuse(1, isotropy_out);
-    }
-    return code;
+    settled(&why, 1, measure_out);
+    return settled(&why, 1, isotropy_out);
 }
 
 int spherical_3ups_singularity_distance(const prepared *m, const real *X, real *actuators_out,
@@ -3802,12 +3807,8 @@ int spherical_3ups_singularity_distance(const prepared *m, const real *X, real *
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, actuators_out);
-        refuse(1, legs_out);
-    }
-    return code;
+    settled(&why, 1, actuators_out);
+    return settled(&why, 1, legs_out);
 }
 
 static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
@@ -3827,11 +3828,7 @@ static int mismatch_one(const prepared *m, const real *X, const real *q_actuated
     }
     check(NU, 1, gap, why.overflow);
     copy(NU, gap, gap_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, gap_out);
-    }
-    return code;
+    return settled(&why, NU, gap_out);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
@@ -3843,11 +3840,7 @@ static int slope_one(const prepared *m, const real *X, real *slope_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, slope_out);
-    }
-    return code;
+    return settled(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -3909,11 +3902,7 @@ int spherical_3ups_forward_kinematics(const prepared *m, const real *q_actuated,
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int spherical_3ups_dissipation(const prepared *m, const real *X, const real *V, real
@@ -3931,11 +3920,7 @@ int spherical_3ups_dissipation(const prepared *m, const real *X, const real *V, 
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, dissipation_out);
-    }
-    return code;
+    return settled(&why, 1, dissipation_out);
 }
 
 int spherical_3ups_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
@@ -3952,11 +3937,7 @@ int spherical_3ups_momentum(const prepared *m, const real *X, const real *V, rea
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, momentum_out);
-    }
-    return code;
+    return settled(&why, NV, momentum_out);
 }
 
 int spherical_3ups_joint_margins(const prepared *m, const real *X, real *margins_out)
@@ -3972,11 +3953,7 @@ int spherical_3ups_joint_margins(const prepared *m, const real *X, real *margins
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, margins_out);
-    }
-    return code;
+    return settled(&why, NJ, margins_out);
 }
 
 int spherical_3ups_within_limits(const prepared *m, const real *X, real *within_out)
@@ -3992,11 +3969,7 @@ int spherical_3ups_within_limits(const prepared *m, const real *X, real *within_
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, within_out);
-    }
-    return code;
+    return settled(&why, 1, within_out);
 }
 
 int spherical_3ups_actuator_positions(const prepared *m, const real *X, real *q_out)
@@ -4009,11 +3982,7 @@ int spherical_3ups_actuator_positions(const prepared *m, const real *X, real *q_
     take(NU, 1, spherical_3ups_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, q_out);
-    }
-    return code;
+    return settled(&why, NU, q_out);
 }
 
 int spherical_3ups_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
@@ -4030,11 +3999,7 @@ int spherical_3ups_actuator_rates(const prepared *m, const real *X, const real *
     take(NU, 1, spherical_3ups_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qd_out);
-    }
-    return code;
+    return settled(&why, NU, qd_out);
 }
 
 int spherical_3ups_actuator_accelerations(const prepared *m, const real *X, const real *V, const
@@ -4053,11 +4018,7 @@ int spherical_3ups_actuator_accelerations(const prepared *m, const real *X, cons
     take(NU, 1, spherical_3ups_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qdd_out);
-    }
-    return code;
+    return settled(&why, NU, qdd_out);
 }
 
 int spherical_3ups_power(const prepared *m, const real *X, const real *V, const real *tau, real
@@ -4077,11 +4038,7 @@ int spherical_3ups_power(const prepared *m, const real *X, const real *V, const 
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, power_out);
-    }
-    return code;
+    return settled(&why, 1, power_out);
 }
 
 int spherical_3ups_rotation(const real *X, real *R_out)
@@ -4094,11 +4051,7 @@ int spherical_3ups_rotation(const real *X, real *R_out)
     rotation_of_quaternion(X_from_0, R);
     check(9, 1, R, why.overflow);
     copy(9, R, R_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(9, R_out);
-    }
-    return code;
+    return settled(&why, 9, R_out);
 }
 
 int spherical_3ups_pose(const real *t, const real *R, real *X_out)
@@ -4112,11 +4065,7 @@ int spherical_3ups_pose(const real *t, const real *R, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int spherical_3ups_X_dot(const real *X, const real *V, real *X_dot_out)
@@ -4134,11 +4083,7 @@ int spherical_3ups_X_dot(const real *X, const real *V, real *X_dot_out)
     quaternion_rate(X_from_0, V_from_0, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_dot_out);
-    }
-    return code;
+    return settled(&why, NQ, X_dot_out);
 }
 
 int spherical_3ups_pose_from_rpy(const real *t, const real *rpy, real *X_out)
@@ -4152,11 +4097,7 @@ int spherical_3ups_pose_from_rpy(const real *t, const real *rpy, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int spherical_3ups_retract(const real *X, const real *step, real *X_moved_out)
@@ -4174,11 +4115,7 @@ int spherical_3ups_retract(const real *X, const real *step, real *X_moved_out)
     turn_quaternion(X_from_0, step_from_0, X_moved);
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_moved_out);
-    }
-    return code;
+    return settled(&why, NQ, X_moved_out);
 }
 
 int spherical_3ups_difference(const real *X0, const real *X1, real *step_out)
@@ -4196,11 +4133,7 @@ int spherical_3ups_difference(const real *X0, const real *X1, real *step_out)
     turn_between(X0_from_0, X1_from_0, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, step_out);
-    }
-    return code;
+    return settled(&why, NV, step_out);
 }
 
 int spherical_3ups_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
@@ -4225,11 +4158,7 @@ int spherical_3ups_interpolate(const real *X0, const real *X1, const real *s, re
     turn_quaternion(X0_from_0_2, scale_1_from_0, X);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 /* ---- one state, and batches ---- */

@@ -234,15 +234,12 @@ INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *t
 }
 
 /* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
-INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+INLINE const real *optional(size_t size, const real *x, const real *none, real *flags)
 {
-    for (size_t e = 0; e < size && !x; ++e) {
-        own[e] = none;
-    }
     if (x) {
         check(size, 1, x, flags);
     }
-    return x ? x : own;
+    return x ? x : none;
 }
 
 INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
@@ -299,6 +296,16 @@ APART void refuse(size_t size, real *out)
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
     }
+}
+
+/* The status of a state; an output is refused where it is impossible. */
+INLINE int settled(const verdict *t, size_t size, real *out)
+{
+    const int code = judge(t);
+    if (code != OK) {
+        refuse(size, out);
+    }
+    return code;
 }
 
 /* Outputs of a state where the user wants them, and of states side by side, state by state. */
@@ -419,10 +426,10 @@ INLINE int all_rotations(const real *x, size_t n)
 /* ---- parameters ---- */
 
 const stewart_params stewart_default_params = {
-    {R(0.0), R(0.0), R(-9.81)},  /* gravity */
+    {0, 0, R(-9.81)},  /* gravity */
     R(12.0),  /* platform_mass */
-    {R(0.0), R(0.0), R(0.04)},  /* platform_centre_of_mass */
-    {{R(0.35), R(0.0), R(0.0)}, {R(0.0), R(0.35), R(0.0)}, {R(0.0), R(0.0), R(0.6)}},  /* platform_inertia */
+    {0, 0, R(0.04)},  /* platform_centre_of_mass */
+    {{R(0.35), 0, 0}, {0, R(0.35), 0}, {0, 0, R(0.6)}},  /* platform_inertia */
     {  /* ups_base_point */
         {R(-0.07595833716604927), R(0.3902743704941056), R(0.017731158385886236)},
         {R(0.3759666878769001), R(0.12935533563203033), R(0.017731158385886236)},
@@ -432,12 +439,12 @@ const stewart_params stewart_default_params = {
         {R(-0.07595833716604977), R(-0.39027437049410546), R(0.017731158385886236)},
     },
     {  /* ups_base_frame */
-        {{R(0.0), R(0.7666445685820955), R(-0.6420717292200091)}, {R(0.0), R(0.6420717292200091), R(0.7666445685820955)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(0.17272814426528374), R(-0.9849695366754605)}, {R(0.0), R(0.9849695366754605), R(0.17272814426528374)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.9393727128473789), R(-0.34289780745545156)}, {R(0.0), R(0.34289780745545156), R(-0.9393727128473789)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.9393727128473789), R(0.34289780745545134)}, {R(0.0), R(-0.34289780745545134), R(-0.9393727128473789)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(0.17272814426528307), R(0.9849695366754606)}, {R(0.0), R(-0.9849695366754606), R(0.17272814426528307)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(0.7666445685820946), R(0.6420717292200101)}, {R(0.0), R(-0.6420717292200101), R(0.7666445685820946)}, {R(1.0), R(0.0), R(0.0)}},
+        {{0, R(0.7666445685820955), R(-0.6420717292200091)}, {0, R(0.6420717292200091), R(0.7666445685820955)}, {1, 0, 0}},
+        {{0, R(0.17272814426528374), R(-0.9849695366754605)}, {0, R(0.9849695366754605), R(0.17272814426528374)}, {1, 0, 0}},
+        {{0, R(-0.9393727128473789), R(-0.34289780745545156)}, {0, R(0.34289780745545156), R(-0.9393727128473789)}, {1, 0, 0}},
+        {{0, R(-0.9393727128473789), R(0.34289780745545134)}, {0, R(-0.34289780745545134), R(-0.9393727128473789)}, {1, 0, 0}},
+        {{0, R(0.17272814426528307), R(0.9849695366754606)}, {0, R(-0.9849695366754606), R(0.17272814426528307)}, {1, 0, 0}},
+        {{0, R(0.7666445685820946), R(0.6420717292200101)}, {0, R(-0.6420717292200101), R(0.7666445685820946)}, {1, 0, 0}},
     },
     {  /* ups_platform_point */
         {R(0.22999337057462865), R(0.19262151876600273), R(-0.02)},
@@ -456,20 +463,20 @@ const stewart_params stewart_default_params = {
         R(2.4),
     },
     {  /* ups_link2_centre_of_mass */
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
     },
     {  /* ups_link2_inertia */
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
     },
     {  /* ups_link3_mass */
         R(1.1),
@@ -480,24 +487,24 @@ const stewart_params stewart_default_params = {
         R(1.1),
     },
     {  /* ups_link3_centre_of_mass */
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
     },
     {  /* ups_link3_inertia */
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
     },
 };
 
-const stewart_real stewart_HOME_X[STEWART_NQ] = {R(0.0), R(0.0), R(0.75), R(0.0), R(0.0), R(0.0), R(1.0)};
+const stewart_real stewart_HOME_X[STEWART_NQ] = {0, 0, R(0.75), 0, 0, 0, 1};
 const stewart_real stewart_HOME_Q[STEWART_NJ] = {R(0.15), R(0.45), R(0.8), R(0.15), R(-0.45), R(0.8), R(0.15), R(0.45), R(0.8), R(0.15), R(-0.45), R(0.8), R(0.15), R(0.45), R(0.8), R(0.15), R(-0.45), R(0.8)};
 const size_t stewart_ACTUATED[STEWART_NU] = {2, 5, 8, 11, 14, 17};
 const char *const stewart_ACTUATOR_NAMES[STEWART_NU] = {
@@ -534,6 +541,9 @@ static int acceptable(const stewart_params *p)
     ok &= all_inertias(&p->ups_link3_inertia[0][0][0], LEGS_OF_ups);
     return ok;
 }
+
+#define KEEP(name) model->name = name
+#define KEEP_OF_LEG(name) model->name[leg] = name
 
 int stewart_prepare(const stewart_params *params, stewart_model *model)
 {
@@ -586,11 +596,11 @@ int stewart_prepare(const stewart_params *params, stewart_model *model)
     const real spread_t = R(0.16666666666666666)*root(6);
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = R(1.9595917942265426)*spread_t;
-    model->gravity_x = gravity_x;
-    model->gravity_y = gravity_y;
-    model->gravity_z = gravity_z;
-    model->legs_size = legs_size;
-    model->spread_t = spread_t;
+    KEEP(gravity_x);
+    KEEP(gravity_y);
+    KEEP(gravity_z);
+    KEEP(legs_size);
+    KEEP(spread_t);
     for (size_t leg = 0; leg < FILLED(LEGS_OF_ups); ++leg) {
         const size_t own = leg < LEGS_OF_ups ? leg : 0;
         const real ups_base_point_x = params->ups_base_point[own][0];
@@ -705,46 +715,46 @@ int stewart_prepare(const stewart_params *params, stewart_model *model)
             ups_base_frame_yy*ups_base_point_y + ups_base_frame_zy*ups_base_point_z;
         const real ups_potential_t_3 = ups_base_frame_xz*ups_base_point_x +
             ups_base_frame_yz*ups_base_point_y + ups_base_frame_zz*ups_base_point_z;
-        model->ups_J_group_2_in_axes2_xx[leg] = ups_J_group_2_in_axes2_xx;
-        model->ups_J_group_2_in_axes2_xy[leg] = ups_J_group_2_in_axes2_xy;
-        model->ups_J_group_2_in_axes2_xz[leg] = ups_J_group_2_in_axes2_xz;
-        model->ups_J_group_2_in_axes2_yy[leg] = ups_J_group_2_in_axes2_yy;
-        model->ups_J_group_2_in_axes2_yz[leg] = ups_J_group_2_in_axes2_yz;
-        model->ups_J_group_2_in_axes2_zz[leg] = ups_J_group_2_in_axes2_zz;
-        model->ups_Sigma_2_in_axes2_xx[leg] = ups_Sigma_2_in_axes2_xx;
-        model->ups_Sigma_2_in_axes2_yy[leg] = ups_Sigma_2_in_axes2_yy;
-        model->ups_Sigma_2_in_axes2_zz[leg] = ups_Sigma_2_in_axes2_zz;
-        model->ups_acc_3_t[leg] = ups_acc_3_t;
-        model->ups_acc_3_t_2[leg] = ups_acc_3_t_2;
-        model->ups_acc_3_t_3[leg] = ups_acc_3_t_3;
-        model->ups_base_frame_xx[leg] = ups_base_frame_xx;
-        model->ups_base_frame_xy[leg] = ups_base_frame_xy;
-        model->ups_base_frame_xz[leg] = ups_base_frame_xz;
-        model->ups_base_frame_yx[leg] = ups_base_frame_yx;
-        model->ups_base_frame_yy[leg] = ups_base_frame_yy;
-        model->ups_base_frame_yz[leg] = ups_base_frame_yz;
-        model->ups_base_frame_zx[leg] = ups_base_frame_zx;
-        model->ups_base_frame_zy[leg] = ups_base_frame_zy;
-        model->ups_base_frame_zz[leg] = ups_base_frame_zz;
-        model->ups_base_point_x[leg] = ups_base_point_x;
-        model->ups_base_point_y[leg] = ups_base_point_y;
-        model->ups_base_point_z[leg] = ups_base_point_z;
-        model->ups_branch_1[leg] = ups_branch_1;
-        model->ups_branch_2[leg] = ups_branch_2;
-        model->ups_h_2_in_spec2_x[leg] = ups_h_2_in_spec2_x;
-        model->ups_h_2_in_spec2_y[leg] = ups_h_2_in_spec2_y;
-        model->ups_h_2_in_spec2_z[leg] = ups_h_2_in_spec2_z;
-        model->ups_h_3_in_spec2_x[leg] = ups_h_3_in_spec2_x;
-        model->ups_h_3_in_spec2_y[leg] = ups_h_3_in_spec2_y;
-        model->ups_h_3_in_spec2_z[leg] = ups_h_3_in_spec2_z;
-        model->ups_link2_mass[leg] = ups_link2_mass;
-        model->ups_link3_mass[leg] = ups_link3_mass;
-        model->ups_platform_point_x[leg] = ups_platform_point_x;
-        model->ups_platform_point_y[leg] = ups_platform_point_y;
-        model->ups_platform_point_z[leg] = ups_platform_point_z;
-        model->ups_potential_t[leg] = ups_potential_t;
-        model->ups_potential_t_2[leg] = ups_potential_t_2;
-        model->ups_potential_t_3[leg] = ups_potential_t_3;
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_xx);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_xy);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_xz);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_yy);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_yz);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_zz);
+        KEEP_OF_LEG(ups_Sigma_2_in_axes2_xx);
+        KEEP_OF_LEG(ups_Sigma_2_in_axes2_yy);
+        KEEP_OF_LEG(ups_Sigma_2_in_axes2_zz);
+        KEEP_OF_LEG(ups_acc_3_t);
+        KEEP_OF_LEG(ups_acc_3_t_2);
+        KEEP_OF_LEG(ups_acc_3_t_3);
+        KEEP_OF_LEG(ups_base_frame_xx);
+        KEEP_OF_LEG(ups_base_frame_xy);
+        KEEP_OF_LEG(ups_base_frame_xz);
+        KEEP_OF_LEG(ups_base_frame_yx);
+        KEEP_OF_LEG(ups_base_frame_yy);
+        KEEP_OF_LEG(ups_base_frame_yz);
+        KEEP_OF_LEG(ups_base_frame_zx);
+        KEEP_OF_LEG(ups_base_frame_zy);
+        KEEP_OF_LEG(ups_base_frame_zz);
+        KEEP_OF_LEG(ups_base_point_x);
+        KEEP_OF_LEG(ups_base_point_y);
+        KEEP_OF_LEG(ups_base_point_z);
+        KEEP_OF_LEG(ups_branch_1);
+        KEEP_OF_LEG(ups_branch_2);
+        KEEP_OF_LEG(ups_h_2_in_spec2_x);
+        KEEP_OF_LEG(ups_h_2_in_spec2_y);
+        KEEP_OF_LEG(ups_h_2_in_spec2_z);
+        KEEP_OF_LEG(ups_h_3_in_spec2_x);
+        KEEP_OF_LEG(ups_h_3_in_spec2_y);
+        KEEP_OF_LEG(ups_h_3_in_spec2_z);
+        KEEP_OF_LEG(ups_link2_mass);
+        KEEP_OF_LEG(ups_link3_mass);
+        KEEP_OF_LEG(ups_platform_point_x);
+        KEEP_OF_LEG(ups_platform_point_y);
+        KEEP_OF_LEG(ups_platform_point_z);
+        KEEP_OF_LEG(ups_potential_t);
+        KEEP_OF_LEG(ups_potential_t_2);
+        KEEP_OF_LEG(ups_potential_t_3);
         m_star_of_legs += leg < LEGS_OF_ups ? ups_link3_mass : 0;
         h_star_in_platform_x_of_legs += leg < LEGS_OF_ups ? ups_h_star_t : 0;
         h_star_in_platform_y_of_legs += leg < LEGS_OF_ups ? ups_h_star_t_2 : 0;
@@ -790,24 +800,24 @@ int stewart_prepare(const stewart_params *params, stewart_model *model)
     const real b_c_in_platform_x = R(0.16666666666666666)*b_c_ups_in_platform_x;
     const real b_c_in_platform_y = R(0.16666666666666666)*b_c_ups_in_platform_y;
     const real b_c_in_platform_z = R(0.16666666666666666)*b_c_ups_in_platform_z;
-    model->J_star_in_platform_xx = J_star_in_platform_xx;
-    model->J_star_in_platform_xy = J_star_in_platform_xy;
-    model->J_star_in_platform_xz = J_star_in_platform_xz;
-    model->J_star_in_platform_yy = J_star_in_platform_yy;
-    model->J_star_in_platform_yz = J_star_in_platform_yz;
-    model->J_star_in_platform_zz = J_star_in_platform_zz;
-    model->J_star_t_12 = J_star_t_12;
-    model->J_star_t_14 = J_star_t_14;
-    model->Z_p_t = Z_p_t;
-    model->Z_p_t_2 = Z_p_t_2;
-    model->Z_p_t_3 = Z_p_t_3;
-    model->b_c_in_platform_x = b_c_in_platform_x;
-    model->b_c_in_platform_y = b_c_in_platform_y;
-    model->b_c_in_platform_z = b_c_in_platform_z;
-    model->h_star_in_platform_x = h_star_in_platform_x;
-    model->h_star_in_platform_y = h_star_in_platform_y;
-    model->h_star_in_platform_z = h_star_in_platform_z;
-    model->m_star = m_star;
+    KEEP(J_star_in_platform_xx);
+    KEEP(J_star_in_platform_xy);
+    KEEP(J_star_in_platform_xz);
+    KEEP(J_star_in_platform_yy);
+    KEEP(J_star_in_platform_yz);
+    KEEP(J_star_in_platform_zz);
+    KEEP(J_star_t_12);
+    KEEP(J_star_t_14);
+    KEEP(Z_p_t);
+    KEEP(Z_p_t_2);
+    KEEP(Z_p_t_3);
+    KEEP(b_c_in_platform_x);
+    KEEP(b_c_in_platform_y);
+    KEEP(b_c_in_platform_z);
+    KEEP(h_star_in_platform_x);
+    KEEP(h_star_in_platform_y);
+    KEEP(h_star_in_platform_z);
+    KEEP(m_star);
     return OK;
 }
 
@@ -1386,10 +1396,10 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real R_zy = quaternion_wx + quaternion_yz;
     const real R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = R_xx*m->h_star_in_platform_x + R_xy*m->h_star_in_platform_y +
-        R_xz*m->h_star_in_platform_z;
-    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yy*m->h_star_in_platform_y +
-        R_yz*m->h_star_in_platform_z;
+    const real h_star_x = R_xy*m->h_star_in_platform_y + R_xz*m->h_star_in_platform_z +
+        R_xx*m->h_star_in_platform_x;
+    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yz*m->h_star_in_platform_z +
+        R_yy*m->h_star_in_platform_y;
     const real h_star_z = R_zx*m->h_star_in_platform_x + R_zy*m->h_star_in_platform_y +
         R_zz*m->h_star_in_platform_z;
     v->quaternion_scale = quaternion_scale;
@@ -1413,8 +1423,8 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
     const real omega_x = V[3*w + k];
     const real omega_y = V[4*w + k];
     const real omega_z = V[5*w + k];
-    const real omega_in_platform_x = v->R_xx*omega_x + v->R_yx*omega_y + v->R_zx*omega_z;
-    const real omega_in_platform_y = v->R_xy*omega_x + v->R_yy*omega_y + v->R_zy*omega_z;
+    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
     const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
     v->omega_in_platform_x = omega_in_platform_x;
     v->omega_in_platform_y = omega_in_platform_y;
@@ -1424,24 +1434,24 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
 INLINE void stage_M_dynamics(const prepared *m, values *v)
 {
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_t = m->J_star_in_platform_xy*v->R_xx + m->J_star_in_platform_yz*v->R_xz
-        - m->J_star_t_12*v->R_xy;
+    const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
+        m->J_star_in_platform_xy*v->R_xx;
     const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
         m->J_star_in_platform_yz*v->R_yz - m->J_star_t_12*v->R_yy;
-    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx +
-        m->J_star_in_platform_yz*v->R_zz - m->J_star_t_12*v->R_zy;
+    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx - m->J_star_t_12*v->R_zy +
+        m->J_star_in_platform_yz*v->R_zz;
     const real J_star_t_4 = m->J_star_t_14*v->R_xz - m->J_star_in_platform_xz*v->R_xx;
     const real J_star_t_5 = m->J_star_t_14*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
     const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
-    const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
-        J_star_t_5*v->R_xz;
+    const real J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
+        J_star_t_4*v->R_yz;
     const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
     const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
     const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
-    const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
+    const real J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
     const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
     const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
@@ -1466,10 +1476,10 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
     const real Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real g_in_platform_x = v->R_xx*m->gravity_x + v->R_yx*m->gravity_y +
-        v->R_zx*m->gravity_z;
-    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_yy*m->gravity_y +
-        v->R_zy*m->gravity_z;
+    const real g_in_platform_x = v->R_yx*m->gravity_y + v->R_zx*m->gravity_z +
+        v->R_xx*m->gravity_x;
+    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_zy*m->gravity_z +
+        v->R_yy*m->gravity_y;
     const real g_in_platform_z = v->R_xz*m->gravity_x + v->R_yz*m->gravity_y +
         v->R_zz*m->gravity_z;
     const real Z_q_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
@@ -1481,15 +1491,15 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
         m->J_star_in_platform_yz*v->omega_in_platform_y +
         m->J_star_in_platform_zz*v->omega_in_platform_z;
-    const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
-        g_in_platform_y*m->h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
-        g_in_platform_z*m->h_star_in_platform_y;
-    const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
-        g_in_platform_z*m->h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
-        g_in_platform_x*m->h_star_in_platform_z;
-    const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
-        g_in_platform_x*m->h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
-        g_in_platform_y*m->h_star_in_platform_x;
+    const real Z_q_in_platform_x = g_in_platform_y*m->h_star_in_platform_z -
+        g_in_platform_z*m->h_star_in_platform_y + Z_q_t_3*v->omega_in_platform_y -
+        Z_q_t_2*v->omega_in_platform_z;
+    const real Z_q_in_platform_y = g_in_platform_z*m->h_star_in_platform_x -
+        g_in_platform_x*m->h_star_in_platform_z + Z_q_t*v->omega_in_platform_z -
+        Z_q_t_3*v->omega_in_platform_x;
+    const real Z_q_in_platform_z = g_in_platform_x*m->h_star_in_platform_y -
+        g_in_platform_y*m->h_star_in_platform_x + Z_q_t_2*v->omega_in_platform_x -
+        Z_q_t*v->omega_in_platform_y;
     const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
         v->R_xz*Z_q_in_platform_z;
     const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
@@ -1527,24 +1537,24 @@ INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real ups_q_x = R_xx*m->ups_platform_point_x[i] + R_xy*m->ups_platform_point_y[i] +
-        R_xz*m->ups_platform_point_z[i];
+    const real ups_q_x = R_xy*m->ups_platform_point_y[i] + R_xz*m->ups_platform_point_z[i] +
+        R_xx*m->ups_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real ups_q_y = R_yx*m->ups_platform_point_x[i] + R_yy*m->ups_platform_point_y[i] +
-        R_yz*m->ups_platform_point_z[i];
+    const real ups_q_y = R_yx*m->ups_platform_point_x[i] + R_yz*m->ups_platform_point_z[i] +
+        R_yy*m->ups_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real ups_q_z = R_zx*m->ups_platform_point_x[i] + R_zy*m->ups_platform_point_y[i] +
         R_zz*m->ups_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real ups_S_x = t_x + ups_q_x - m->ups_base_point_x[i];
+    const real ups_S_x = t_x - m->ups_base_point_x[i] + ups_q_x;
     const real t_y = X[1*w + j];
-    const real ups_S_y = t_y + ups_q_y - m->ups_base_point_y[i];
+    const real ups_S_y = t_y - m->ups_base_point_y[i] + ups_q_y;
     const real t_z = X[2*w + j];
-    const real ups_S_z = t_z + ups_q_z - m->ups_base_point_z[i];
+    const real ups_S_z = t_z - m->ups_base_point_z[i] + ups_q_z;
     const real ups_S_in_turn1_x = ups_S_x*m->ups_base_frame_xx[i] +
         ups_S_y*m->ups_base_frame_yx[i] + ups_S_z*m->ups_base_frame_zx[i];
     const real ups_S_in_turn1_y = ups_S_x*m->ups_base_frame_xy[i] +
@@ -1694,13 +1704,13 @@ INLINE void stage_ups_A_V_X(size_t w, size_t j, const real *V, values_ups *v)
     /* (ups-S_ddot) acceleration of the connection point */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
-    const real ups_S_ddot_x = v->ups_a_p_x + omega_y*v->ups_S_dot_t_3 -
-        omega_z*v->ups_S_dot_t_2;
+    const real ups_S_ddot_x = omega_y*v->ups_S_dot_t_3 - omega_z*v->ups_S_dot_t_2 +
+        v->ups_a_p_x;
     const real omega_x = V[3*w + j];
-    const real ups_S_ddot_y = v->ups_a_p_y + omega_z*v->ups_S_dot_t -
-        omega_x*v->ups_S_dot_t_3;
-    const real ups_S_ddot_z = v->ups_a_p_z + omega_x*v->ups_S_dot_t_2 -
-        omega_y*v->ups_S_dot_t;
+    const real ups_S_ddot_y = omega_z*v->ups_S_dot_t - omega_x*v->ups_S_dot_t_3 +
+        v->ups_a_p_y;
+    const real ups_S_ddot_z = omega_x*v->ups_S_dot_t_2 - omega_y*v->ups_S_dot_t +
+        v->ups_a_p_z;
     v->ups_S_ddot_x = ups_S_ddot_x;
     v->ups_S_ddot_y = ups_S_ddot_y;
     v->ups_S_ddot_z = ups_S_ddot_z;
@@ -1746,55 +1756,56 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
         m->ups_acc_3_t_3[i]*v->ups_c_2;
     const real ups_acc_3_o_in_axes2_x = v->axis_x_ups_axes2_x*ups_u_1_x +
         v->axis_x_ups_axes2_y*ups_u_1_y + v->axis_x_ups_axes2_z*ups_u_1_z - ups_g_in_axes2_x;
-    const real ups_acc_3_o_in_axes2_y = ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 -
-        ups_g_in_axes2_y;
+    const real ups_acc_3_o_in_axes2_y = ups_B_2_o_t - ups_g_in_axes2_y + ups_B_2_o_t_2 +
+        ups_B_2_o_t_3;
     const real ups_acc_3_o_in_axes2_z = ups_u_1_in_axes2_z - v->ups_g_in_axes2_z;
     /* (ups-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
        */
     const real ups_phi_3_o_t = v->ups_omega_1_in_axes2_y*v->ups_omega_1_in_axes2_y;
     const real ups_phi_3_o_t_2 = v->ups_qd_2*v->ups_qd_2;
-    const real ups_phi_3_o_in_axes2_x = ups_alpha_1_o_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
-        m->ups_h_3_in_spec2_x[i]*(-ups_phi_3_o_t - ups_phi_3_o_t_2) -
-        ups_B_2_o_in_axes2_xy*m->ups_h_3_in_spec2_z[i];
+    const real ups_phi_3_o_in_axes2_x = m->ups_h_3_in_spec2_x[i]*(-ups_phi_3_o_t -
+        ups_phi_3_o_t_2) - ups_B_2_o_in_axes2_xy*m->ups_h_3_in_spec2_z[i] +
+        ups_alpha_1_o_in_axes2_y*m->ups_h_3_in_spec2_y[i];
     /* (ups-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real ups_mu_2_o_t = v->ups_omega_1_in_axes2_x*v->ups_omega_1_in_axes2_x;
-    const real ups_mu_2_o_in_axes2_x = ups_B_2_o_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
-        ups_B_2_o_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] +
+    const real ups_mu_2_o_in_axes2_x = v->ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] +
+        ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] -
+        ups_acc_3_o_in_axes2_z*m->ups_h_3_in_spec2_z[i] -
+        ups_acc_3_o_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
+        ups_B_2_o_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
         m->ups_J_group_2_in_axes2_yz[i]*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
         m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_in_axes2_x +
-        ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] +
-        v->ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] -
-        ups_B_2_o_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i] -
-        ups_acc_3_o_in_axes2_y*m->ups_h_3_in_spec2_y[i] -
-        ups_acc_3_o_in_axes2_z*m->ups_h_3_in_spec2_z[i];
-    const real ups_mu_2_o_in_axes2_y = ups_B_2_o_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] +
-        m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_in_axes2_y +
-        ups_acc_3_o_in_axes2_x*m->ups_h_3_in_spec2_y[i] +
-        v->ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
-        ups_B_2_o_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] -
-        ups_B_2_o_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i] -
-        m->ups_J_group_2_in_axes2_xz[i]*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
+        ups_B_2_o_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
+        ups_B_2_o_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
+    const real ups_mu_2_o_in_axes2_y = v->ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
+        ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i] +
+        ups_acc_3_o_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
         ups_acc_3_o_in_axes2_z*m->ups_h_3_in_spec2_x[i] -
-        ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i];
-    const real ups_mu_2_o_in_axes2_z = ups_B_2_o_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
-        m->ups_J_group_2_in_axes2_xy[i]*(ups_mu_2_o_t - ups_phi_3_o_t) +
+        m->ups_J_group_2_in_axes2_xz[i]*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
+        ups_B_2_o_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
+        m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_in_axes2_y +
+        ups_B_2_o_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
+        ups_B_2_o_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
+    const real ups_mu_2_o_in_axes2_z = ups_acc_3_o_in_axes2_x*m->ups_h_3_in_spec2_z[i] -
+        ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] - ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i]
+        + ups_acc_3_o_in_axes2_y*m->ups_h_3_in_spec2_x[i] +
+        ups_B_2_o_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
+        m->ups_J_group_2_in_axes2_xy[i]*(ups_mu_2_o_t - ups_phi_3_o_t) -
+        ups_B_2_o_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] +
         m->ups_J_group_2_in_axes2_xz[i]*ups_alpha_1_o_in_axes2_x +
-        m->ups_J_group_2_in_axes2_yz[i]*ups_alpha_1_o_in_axes2_y +
-        ups_acc_3_o_in_axes2_x*m->ups_h_3_in_spec2_z[i] +
-        ups_acc_3_o_in_axes2_y*m->ups_h_3_in_spec2_x[i] -
-        ups_B_2_o_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] -
-        ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] - ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i];
+        m->ups_J_group_2_in_axes2_yz[i]*ups_alpha_1_o_in_axes2_y;
     /* (ups-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
     const real ups_c_o_in_axes2_y = ups_alpha_1_o_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        v->inv_ups_q_3*ups_mu_2_o_in_axes2_z - ups_B_2_o_in_axes2_yx*m->ups_h_3_in_spec2_x[i]
-        - m->ups_h_3_in_spec2_z[i]*(ups_mu_2_o_t + ups_phi_3_o_t_2);
-    const real ups_c_o_in_axes2_z = v->inv_ups_root_1*(v->ups_c_2*ups_mu_2_o_in_axes2_y -
-        v->ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x) +
-        ups_B_2_o_in_axes2_zy*m->ups_h_3_in_spec2_z[i] +
-        m->ups_h_3_in_spec2_y[i]*(ups_mu_2_o_t + ups_phi_3_o_t) -
-        ups_B_2_o_in_axes2_zx*m->ups_h_3_in_spec2_x[i];
+        ups_B_2_o_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
+        m->ups_h_3_in_spec2_z[i]*(ups_mu_2_o_t + ups_phi_3_o_t_2) -
+        v->inv_ups_q_3*ups_mu_2_o_in_axes2_z;
+    const real ups_c_o_in_axes2_z = m->ups_h_3_in_spec2_y[i]*(ups_mu_2_o_t + ups_phi_3_o_t) +
+        ups_B_2_o_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
+        ups_B_2_o_in_axes2_zx*m->ups_h_3_in_spec2_x[i] +
+        v->inv_ups_root_1*(v->ups_c_2*ups_mu_2_o_in_axes2_y -
+        v->ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x);
     /* (ups-U) velocity and gravity terms of the leg force */
     const real ups_U_x = v->axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x -
         v->axis_y_ups_axes2_x*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_x*ups_c_o_in_axes2_z;
@@ -1822,23 +1833,20 @@ INLINE void stage_ups_inverse_kinematics_potential(const prepared *m, size_t w, 
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
     const real t_x = X[0*w + j];
-    const real ups_S_x = t_x + R_xx*m->ups_platform_point_x[i] +
-        R_xy*m->ups_platform_point_y[i] + R_xz*m->ups_platform_point_z[i] -
-        m->ups_base_point_x[i];
+    const real ups_S_x = t_x - m->ups_base_point_x[i] + R_xy*m->ups_platform_point_y[i] +
+        R_xz*m->ups_platform_point_z[i] + R_xx*m->ups_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real t_y = X[1*w + j];
-    const real ups_S_y = t_y + R_yx*m->ups_platform_point_x[i] +
-        R_yy*m->ups_platform_point_y[i] + R_yz*m->ups_platform_point_z[i] -
-        m->ups_base_point_y[i];
+    const real ups_S_y = t_y - m->ups_base_point_y[i] + R_yx*m->ups_platform_point_x[i] +
+        R_yz*m->ups_platform_point_z[i] + R_yy*m->ups_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real t_z = X[2*w + j];
-    const real ups_S_z = t_z + R_zx*m->ups_platform_point_x[i] +
-        R_zy*m->ups_platform_point_y[i] + R_zz*m->ups_platform_point_z[i] -
-        m->ups_base_point_z[i];
+    const real ups_S_z = t_z - m->ups_base_point_z[i] + R_zx*m->ups_platform_point_x[i] +
+        R_zy*m->ups_platform_point_y[i] + R_zz*m->ups_platform_point_z[i];
     const real ups_S_in_turn1_x = ups_S_x*m->ups_base_frame_xx[i] +
         ups_S_y*m->ups_base_frame_yx[i] + ups_S_z*m->ups_base_frame_zx[i];
     const real ups_S_in_turn1_y = ups_S_x*m->ups_base_frame_xy[i] +
@@ -1900,8 +1908,8 @@ INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
     const real ups_acc_3_in_axes2_x = v->axis_x_ups_axes2_x*v->ups_S_ddot_x +
         v->axis_x_ups_axes2_y*v->ups_S_ddot_y + v->axis_x_ups_axes2_z*v->ups_S_ddot_z -
         ups_g_in_axes2_x;
-    const real ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
-        ups_g_in_axes2_y;
+    const real ups_acc_3_in_axes2_y = ups_B_2_t - ups_g_in_axes2_y + ups_B_2_t_2 +
+        ups_B_2_t_3;
     const real ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - v->ups_g_in_axes2_z;
     /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real ups_mu_2_t = v->ups_omega_1_in_axes2_x*v->ups_omega_1_in_axes2_x;
@@ -1922,39 +1930,43 @@ INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    real *s, verdict *t)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_M_dynamics(m, &v);
-    stage_Z_dynamics(m, w, k, V, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.h_star_x;
-    s[10*w + k] = v.h_star_y;
-    s[11*w + k] = v.h_star_z;
-    s[12*w + k] = v.J_star_xx;
-    s[13*w + k] = v.J_star_xy;
-    s[14*w + k] = v.J_star_xz;
-    s[15*w + k] = v.J_star_yy;
-    s[16*w + k] = v.J_star_yz;
-    s[17*w + k] = v.J_star_zz;
-    s[18*w + k] = v.Z_p_x;
-    s[19*w + k] = v.Z_p_y;
-    s[20*w + k] = v.Z_p_z;
-    s[21*w + k] = v.Z_q_x;
-    s[22*w + k] = v.Z_q_y;
-    s[23*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->h_star_x;
+    s[10*w + k] = v->h_star_y;
+    s[11*w + k] = v->h_star_z;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
+    *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_M_dynamics(m, v);
+    stage_Z_dynamics(m, w, k, V, v);
+    s[12*w + k] = v->J_star_xx;
+    s[13*w + k] = v->J_star_xy;
+    s[14*w + k] = v->J_star_xz;
+    s[15*w + k] = v->J_star_yy;
+    s[16*w + k] = v->J_star_yz;
+    s[17*w + k] = v->J_star_zz;
+    s[18*w + k] = v->Z_p_x;
+    s[19*w + k] = v->Z_p_y;
+    s[20*w + k] = v->Z_p_z;
+    s[21*w + k] = v->Z_q_x;
+    s[22*w + k] = v->Z_q_y;
+    s[23*w + k] = v->Z_q_z;
 }
 
 INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -1992,9 +2004,9 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
         v.axis_y_ups_axes2_x*ups_Q_t - v.axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
     const real ups_Q_t_4 = v.axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy -
         v.axis_y_ups_axes2_y*ups_Q_t - v.axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_5 = v.axis_y_ups_axes2_z*ups_Q_t +
-        v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz -
-        v.axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy;
+    const real ups_Q_t_5 = v.axis_y_ups_axes2_z*ups_Q_t -
+        v.axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy +
+        v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz;
     const real ups_Q_t_6 = v.axis_x_ups_axes2_x*ups_d_c_in_axes2_xz +
         v.axis_z_ups_axes2_x*ups_Q_t_2;
     const real ups_Q_t_7 = v.axis_x_ups_axes2_y*ups_d_c_in_axes2_xz +
@@ -2102,15 +2114,15 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[11*w + k];
-    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
     const real h_star_y = s[10*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -2118,9 +2130,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[9*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
@@ -2155,13 +2167,13 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[24*w + k];
     const real Z_q_x = s[21*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[25*w + k];
     const real Z_q_y = s[22*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[26*w + k];
     const real Z_q_z = s[23*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
     const real M_tt_xy = sums[1*w + k];
@@ -2226,7 +2238,8 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 {
     real s[24] = {0}, sums[27] = {0};
     real terms_ups[27*LEGS(LEGS_OF_ups)] = {0}, o_ups[8*LEGS(LEGS_OF_ups)] = {0};
-    dynamics_before(m, 1, 0, X, V, s, t);
+    values v;
+    dynamics_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         dynamics_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, V, terms_ups, o_ups);
     }
@@ -2236,6 +2249,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t n = 0; n < 27; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
+    dynamics_between(m, 1, 0, V, &v, s);
     dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
@@ -2245,7 +2259,9 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real s[24*LANES], sums[27*LANES];
     real o_ups[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        dynamics_before(m, LANES, k, X, V, s, t);
+        values v;
+        dynamics_before(m, LANES, k, X, &v, s, t);
+        dynamics_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 27*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
@@ -2262,30 +2278,34 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_M_dynamics(m, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.h_star_x;
-    s[10*w + k] = v.h_star_y;
-    s[11*w + k] = v.h_star_z;
-    s[12*w + k] = v.J_star_xx;
-    s[13*w + k] = v.J_star_xy;
-    s[14*w + k] = v.J_star_xz;
-    s[15*w + k] = v.J_star_yy;
-    s[16*w + k] = v.J_star_yz;
-    s[17*w + k] = v.J_star_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->h_star_x;
+    s[10*w + k] = v->h_star_y;
+    s[11*w + k] = v->h_star_z;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void M_between(const prepared *m, size_t w, size_t k, values *v, real *s)
+{
+    stage_M_dynamics(m, v);
+    s[12*w + k] = v->J_star_xx;
+    s[13*w + k] = v->J_star_xy;
+    s[14*w + k] = v->J_star_xz;
+    s[15*w + k] = v->J_star_yy;
+    s[16*w + k] = v->J_star_yz;
+    s[17*w + k] = v->J_star_zz;
 }
 
 INLINE void M_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2328,11 +2348,11 @@ INLINE void M_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
         v.axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
     const real ups_Q_t_4 = ups_d_phi_3_in_axes2_xy*v.ups_w_3_y - axis_y_ups_axes2_y*ups_Q_t -
         v.axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t +
-        v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz - ups_d_phi_3_in_axes2_xy*v.ups_w_3_z;
-    const real ups_Q_t_6 = v.axis_z_ups_axes2_x*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_x;
-    const real ups_Q_t_7 = v.axis_z_ups_axes2_y*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_y;
-    const real ups_Q_t_8 = v.axis_z_ups_axes2_z*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_z;
+    const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t - ups_d_phi_3_in_axes2_xy*v.ups_w_3_z +
+        v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_6 = ups_d_c_in_axes2_xz*v.ups_w_3_x + v.axis_z_ups_axes2_x*ups_Q_t_2;
+    const real ups_Q_t_7 = ups_d_c_in_axes2_xz*v.ups_w_3_y + v.axis_z_ups_axes2_y*ups_Q_t_2;
+    const real ups_Q_t_8 = ups_d_c_in_axes2_xz*v.ups_w_3_z + v.axis_z_ups_axes2_z*ups_Q_t_2;
     const real ups_Q_t_9 = v.axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3;
     const real ups_Q_xx = -2*ups_Q_t_9;
     const real ups_Q_xy = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 -
@@ -2404,15 +2424,15 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[11*w + k];
-    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
     const real h_star_y = s[10*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -2420,9 +2440,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[9*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
@@ -2499,7 +2519,8 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
     real s[18] = {0}, sums[21] = {0};
     real terms_ups[21*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
-    M_before(m, 1, 0, X, s, t);
+    values v;
+    M_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         M_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, terms_ups, o_ups);
     }
@@ -2509,6 +2530,7 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     for (size_t n = 0; n < 21; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
+    M_between(m, 1, 0, &v, s);
     M_after(m, 1, 0, s, sums, M, t);
 }
 
@@ -2517,7 +2539,9 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
     real s[18*LANES], sums[21*LANES];
     real o_ups[LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        M_before(m, LANES, k, X, s, t);
+        values v;
+        M_before(m, LANES, k, X, &v, s, t);
+        M_between(m, LANES, k, &v, s);
     }
     clear(sums, 21*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
@@ -2534,29 +2558,32 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s,
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
     verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_Z_dynamics(m, w, k, V, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.Z_p_x;
-    s[10*w + k] = v.Z_p_y;
-    s[11*w + k] = v.Z_p_z;
-    s[12*w + k] = v.Z_q_x;
-    s[13*w + k] = v.Z_q_y;
-    s[14*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_Z_dynamics(m, w, k, V, v);
+    s[9*w + k] = v->Z_p_x;
+    s[10*w + k] = v->Z_p_y;
+    s[11*w + k] = v->Z_p_z;
+    s[12*w + k] = v->Z_q_x;
+    s[13*w + k] = v->Z_q_y;
+    s[14*w + k] = v->Z_q_z;
 }
 
 INLINE void Z_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2599,13 +2626,13 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[3*w + k];
     const real Z_q_x = s[12*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[4*w + k];
     const real Z_q_y = s[13*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[5*w + k];
     const real Z_q_z = s[14*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
     Z[1*w + k] = Z_t_y;
@@ -2621,7 +2648,8 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_ups[6*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
-    Z_before(m, 1, 0, X, V, s, t);
+    values v;
+    Z_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         Z_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, V, terms_ups, o_ups);
     }
@@ -2631,6 +2659,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
+    Z_between(m, 1, 0, V, &v, s);
     Z_after(1, 0, s, sums, Z, t);
 }
 
@@ -2640,7 +2669,9 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real s[15*LANES], sums[6*LANES];
     real o_ups[LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        Z_before(m, LANES, k, X, V, s, t);
+        values v;
+        Z_before(m, LANES, k, X, &v, s, t);
+        Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
@@ -2657,20 +2688,20 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void H_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2713,7 +2744,8 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
     real s[9] = {0};
     real o_ups[8*LEGS(LEGS_OF_ups)] = {0};
-    H_before(m, 1, 0, X, s, t);
+    values v;
+    H_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         H_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, o_ups);
     }
@@ -2727,7 +2759,8 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
     real s[9*LANES];
     real o_ups[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        H_before(m, LANES, k, X, s, t);
+        values v;
+        H_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2740,12 +2773,26 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, real *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
+    values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
     /* (W_p) centripetal tensor of the platform */
     const real omega_x = V[3*w + k];
     const real omega_y = V[4*w + k];
@@ -2760,72 +2807,62 @@ INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X
     const real a_t_y = t_ddot_y - m->gravity_y;
     const real t_ddot_z = A[2*w + k];
     const real a_t_z = t_ddot_z - m->gravity_z;
-    const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
-    const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
-    const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
+    const real a_t_in_platform_x = v->R_yx*a_t_y + v->R_zx*a_t_z + v->R_xx*a_t_x;
+    const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
+    const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
     const real f_p_t = omega_x*omega_x;
     const real f_p_t_2 = omega_y*omega_y;
     const real f_p_t_3 = omega_z*omega_z;
     const real alpha_y = A[4*w + k];
     const real alpha_z = A[5*w + k];
-    const real f_p_x = a_t_x*m->m_star + v.h_star_y*(W_p_xy - alpha_z) + v.h_star_z*(W_p_xz +
-        alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+    const real f_p_x = a_t_x*m->m_star + v->h_star_y*(W_p_xy - alpha_z) + v->h_star_z*(alpha_y
+        + W_p_xz) - v->h_star_x*(f_p_t_2 + f_p_t_3);
     const real alpha_x = A[3*w + k];
-    const real f_p_y = a_t_y*m->m_star + v.h_star_x*(W_p_xy + alpha_z) + v.h_star_z*(W_p_yz -
-        alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
-    const real f_p_z = a_t_z*m->m_star + v.h_star_x*(W_p_xz - alpha_y) + v.h_star_y*(W_p_yz +
-        alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
+    const real f_p_y = a_t_y*m->m_star + v->h_star_x*(alpha_z + W_p_xy) + v->h_star_z*(W_p_yz
+        - alpha_x) - v->h_star_y*(f_p_t + f_p_t_3);
+    const real f_p_z = a_t_z*m->m_star + v->h_star_x*(W_p_xz - alpha_y) + v->h_star_y*(alpha_x
+        + W_p_yz) - v->h_star_z*(f_p_t + f_p_t_2);
     /* (mu_p) inertia moment of the platform less that of its weight */
-    const real mu_p_t = m->J_star_in_platform_xx*v.omega_in_platform_x +
-        m->J_star_in_platform_xy*v.omega_in_platform_y +
-        m->J_star_in_platform_xz*v.omega_in_platform_z;
-    const real mu_p_t_2 = m->J_star_in_platform_xy*v.omega_in_platform_x +
-        m->J_star_in_platform_yy*v.omega_in_platform_y +
-        m->J_star_in_platform_yz*v.omega_in_platform_z;
-    const real mu_p_t_3 = m->J_star_in_platform_xz*v.omega_in_platform_x +
-        m->J_star_in_platform_yz*v.omega_in_platform_y +
-        m->J_star_in_platform_zz*v.omega_in_platform_z;
-    const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
-    const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
-    const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+    const real mu_p_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
+        m->J_star_in_platform_xy*v->omega_in_platform_y +
+        m->J_star_in_platform_xz*v->omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
+        m->J_star_in_platform_yy*v->omega_in_platform_y +
+        m->J_star_in_platform_yz*v->omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
+        m->J_star_in_platform_yz*v->omega_in_platform_y +
+        m->J_star_in_platform_zz*v->omega_in_platform_z;
+    const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
+    const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
+    const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
     const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
         m->J_star_in_platform_xy*alpha_in_platform_y +
         m->J_star_in_platform_xz*alpha_in_platform_z +
-        a_t_in_platform_z*m->h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
-        a_t_in_platform_y*m->h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+        a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
+        + mu_p_t_3*v->omega_in_platform_y - mu_p_t_2*v->omega_in_platform_z;
     const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
         m->J_star_in_platform_yz*alpha_in_platform_z +
-        a_t_in_platform_x*m->h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
-        a_t_in_platform_z*m->h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
+        a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
+        + mu_p_t*v->omega_in_platform_z - mu_p_t_3*v->omega_in_platform_x;
     const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
         m->J_star_in_platform_zz*alpha_in_platform_z +
-        a_t_in_platform_y*m->h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
-        a_t_in_platform_x*m->h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
-    const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
-        v.R_xz*mu_p_in_platform_z;
-    const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
-        v.R_yz*mu_p_in_platform_z;
-    const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
-        v.R_zz*mu_p_in_platform_z;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+        a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
+        + mu_p_t_2*v->omega_in_platform_x - mu_p_t*v->omega_in_platform_y;
+    const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
+        v->R_xz*mu_p_in_platform_z;
+    const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
+        v->R_yz*mu_p_in_platform_z;
+    const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
+        v->R_zz*mu_p_in_platform_z;
     s[9*w + k] = f_p_x;
     s[10*w + k] = f_p_y;
     s[11*w + k] = f_p_z;
     s[12*w + k] = mu_p_x;
     s[13*w + k] = mu_p_y;
     s[14*w + k] = mu_p_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void required_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2841,53 +2878,54 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
     /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
     const real ups_phi_3_t = v.ups_omega_1_in_axes2_y*v.ups_omega_1_in_axes2_y;
     const real ups_phi_3_t_2 = v.ups_qd_2*v.ups_qd_2;
-    const real ups_phi_3_in_axes2_x = v.ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
-        m->ups_h_3_in_spec2_x[i]*(-ups_phi_3_t - ups_phi_3_t_2) -
-        v.ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i];
+    const real ups_phi_3_in_axes2_x = m->ups_h_3_in_spec2_x[i]*(-ups_phi_3_t - ups_phi_3_t_2)
+        - v.ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i] +
+        v.ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i];
     /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real ups_mu_2_in_axes2_x = v.ups_B_2_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
-        v.ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] +
+    const real ups_mu_2_in_axes2_x = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] +
+        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] -
+        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_z[i] -
+        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
+        v.ups_B_2_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
         m->ups_J_group_2_in_axes2_yz[i]*(ups_phi_3_t - ups_phi_3_t_2) +
         m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_x +
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] +
-        v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i] -
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_y[i] -
-        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_z[i];
-    const real ups_mu_2_in_axes2_y = v.ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] +
-        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_y +
-        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_y[i] +
-        v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
-        v.ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i] -
-        m->ups_J_group_2_in_axes2_xz[i]*(v.ups_mu_2_t - ups_phi_3_t_2) -
+        v.ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
+    const real ups_mu_2_in_axes2_y = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
+        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i] +
+        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
         v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_x[i] -
-        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i];
-    const real ups_mu_2_in_axes2_z = v.ups_B_2_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
-        m->ups_J_group_2_in_axes2_xy[i]*(v.ups_mu_2_t - ups_phi_3_t) +
-        m->ups_J_group_2_in_axes2_xz[i]*v.ups_alpha_1_in_axes2_x +
-        m->ups_J_group_2_in_axes2_yz[i]*v.ups_alpha_1_in_axes2_y +
-        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_z[i] +
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_x[i] -
-        v.ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] -
+        m->ups_J_group_2_in_axes2_xz[i]*(v.ups_mu_2_t - ups_phi_3_t_2) -
+        v.ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
+        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_y +
+        v.ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
+    const real ups_mu_2_in_axes2_z = v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_z[i] -
         v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] -
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i];
+        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i] +
+        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_x[i] +
+        v.ups_B_2_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
+        m->ups_J_group_2_in_axes2_xy[i]*(v.ups_mu_2_t - ups_phi_3_t) -
+        v.ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] +
+        m->ups_J_group_2_in_axes2_xz[i]*v.ups_alpha_1_in_axes2_x +
+        m->ups_J_group_2_in_axes2_yz[i]*v.ups_alpha_1_in_axes2_y;
     /* (ups-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real ups_c_in_axes2_y = v.ups_alpha_1_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        v.inv_ups_q_3*ups_mu_2_in_axes2_z - v.ups_B_2_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
-        m->ups_h_3_in_spec2_z[i]*(v.ups_mu_2_t + ups_phi_3_t_2);
-    const real ups_c_in_axes2_z = v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
-        v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) +
-        v.ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] +
-        m->ups_h_3_in_spec2_y[i]*(v.ups_mu_2_t + ups_phi_3_t) -
-        v.ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i];
-    const real ups_c_x = v.axis_y_ups_axes2_x*ups_c_in_axes2_y +
-        v.axis_z_ups_axes2_x*ups_c_in_axes2_z - v.axis_x_ups_axes2_x*ups_phi_3_in_axes2_x;
-    const real ups_c_y = v.axis_y_ups_axes2_y*ups_c_in_axes2_y +
-        v.axis_z_ups_axes2_y*ups_c_in_axes2_z - v.axis_x_ups_axes2_y*ups_phi_3_in_axes2_x;
-    const real ups_c_z = v.axis_y_ups_axes2_z*ups_c_in_axes2_y +
-        v.axis_z_ups_axes2_z*ups_c_in_axes2_z - v.axis_x_ups_axes2_z*ups_phi_3_in_axes2_x;
+        v.ups_B_2_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
+        m->ups_h_3_in_spec2_z[i]*(v.ups_mu_2_t + ups_phi_3_t_2) -
+        v.inv_ups_q_3*ups_mu_2_in_axes2_z;
+    const real ups_c_in_axes2_z = m->ups_h_3_in_spec2_y[i]*(v.ups_mu_2_t + ups_phi_3_t) +
+        v.ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i] +
+        v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
+        v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x);
+    const real ups_c_x = v.axis_y_ups_axes2_x*ups_c_in_axes2_y -
+        v.axis_x_ups_axes2_x*ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_x*ups_c_in_axes2_z;
+    const real ups_c_y = v.axis_y_ups_axes2_y*ups_c_in_axes2_y -
+        v.axis_x_ups_axes2_y*ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_y*ups_c_in_axes2_z;
+    const real ups_c_z = v.axis_y_ups_axes2_z*ups_c_in_axes2_y -
+        v.axis_x_ups_axes2_z*ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_z*ups_c_in_axes2_z;
     /* (R_a) moment that actuators and external wrench must give */
     const real ups_R_a_t = ups_c_y*v.ups_q_z - ups_c_z*v.ups_q_y;
     const real ups_R_a_t_2 = ups_c_z*v.ups_q_x - ups_c_x*v.ups_q_z;
@@ -2944,13 +2982,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[12*w + k];
-    const real R_a_x = R_a_x_of_legs + mu_p_x;
+    const real R_a_x = mu_p_x + R_a_x_of_legs;
     const real R_a_y_of_legs = sums[4*w + k];
     const real mu_p_y = s[13*w + k];
-    const real R_a_y = R_a_y_of_legs + mu_p_y;
+    const real R_a_y = mu_p_y + R_a_y_of_legs;
     const real R_a_z_of_legs = sums[5*w + k];
     const real mu_p_z = s[14*w + k];
-    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
     required[1*w + k] = R_t_y;
@@ -2961,12 +2999,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[5*w + k] = R_a_z;
 }
 
-APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_ups[6*LEGS(LEGS_OF_ups)] = {0}, o_ups[7*LEGS(LEGS_OF_ups)] = {0};
-    required_before(m, 1, 0, X, V, A, s, t);
+    values v;
+    required_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         required_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, V, A, terms_ups, o_ups);
     }
@@ -2976,6 +3015,7 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
+    required_between(m, 1, 0, V, A, &v, s);
     required_after(1, 0, s, sums, required);
 }
 
@@ -2985,7 +3025,9 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real s[15*LANES], sums[6*LANES];
     real o_ups[7*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        required_before(m, LANES, k, X, V, A, s, t);
+        values v;
+        required_before(m, LANES, k, X, &v, s, t);
+        required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
@@ -3002,21 +3044,20 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s, verdict *t)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
+    *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k,
@@ -3054,7 +3095,8 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 {
     real s[9] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
-    inverse_kinematics_before(m, 1, 0, X, s, t);
+    values v;
+    inverse_kinematics_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         inverse_kinematics_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, o_ups);
     }
@@ -3069,7 +3111,8 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real s[9*LANES];
     real o_ups[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        inverse_kinematics_before(m, LANES, k, X, s, t);
+        values v;
+        inverse_kinematics_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3082,21 +3125,20 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3153,7 +3195,8 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 {
     real s[9] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
-    joint_rates_before(m, 1, 0, X, s, t);
+    values v;
+    joint_rates_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         joint_rates_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, V, o_ups);
     }
@@ -3168,7 +3211,8 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real s[9*LANES];
     real o_ups[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_rates_before(m, LANES, k, X, s, t);
+        values v;
+        joint_rates_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3181,21 +3225,20 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
+    values *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t
@@ -3215,7 +3258,7 @@ INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t i, 
     /* (ups-rel) acceleration of the connection point left to the joint accelerations */
     const real ups_rel_in_axes2_x = v.axis_x_ups_axes2_x*v.ups_S_ddot_x +
         v.axis_x_ups_axes2_y*v.ups_S_ddot_y + v.axis_x_ups_axes2_z*v.ups_S_ddot_z -
-        v.ups_q_3*(-ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y - v.ups_qd_2*v.ups_qd_2);
+        v.ups_q_3*(-v.ups_qd_2*v.ups_qd_2 - ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y);
     const real ups_rel_in_axes2_z = v.axis_z_ups_axes2_x*v.ups_S_ddot_x +
         v.axis_z_ups_axes2_y*v.ups_S_ddot_y + v.axis_z_ups_axes2_z*v.ups_S_ddot_z -
         ups_bias_in_axes2_z;
@@ -3252,7 +3295,8 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 {
     real s[9] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
-    joint_accelerations_before(m, 1, 0, X, s, t);
+    values v;
+    joint_accelerations_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         joint_accelerations_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, V, A, o_ups);
     }
@@ -3267,7 +3311,8 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real s[9*LANES];
     real o_ups[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_accelerations_before(m, LANES, k, X, s, t);
+        values v;
+        joint_accelerations_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3280,20 +3325,20 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void legs_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3308,48 +3353,48 @@ INLINE void legs_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_
     /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real ups_mu_2_t_2 = v.ups_omega_1_in_axes2_y*v.ups_omega_1_in_axes2_y;
     const real ups_mu_2_t_3 = v.ups_qd_2*v.ups_qd_2;
-    const real ups_mu_2_in_axes2_x = v.ups_B_2_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
-        v.ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] +
+    const real ups_mu_2_in_axes2_x = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] +
+        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] -
+        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_z[i] -
+        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
+        v.ups_B_2_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
         m->ups_J_group_2_in_axes2_yz[i]*(ups_mu_2_t_2 - ups_mu_2_t_3) +
         m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_x +
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] +
-        v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i] -
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_y[i] -
-        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_z[i];
-    const real ups_mu_2_in_axes2_y = v.ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] +
-        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_y +
-        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_y[i] +
-        v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
-        v.ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i] -
-        m->ups_J_group_2_in_axes2_xz[i]*(v.ups_mu_2_t - ups_mu_2_t_3) -
+        v.ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
+    const real ups_mu_2_in_axes2_y = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
+        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i] +
+        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
         v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_x[i] -
-        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i];
-    const real ups_mu_2_in_axes2_z = v.ups_B_2_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
-        m->ups_J_group_2_in_axes2_xy[i]*(v.ups_mu_2_t - ups_mu_2_t_2) +
-        m->ups_J_group_2_in_axes2_xz[i]*v.ups_alpha_1_in_axes2_x +
-        m->ups_J_group_2_in_axes2_yz[i]*v.ups_alpha_1_in_axes2_y +
-        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_z[i] +
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_x[i] -
-        v.ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] -
+        m->ups_J_group_2_in_axes2_xz[i]*(v.ups_mu_2_t - ups_mu_2_t_3) -
+        v.ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
+        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_y +
+        v.ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
+    const real ups_mu_2_in_axes2_z = v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_z[i] -
         v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] -
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i];
+        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i] +
+        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_x[i] +
+        v.ups_B_2_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
+        m->ups_J_group_2_in_axes2_xy[i]*(v.ups_mu_2_t - ups_mu_2_t_2) -
+        v.ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] +
+        m->ups_J_group_2_in_axes2_xz[i]*v.ups_alpha_1_in_axes2_x +
+        m->ups_J_group_2_in_axes2_yz[i]*v.ups_alpha_1_in_axes2_y;
     /* (ups-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real ups_c_in_axes2_y = v.ups_alpha_1_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        v.inv_ups_q_3*ups_mu_2_in_axes2_z - v.ups_B_2_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
-        m->ups_h_3_in_spec2_z[i]*(v.ups_mu_2_t + ups_mu_2_t_3);
-    const real ups_c_in_axes2_z = v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
-        v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) +
-        v.ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] +
-        m->ups_h_3_in_spec2_y[i]*(v.ups_mu_2_t + ups_mu_2_t_2) -
-        v.ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i];
+        v.ups_B_2_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
+        m->ups_h_3_in_spec2_z[i]*(v.ups_mu_2_t + ups_mu_2_t_3) -
+        v.inv_ups_q_3*ups_mu_2_in_axes2_z;
+    const real ups_c_in_axes2_z = m->ups_h_3_in_spec2_y[i]*(v.ups_mu_2_t + ups_mu_2_t_2) +
+        v.ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i] +
+        v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
+        v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x);
     /* (ups-c_true) leg force on the platform without actuation, the last link's mass included */
     const real ups_c_true_in_axes2_x = v.ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i] -
-        v.ups_acc_3_in_axes2_x*m->ups_link3_mass[i] -
-        v.ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i] -
-        m->ups_h_3_in_spec2_x[i]*(-ups_mu_2_t_2 - ups_mu_2_t_3);
+        v.ups_acc_3_in_axes2_x*m->ups_link3_mass[i] - m->ups_h_3_in_spec2_x[i]*(-ups_mu_2_t_2
+        - ups_mu_2_t_3) - v.ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i];
     const real ups_c_true_in_axes2_y = ups_c_in_axes2_y -
         v.ups_acc_3_in_axes2_y*m->ups_link3_mass[i];
     const real ups_c_true_in_axes2_z = ups_c_in_axes2_z -
@@ -3393,7 +3438,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 {
     real s[9] = {0};
     real o_ups[7*LEGS(LEGS_OF_ups)] = {0};
-    legs_before(m, 1, 0, X, s, t);
+    values v;
+    legs_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         legs_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, V, A, o_ups);
     }
@@ -3403,32 +3449,36 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s)
+{
     /* (potential) potential energy */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
-    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x +
-        v.R_xy*m->h_star_in_platform_y + v.R_xz*m->h_star_in_platform_z + m->m_star*t_x) +
-        m->gravity_y*(v.R_yx*m->h_star_in_platform_x + v.R_yy*m->h_star_in_platform_y +
-        v.R_yz*m->h_star_in_platform_z + m->m_star*t_y) +
-        m->gravity_z*(v.R_zx*m->h_star_in_platform_x + v.R_zy*m->h_star_in_platform_y +
-        v.R_zz*m->h_star_in_platform_z + m->m_star*t_z);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+    const real potential_t = m->gravity_x*(m->m_star*t_x + v->R_xy*m->h_star_in_platform_y +
+        v->R_xz*m->h_star_in_platform_z + v->R_xx*m->h_star_in_platform_x) +
+        m->gravity_y*(m->m_star*t_y + v->R_yx*m->h_star_in_platform_x +
+        v->R_yz*m->h_star_in_platform_z + v->R_yy*m->h_star_in_platform_y) +
+        m->gravity_z*(m->m_star*t_z + v->R_zx*m->h_star_in_platform_x +
+        v->R_zy*m->h_star_in_platform_y + v->R_zz*m->h_star_in_platform_z);
     s[9*w + k] = potential_t;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void potential_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3482,7 +3532,8 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 {
     real s[10] = {0}, sums[1] = {0};
     real terms_ups[LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
-    potential_before(m, 1, 0, X, s, t);
+    values v;
+    potential_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         potential_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, terms_ups, o_ups);
     }
@@ -3492,28 +3543,28 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
+    potential_between(m, 1, 0, X, &v, s);
     potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
-    *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, real *lengths, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void condition_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3589,7 +3640,8 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     real s[9] = {0}, sums[1] = {0};
     real terms_ups[LEGS(LEGS_OF_ups)] = {0}, o_ups[9*LEGS(LEGS_OF_ups)] = {0};
     clear(reach, NL);
-    condition_before(m, 1, 0, X, s, lengths, t);
+    values v;
+    condition_before(m, 1, 0, X, &v, s, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         condition_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, terms_ups, o_ups);
     }
@@ -3613,11 +3665,7 @@ int stewart_M(const prepared *m, const real *X, real *M_out)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-    }
-    return code;
+    return settled(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -3644,11 +3692,7 @@ int stewart_Z(const prepared *m, const real *X, const real *V, real *Z_out)
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, Z_out);
-    }
-    return code;
+    return settled(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -3672,11 +3716,7 @@ int stewart_H(const prepared *m, const real *X, real *H_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -3699,11 +3739,7 @@ int stewart_inverse_kinematics(const prepared *m, const real *X, real *q_out)
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, q_out);
-    }
-    return code;
+    return settled(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -3730,11 +3766,7 @@ int stewart_joint_rates(const prepared *m, const real *X, const real *V, real *q
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qd_out);
-    }
-    return code;
+    return settled(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -3765,11 +3797,7 @@ int stewart_joint_accelerations(const prepared *m, const real *X, const real *V,
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qdd_out);
-    }
-    return code;
+    return settled(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -3802,13 +3830,9 @@ int stewart_dynamics(const prepared *m, const real *X, const real *V, real *M_ou
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-        refuse(NV, Z_out);
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    settled(&why, NV*NV, M_out);
+    settled(&why, NV, Z_out);
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -4002,7 +4026,8 @@ static const real sizes_tau[] = {0.25, 1.0, 0.25, 0.25, 0.25, 0.25};
 int stewart_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A, const
     real *wrench, real *tau_out)
 {
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    static const real no_wrench[NW] = {0};
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
@@ -4012,7 +4037,7 @@ int stewart_inverse_dynamics(const prepared *m, const real *X, const real *V, co
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -4026,11 +4051,7 @@ int stewart_inverse_dynamics(const prepared *m, const real *X, const real *V, co
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, tau_out);
-    }
-    return code;
+    return settled(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -4059,8 +4080,9 @@ static const real sizes_A[] = {16.0, 16.0, 16.0, 1.0, 1.0, 1.0};
 int stewart_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau,
     const real *wrench, real *A_out)
 {
-    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] =
-        {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    static const real no_wrench[NW] = {0};
+    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
+        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
@@ -4069,7 +4091,7 @@ int stewart_forward_dynamics(const prepared *m, const real *X, const real *V, co
         check(NV, 1, V, why.invalid);
         check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     for (size_t i = 0; i < NV; ++i) {
@@ -4087,11 +4109,7 @@ int stewart_forward_dynamics(const prepared *m, const real *X, const real *V, co
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, A_out);
-    }
-    return code;
+    return settled(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4132,18 +4150,15 @@ int stewart_complete_acceleration(const prepared *m, const real *X, const real *
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, completed_out);
-    }
-    return code;
+    return settled(&why, NV, completed_out);
 }
 
 int stewart_leg_reactions(const prepared *m, const real *X, const real *V, const real *A, const
     real *wrench, real *forces_out)
 {
+    static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2, 3, 4, 5};
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
         unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[18] = {0}, forces[3*NL] = {0},
         work[NV*PADDED(NV)];
     verdict why;
@@ -4154,7 +4169,7 @@ int stewart_leg_reactions(const prepared *m, const real *X, const real *V, const
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -4172,11 +4187,7 @@ int stewart_leg_reactions(const prepared *m, const real *X, const real *V, const
     add_forces(NL, 3, 1, places_forces, solve_1, actuator, forces);
     check(3*NL, 1, forces, why.overflow);
     copy(3*NL, forces, forces_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(3*NL, forces_out);
-    }
-    return code;
+    return settled(&why, 3*NL, forces_out);
 }
 
 int stewart_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
@@ -4198,25 +4209,22 @@ int stewart_energy(const prepared *m, const real *X, const real *V, real *kineti
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, kinetic_out);
-        refuse(1, potential_out);
-    }
-    return code;
+    settled(&why, 1, kinetic_out);
+    return settled(&why, 1, potential_out);
 }
 
 int stewart_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
     const real *length = NULL;
+    static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real length_in[1], H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
+        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, length, 0, length_in, why.invalid);
+    length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
@@ -4234,12 +4242,8 @@ int stewart_condition(const prepared *m, const real *X, real *sigma_out, real *l
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, sigma_out);
-        refuse(NL, legs_out);
-    }
-    return code;
+    settled(&why, NV, sigma_out);
+    return settled(&why, NL, legs_out);
 }
 
 int stewart_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -4273,12 +4277,8 @@ int stewart_manipulability(const prepared *m, const real *X, real *measure_out, 
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, measure_out);
-        refuse(1, isotropy_out);
-    }
-    return code;
+    settled(&why, 1, measure_out);
+    return settled(&why, 1, isotropy_out);
 }
 
 int stewart_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
@@ -4312,12 +4312,8 @@ int stewart_singularity_distance(const prepared *m, const real *X, real *actuato
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, actuators_out);
-        refuse(1, legs_out);
-    }
-    return code;
+    settled(&why, 1, actuators_out);
+    return settled(&why, 1, legs_out);
 }
 
 static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
@@ -4337,11 +4333,7 @@ static int mismatch_one(const prepared *m, const real *X, const real *q_actuated
     }
     check(NU, 1, gap, why.overflow);
     copy(NU, gap, gap_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, gap_out);
-    }
-    return code;
+    return settled(&why, NU, gap_out);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
@@ -4353,11 +4345,7 @@ static int slope_one(const prepared *m, const real *X, real *slope_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, slope_out);
-    }
-    return code;
+    return settled(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -4419,11 +4407,7 @@ int stewart_forward_kinematics(const prepared *m, const real *q_actuated, const 
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int stewart_dissipation(const prepared *m, const real *X, const real *V, real *dissipation_out)
@@ -4440,11 +4424,7 @@ int stewart_dissipation(const prepared *m, const real *X, const real *V, real *d
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, dissipation_out);
-    }
-    return code;
+    return settled(&why, 1, dissipation_out);
 }
 
 int stewart_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
@@ -4461,11 +4441,7 @@ int stewart_momentum(const prepared *m, const real *X, const real *V, real *mome
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, momentum_out);
-    }
-    return code;
+    return settled(&why, NV, momentum_out);
 }
 
 int stewart_joint_margins(const prepared *m, const real *X, real *margins_out)
@@ -4482,11 +4458,7 @@ int stewart_joint_margins(const prepared *m, const real *X, real *margins_out)
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, margins_out);
-    }
-    return code;
+    return settled(&why, NJ, margins_out);
 }
 
 int stewart_within_limits(const prepared *m, const real *X, real *within_out)
@@ -4502,11 +4474,7 @@ int stewart_within_limits(const prepared *m, const real *X, real *within_out)
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, within_out);
-    }
-    return code;
+    return settled(&why, 1, within_out);
 }
 
 int stewart_actuator_positions(const prepared *m, const real *X, real *q_out)
@@ -4519,11 +4487,7 @@ int stewart_actuator_positions(const prepared *m, const real *X, real *q_out)
     take(NU, 1, stewart_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, q_out);
-    }
-    return code;
+    return settled(&why, NU, q_out);
 }
 
 int stewart_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
@@ -4540,11 +4504,7 @@ int stewart_actuator_rates(const prepared *m, const real *X, const real *V, real
     take(NU, 1, stewart_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qd_out);
-    }
-    return code;
+    return settled(&why, NU, qd_out);
 }
 
 int stewart_actuator_accelerations(const prepared *m, const real *X, const real *V, const real *A,
@@ -4563,11 +4523,7 @@ int stewart_actuator_accelerations(const prepared *m, const real *X, const real 
     take(NU, 1, stewart_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qdd_out);
-    }
-    return code;
+    return settled(&why, NU, qdd_out);
 }
 
 int stewart_power(const prepared *m, const real *X, const real *V, const real *tau, real
@@ -4587,11 +4543,7 @@ int stewart_power(const prepared *m, const real *X, const real *V, const real *t
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, power_out);
-    }
-    return code;
+    return settled(&why, 1, power_out);
 }
 
 int stewart_rotation(const real *X, real *R_out)
@@ -4604,11 +4556,7 @@ int stewart_rotation(const real *X, real *R_out)
     rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     copy(9, R, R_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(9, R_out);
-    }
-    return code;
+    return settled(&why, 9, R_out);
 }
 
 int stewart_pose(const real *t, const real *R, real *X_out)
@@ -4626,11 +4574,7 @@ int stewart_pose(const real *t, const real *R, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int stewart_X_dot(const real *X, const real *V, real *X_dot_out)
@@ -4650,11 +4594,7 @@ int stewart_X_dot(const real *X, const real *V, real *X_dot_out)
     beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_dot_out);
-    }
-    return code;
+    return settled(&why, NQ, X_dot_out);
 }
 
 int stewart_pose_from_rpy(const real *t, const real *rpy, real *X_out)
@@ -4672,11 +4612,7 @@ int stewart_pose_from_rpy(const real *t, const real *rpy, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int stewart_retract(const real *X, const real *step, real *X_moved_out)
@@ -4700,11 +4636,7 @@ int stewart_retract(const real *X, const real *step, real *X_moved_out)
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_moved_out);
-    }
-    return code;
+    return settled(&why, NQ, X_moved_out);
 }
 
 int stewart_difference(const real *X0, const real *X1, real *step_out)
@@ -4728,11 +4660,7 @@ int stewart_difference(const real *X0, const real *X1, real *step_out)
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, step_out);
-    }
-    return code;
+    return settled(&why, NV, step_out);
 }
 
 int stewart_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
@@ -4770,11 +4698,7 @@ int stewart_interpolate(const real *X0, const real *X1, const real *s, real *X_o
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 /* ---- one state, and batches ---- */

@@ -235,15 +235,12 @@ INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *t
 }
 
 /* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
-INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+INLINE const real *optional(size_t size, const real *x, const real *none, real *flags)
 {
-    for (size_t e = 0; e < size && !x; ++e) {
-        own[e] = none;
-    }
     if (x) {
         check(size, 1, x, flags);
     }
-    return x ? x : own;
+    return x ? x : none;
 }
 
 INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
@@ -300,6 +297,16 @@ APART void refuse(size_t size, real *out)
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
     }
+}
+
+/* The status of a state; an output is refused where it is impossible. */
+INLINE int settled(const verdict *t, size_t size, real *out)
+{
+    const int code = judge(t);
+    if (code != OK) {
+        refuse(size, out);
+    }
+    return code;
 }
 
 /* Outputs of a state where the user wants them, and of states side by side, state by state. */
@@ -420,10 +427,10 @@ INLINE int all_rotations(const real *x, size_t n)
 /* ---- parameters ---- */
 
 const stewart_7ups_free_params stewart_7ups_free_default_params = {
-    {R(0.0), R(0.0), R(-9.81)},  /* gravity */
+    {0, 0, R(-9.81)},  /* gravity */
     R(12.0),  /* platform_mass */
-    {R(0.0), R(0.0), R(0.04)},  /* platform_centre_of_mass */
-    {{R(0.35), R(0.0), R(0.0)}, {R(0.0), R(0.35), R(0.0)}, {R(0.0), R(0.0), R(0.6)}},  /* platform_inertia */
+    {0, 0, R(0.04)},  /* platform_centre_of_mass */
+    {{R(0.35), 0, 0}, {0, R(0.35), 0}, {0, 0, R(0.6)}},  /* platform_inertia */
     {  /* ups_base_point */
         {R(-0.07595833716604927), R(0.3902743704941056), R(0.017731158385886236)},
         {R(0.3759666878769001), R(0.12935533563203033), R(0.017731158385886236)},
@@ -433,12 +440,12 @@ const stewart_7ups_free_params stewart_7ups_free_default_params = {
         {R(-0.07595833716604977), R(-0.39027437049410546), R(0.017731158385886236)},
     },
     {  /* ups_base_frame */
-        {{R(0.0), R(0.7666445685820955), R(-0.6420717292200091)}, {R(0.0), R(0.6420717292200091), R(0.7666445685820955)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(0.17272814426528374), R(-0.9849695366754605)}, {R(0.0), R(0.9849695366754605), R(0.17272814426528374)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.9393727128473789), R(-0.34289780745545156)}, {R(0.0), R(0.34289780745545156), R(-0.9393727128473789)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.9393727128473789), R(0.34289780745545134)}, {R(0.0), R(-0.34289780745545134), R(-0.9393727128473789)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(0.17272814426528307), R(0.9849695366754606)}, {R(0.0), R(-0.9849695366754606), R(0.17272814426528307)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(0.7666445685820946), R(0.6420717292200101)}, {R(0.0), R(-0.6420717292200101), R(0.7666445685820946)}, {R(1.0), R(0.0), R(0.0)}},
+        {{0, R(0.7666445685820955), R(-0.6420717292200091)}, {0, R(0.6420717292200091), R(0.7666445685820955)}, {1, 0, 0}},
+        {{0, R(0.17272814426528374), R(-0.9849695366754605)}, {0, R(0.9849695366754605), R(0.17272814426528374)}, {1, 0, 0}},
+        {{0, R(-0.9393727128473789), R(-0.34289780745545156)}, {0, R(0.34289780745545156), R(-0.9393727128473789)}, {1, 0, 0}},
+        {{0, R(-0.9393727128473789), R(0.34289780745545134)}, {0, R(-0.34289780745545134), R(-0.9393727128473789)}, {1, 0, 0}},
+        {{0, R(0.17272814426528307), R(0.9849695366754606)}, {0, R(-0.9849695366754606), R(0.17272814426528307)}, {1, 0, 0}},
+        {{0, R(0.7666445685820946), R(0.6420717292200101)}, {0, R(-0.6420717292200101), R(0.7666445685820946)}, {1, 0, 0}},
     },
     {  /* ups_platform_point */
         {R(0.22999337057462865), R(0.19262151876600273), R(-0.02)},
@@ -457,20 +464,20 @@ const stewart_7ups_free_params stewart_7ups_free_default_params = {
         R(2.4),
     },
     {  /* ups_link2_centre_of_mass */
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
     },
     {  /* ups_link2_inertia */
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
     },
     {  /* ups_link3_mass */
         R(1.1),
@@ -481,26 +488,26 @@ const stewart_7ups_free_params stewart_7ups_free_default_params = {
         R(1.1),
     },
     {  /* ups_link3_centre_of_mass */
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
     },
     {  /* ups_link3_inertia */
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
     },
     {  /* ups_leg7_base_point */
         {R(-0.18465805480641267), R(0.29858337096847554), R(0.017731158385886236)},
     },
     {  /* ups_leg7_base_frame */
-        {{R(0.0), R(0.9210609940028851), R(-0.3894183423086505)}, {R(0.0), R(0.3894183423086505), R(0.9210609940028851)}, {R(1.0), R(0.0), R(0.0)}},
+        {{0, R(0.9210609940028851), R(-0.3894183423086505)}, {0, R(0.3894183423086505), R(0.9210609940028851)}, {1, 0, 0}},
     },
     {  /* ups_leg7_platform_point */
         {R(0.05), R(0.02), R(-0.02)},
@@ -509,23 +516,23 @@ const stewart_7ups_free_params stewart_7ups_free_default_params = {
         R(2.4),
     },
     {  /* ups_leg7_link2_centre_of_mass */
-        {R(0.18), R(0.0), R(0.0)},
+        {R(0.18), 0, 0},
     },
     {  /* ups_leg7_link2_inertia */
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
     },
     {  /* ups_leg7_link3_mass */
         R(1.1),
     },
     {  /* ups_leg7_link3_centre_of_mass */
-        {R(-0.22), R(0.0), R(0.0)},
+        {R(-0.22), 0, 0},
     },
     {  /* ups_leg7_link3_inertia */
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
     },
 };
 
-const stewart_7ups_free_real stewart_7ups_free_HOME_X[STEWART_7UPS_FREE_NQ] = {R(0.0), R(0.0), R(0.75), R(0.0), R(0.0), R(0.0), R(1.0)};
+const stewart_7ups_free_real stewart_7ups_free_HOME_X[STEWART_7UPS_FREE_NQ] = {0, 0, R(0.75), 0, 0, 0, 1};
 const stewart_7ups_free_real stewart_7ups_free_HOME_Q[STEWART_7UPS_FREE_NJ] = {R(0.15), R(0.45), R(0.8), R(0.15), R(-0.45), R(0.8), R(0.15), R(0.45), R(0.8), R(0.15), R(-0.45), R(0.8), R(0.15), R(0.45), R(0.8), R(0.15), R(-0.45), R(0.8), R(0.15), R(0.45), R(0.8)};
 const size_t stewart_7ups_free_ACTUATED[STEWART_7UPS_FREE_NU] = {2, 5, 8, 11, 14, 17};
 const char *const stewart_7ups_free_ACTUATOR_NAMES[STEWART_7UPS_FREE_NU] = {
@@ -577,6 +584,9 @@ static int acceptable(const stewart_7ups_free_params *p)
     return ok;
 }
 
+#define KEEP(name) model->name = name
+#define KEEP_OF_LEG(name) model->name[leg] = name
+
 int stewart_7ups_free_prepare(const stewart_7ups_free_params *params, stewart_7ups_free_model *model)
 {
     if (!acceptable(params)) {
@@ -627,9 +637,9 @@ int stewart_7ups_free_prepare(const stewart_7ups_free_params *params, stewart_7u
     const real J_star_t_8 = platform_mass*(J_star_t_2 - J_star_t_4);
     const real J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass;
     const real J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4);
-    model->gravity_x = gravity_x;
-    model->gravity_y = gravity_y;
-    model->gravity_z = gravity_z;
+    KEEP(gravity_x);
+    KEEP(gravity_y);
+    KEEP(gravity_z);
     for (size_t leg = 0; leg < FILLED(LEGS_OF_ups); ++leg) {
         const size_t own = leg < LEGS_OF_ups ? leg : 0;
         const real ups_base_point_x = params->ups_base_point[own][0];
@@ -744,46 +754,46 @@ int stewart_7ups_free_prepare(const stewart_7ups_free_params *params, stewart_7u
             ups_base_frame_yy*ups_base_point_y + ups_base_frame_zy*ups_base_point_z;
         const real ups_potential_t_3 = ups_base_frame_xz*ups_base_point_x +
             ups_base_frame_yz*ups_base_point_y + ups_base_frame_zz*ups_base_point_z;
-        model->ups_J_group_2_in_axes2_xx[leg] = ups_J_group_2_in_axes2_xx;
-        model->ups_J_group_2_in_axes2_xy[leg] = ups_J_group_2_in_axes2_xy;
-        model->ups_J_group_2_in_axes2_xz[leg] = ups_J_group_2_in_axes2_xz;
-        model->ups_J_group_2_in_axes2_yy[leg] = ups_J_group_2_in_axes2_yy;
-        model->ups_J_group_2_in_axes2_yz[leg] = ups_J_group_2_in_axes2_yz;
-        model->ups_J_group_2_in_axes2_zz[leg] = ups_J_group_2_in_axes2_zz;
-        model->ups_Sigma_2_in_axes2_xx[leg] = ups_Sigma_2_in_axes2_xx;
-        model->ups_Sigma_2_in_axes2_yy[leg] = ups_Sigma_2_in_axes2_yy;
-        model->ups_Sigma_2_in_axes2_zz[leg] = ups_Sigma_2_in_axes2_zz;
-        model->ups_acc_3_t[leg] = ups_acc_3_t;
-        model->ups_acc_3_t_2[leg] = ups_acc_3_t_2;
-        model->ups_acc_3_t_3[leg] = ups_acc_3_t_3;
-        model->ups_base_frame_xx[leg] = ups_base_frame_xx;
-        model->ups_base_frame_xy[leg] = ups_base_frame_xy;
-        model->ups_base_frame_xz[leg] = ups_base_frame_xz;
-        model->ups_base_frame_yx[leg] = ups_base_frame_yx;
-        model->ups_base_frame_yy[leg] = ups_base_frame_yy;
-        model->ups_base_frame_yz[leg] = ups_base_frame_yz;
-        model->ups_base_frame_zx[leg] = ups_base_frame_zx;
-        model->ups_base_frame_zy[leg] = ups_base_frame_zy;
-        model->ups_base_frame_zz[leg] = ups_base_frame_zz;
-        model->ups_base_point_x[leg] = ups_base_point_x;
-        model->ups_base_point_y[leg] = ups_base_point_y;
-        model->ups_base_point_z[leg] = ups_base_point_z;
-        model->ups_branch_1[leg] = ups_branch_1;
-        model->ups_branch_2[leg] = ups_branch_2;
-        model->ups_h_2_in_spec2_x[leg] = ups_h_2_in_spec2_x;
-        model->ups_h_2_in_spec2_y[leg] = ups_h_2_in_spec2_y;
-        model->ups_h_2_in_spec2_z[leg] = ups_h_2_in_spec2_z;
-        model->ups_h_3_in_spec2_x[leg] = ups_h_3_in_spec2_x;
-        model->ups_h_3_in_spec2_y[leg] = ups_h_3_in_spec2_y;
-        model->ups_h_3_in_spec2_z[leg] = ups_h_3_in_spec2_z;
-        model->ups_link2_mass[leg] = ups_link2_mass;
-        model->ups_link3_mass[leg] = ups_link3_mass;
-        model->ups_platform_point_x[leg] = ups_platform_point_x;
-        model->ups_platform_point_y[leg] = ups_platform_point_y;
-        model->ups_platform_point_z[leg] = ups_platform_point_z;
-        model->ups_potential_t[leg] = ups_potential_t;
-        model->ups_potential_t_2[leg] = ups_potential_t_2;
-        model->ups_potential_t_3[leg] = ups_potential_t_3;
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_xx);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_xy);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_xz);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_yy);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_yz);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_zz);
+        KEEP_OF_LEG(ups_Sigma_2_in_axes2_xx);
+        KEEP_OF_LEG(ups_Sigma_2_in_axes2_yy);
+        KEEP_OF_LEG(ups_Sigma_2_in_axes2_zz);
+        KEEP_OF_LEG(ups_acc_3_t);
+        KEEP_OF_LEG(ups_acc_3_t_2);
+        KEEP_OF_LEG(ups_acc_3_t_3);
+        KEEP_OF_LEG(ups_base_frame_xx);
+        KEEP_OF_LEG(ups_base_frame_xy);
+        KEEP_OF_LEG(ups_base_frame_xz);
+        KEEP_OF_LEG(ups_base_frame_yx);
+        KEEP_OF_LEG(ups_base_frame_yy);
+        KEEP_OF_LEG(ups_base_frame_yz);
+        KEEP_OF_LEG(ups_base_frame_zx);
+        KEEP_OF_LEG(ups_base_frame_zy);
+        KEEP_OF_LEG(ups_base_frame_zz);
+        KEEP_OF_LEG(ups_base_point_x);
+        KEEP_OF_LEG(ups_base_point_y);
+        KEEP_OF_LEG(ups_base_point_z);
+        KEEP_OF_LEG(ups_branch_1);
+        KEEP_OF_LEG(ups_branch_2);
+        KEEP_OF_LEG(ups_h_2_in_spec2_x);
+        KEEP_OF_LEG(ups_h_2_in_spec2_y);
+        KEEP_OF_LEG(ups_h_2_in_spec2_z);
+        KEEP_OF_LEG(ups_h_3_in_spec2_x);
+        KEEP_OF_LEG(ups_h_3_in_spec2_y);
+        KEEP_OF_LEG(ups_h_3_in_spec2_z);
+        KEEP_OF_LEG(ups_link2_mass);
+        KEEP_OF_LEG(ups_link3_mass);
+        KEEP_OF_LEG(ups_platform_point_x);
+        KEEP_OF_LEG(ups_platform_point_y);
+        KEEP_OF_LEG(ups_platform_point_z);
+        KEEP_OF_LEG(ups_potential_t);
+        KEEP_OF_LEG(ups_potential_t_2);
+        KEEP_OF_LEG(ups_potential_t_3);
         m_star_of_legs += leg < LEGS_OF_ups ? ups_link3_mass : 0;
         h_star_in_platform_x_of_legs += leg < LEGS_OF_ups ? ups_h_star_t : 0;
         h_star_in_platform_y_of_legs += leg < LEGS_OF_ups ? ups_h_star_t_2 : 0;
@@ -938,46 +948,46 @@ int stewart_7ups_free_prepare(const stewart_7ups_free_params *params, stewart_7u
         const real ups_leg7_potential_t_3 = ups_leg7_base_frame_xz*ups_leg7_base_point_x +
             ups_leg7_base_frame_yz*ups_leg7_base_point_y +
             ups_leg7_base_frame_zz*ups_leg7_base_point_z;
-        model->ups_leg7_J_group_2_in_axes2_xx[leg] = ups_leg7_J_group_2_in_axes2_xx;
-        model->ups_leg7_J_group_2_in_axes2_xy[leg] = ups_leg7_J_group_2_in_axes2_xy;
-        model->ups_leg7_J_group_2_in_axes2_xz[leg] = ups_leg7_J_group_2_in_axes2_xz;
-        model->ups_leg7_J_group_2_in_axes2_yy[leg] = ups_leg7_J_group_2_in_axes2_yy;
-        model->ups_leg7_J_group_2_in_axes2_yz[leg] = ups_leg7_J_group_2_in_axes2_yz;
-        model->ups_leg7_J_group_2_in_axes2_zz[leg] = ups_leg7_J_group_2_in_axes2_zz;
-        model->ups_leg7_Sigma_2_in_axes2_xx[leg] = ups_leg7_Sigma_2_in_axes2_xx;
-        model->ups_leg7_Sigma_2_in_axes2_yy[leg] = ups_leg7_Sigma_2_in_axes2_yy;
-        model->ups_leg7_Sigma_2_in_axes2_zz[leg] = ups_leg7_Sigma_2_in_axes2_zz;
-        model->ups_leg7_acc_3_t[leg] = ups_leg7_acc_3_t;
-        model->ups_leg7_acc_3_t_2[leg] = ups_leg7_acc_3_t_2;
-        model->ups_leg7_acc_3_t_3[leg] = ups_leg7_acc_3_t_3;
-        model->ups_leg7_base_frame_xx[leg] = ups_leg7_base_frame_xx;
-        model->ups_leg7_base_frame_xy[leg] = ups_leg7_base_frame_xy;
-        model->ups_leg7_base_frame_xz[leg] = ups_leg7_base_frame_xz;
-        model->ups_leg7_base_frame_yx[leg] = ups_leg7_base_frame_yx;
-        model->ups_leg7_base_frame_yy[leg] = ups_leg7_base_frame_yy;
-        model->ups_leg7_base_frame_yz[leg] = ups_leg7_base_frame_yz;
-        model->ups_leg7_base_frame_zx[leg] = ups_leg7_base_frame_zx;
-        model->ups_leg7_base_frame_zy[leg] = ups_leg7_base_frame_zy;
-        model->ups_leg7_base_frame_zz[leg] = ups_leg7_base_frame_zz;
-        model->ups_leg7_base_point_x[leg] = ups_leg7_base_point_x;
-        model->ups_leg7_base_point_y[leg] = ups_leg7_base_point_y;
-        model->ups_leg7_base_point_z[leg] = ups_leg7_base_point_z;
-        model->ups_leg7_branch_1[leg] = ups_leg7_branch_1;
-        model->ups_leg7_branch_2[leg] = ups_leg7_branch_2;
-        model->ups_leg7_h_2_in_spec2_x[leg] = ups_leg7_h_2_in_spec2_x;
-        model->ups_leg7_h_2_in_spec2_y[leg] = ups_leg7_h_2_in_spec2_y;
-        model->ups_leg7_h_2_in_spec2_z[leg] = ups_leg7_h_2_in_spec2_z;
-        model->ups_leg7_h_3_in_spec2_x[leg] = ups_leg7_h_3_in_spec2_x;
-        model->ups_leg7_h_3_in_spec2_y[leg] = ups_leg7_h_3_in_spec2_y;
-        model->ups_leg7_h_3_in_spec2_z[leg] = ups_leg7_h_3_in_spec2_z;
-        model->ups_leg7_link2_mass[leg] = ups_leg7_link2_mass;
-        model->ups_leg7_link3_mass[leg] = ups_leg7_link3_mass;
-        model->ups_leg7_platform_point_x[leg] = ups_leg7_platform_point_x;
-        model->ups_leg7_platform_point_y[leg] = ups_leg7_platform_point_y;
-        model->ups_leg7_platform_point_z[leg] = ups_leg7_platform_point_z;
-        model->ups_leg7_potential_t[leg] = ups_leg7_potential_t;
-        model->ups_leg7_potential_t_2[leg] = ups_leg7_potential_t_2;
-        model->ups_leg7_potential_t_3[leg] = ups_leg7_potential_t_3;
+        KEEP_OF_LEG(ups_leg7_J_group_2_in_axes2_xx);
+        KEEP_OF_LEG(ups_leg7_J_group_2_in_axes2_xy);
+        KEEP_OF_LEG(ups_leg7_J_group_2_in_axes2_xz);
+        KEEP_OF_LEG(ups_leg7_J_group_2_in_axes2_yy);
+        KEEP_OF_LEG(ups_leg7_J_group_2_in_axes2_yz);
+        KEEP_OF_LEG(ups_leg7_J_group_2_in_axes2_zz);
+        KEEP_OF_LEG(ups_leg7_Sigma_2_in_axes2_xx);
+        KEEP_OF_LEG(ups_leg7_Sigma_2_in_axes2_yy);
+        KEEP_OF_LEG(ups_leg7_Sigma_2_in_axes2_zz);
+        KEEP_OF_LEG(ups_leg7_acc_3_t);
+        KEEP_OF_LEG(ups_leg7_acc_3_t_2);
+        KEEP_OF_LEG(ups_leg7_acc_3_t_3);
+        KEEP_OF_LEG(ups_leg7_base_frame_xx);
+        KEEP_OF_LEG(ups_leg7_base_frame_xy);
+        KEEP_OF_LEG(ups_leg7_base_frame_xz);
+        KEEP_OF_LEG(ups_leg7_base_frame_yx);
+        KEEP_OF_LEG(ups_leg7_base_frame_yy);
+        KEEP_OF_LEG(ups_leg7_base_frame_yz);
+        KEEP_OF_LEG(ups_leg7_base_frame_zx);
+        KEEP_OF_LEG(ups_leg7_base_frame_zy);
+        KEEP_OF_LEG(ups_leg7_base_frame_zz);
+        KEEP_OF_LEG(ups_leg7_base_point_x);
+        KEEP_OF_LEG(ups_leg7_base_point_y);
+        KEEP_OF_LEG(ups_leg7_base_point_z);
+        KEEP_OF_LEG(ups_leg7_branch_1);
+        KEEP_OF_LEG(ups_leg7_branch_2);
+        KEEP_OF_LEG(ups_leg7_h_2_in_spec2_x);
+        KEEP_OF_LEG(ups_leg7_h_2_in_spec2_y);
+        KEEP_OF_LEG(ups_leg7_h_2_in_spec2_z);
+        KEEP_OF_LEG(ups_leg7_h_3_in_spec2_x);
+        KEEP_OF_LEG(ups_leg7_h_3_in_spec2_y);
+        KEEP_OF_LEG(ups_leg7_h_3_in_spec2_z);
+        KEEP_OF_LEG(ups_leg7_link2_mass);
+        KEEP_OF_LEG(ups_leg7_link3_mass);
+        KEEP_OF_LEG(ups_leg7_platform_point_x);
+        KEEP_OF_LEG(ups_leg7_platform_point_y);
+        KEEP_OF_LEG(ups_leg7_platform_point_z);
+        KEEP_OF_LEG(ups_leg7_potential_t);
+        KEEP_OF_LEG(ups_leg7_potential_t_2);
+        KEEP_OF_LEG(ups_leg7_potential_t_3);
         m_star_of_legs += ups_leg7_link3_mass;
         h_star_in_platform_x_of_legs += ups_leg7_h_star_t;
         h_star_in_platform_y_of_legs += ups_leg7_h_star_t_2;
@@ -1026,24 +1036,24 @@ int stewart_7ups_free_prepare(const stewart_7ups_free_params *params, stewart_7u
         R(0.14285714285714285)*b_c_ups_leg7_in_platform_y;
     const real b_c_in_platform_z = R(0.14285714285714285)*b_c_ups_in_platform_z +
         R(0.14285714285714285)*b_c_ups_leg7_in_platform_z;
-    model->J_star_in_platform_xx = J_star_in_platform_xx;
-    model->J_star_in_platform_xy = J_star_in_platform_xy;
-    model->J_star_in_platform_xz = J_star_in_platform_xz;
-    model->J_star_in_platform_yy = J_star_in_platform_yy;
-    model->J_star_in_platform_yz = J_star_in_platform_yz;
-    model->J_star_in_platform_zz = J_star_in_platform_zz;
-    model->J_star_t_12 = J_star_t_12;
-    model->J_star_t_14 = J_star_t_14;
-    model->Z_p_t = Z_p_t;
-    model->Z_p_t_2 = Z_p_t_2;
-    model->Z_p_t_3 = Z_p_t_3;
-    model->b_c_in_platform_x = b_c_in_platform_x;
-    model->b_c_in_platform_y = b_c_in_platform_y;
-    model->b_c_in_platform_z = b_c_in_platform_z;
-    model->h_star_in_platform_x = h_star_in_platform_x;
-    model->h_star_in_platform_y = h_star_in_platform_y;
-    model->h_star_in_platform_z = h_star_in_platform_z;
-    model->m_star = m_star;
+    KEEP(J_star_in_platform_xx);
+    KEEP(J_star_in_platform_xy);
+    KEEP(J_star_in_platform_xz);
+    KEEP(J_star_in_platform_yy);
+    KEEP(J_star_in_platform_yz);
+    KEEP(J_star_in_platform_zz);
+    KEEP(J_star_t_12);
+    KEEP(J_star_t_14);
+    KEEP(Z_p_t);
+    KEEP(Z_p_t_2);
+    KEEP(Z_p_t_3);
+    KEEP(b_c_in_platform_x);
+    KEEP(b_c_in_platform_y);
+    KEEP(b_c_in_platform_z);
+    KEEP(h_star_in_platform_x);
+    KEEP(h_star_in_platform_y);
+    KEEP(h_star_in_platform_z);
+    KEEP(m_star);
     return OK;
 }
 
@@ -1622,10 +1632,10 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real R_zy = quaternion_wx + quaternion_yz;
     const real R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = R_xx*m->h_star_in_platform_x + R_xy*m->h_star_in_platform_y +
-        R_xz*m->h_star_in_platform_z;
-    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yy*m->h_star_in_platform_y +
-        R_yz*m->h_star_in_platform_z;
+    const real h_star_x = R_xy*m->h_star_in_platform_y + R_xz*m->h_star_in_platform_z +
+        R_xx*m->h_star_in_platform_x;
+    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yz*m->h_star_in_platform_z +
+        R_yy*m->h_star_in_platform_y;
     const real h_star_z = R_zx*m->h_star_in_platform_x + R_zy*m->h_star_in_platform_y +
         R_zz*m->h_star_in_platform_z;
     v->quaternion_scale = quaternion_scale;
@@ -1649,8 +1659,8 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
     const real omega_x = V[3*w + k];
     const real omega_y = V[4*w + k];
     const real omega_z = V[5*w + k];
-    const real omega_in_platform_x = v->R_xx*omega_x + v->R_yx*omega_y + v->R_zx*omega_z;
-    const real omega_in_platform_y = v->R_xy*omega_x + v->R_yy*omega_y + v->R_zy*omega_z;
+    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
     const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
     v->omega_in_platform_x = omega_in_platform_x;
     v->omega_in_platform_y = omega_in_platform_y;
@@ -1660,24 +1670,24 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
 INLINE void stage_M_dynamics(const prepared *m, values *v)
 {
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_t = m->J_star_in_platform_xy*v->R_xx + m->J_star_in_platform_yz*v->R_xz
-        - m->J_star_t_12*v->R_xy;
+    const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
+        m->J_star_in_platform_xy*v->R_xx;
     const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
         m->J_star_in_platform_yz*v->R_yz - m->J_star_t_12*v->R_yy;
-    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx +
-        m->J_star_in_platform_yz*v->R_zz - m->J_star_t_12*v->R_zy;
+    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx - m->J_star_t_12*v->R_zy +
+        m->J_star_in_platform_yz*v->R_zz;
     const real J_star_t_4 = m->J_star_t_14*v->R_xz - m->J_star_in_platform_xz*v->R_xx;
     const real J_star_t_5 = m->J_star_t_14*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
     const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
-    const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
-        J_star_t_5*v->R_xz;
+    const real J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
+        J_star_t_4*v->R_yz;
     const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
     const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
     const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
-    const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
+    const real J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
     const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
     const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
@@ -1702,10 +1712,10 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
     const real Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real g_in_platform_x = v->R_xx*m->gravity_x + v->R_yx*m->gravity_y +
-        v->R_zx*m->gravity_z;
-    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_yy*m->gravity_y +
-        v->R_zy*m->gravity_z;
+    const real g_in_platform_x = v->R_yx*m->gravity_y + v->R_zx*m->gravity_z +
+        v->R_xx*m->gravity_x;
+    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_zy*m->gravity_z +
+        v->R_yy*m->gravity_y;
     const real g_in_platform_z = v->R_xz*m->gravity_x + v->R_yz*m->gravity_y +
         v->R_zz*m->gravity_z;
     const real Z_q_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
@@ -1717,15 +1727,15 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
         m->J_star_in_platform_yz*v->omega_in_platform_y +
         m->J_star_in_platform_zz*v->omega_in_platform_z;
-    const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
-        g_in_platform_y*m->h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
-        g_in_platform_z*m->h_star_in_platform_y;
-    const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
-        g_in_platform_z*m->h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
-        g_in_platform_x*m->h_star_in_platform_z;
-    const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
-        g_in_platform_x*m->h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
-        g_in_platform_y*m->h_star_in_platform_x;
+    const real Z_q_in_platform_x = g_in_platform_y*m->h_star_in_platform_z -
+        g_in_platform_z*m->h_star_in_platform_y + Z_q_t_3*v->omega_in_platform_y -
+        Z_q_t_2*v->omega_in_platform_z;
+    const real Z_q_in_platform_y = g_in_platform_z*m->h_star_in_platform_x -
+        g_in_platform_x*m->h_star_in_platform_z + Z_q_t*v->omega_in_platform_z -
+        Z_q_t_3*v->omega_in_platform_x;
+    const real Z_q_in_platform_z = g_in_platform_x*m->h_star_in_platform_y -
+        g_in_platform_y*m->h_star_in_platform_x + Z_q_t_2*v->omega_in_platform_x -
+        Z_q_t*v->omega_in_platform_y;
     const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
         v->R_xz*Z_q_in_platform_z;
     const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
@@ -1763,24 +1773,24 @@ INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real ups_q_x = R_xx*m->ups_platform_point_x[i] + R_xy*m->ups_platform_point_y[i] +
-        R_xz*m->ups_platform_point_z[i];
+    const real ups_q_x = R_xy*m->ups_platform_point_y[i] + R_xz*m->ups_platform_point_z[i] +
+        R_xx*m->ups_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real ups_q_y = R_yx*m->ups_platform_point_x[i] + R_yy*m->ups_platform_point_y[i] +
-        R_yz*m->ups_platform_point_z[i];
+    const real ups_q_y = R_yx*m->ups_platform_point_x[i] + R_yz*m->ups_platform_point_z[i] +
+        R_yy*m->ups_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real ups_q_z = R_zx*m->ups_platform_point_x[i] + R_zy*m->ups_platform_point_y[i] +
         R_zz*m->ups_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real ups_S_x = t_x + ups_q_x - m->ups_base_point_x[i];
+    const real ups_S_x = t_x - m->ups_base_point_x[i] + ups_q_x;
     const real t_y = X[1*w + j];
-    const real ups_S_y = t_y + ups_q_y - m->ups_base_point_y[i];
+    const real ups_S_y = t_y - m->ups_base_point_y[i] + ups_q_y;
     const real t_z = X[2*w + j];
-    const real ups_S_z = t_z + ups_q_z - m->ups_base_point_z[i];
+    const real ups_S_z = t_z - m->ups_base_point_z[i] + ups_q_z;
     const real ups_S_in_turn1_x = ups_S_x*m->ups_base_frame_xx[i] +
         ups_S_y*m->ups_base_frame_yx[i] + ups_S_z*m->ups_base_frame_zx[i];
     const real ups_S_in_turn1_y = ups_S_x*m->ups_base_frame_xy[i] +
@@ -1930,13 +1940,13 @@ INLINE void stage_ups_A_V_X(size_t w, size_t j, const real *V, values_ups *v)
     /* (ups-S_ddot) acceleration of the connection point */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
-    const real ups_S_ddot_x = v->ups_a_p_x + omega_y*v->ups_S_dot_t_3 -
-        omega_z*v->ups_S_dot_t_2;
+    const real ups_S_ddot_x = omega_y*v->ups_S_dot_t_3 - omega_z*v->ups_S_dot_t_2 +
+        v->ups_a_p_x;
     const real omega_x = V[3*w + j];
-    const real ups_S_ddot_y = v->ups_a_p_y + omega_z*v->ups_S_dot_t -
-        omega_x*v->ups_S_dot_t_3;
-    const real ups_S_ddot_z = v->ups_a_p_z + omega_x*v->ups_S_dot_t_2 -
-        omega_y*v->ups_S_dot_t;
+    const real ups_S_ddot_y = omega_z*v->ups_S_dot_t - omega_x*v->ups_S_dot_t_3 +
+        v->ups_a_p_y;
+    const real ups_S_ddot_z = omega_x*v->ups_S_dot_t_2 - omega_y*v->ups_S_dot_t +
+        v->ups_a_p_z;
     v->ups_S_ddot_x = ups_S_ddot_x;
     v->ups_S_ddot_y = ups_S_ddot_y;
     v->ups_S_ddot_z = ups_S_ddot_z;
@@ -1982,55 +1992,56 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
         m->ups_acc_3_t_3[i]*v->ups_c_2;
     const real ups_acc_3_o_in_axes2_x = v->axis_x_ups_axes2_x*ups_u_1_x +
         v->axis_x_ups_axes2_y*ups_u_1_y + v->axis_x_ups_axes2_z*ups_u_1_z - ups_g_in_axes2_x;
-    const real ups_acc_3_o_in_axes2_y = ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 -
-        ups_g_in_axes2_y;
+    const real ups_acc_3_o_in_axes2_y = ups_B_2_o_t - ups_g_in_axes2_y + ups_B_2_o_t_2 +
+        ups_B_2_o_t_3;
     const real ups_acc_3_o_in_axes2_z = ups_u_1_in_axes2_z - v->ups_g_in_axes2_z;
     /* (ups-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
        */
     const real ups_phi_3_o_t = v->ups_omega_1_in_axes2_y*v->ups_omega_1_in_axes2_y;
     const real ups_phi_3_o_t_2 = v->ups_qd_2*v->ups_qd_2;
-    const real ups_phi_3_o_in_axes2_x = ups_alpha_1_o_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
-        m->ups_h_3_in_spec2_x[i]*(-ups_phi_3_o_t - ups_phi_3_o_t_2) -
-        ups_B_2_o_in_axes2_xy*m->ups_h_3_in_spec2_z[i];
+    const real ups_phi_3_o_in_axes2_x = m->ups_h_3_in_spec2_x[i]*(-ups_phi_3_o_t -
+        ups_phi_3_o_t_2) - ups_B_2_o_in_axes2_xy*m->ups_h_3_in_spec2_z[i] +
+        ups_alpha_1_o_in_axes2_y*m->ups_h_3_in_spec2_y[i];
     /* (ups-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real ups_mu_2_o_t = v->ups_omega_1_in_axes2_x*v->ups_omega_1_in_axes2_x;
-    const real ups_mu_2_o_in_axes2_x = ups_B_2_o_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
-        ups_B_2_o_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] +
+    const real ups_mu_2_o_in_axes2_x = v->ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] +
+        ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] -
+        ups_acc_3_o_in_axes2_z*m->ups_h_3_in_spec2_z[i] -
+        ups_acc_3_o_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
+        ups_B_2_o_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
         m->ups_J_group_2_in_axes2_yz[i]*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
         m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_in_axes2_x +
-        ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] +
-        v->ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] -
-        ups_B_2_o_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i] -
-        ups_acc_3_o_in_axes2_y*m->ups_h_3_in_spec2_y[i] -
-        ups_acc_3_o_in_axes2_z*m->ups_h_3_in_spec2_z[i];
-    const real ups_mu_2_o_in_axes2_y = ups_B_2_o_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] +
-        m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_in_axes2_y +
-        ups_acc_3_o_in_axes2_x*m->ups_h_3_in_spec2_y[i] +
-        v->ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
-        ups_B_2_o_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] -
-        ups_B_2_o_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i] -
-        m->ups_J_group_2_in_axes2_xz[i]*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
+        ups_B_2_o_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
+        ups_B_2_o_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
+    const real ups_mu_2_o_in_axes2_y = v->ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
+        ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i] +
+        ups_acc_3_o_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
         ups_acc_3_o_in_axes2_z*m->ups_h_3_in_spec2_x[i] -
-        ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i];
-    const real ups_mu_2_o_in_axes2_z = ups_B_2_o_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
-        m->ups_J_group_2_in_axes2_xy[i]*(ups_mu_2_o_t - ups_phi_3_o_t) +
+        m->ups_J_group_2_in_axes2_xz[i]*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
+        ups_B_2_o_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
+        m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_in_axes2_y +
+        ups_B_2_o_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
+        ups_B_2_o_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
+    const real ups_mu_2_o_in_axes2_z = ups_acc_3_o_in_axes2_x*m->ups_h_3_in_spec2_z[i] -
+        ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] - ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i]
+        + ups_acc_3_o_in_axes2_y*m->ups_h_3_in_spec2_x[i] +
+        ups_B_2_o_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
+        m->ups_J_group_2_in_axes2_xy[i]*(ups_mu_2_o_t - ups_phi_3_o_t) -
+        ups_B_2_o_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] +
         m->ups_J_group_2_in_axes2_xz[i]*ups_alpha_1_o_in_axes2_x +
-        m->ups_J_group_2_in_axes2_yz[i]*ups_alpha_1_o_in_axes2_y +
-        ups_acc_3_o_in_axes2_x*m->ups_h_3_in_spec2_z[i] +
-        ups_acc_3_o_in_axes2_y*m->ups_h_3_in_spec2_x[i] -
-        ups_B_2_o_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] -
-        ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] - ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i];
+        m->ups_J_group_2_in_axes2_yz[i]*ups_alpha_1_o_in_axes2_y;
     /* (ups-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
     const real ups_c_o_in_axes2_y = ups_alpha_1_o_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        v->inv_ups_q_3*ups_mu_2_o_in_axes2_z - ups_B_2_o_in_axes2_yx*m->ups_h_3_in_spec2_x[i]
-        - m->ups_h_3_in_spec2_z[i]*(ups_mu_2_o_t + ups_phi_3_o_t_2);
-    const real ups_c_o_in_axes2_z = v->inv_ups_root_1*(v->ups_c_2*ups_mu_2_o_in_axes2_y -
-        v->ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x) +
-        ups_B_2_o_in_axes2_zy*m->ups_h_3_in_spec2_z[i] +
-        m->ups_h_3_in_spec2_y[i]*(ups_mu_2_o_t + ups_phi_3_o_t) -
-        ups_B_2_o_in_axes2_zx*m->ups_h_3_in_spec2_x[i];
+        ups_B_2_o_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
+        m->ups_h_3_in_spec2_z[i]*(ups_mu_2_o_t + ups_phi_3_o_t_2) -
+        v->inv_ups_q_3*ups_mu_2_o_in_axes2_z;
+    const real ups_c_o_in_axes2_z = m->ups_h_3_in_spec2_y[i]*(ups_mu_2_o_t + ups_phi_3_o_t) +
+        ups_B_2_o_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
+        ups_B_2_o_in_axes2_zx*m->ups_h_3_in_spec2_x[i] +
+        v->inv_ups_root_1*(v->ups_c_2*ups_mu_2_o_in_axes2_y -
+        v->ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x);
     /* (ups-U) velocity and gravity terms of the leg force */
     const real ups_U_x = v->axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x -
         v->axis_y_ups_axes2_x*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_x*ups_c_o_in_axes2_z;
@@ -2058,23 +2069,20 @@ INLINE void stage_ups_inverse_kinematics_potential(const prepared *m, size_t w, 
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
     const real t_x = X[0*w + j];
-    const real ups_S_x = t_x + R_xx*m->ups_platform_point_x[i] +
-        R_xy*m->ups_platform_point_y[i] + R_xz*m->ups_platform_point_z[i] -
-        m->ups_base_point_x[i];
+    const real ups_S_x = t_x - m->ups_base_point_x[i] + R_xy*m->ups_platform_point_y[i] +
+        R_xz*m->ups_platform_point_z[i] + R_xx*m->ups_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real t_y = X[1*w + j];
-    const real ups_S_y = t_y + R_yx*m->ups_platform_point_x[i] +
-        R_yy*m->ups_platform_point_y[i] + R_yz*m->ups_platform_point_z[i] -
-        m->ups_base_point_y[i];
+    const real ups_S_y = t_y - m->ups_base_point_y[i] + R_yx*m->ups_platform_point_x[i] +
+        R_yz*m->ups_platform_point_z[i] + R_yy*m->ups_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real t_z = X[2*w + j];
-    const real ups_S_z = t_z + R_zx*m->ups_platform_point_x[i] +
-        R_zy*m->ups_platform_point_y[i] + R_zz*m->ups_platform_point_z[i] -
-        m->ups_base_point_z[i];
+    const real ups_S_z = t_z - m->ups_base_point_z[i] + R_zx*m->ups_platform_point_x[i] +
+        R_zy*m->ups_platform_point_y[i] + R_zz*m->ups_platform_point_z[i];
     const real ups_S_in_turn1_x = ups_S_x*m->ups_base_frame_xx[i] +
         ups_S_y*m->ups_base_frame_yx[i] + ups_S_z*m->ups_base_frame_zx[i];
     const real ups_S_in_turn1_y = ups_S_x*m->ups_base_frame_xy[i] +
@@ -2136,8 +2144,8 @@ INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
     const real ups_acc_3_in_axes2_x = v->axis_x_ups_axes2_x*v->ups_S_ddot_x +
         v->axis_x_ups_axes2_y*v->ups_S_ddot_y + v->axis_x_ups_axes2_z*v->ups_S_ddot_z -
         ups_g_in_axes2_x;
-    const real ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
-        ups_g_in_axes2_y;
+    const real ups_acc_3_in_axes2_y = ups_B_2_t - ups_g_in_axes2_y + ups_B_2_t_2 +
+        ups_B_2_t_3;
     const real ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - v->ups_g_in_axes2_z;
     /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real ups_mu_2_t = v->ups_omega_1_in_axes2_x*v->ups_omega_1_in_axes2_x;
@@ -2181,24 +2189,24 @@ INLINE void stage_ups_leg7_X(const prepared *m, size_t w, size_t i, size_t j, co
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real ups_leg7_q_x = R_xx*m->ups_leg7_platform_point_x[i] +
-        R_xy*m->ups_leg7_platform_point_y[i] + R_xz*m->ups_leg7_platform_point_z[i];
+    const real ups_leg7_q_x = R_xy*m->ups_leg7_platform_point_y[i] +
+        R_xz*m->ups_leg7_platform_point_z[i] + R_xx*m->ups_leg7_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real ups_leg7_q_y = R_yx*m->ups_leg7_platform_point_x[i] +
-        R_yy*m->ups_leg7_platform_point_y[i] + R_yz*m->ups_leg7_platform_point_z[i];
+        R_yz*m->ups_leg7_platform_point_z[i] + R_yy*m->ups_leg7_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real ups_leg7_q_z = R_zx*m->ups_leg7_platform_point_x[i] +
         R_zy*m->ups_leg7_platform_point_y[i] + R_zz*m->ups_leg7_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real ups_leg7_S_x = t_x + ups_leg7_q_x - m->ups_leg7_base_point_x[i];
+    const real ups_leg7_S_x = t_x - m->ups_leg7_base_point_x[i] + ups_leg7_q_x;
     const real t_y = X[1*w + j];
-    const real ups_leg7_S_y = t_y + ups_leg7_q_y - m->ups_leg7_base_point_y[i];
+    const real ups_leg7_S_y = t_y - m->ups_leg7_base_point_y[i] + ups_leg7_q_y;
     const real t_z = X[2*w + j];
-    const real ups_leg7_S_z = t_z + ups_leg7_q_z - m->ups_leg7_base_point_z[i];
+    const real ups_leg7_S_z = t_z - m->ups_leg7_base_point_z[i] + ups_leg7_q_z;
     const real ups_leg7_S_in_turn1_x = ups_leg7_S_x*m->ups_leg7_base_frame_xx[i] +
         ups_leg7_S_y*m->ups_leg7_base_frame_yx[i] + ups_leg7_S_z*m->ups_leg7_base_frame_zx[i];
     const real ups_leg7_S_in_turn1_y = ups_leg7_S_x*m->ups_leg7_base_frame_xy[i] +
@@ -2349,13 +2357,13 @@ INLINE void stage_ups_leg7_A_V_X(size_t w, size_t j, const real *V, values_ups_l
     /* (ups_leg7-S_ddot) acceleration of the connection point */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
-    const real ups_leg7_S_ddot_x = v->ups_leg7_a_p_x + omega_y*v->ups_leg7_S_dot_t_3 -
-        omega_z*v->ups_leg7_S_dot_t_2;
+    const real ups_leg7_S_ddot_x = omega_y*v->ups_leg7_S_dot_t_3 -
+        omega_z*v->ups_leg7_S_dot_t_2 + v->ups_leg7_a_p_x;
     const real omega_x = V[3*w + j];
-    const real ups_leg7_S_ddot_y = v->ups_leg7_a_p_y + omega_z*v->ups_leg7_S_dot_t -
-        omega_x*v->ups_leg7_S_dot_t_3;
-    const real ups_leg7_S_ddot_z = v->ups_leg7_a_p_z + omega_x*v->ups_leg7_S_dot_t_2 -
-        omega_y*v->ups_leg7_S_dot_t;
+    const real ups_leg7_S_ddot_y = omega_z*v->ups_leg7_S_dot_t - omega_x*v->ups_leg7_S_dot_t_3
+        + v->ups_leg7_a_p_y;
+    const real ups_leg7_S_ddot_z = omega_x*v->ups_leg7_S_dot_t_2 - omega_y*v->ups_leg7_S_dot_t
+        + v->ups_leg7_a_p_z;
     v->ups_leg7_S_ddot_x = ups_leg7_S_ddot_x;
     v->ups_leg7_S_ddot_y = ups_leg7_S_ddot_y;
     v->ups_leg7_S_ddot_z = ups_leg7_S_ddot_z;
@@ -2409,8 +2417,8 @@ INLINE void stage_ups_leg7_Z_dynamics(const prepared *m, size_t w, size_t i, siz
     const real ups_leg7_acc_3_o_in_axes2_x = v->axis_x_ups_leg7_axes2_x*ups_leg7_u_1_x +
         v->axis_x_ups_leg7_axes2_y*ups_leg7_u_1_y + v->axis_x_ups_leg7_axes2_z*ups_leg7_u_1_z
         - ups_leg7_g_in_axes2_x;
-    const real ups_leg7_acc_3_o_in_axes2_y = ups_leg7_B_2_o_t + ups_leg7_B_2_o_t_2 +
-        ups_leg7_B_2_o_t_3 - ups_leg7_g_in_axes2_y;
+    const real ups_leg7_acc_3_o_in_axes2_y = ups_leg7_B_2_o_t - ups_leg7_g_in_axes2_y +
+        ups_leg7_B_2_o_t_2 + ups_leg7_B_2_o_t_3;
     const real ups_leg7_acc_3_o_in_axes2_z = ups_leg7_u_1_in_axes2_z -
         v->ups_leg7_g_in_axes2_z;
     /* (ups_leg7-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference
@@ -2419,56 +2427,55 @@ INLINE void stage_ups_leg7_Z_dynamics(const prepared *m, size_t w, size_t i, siz
         v->ups_leg7_omega_1_in_axes2_y*v->ups_leg7_omega_1_in_axes2_y;
     const real ups_leg7_phi_3_o_t_2 = v->ups_leg7_qd_2*v->ups_leg7_qd_2;
     const real ups_leg7_phi_3_o_in_axes2_x =
-        ups_leg7_alpha_1_o_in_axes2_y*m->ups_leg7_h_3_in_spec2_y[i] +
         m->ups_leg7_h_3_in_spec2_x[i]*(-ups_leg7_phi_3_o_t - ups_leg7_phi_3_o_t_2) -
-        ups_leg7_B_2_o_in_axes2_xy*m->ups_leg7_h_3_in_spec2_z[i];
+        ups_leg7_B_2_o_in_axes2_xy*m->ups_leg7_h_3_in_spec2_z[i] +
+        ups_leg7_alpha_1_o_in_axes2_y*m->ups_leg7_h_3_in_spec2_y[i];
     /* (ups_leg7-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real ups_leg7_mu_2_o_t =
         v->ups_leg7_omega_1_in_axes2_x*v->ups_leg7_omega_1_in_axes2_x;
     const real ups_leg7_mu_2_o_in_axes2_x =
+        v->ups_leg7_g_in_axes2_z*m->ups_leg7_h_2_in_spec2_z[i] +
+        ups_leg7_g_in_axes2_y*m->ups_leg7_h_2_in_spec2_y[i] -
+        ups_leg7_acc_3_o_in_axes2_z*m->ups_leg7_h_3_in_spec2_z[i] -
+        ups_leg7_acc_3_o_in_axes2_y*m->ups_leg7_h_3_in_spec2_y[i] +
         ups_leg7_B_2_o_in_axes2_yx*m->ups_leg7_J_group_2_in_axes2_xz[i] +
-        ups_leg7_B_2_o_in_axes2_zy*m->ups_leg7_Sigma_2_in_axes2_yy[i] +
         m->ups_leg7_J_group_2_in_axes2_yz[i]*(ups_leg7_phi_3_o_t - ups_leg7_phi_3_o_t_2) +
         m->ups_leg7_Sigma_2_in_axes2_zz[i]*ups_leg7_alpha_1_o_in_axes2_x +
-        ups_leg7_g_in_axes2_y*m->ups_leg7_h_2_in_spec2_y[i] +
-        v->ups_leg7_g_in_axes2_z*m->ups_leg7_h_2_in_spec2_z[i] -
-        ups_leg7_B_2_o_in_axes2_zx*m->ups_leg7_J_group_2_in_axes2_xy[i] -
-        ups_leg7_acc_3_o_in_axes2_y*m->ups_leg7_h_3_in_spec2_y[i] -
-        ups_leg7_acc_3_o_in_axes2_z*m->ups_leg7_h_3_in_spec2_z[i];
+        ups_leg7_B_2_o_in_axes2_zy*m->ups_leg7_Sigma_2_in_axes2_yy[i] -
+        ups_leg7_B_2_o_in_axes2_zx*m->ups_leg7_J_group_2_in_axes2_xy[i];
     const real ups_leg7_mu_2_o_in_axes2_y =
-        ups_leg7_B_2_o_in_axes2_zy*m->ups_leg7_J_group_2_in_axes2_xy[i] +
-        m->ups_leg7_Sigma_2_in_axes2_zz[i]*ups_leg7_alpha_1_o_in_axes2_y +
-        ups_leg7_acc_3_o_in_axes2_x*m->ups_leg7_h_3_in_spec2_y[i] +
         v->ups_leg7_g_in_axes2_z*m->ups_leg7_h_2_in_spec2_x[i] -
-        ups_leg7_B_2_o_in_axes2_xy*m->ups_leg7_J_group_2_in_axes2_yz[i] -
-        ups_leg7_B_2_o_in_axes2_zx*m->ups_leg7_Sigma_2_in_axes2_xx[i] -
-        m->ups_leg7_J_group_2_in_axes2_xz[i]*(ups_leg7_mu_2_o_t - ups_leg7_phi_3_o_t_2) -
+        ups_leg7_g_in_axes2_x*m->ups_leg7_h_2_in_spec2_y[i] +
+        ups_leg7_acc_3_o_in_axes2_x*m->ups_leg7_h_3_in_spec2_y[i] -
         ups_leg7_acc_3_o_in_axes2_z*m->ups_leg7_h_3_in_spec2_x[i] -
-        ups_leg7_g_in_axes2_x*m->ups_leg7_h_2_in_spec2_y[i];
+        m->ups_leg7_J_group_2_in_axes2_xz[i]*(ups_leg7_mu_2_o_t - ups_leg7_phi_3_o_t_2) -
+        ups_leg7_B_2_o_in_axes2_xy*m->ups_leg7_J_group_2_in_axes2_yz[i] +
+        m->ups_leg7_Sigma_2_in_axes2_zz[i]*ups_leg7_alpha_1_o_in_axes2_y +
+        ups_leg7_B_2_o_in_axes2_zy*m->ups_leg7_J_group_2_in_axes2_xy[i] -
+        ups_leg7_B_2_o_in_axes2_zx*m->ups_leg7_Sigma_2_in_axes2_xx[i];
     const real ups_leg7_mu_2_o_in_axes2_z =
-        ups_leg7_B_2_o_in_axes2_yx*m->ups_leg7_Sigma_2_in_axes2_xx[i] +
-        m->ups_leg7_J_group_2_in_axes2_xy[i]*(ups_leg7_mu_2_o_t - ups_leg7_phi_3_o_t) +
-        m->ups_leg7_J_group_2_in_axes2_xz[i]*ups_leg7_alpha_1_o_in_axes2_x +
-        m->ups_leg7_J_group_2_in_axes2_yz[i]*ups_leg7_alpha_1_o_in_axes2_y +
-        ups_leg7_acc_3_o_in_axes2_x*m->ups_leg7_h_3_in_spec2_z[i] +
-        ups_leg7_acc_3_o_in_axes2_y*m->ups_leg7_h_3_in_spec2_x[i] -
-        ups_leg7_B_2_o_in_axes2_xy*m->ups_leg7_Sigma_2_in_axes2_yy[i] -
+        ups_leg7_acc_3_o_in_axes2_x*m->ups_leg7_h_3_in_spec2_z[i] -
         ups_leg7_g_in_axes2_x*m->ups_leg7_h_2_in_spec2_z[i] -
-        ups_leg7_g_in_axes2_y*m->ups_leg7_h_2_in_spec2_x[i];
+        ups_leg7_g_in_axes2_y*m->ups_leg7_h_2_in_spec2_x[i] +
+        ups_leg7_acc_3_o_in_axes2_y*m->ups_leg7_h_3_in_spec2_x[i] +
+        ups_leg7_B_2_o_in_axes2_yx*m->ups_leg7_Sigma_2_in_axes2_xx[i] +
+        m->ups_leg7_J_group_2_in_axes2_xy[i]*(ups_leg7_mu_2_o_t - ups_leg7_phi_3_o_t) -
+        ups_leg7_B_2_o_in_axes2_xy*m->ups_leg7_Sigma_2_in_axes2_yy[i] +
+        m->ups_leg7_J_group_2_in_axes2_xz[i]*ups_leg7_alpha_1_o_in_axes2_x +
+        m->ups_leg7_J_group_2_in_axes2_yz[i]*ups_leg7_alpha_1_o_in_axes2_y;
     /* (ups_leg7-c_o) remainder of: leg force on the platform without actuation and without the mass
        at the connection point */
     const real ups_leg7_c_o_in_axes2_y =
         ups_leg7_alpha_1_o_in_axes2_x*m->ups_leg7_h_3_in_spec2_y[i] -
-        v->inv_ups_leg7_q_3*ups_leg7_mu_2_o_in_axes2_z -
         ups_leg7_B_2_o_in_axes2_yx*m->ups_leg7_h_3_in_spec2_x[i] -
-        m->ups_leg7_h_3_in_spec2_z[i]*(ups_leg7_mu_2_o_t + ups_leg7_phi_3_o_t_2);
-    const real ups_leg7_c_o_in_axes2_z =
+        m->ups_leg7_h_3_in_spec2_z[i]*(ups_leg7_mu_2_o_t + ups_leg7_phi_3_o_t_2) -
+        v->inv_ups_leg7_q_3*ups_leg7_mu_2_o_in_axes2_z;
+    const real ups_leg7_c_o_in_axes2_z = m->ups_leg7_h_3_in_spec2_y[i]*(ups_leg7_mu_2_o_t +
+        ups_leg7_phi_3_o_t) + ups_leg7_B_2_o_in_axes2_zy*m->ups_leg7_h_3_in_spec2_z[i] -
+        ups_leg7_B_2_o_in_axes2_zx*m->ups_leg7_h_3_in_spec2_x[i] +
         v->inv_ups_leg7_root_1*(v->ups_leg7_c_2*ups_leg7_mu_2_o_in_axes2_y -
-        v->ups_leg7_e_1_in_axes2_x*ups_leg7_mu_2_o_in_axes2_x) +
-        ups_leg7_B_2_o_in_axes2_zy*m->ups_leg7_h_3_in_spec2_z[i] +
-        m->ups_leg7_h_3_in_spec2_y[i]*(ups_leg7_mu_2_o_t + ups_leg7_phi_3_o_t) -
-        ups_leg7_B_2_o_in_axes2_zx*m->ups_leg7_h_3_in_spec2_x[i];
+        v->ups_leg7_e_1_in_axes2_x*ups_leg7_mu_2_o_in_axes2_x);
     /* (ups_leg7-U) velocity and gravity terms of the leg force */
     const real ups_leg7_U_x = v->axis_x_ups_leg7_axes2_x*ups_leg7_phi_3_o_in_axes2_x -
         v->axis_y_ups_leg7_axes2_x*ups_leg7_c_o_in_axes2_y -
@@ -2532,8 +2539,8 @@ INLINE void stage_ups_leg7_legs_required(const prepared *m, size_t i, values_ups
     const real ups_leg7_acc_3_in_axes2_x = v->axis_x_ups_leg7_axes2_x*v->ups_leg7_S_ddot_x +
         v->axis_x_ups_leg7_axes2_y*v->ups_leg7_S_ddot_y +
         v->axis_x_ups_leg7_axes2_z*v->ups_leg7_S_ddot_z - ups_leg7_g_in_axes2_x;
-    const real ups_leg7_acc_3_in_axes2_y = ups_leg7_B_2_t + ups_leg7_B_2_t_2 +
-        ups_leg7_B_2_t_3 - ups_leg7_g_in_axes2_y;
+    const real ups_leg7_acc_3_in_axes2_y = ups_leg7_B_2_t - ups_leg7_g_in_axes2_y +
+        ups_leg7_B_2_t_2 + ups_leg7_B_2_t_3;
     const real ups_leg7_acc_3_in_axes2_z = ups_leg7_S_ddot_in_axes2_z -
         v->ups_leg7_g_in_axes2_z;
     /* (ups_leg7-mu_2) inertia moment of the links that turn with link 2, about their reference points
@@ -2557,39 +2564,43 @@ INLINE void stage_ups_leg7_legs_required(const prepared *m, size_t i, values_ups
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    real *s, verdict *t)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_M_dynamics(m, &v);
-    stage_Z_dynamics(m, w, k, V, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.h_star_x;
-    s[10*w + k] = v.h_star_y;
-    s[11*w + k] = v.h_star_z;
-    s[12*w + k] = v.J_star_xx;
-    s[13*w + k] = v.J_star_xy;
-    s[14*w + k] = v.J_star_xz;
-    s[15*w + k] = v.J_star_yy;
-    s[16*w + k] = v.J_star_yz;
-    s[17*w + k] = v.J_star_zz;
-    s[18*w + k] = v.Z_p_x;
-    s[19*w + k] = v.Z_p_y;
-    s[20*w + k] = v.Z_p_z;
-    s[21*w + k] = v.Z_q_x;
-    s[22*w + k] = v.Z_q_y;
-    s[23*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->h_star_x;
+    s[10*w + k] = v->h_star_y;
+    s[11*w + k] = v->h_star_z;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
+    *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_M_dynamics(m, v);
+    stage_Z_dynamics(m, w, k, V, v);
+    s[12*w + k] = v->J_star_xx;
+    s[13*w + k] = v->J_star_xy;
+    s[14*w + k] = v->J_star_xz;
+    s[15*w + k] = v->J_star_yy;
+    s[16*w + k] = v->J_star_yz;
+    s[17*w + k] = v->J_star_zz;
+    s[18*w + k] = v->Z_p_x;
+    s[19*w + k] = v->Z_p_y;
+    s[20*w + k] = v->Z_p_z;
+    s[21*w + k] = v->Z_q_x;
+    s[22*w + k] = v->Z_q_y;
+    s[23*w + k] = v->Z_q_z;
 }
 
 INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2627,9 +2638,9 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
         v.axis_y_ups_axes2_x*ups_Q_t - v.axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
     const real ups_Q_t_4 = v.axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy -
         v.axis_y_ups_axes2_y*ups_Q_t - v.axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_5 = v.axis_y_ups_axes2_z*ups_Q_t +
-        v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz -
-        v.axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy;
+    const real ups_Q_t_5 = v.axis_y_ups_axes2_z*ups_Q_t -
+        v.axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy +
+        v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz;
     const real ups_Q_t_6 = v.axis_x_ups_axes2_x*ups_d_c_in_axes2_xz +
         v.axis_z_ups_axes2_x*ups_Q_t_2;
     const real ups_Q_t_7 = v.axis_x_ups_axes2_y*ups_d_c_in_axes2_xz +
@@ -2776,9 +2787,9 @@ INLINE void dynamics_legs_ups_leg7(const prepared *m, size_t w, size_t i, size_t
     const real ups_leg7_Q_t_4 = v.axis_x_ups_leg7_axes2_y*ups_leg7_d_phi_3_in_axes2_xy -
         v.axis_y_ups_leg7_axes2_y*ups_leg7_Q_t -
         v.axis_z_ups_leg7_axes2_y*ups_leg7_d_c_in_axes2_yz;
-    const real ups_leg7_Q_t_5 = v.axis_y_ups_leg7_axes2_z*ups_leg7_Q_t +
-        v.axis_z_ups_leg7_axes2_z*ups_leg7_d_c_in_axes2_yz -
-        v.axis_x_ups_leg7_axes2_z*ups_leg7_d_phi_3_in_axes2_xy;
+    const real ups_leg7_Q_t_5 = v.axis_y_ups_leg7_axes2_z*ups_leg7_Q_t -
+        v.axis_x_ups_leg7_axes2_z*ups_leg7_d_phi_3_in_axes2_xy +
+        v.axis_z_ups_leg7_axes2_z*ups_leg7_d_c_in_axes2_yz;
     const real ups_leg7_Q_t_6 = v.axis_x_ups_leg7_axes2_x*ups_leg7_d_c_in_axes2_xz +
         v.axis_z_ups_leg7_axes2_x*ups_leg7_Q_t_2;
     const real ups_leg7_Q_t_7 = v.axis_x_ups_leg7_axes2_y*ups_leg7_d_c_in_axes2_xz +
@@ -2882,15 +2893,15 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[11*w + k];
-    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
     const real h_star_y = s[10*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -2898,9 +2909,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[9*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
@@ -2935,13 +2946,13 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[24*w + k];
     const real Z_q_x = s[21*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[25*w + k];
     const real Z_q_y = s[22*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[26*w + k];
     const real Z_q_z = s[23*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
     const real M_tt_xy = sums[1*w + k];
@@ -3007,7 +3018,8 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     real s[24] = {0}, sums[27] = {0};
     real terms_ups[27*LEGS(LEGS_OF_ups)] = {0}, o_ups[8*LEGS(LEGS_OF_ups)] = {0};
     real terms_ups_leg7[27*LEGS(LEGS_OF_ups_leg7)] = {0}, o_ups_leg7[LEGS(LEGS_OF_ups_leg7)] = {0};
-    dynamics_before(m, 1, 0, X, V, s, t);
+    values v;
+    dynamics_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         dynamics_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, V, terms_ups, o_ups);
     }
@@ -3028,6 +3040,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
             sums[n] += terms_ups_leg7[n*LEGS(LEGS_OF_ups_leg7) + leg];
         }
     }
+    dynamics_between(m, 1, 0, V, &v, s);
     dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
@@ -3038,7 +3051,9 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real o_ups[8*LANES];
     real o_ups_leg7[LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        dynamics_before(m, LANES, k, X, V, s, t);
+        values v;
+        dynamics_before(m, LANES, k, X, &v, s, t);
+        dynamics_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 27*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
@@ -3063,30 +3078,34 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_M_dynamics(m, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.h_star_x;
-    s[10*w + k] = v.h_star_y;
-    s[11*w + k] = v.h_star_z;
-    s[12*w + k] = v.J_star_xx;
-    s[13*w + k] = v.J_star_xy;
-    s[14*w + k] = v.J_star_xz;
-    s[15*w + k] = v.J_star_yy;
-    s[16*w + k] = v.J_star_yz;
-    s[17*w + k] = v.J_star_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->h_star_x;
+    s[10*w + k] = v->h_star_y;
+    s[11*w + k] = v->h_star_z;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void M_between(const prepared *m, size_t w, size_t k, values *v, real *s)
+{
+    stage_M_dynamics(m, v);
+    s[12*w + k] = v->J_star_xx;
+    s[13*w + k] = v->J_star_xy;
+    s[14*w + k] = v->J_star_xz;
+    s[15*w + k] = v->J_star_yy;
+    s[16*w + k] = v->J_star_yz;
+    s[17*w + k] = v->J_star_zz;
 }
 
 INLINE void M_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3129,11 +3148,11 @@ INLINE void M_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
         v.axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
     const real ups_Q_t_4 = ups_d_phi_3_in_axes2_xy*v.ups_w_3_y - axis_y_ups_axes2_y*ups_Q_t -
         v.axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t +
-        v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz - ups_d_phi_3_in_axes2_xy*v.ups_w_3_z;
-    const real ups_Q_t_6 = v.axis_z_ups_axes2_x*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_x;
-    const real ups_Q_t_7 = v.axis_z_ups_axes2_y*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_y;
-    const real ups_Q_t_8 = v.axis_z_ups_axes2_z*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_z;
+    const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t - ups_d_phi_3_in_axes2_xy*v.ups_w_3_z +
+        v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_6 = ups_d_c_in_axes2_xz*v.ups_w_3_x + v.axis_z_ups_axes2_x*ups_Q_t_2;
+    const real ups_Q_t_7 = ups_d_c_in_axes2_xz*v.ups_w_3_y + v.axis_z_ups_axes2_y*ups_Q_t_2;
+    const real ups_Q_t_8 = ups_d_c_in_axes2_xz*v.ups_w_3_z + v.axis_z_ups_axes2_z*ups_Q_t_2;
     const real ups_Q_t_9 = v.axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3;
     const real ups_Q_xx = -2*ups_Q_t_9;
     const real ups_Q_xy = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 -
@@ -3254,9 +3273,9 @@ INLINE void M_legs_ups_leg7(const prepared *m, size_t w, size_t i, size_t j, siz
     const real ups_leg7_Q_t_4 = axis_x_ups_leg7_axes2_y*ups_leg7_d_phi_3_in_axes2_xy -
         axis_y_ups_leg7_axes2_y*ups_leg7_Q_t -
         v.axis_z_ups_leg7_axes2_y*ups_leg7_d_c_in_axes2_yz;
-    const real ups_leg7_Q_t_5 = axis_y_ups_leg7_axes2_z*ups_leg7_Q_t +
-        v.axis_z_ups_leg7_axes2_z*ups_leg7_d_c_in_axes2_yz -
-        axis_x_ups_leg7_axes2_z*ups_leg7_d_phi_3_in_axes2_xy;
+    const real ups_leg7_Q_t_5 = axis_y_ups_leg7_axes2_z*ups_leg7_Q_t -
+        axis_x_ups_leg7_axes2_z*ups_leg7_d_phi_3_in_axes2_xy +
+        v.axis_z_ups_leg7_axes2_z*ups_leg7_d_c_in_axes2_yz;
     const real ups_leg7_Q_t_6 = axis_x_ups_leg7_axes2_x*ups_leg7_d_c_in_axes2_xz +
         v.axis_z_ups_leg7_axes2_x*ups_leg7_Q_t_2;
     const real ups_leg7_Q_t_7 = axis_x_ups_leg7_axes2_y*ups_leg7_d_c_in_axes2_xz +
@@ -3352,15 +3371,15 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[11*w + k];
-    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
     const real h_star_y = s[10*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -3368,9 +3387,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[9*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
@@ -3448,7 +3467,8 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     real s[18] = {0}, sums[21] = {0};
     real terms_ups[21*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
     real terms_ups_leg7[21*LEGS(LEGS_OF_ups_leg7)] = {0}, o_ups_leg7[LEGS(LEGS_OF_ups_leg7)] = {0};
-    M_before(m, 1, 0, X, s, t);
+    values v;
+    M_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         M_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, terms_ups, o_ups);
     }
@@ -3469,6 +3489,7 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
             sums[n] += terms_ups_leg7[n*LEGS(LEGS_OF_ups_leg7) + leg];
         }
     }
+    M_between(m, 1, 0, &v, s);
     M_after(m, 1, 0, s, sums, M, t);
 }
 
@@ -3478,7 +3499,9 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
     real o_ups[LANES];
     real o_ups_leg7[LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        M_before(m, LANES, k, X, s, t);
+        values v;
+        M_before(m, LANES, k, X, &v, s, t);
+        M_between(m, LANES, k, &v, s);
     }
     clear(sums, 21*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
@@ -3503,29 +3526,32 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s,
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
     verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_Z_dynamics(m, w, k, V, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.Z_p_x;
-    s[10*w + k] = v.Z_p_y;
-    s[11*w + k] = v.Z_p_z;
-    s[12*w + k] = v.Z_q_x;
-    s[13*w + k] = v.Z_q_y;
-    s[14*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_Z_dynamics(m, w, k, V, v);
+    s[9*w + k] = v->Z_p_x;
+    s[10*w + k] = v->Z_p_y;
+    s[11*w + k] = v->Z_p_z;
+    s[12*w + k] = v->Z_q_x;
+    s[13*w + k] = v->Z_q_y;
+    s[14*w + k] = v->Z_q_z;
 }
 
 INLINE void Z_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3593,13 +3619,13 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[3*w + k];
     const real Z_q_x = s[12*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[4*w + k];
     const real Z_q_y = s[13*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[5*w + k];
     const real Z_q_z = s[14*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
     Z[1*w + k] = Z_t_y;
@@ -3616,7 +3642,8 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     real s[15] = {0}, sums[6] = {0};
     real terms_ups[6*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
     real terms_ups_leg7[6*LEGS(LEGS_OF_ups_leg7)] = {0}, o_ups_leg7[LEGS(LEGS_OF_ups_leg7)] = {0};
-    Z_before(m, 1, 0, X, V, s, t);
+    values v;
+    Z_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         Z_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, V, terms_ups, o_ups);
     }
@@ -3637,6 +3664,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
             sums[n] += terms_ups_leg7[n*LEGS(LEGS_OF_ups_leg7) + leg];
         }
     }
+    Z_between(m, 1, 0, V, &v, s);
     Z_after(1, 0, s, sums, Z, t);
 }
 
@@ -3647,7 +3675,9 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real o_ups[LANES];
     real o_ups_leg7[LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        Z_before(m, LANES, k, X, V, s, t);
+        values v;
+        Z_before(m, LANES, k, X, &v, s, t);
+        Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
@@ -3672,20 +3702,20 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void H_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3728,7 +3758,8 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
     real s[9] = {0};
     real o_ups[8*LEGS(LEGS_OF_ups)] = {0};
-    H_before(m, 1, 0, X, s, t);
+    values v;
+    H_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         H_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, o_ups);
     }
@@ -3742,7 +3773,8 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
     real s[9*LANES];
     real o_ups[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        H_before(m, LANES, k, X, s, t);
+        values v;
+        H_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3755,12 +3787,26 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, real *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
+    values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
     /* (W_p) centripetal tensor of the platform */
     const real omega_x = V[3*w + k];
     const real omega_y = V[4*w + k];
@@ -3775,72 +3821,62 @@ INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X
     const real a_t_y = t_ddot_y - m->gravity_y;
     const real t_ddot_z = A[2*w + k];
     const real a_t_z = t_ddot_z - m->gravity_z;
-    const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
-    const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
-    const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
+    const real a_t_in_platform_x = v->R_yx*a_t_y + v->R_zx*a_t_z + v->R_xx*a_t_x;
+    const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
+    const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
     const real f_p_t = omega_x*omega_x;
     const real f_p_t_2 = omega_y*omega_y;
     const real f_p_t_3 = omega_z*omega_z;
     const real alpha_y = A[4*w + k];
     const real alpha_z = A[5*w + k];
-    const real f_p_x = a_t_x*m->m_star + v.h_star_y*(W_p_xy - alpha_z) + v.h_star_z*(W_p_xz +
-        alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+    const real f_p_x = a_t_x*m->m_star + v->h_star_y*(W_p_xy - alpha_z) + v->h_star_z*(alpha_y
+        + W_p_xz) - v->h_star_x*(f_p_t_2 + f_p_t_3);
     const real alpha_x = A[3*w + k];
-    const real f_p_y = a_t_y*m->m_star + v.h_star_x*(W_p_xy + alpha_z) + v.h_star_z*(W_p_yz -
-        alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
-    const real f_p_z = a_t_z*m->m_star + v.h_star_x*(W_p_xz - alpha_y) + v.h_star_y*(W_p_yz +
-        alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
+    const real f_p_y = a_t_y*m->m_star + v->h_star_x*(alpha_z + W_p_xy) + v->h_star_z*(W_p_yz
+        - alpha_x) - v->h_star_y*(f_p_t + f_p_t_3);
+    const real f_p_z = a_t_z*m->m_star + v->h_star_x*(W_p_xz - alpha_y) + v->h_star_y*(alpha_x
+        + W_p_yz) - v->h_star_z*(f_p_t + f_p_t_2);
     /* (mu_p) inertia moment of the platform less that of its weight */
-    const real mu_p_t = m->J_star_in_platform_xx*v.omega_in_platform_x +
-        m->J_star_in_platform_xy*v.omega_in_platform_y +
-        m->J_star_in_platform_xz*v.omega_in_platform_z;
-    const real mu_p_t_2 = m->J_star_in_platform_xy*v.omega_in_platform_x +
-        m->J_star_in_platform_yy*v.omega_in_platform_y +
-        m->J_star_in_platform_yz*v.omega_in_platform_z;
-    const real mu_p_t_3 = m->J_star_in_platform_xz*v.omega_in_platform_x +
-        m->J_star_in_platform_yz*v.omega_in_platform_y +
-        m->J_star_in_platform_zz*v.omega_in_platform_z;
-    const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
-    const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
-    const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+    const real mu_p_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
+        m->J_star_in_platform_xy*v->omega_in_platform_y +
+        m->J_star_in_platform_xz*v->omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
+        m->J_star_in_platform_yy*v->omega_in_platform_y +
+        m->J_star_in_platform_yz*v->omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
+        m->J_star_in_platform_yz*v->omega_in_platform_y +
+        m->J_star_in_platform_zz*v->omega_in_platform_z;
+    const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
+    const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
+    const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
     const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
         m->J_star_in_platform_xy*alpha_in_platform_y +
         m->J_star_in_platform_xz*alpha_in_platform_z +
-        a_t_in_platform_z*m->h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
-        a_t_in_platform_y*m->h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+        a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
+        + mu_p_t_3*v->omega_in_platform_y - mu_p_t_2*v->omega_in_platform_z;
     const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
         m->J_star_in_platform_yz*alpha_in_platform_z +
-        a_t_in_platform_x*m->h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
-        a_t_in_platform_z*m->h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
+        a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
+        + mu_p_t*v->omega_in_platform_z - mu_p_t_3*v->omega_in_platform_x;
     const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
         m->J_star_in_platform_zz*alpha_in_platform_z +
-        a_t_in_platform_y*m->h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
-        a_t_in_platform_x*m->h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
-    const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
-        v.R_xz*mu_p_in_platform_z;
-    const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
-        v.R_yz*mu_p_in_platform_z;
-    const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
-        v.R_zz*mu_p_in_platform_z;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+        a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
+        + mu_p_t_2*v->omega_in_platform_x - mu_p_t*v->omega_in_platform_y;
+    const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
+        v->R_xz*mu_p_in_platform_z;
+    const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
+        v->R_yz*mu_p_in_platform_z;
+    const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
+        v->R_zz*mu_p_in_platform_z;
     s[9*w + k] = f_p_x;
     s[10*w + k] = f_p_y;
     s[11*w + k] = f_p_z;
     s[12*w + k] = mu_p_x;
     s[13*w + k] = mu_p_y;
     s[14*w + k] = mu_p_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void required_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3856,53 +3892,54 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
     /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
     const real ups_phi_3_t = v.ups_omega_1_in_axes2_y*v.ups_omega_1_in_axes2_y;
     const real ups_phi_3_t_2 = v.ups_qd_2*v.ups_qd_2;
-    const real ups_phi_3_in_axes2_x = v.ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
-        m->ups_h_3_in_spec2_x[i]*(-ups_phi_3_t - ups_phi_3_t_2) -
-        v.ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i];
+    const real ups_phi_3_in_axes2_x = m->ups_h_3_in_spec2_x[i]*(-ups_phi_3_t - ups_phi_3_t_2)
+        - v.ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i] +
+        v.ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i];
     /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real ups_mu_2_in_axes2_x = v.ups_B_2_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
-        v.ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] +
+    const real ups_mu_2_in_axes2_x = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] +
+        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] -
+        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_z[i] -
+        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
+        v.ups_B_2_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
         m->ups_J_group_2_in_axes2_yz[i]*(ups_phi_3_t - ups_phi_3_t_2) +
         m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_x +
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] +
-        v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i] -
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_y[i] -
-        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_z[i];
-    const real ups_mu_2_in_axes2_y = v.ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] +
-        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_y +
-        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_y[i] +
-        v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
-        v.ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i] -
-        m->ups_J_group_2_in_axes2_xz[i]*(v.ups_mu_2_t - ups_phi_3_t_2) -
+        v.ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
+    const real ups_mu_2_in_axes2_y = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
+        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i] +
+        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
         v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_x[i] -
-        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i];
-    const real ups_mu_2_in_axes2_z = v.ups_B_2_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
-        m->ups_J_group_2_in_axes2_xy[i]*(v.ups_mu_2_t - ups_phi_3_t) +
-        m->ups_J_group_2_in_axes2_xz[i]*v.ups_alpha_1_in_axes2_x +
-        m->ups_J_group_2_in_axes2_yz[i]*v.ups_alpha_1_in_axes2_y +
-        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_z[i] +
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_x[i] -
-        v.ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] -
+        m->ups_J_group_2_in_axes2_xz[i]*(v.ups_mu_2_t - ups_phi_3_t_2) -
+        v.ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
+        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_y +
+        v.ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
+    const real ups_mu_2_in_axes2_z = v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_z[i] -
         v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] -
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i];
+        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i] +
+        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_x[i] +
+        v.ups_B_2_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
+        m->ups_J_group_2_in_axes2_xy[i]*(v.ups_mu_2_t - ups_phi_3_t) -
+        v.ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] +
+        m->ups_J_group_2_in_axes2_xz[i]*v.ups_alpha_1_in_axes2_x +
+        m->ups_J_group_2_in_axes2_yz[i]*v.ups_alpha_1_in_axes2_y;
     /* (ups-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real ups_c_in_axes2_y = v.ups_alpha_1_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        v.inv_ups_q_3*ups_mu_2_in_axes2_z - v.ups_B_2_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
-        m->ups_h_3_in_spec2_z[i]*(v.ups_mu_2_t + ups_phi_3_t_2);
-    const real ups_c_in_axes2_z = v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
-        v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) +
-        v.ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] +
-        m->ups_h_3_in_spec2_y[i]*(v.ups_mu_2_t + ups_phi_3_t) -
-        v.ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i];
-    const real ups_c_x = v.axis_y_ups_axes2_x*ups_c_in_axes2_y +
-        v.axis_z_ups_axes2_x*ups_c_in_axes2_z - v.axis_x_ups_axes2_x*ups_phi_3_in_axes2_x;
-    const real ups_c_y = v.axis_y_ups_axes2_y*ups_c_in_axes2_y +
-        v.axis_z_ups_axes2_y*ups_c_in_axes2_z - v.axis_x_ups_axes2_y*ups_phi_3_in_axes2_x;
-    const real ups_c_z = v.axis_y_ups_axes2_z*ups_c_in_axes2_y +
-        v.axis_z_ups_axes2_z*ups_c_in_axes2_z - v.axis_x_ups_axes2_z*ups_phi_3_in_axes2_x;
+        v.ups_B_2_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
+        m->ups_h_3_in_spec2_z[i]*(v.ups_mu_2_t + ups_phi_3_t_2) -
+        v.inv_ups_q_3*ups_mu_2_in_axes2_z;
+    const real ups_c_in_axes2_z = m->ups_h_3_in_spec2_y[i]*(v.ups_mu_2_t + ups_phi_3_t) +
+        v.ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i] +
+        v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
+        v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x);
+    const real ups_c_x = v.axis_y_ups_axes2_x*ups_c_in_axes2_y -
+        v.axis_x_ups_axes2_x*ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_x*ups_c_in_axes2_z;
+    const real ups_c_y = v.axis_y_ups_axes2_y*ups_c_in_axes2_y -
+        v.axis_x_ups_axes2_y*ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_y*ups_c_in_axes2_z;
+    const real ups_c_z = v.axis_y_ups_axes2_z*ups_c_in_axes2_y -
+        v.axis_x_ups_axes2_z*ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_z*ups_c_in_axes2_z;
     /* (R_a) moment that actuators and external wrench must give */
     const real ups_R_a_t = ups_c_y*v.ups_q_z - ups_c_z*v.ups_q_y;
     const real ups_R_a_t_2 = ups_c_z*v.ups_q_x - ups_c_x*v.ups_q_z;
@@ -3957,64 +3994,62 @@ INLINE void required_legs_ups_leg7(const prepared *m, size_t w, size_t i, size_t
     /* (ups_leg7-phi_3) inertia force of link 3 from its turning about its reference point */
     const real ups_leg7_phi_3_t = v.ups_leg7_omega_1_in_axes2_y*v.ups_leg7_omega_1_in_axes2_y;
     const real ups_leg7_phi_3_t_2 = v.ups_leg7_qd_2*v.ups_leg7_qd_2;
-    const real ups_leg7_phi_3_in_axes2_x =
-        v.ups_leg7_alpha_1_in_axes2_y*m->ups_leg7_h_3_in_spec2_y[i] +
-        m->ups_leg7_h_3_in_spec2_x[i]*(-ups_leg7_phi_3_t - ups_leg7_phi_3_t_2) -
-        v.ups_leg7_B_2_in_axes2_xy*m->ups_leg7_h_3_in_spec2_z[i];
+    const real ups_leg7_phi_3_in_axes2_x = m->ups_leg7_h_3_in_spec2_x[i]*(-ups_leg7_phi_3_t -
+        ups_leg7_phi_3_t_2) - v.ups_leg7_B_2_in_axes2_xy*m->ups_leg7_h_3_in_spec2_z[i] +
+        v.ups_leg7_alpha_1_in_axes2_y*m->ups_leg7_h_3_in_spec2_y[i];
     /* (ups_leg7-mu_2) inertia moment of the links that turn with link 2, about their reference points
        */
     const real ups_leg7_mu_2_in_axes2_x =
+        v.ups_leg7_g_in_axes2_z*m->ups_leg7_h_2_in_spec2_z[i] +
+        v.ups_leg7_g_in_axes2_y*m->ups_leg7_h_2_in_spec2_y[i] -
+        v.ups_leg7_acc_3_in_axes2_z*m->ups_leg7_h_3_in_spec2_z[i] -
+        v.ups_leg7_acc_3_in_axes2_y*m->ups_leg7_h_3_in_spec2_y[i] +
         v.ups_leg7_B_2_in_axes2_yx*m->ups_leg7_J_group_2_in_axes2_xz[i] +
-        v.ups_leg7_B_2_in_axes2_zy*m->ups_leg7_Sigma_2_in_axes2_yy[i] +
         m->ups_leg7_J_group_2_in_axes2_yz[i]*(ups_leg7_phi_3_t - ups_leg7_phi_3_t_2) +
         m->ups_leg7_Sigma_2_in_axes2_zz[i]*v.ups_leg7_alpha_1_in_axes2_x +
-        v.ups_leg7_g_in_axes2_y*m->ups_leg7_h_2_in_spec2_y[i] +
-        v.ups_leg7_g_in_axes2_z*m->ups_leg7_h_2_in_spec2_z[i] -
-        v.ups_leg7_B_2_in_axes2_zx*m->ups_leg7_J_group_2_in_axes2_xy[i] -
-        v.ups_leg7_acc_3_in_axes2_y*m->ups_leg7_h_3_in_spec2_y[i] -
-        v.ups_leg7_acc_3_in_axes2_z*m->ups_leg7_h_3_in_spec2_z[i];
+        v.ups_leg7_B_2_in_axes2_zy*m->ups_leg7_Sigma_2_in_axes2_yy[i] -
+        v.ups_leg7_B_2_in_axes2_zx*m->ups_leg7_J_group_2_in_axes2_xy[i];
     const real ups_leg7_mu_2_in_axes2_y =
-        v.ups_leg7_B_2_in_axes2_zy*m->ups_leg7_J_group_2_in_axes2_xy[i] +
-        m->ups_leg7_Sigma_2_in_axes2_zz[i]*v.ups_leg7_alpha_1_in_axes2_y +
-        v.ups_leg7_acc_3_in_axes2_x*m->ups_leg7_h_3_in_spec2_y[i] +
         v.ups_leg7_g_in_axes2_z*m->ups_leg7_h_2_in_spec2_x[i] -
-        v.ups_leg7_B_2_in_axes2_xy*m->ups_leg7_J_group_2_in_axes2_yz[i] -
-        v.ups_leg7_B_2_in_axes2_zx*m->ups_leg7_Sigma_2_in_axes2_xx[i] -
-        m->ups_leg7_J_group_2_in_axes2_xz[i]*(v.ups_leg7_mu_2_t - ups_leg7_phi_3_t_2) -
+        v.ups_leg7_g_in_axes2_x*m->ups_leg7_h_2_in_spec2_y[i] +
+        v.ups_leg7_acc_3_in_axes2_x*m->ups_leg7_h_3_in_spec2_y[i] -
         v.ups_leg7_acc_3_in_axes2_z*m->ups_leg7_h_3_in_spec2_x[i] -
-        v.ups_leg7_g_in_axes2_x*m->ups_leg7_h_2_in_spec2_y[i];
+        m->ups_leg7_J_group_2_in_axes2_xz[i]*(v.ups_leg7_mu_2_t - ups_leg7_phi_3_t_2) -
+        v.ups_leg7_B_2_in_axes2_xy*m->ups_leg7_J_group_2_in_axes2_yz[i] +
+        m->ups_leg7_Sigma_2_in_axes2_zz[i]*v.ups_leg7_alpha_1_in_axes2_y +
+        v.ups_leg7_B_2_in_axes2_zy*m->ups_leg7_J_group_2_in_axes2_xy[i] -
+        v.ups_leg7_B_2_in_axes2_zx*m->ups_leg7_Sigma_2_in_axes2_xx[i];
     const real ups_leg7_mu_2_in_axes2_z =
-        v.ups_leg7_B_2_in_axes2_yx*m->ups_leg7_Sigma_2_in_axes2_xx[i] +
-        m->ups_leg7_J_group_2_in_axes2_xy[i]*(v.ups_leg7_mu_2_t - ups_leg7_phi_3_t) +
-        m->ups_leg7_J_group_2_in_axes2_xz[i]*v.ups_leg7_alpha_1_in_axes2_x +
-        m->ups_leg7_J_group_2_in_axes2_yz[i]*v.ups_leg7_alpha_1_in_axes2_y +
-        v.ups_leg7_acc_3_in_axes2_x*m->ups_leg7_h_3_in_spec2_z[i] +
-        v.ups_leg7_acc_3_in_axes2_y*m->ups_leg7_h_3_in_spec2_x[i] -
-        v.ups_leg7_B_2_in_axes2_xy*m->ups_leg7_Sigma_2_in_axes2_yy[i] -
+        v.ups_leg7_acc_3_in_axes2_x*m->ups_leg7_h_3_in_spec2_z[i] -
         v.ups_leg7_g_in_axes2_x*m->ups_leg7_h_2_in_spec2_z[i] -
-        v.ups_leg7_g_in_axes2_y*m->ups_leg7_h_2_in_spec2_x[i];
+        v.ups_leg7_g_in_axes2_y*m->ups_leg7_h_2_in_spec2_x[i] +
+        v.ups_leg7_acc_3_in_axes2_y*m->ups_leg7_h_3_in_spec2_x[i] +
+        v.ups_leg7_B_2_in_axes2_yx*m->ups_leg7_Sigma_2_in_axes2_xx[i] +
+        m->ups_leg7_J_group_2_in_axes2_xy[i]*(v.ups_leg7_mu_2_t - ups_leg7_phi_3_t) -
+        v.ups_leg7_B_2_in_axes2_xy*m->ups_leg7_Sigma_2_in_axes2_yy[i] +
+        m->ups_leg7_J_group_2_in_axes2_xz[i]*v.ups_leg7_alpha_1_in_axes2_x +
+        m->ups_leg7_J_group_2_in_axes2_yz[i]*v.ups_leg7_alpha_1_in_axes2_y;
     /* (ups_leg7-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real ups_leg7_c_in_axes2_y =
         v.ups_leg7_alpha_1_in_axes2_x*m->ups_leg7_h_3_in_spec2_y[i] -
-        v.inv_ups_leg7_q_3*ups_leg7_mu_2_in_axes2_z -
         v.ups_leg7_B_2_in_axes2_yx*m->ups_leg7_h_3_in_spec2_x[i] -
-        m->ups_leg7_h_3_in_spec2_z[i]*(v.ups_leg7_mu_2_t + ups_leg7_phi_3_t_2);
-    const real ups_leg7_c_in_axes2_z =
+        m->ups_leg7_h_3_in_spec2_z[i]*(v.ups_leg7_mu_2_t + ups_leg7_phi_3_t_2) -
+        v.inv_ups_leg7_q_3*ups_leg7_mu_2_in_axes2_z;
+    const real ups_leg7_c_in_axes2_z = m->ups_leg7_h_3_in_spec2_y[i]*(v.ups_leg7_mu_2_t +
+        ups_leg7_phi_3_t) + v.ups_leg7_B_2_in_axes2_zy*m->ups_leg7_h_3_in_spec2_z[i] -
+        v.ups_leg7_B_2_in_axes2_zx*m->ups_leg7_h_3_in_spec2_x[i] +
         v.inv_ups_leg7_root_1*(v.ups_leg7_c_2*ups_leg7_mu_2_in_axes2_y -
-        v.ups_leg7_e_1_in_axes2_x*ups_leg7_mu_2_in_axes2_x) +
-        v.ups_leg7_B_2_in_axes2_zy*m->ups_leg7_h_3_in_spec2_z[i] +
-        m->ups_leg7_h_3_in_spec2_y[i]*(v.ups_leg7_mu_2_t + ups_leg7_phi_3_t) -
-        v.ups_leg7_B_2_in_axes2_zx*m->ups_leg7_h_3_in_spec2_x[i];
-    const real ups_leg7_c_x = v.axis_y_ups_leg7_axes2_x*ups_leg7_c_in_axes2_y +
-        v.axis_z_ups_leg7_axes2_x*ups_leg7_c_in_axes2_z -
-        v.axis_x_ups_leg7_axes2_x*ups_leg7_phi_3_in_axes2_x;
-    const real ups_leg7_c_y = v.axis_y_ups_leg7_axes2_y*ups_leg7_c_in_axes2_y +
-        v.axis_z_ups_leg7_axes2_y*ups_leg7_c_in_axes2_z -
-        v.axis_x_ups_leg7_axes2_y*ups_leg7_phi_3_in_axes2_x;
-    const real ups_leg7_c_z = v.axis_y_ups_leg7_axes2_z*ups_leg7_c_in_axes2_y +
-        v.axis_z_ups_leg7_axes2_z*ups_leg7_c_in_axes2_z -
-        v.axis_x_ups_leg7_axes2_z*ups_leg7_phi_3_in_axes2_x;
+        v.ups_leg7_e_1_in_axes2_x*ups_leg7_mu_2_in_axes2_x);
+    const real ups_leg7_c_x = v.axis_y_ups_leg7_axes2_x*ups_leg7_c_in_axes2_y -
+        v.axis_x_ups_leg7_axes2_x*ups_leg7_phi_3_in_axes2_x +
+        v.axis_z_ups_leg7_axes2_x*ups_leg7_c_in_axes2_z;
+    const real ups_leg7_c_y = v.axis_y_ups_leg7_axes2_y*ups_leg7_c_in_axes2_y -
+        v.axis_x_ups_leg7_axes2_y*ups_leg7_phi_3_in_axes2_x +
+        v.axis_z_ups_leg7_axes2_y*ups_leg7_c_in_axes2_z;
+    const real ups_leg7_c_z = v.axis_y_ups_leg7_axes2_z*ups_leg7_c_in_axes2_y -
+        v.axis_x_ups_leg7_axes2_z*ups_leg7_phi_3_in_axes2_x +
+        v.axis_z_ups_leg7_axes2_z*ups_leg7_c_in_axes2_z;
     /* (R_a) */
     const real ups_leg7_R_a_t = ups_leg7_c_y*v.ups_leg7_q_z - ups_leg7_c_z*v.ups_leg7_q_y;
     const real ups_leg7_R_a_t_2 = ups_leg7_c_z*v.ups_leg7_q_x - ups_leg7_c_x*v.ups_leg7_q_z;
@@ -4052,13 +4087,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[12*w + k];
-    const real R_a_x = R_a_x_of_legs + mu_p_x;
+    const real R_a_x = mu_p_x + R_a_x_of_legs;
     const real R_a_y_of_legs = sums[4*w + k];
     const real mu_p_y = s[13*w + k];
-    const real R_a_y = R_a_y_of_legs + mu_p_y;
+    const real R_a_y = mu_p_y + R_a_y_of_legs;
     const real R_a_z_of_legs = sums[5*w + k];
     const real mu_p_z = s[14*w + k];
-    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
     required[1*w + k] = R_t_y;
@@ -4069,13 +4104,14 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[5*w + k] = R_a_z;
 }
 
-APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_ups[6*LEGS(LEGS_OF_ups)] = {0}, o_ups[7*LEGS(LEGS_OF_ups)] = {0};
     real terms_ups_leg7[6*LEGS(LEGS_OF_ups_leg7)] = {0}, o_ups_leg7[LEGS(LEGS_OF_ups_leg7)] = {0};
-    required_before(m, 1, 0, X, V, A, s, t);
+    values v;
+    required_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         required_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, V, A, terms_ups, o_ups);
     }
@@ -4096,6 +4132,7 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
             sums[n] += terms_ups_leg7[n*LEGS(LEGS_OF_ups_leg7) + leg];
         }
     }
+    required_between(m, 1, 0, V, A, &v, s);
     required_after(1, 0, s, sums, required);
 }
 
@@ -4106,7 +4143,9 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real o_ups[7*LANES];
     real o_ups_leg7[LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        required_before(m, LANES, k, X, V, A, s, t);
+        values v;
+        required_before(m, LANES, k, X, &v, s, t);
+        required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
@@ -4131,21 +4170,20 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s, verdict *t)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
+    *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k,
@@ -4187,23 +4225,23 @@ INLINE void inverse_kinematics_legs_ups_leg7(const prepared *m, size_t w, size_t
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
     const real t_x = X[0*w + j];
-    const real ups_leg7_S_x = t_x + R_xx*m->ups_leg7_platform_point_x[i] +
-        R_xy*m->ups_leg7_platform_point_y[i] + R_xz*m->ups_leg7_platform_point_z[i] -
-        m->ups_leg7_base_point_x[i];
+    const real ups_leg7_S_x = t_x - m->ups_leg7_base_point_x[i] +
+        R_xy*m->ups_leg7_platform_point_y[i] + R_xz*m->ups_leg7_platform_point_z[i] +
+        R_xx*m->ups_leg7_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real t_y = X[1*w + j];
-    const real ups_leg7_S_y = t_y + R_yx*m->ups_leg7_platform_point_x[i] +
-        R_yy*m->ups_leg7_platform_point_y[i] + R_yz*m->ups_leg7_platform_point_z[i] -
-        m->ups_leg7_base_point_y[i];
+    const real ups_leg7_S_y = t_y - m->ups_leg7_base_point_y[i] +
+        R_yx*m->ups_leg7_platform_point_x[i] + R_yz*m->ups_leg7_platform_point_z[i] +
+        R_yy*m->ups_leg7_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real t_z = X[2*w + j];
-    const real ups_leg7_S_z = t_z + R_zx*m->ups_leg7_platform_point_x[i] +
-        R_zy*m->ups_leg7_platform_point_y[i] + R_zz*m->ups_leg7_platform_point_z[i] -
-        m->ups_leg7_base_point_z[i];
+    const real ups_leg7_S_z = t_z - m->ups_leg7_base_point_z[i] +
+        R_zx*m->ups_leg7_platform_point_x[i] + R_zy*m->ups_leg7_platform_point_y[i] +
+        R_zz*m->ups_leg7_platform_point_z[i];
     const real ups_leg7_S_in_turn1_x = ups_leg7_S_x*m->ups_leg7_base_frame_xx[i] +
         ups_leg7_S_y*m->ups_leg7_base_frame_yx[i] + ups_leg7_S_z*m->ups_leg7_base_frame_zx[i];
     const real ups_leg7_S_in_turn1_y = ups_leg7_S_x*m->ups_leg7_base_frame_xy[i] +
@@ -4252,7 +4290,8 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
     real s[9] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
     real o_ups_leg7[5*LEGS(LEGS_OF_ups_leg7)] = {0};
-    inverse_kinematics_before(m, 1, 0, X, s, t);
+    values v;
+    inverse_kinematics_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         inverse_kinematics_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, o_ups);
     }
@@ -4274,7 +4313,8 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real o_ups[5*LANES];
     real o_ups_leg7[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        inverse_kinematics_before(m, LANES, k, X, s, t);
+        values v;
+        inverse_kinematics_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -4295,21 +4335,20 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -4420,7 +4459,8 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
     real s[9] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
     real o_ups_leg7[5*LEGS(LEGS_OF_ups_leg7)] = {0};
-    joint_rates_before(m, 1, 0, X, s, t);
+    values v;
+    joint_rates_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         joint_rates_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, V, o_ups);
     }
@@ -4442,7 +4482,8 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real o_ups[5*LANES];
     real o_ups_leg7[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_rates_before(m, LANES, k, X, s, t);
+        values v;
+        joint_rates_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -4463,21 +4504,20 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
+    values *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t
@@ -4497,7 +4537,7 @@ INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t i, 
     /* (ups-rel) acceleration of the connection point left to the joint accelerations */
     const real ups_rel_in_axes2_x = v.axis_x_ups_axes2_x*v.ups_S_ddot_x +
         v.axis_x_ups_axes2_y*v.ups_S_ddot_y + v.axis_x_ups_axes2_z*v.ups_S_ddot_z -
-        v.ups_q_3*(-ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y - v.ups_qd_2*v.ups_qd_2);
+        v.ups_q_3*(-v.ups_qd_2*v.ups_qd_2 - ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y);
     const real ups_rel_in_axes2_z = v.axis_z_ups_axes2_x*v.ups_S_ddot_x +
         v.axis_z_ups_axes2_y*v.ups_S_ddot_y + v.axis_z_ups_axes2_z*v.ups_S_ddot_z -
         ups_bias_in_axes2_z;
@@ -4550,8 +4590,8 @@ INLINE void joint_accelerations_legs_ups_leg7(const prepared *m, size_t w, size_
     const real ups_leg7_rel_in_axes2_x = v.axis_x_ups_leg7_axes2_x*v.ups_leg7_S_ddot_x +
         v.axis_x_ups_leg7_axes2_y*v.ups_leg7_S_ddot_y +
         v.axis_x_ups_leg7_axes2_z*v.ups_leg7_S_ddot_z -
-        v.ups_leg7_q_3*(-ups_leg7_omega_1_in_axes2_y*ups_leg7_omega_1_in_axes2_y -
-        v.ups_leg7_qd_2*v.ups_leg7_qd_2);
+        v.ups_leg7_q_3*(-v.ups_leg7_qd_2*v.ups_leg7_qd_2 -
+        ups_leg7_omega_1_in_axes2_y*ups_leg7_omega_1_in_axes2_y);
     const real ups_leg7_rel_in_axes2_z = v.axis_z_ups_leg7_axes2_x*v.ups_leg7_S_ddot_x +
         v.axis_z_ups_leg7_axes2_y*v.ups_leg7_S_ddot_y +
         v.axis_z_ups_leg7_axes2_z*v.ups_leg7_S_ddot_z - ups_leg7_bias_in_axes2_z;
@@ -4591,7 +4631,8 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
     real s[9] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
     real o_ups_leg7[5*LEGS(LEGS_OF_ups_leg7)] = {0};
-    joint_accelerations_before(m, 1, 0, X, s, t);
+    values v;
+    joint_accelerations_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         joint_accelerations_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, V, A, o_ups);
     }
@@ -4613,7 +4654,8 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real o_ups[5*LANES];
     real o_ups_leg7[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_accelerations_before(m, LANES, k, X, s, t);
+        values v;
+        joint_accelerations_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -4634,20 +4676,20 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void legs_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -4662,48 +4704,48 @@ INLINE void legs_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_
     /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real ups_mu_2_t_2 = v.ups_omega_1_in_axes2_y*v.ups_omega_1_in_axes2_y;
     const real ups_mu_2_t_3 = v.ups_qd_2*v.ups_qd_2;
-    const real ups_mu_2_in_axes2_x = v.ups_B_2_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
-        v.ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] +
+    const real ups_mu_2_in_axes2_x = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] +
+        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] -
+        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_z[i] -
+        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
+        v.ups_B_2_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
         m->ups_J_group_2_in_axes2_yz[i]*(ups_mu_2_t_2 - ups_mu_2_t_3) +
         m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_x +
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] +
-        v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i] -
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_y[i] -
-        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_z[i];
-    const real ups_mu_2_in_axes2_y = v.ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] +
-        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_y +
-        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_y[i] +
-        v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
-        v.ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i] -
-        m->ups_J_group_2_in_axes2_xz[i]*(v.ups_mu_2_t - ups_mu_2_t_3) -
+        v.ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
+    const real ups_mu_2_in_axes2_y = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
+        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i] +
+        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
         v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_x[i] -
-        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i];
-    const real ups_mu_2_in_axes2_z = v.ups_B_2_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
-        m->ups_J_group_2_in_axes2_xy[i]*(v.ups_mu_2_t - ups_mu_2_t_2) +
-        m->ups_J_group_2_in_axes2_xz[i]*v.ups_alpha_1_in_axes2_x +
-        m->ups_J_group_2_in_axes2_yz[i]*v.ups_alpha_1_in_axes2_y +
-        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_z[i] +
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_x[i] -
-        v.ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] -
+        m->ups_J_group_2_in_axes2_xz[i]*(v.ups_mu_2_t - ups_mu_2_t_3) -
+        v.ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
+        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_y +
+        v.ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
+    const real ups_mu_2_in_axes2_z = v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_z[i] -
         v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] -
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i];
+        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i] +
+        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_x[i] +
+        v.ups_B_2_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
+        m->ups_J_group_2_in_axes2_xy[i]*(v.ups_mu_2_t - ups_mu_2_t_2) -
+        v.ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] +
+        m->ups_J_group_2_in_axes2_xz[i]*v.ups_alpha_1_in_axes2_x +
+        m->ups_J_group_2_in_axes2_yz[i]*v.ups_alpha_1_in_axes2_y;
     /* (ups-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real ups_c_in_axes2_y = v.ups_alpha_1_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        v.inv_ups_q_3*ups_mu_2_in_axes2_z - v.ups_B_2_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
-        m->ups_h_3_in_spec2_z[i]*(v.ups_mu_2_t + ups_mu_2_t_3);
-    const real ups_c_in_axes2_z = v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
-        v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) +
-        v.ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] +
-        m->ups_h_3_in_spec2_y[i]*(v.ups_mu_2_t + ups_mu_2_t_2) -
-        v.ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i];
+        v.ups_B_2_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
+        m->ups_h_3_in_spec2_z[i]*(v.ups_mu_2_t + ups_mu_2_t_3) -
+        v.inv_ups_q_3*ups_mu_2_in_axes2_z;
+    const real ups_c_in_axes2_z = m->ups_h_3_in_spec2_y[i]*(v.ups_mu_2_t + ups_mu_2_t_2) +
+        v.ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i] +
+        v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
+        v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x);
     /* (ups-c_true) leg force on the platform without actuation, the last link's mass included */
     const real ups_c_true_in_axes2_x = v.ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i] -
-        v.ups_acc_3_in_axes2_x*m->ups_link3_mass[i] -
-        v.ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i] -
-        m->ups_h_3_in_spec2_x[i]*(-ups_mu_2_t_2 - ups_mu_2_t_3);
+        v.ups_acc_3_in_axes2_x*m->ups_link3_mass[i] - m->ups_h_3_in_spec2_x[i]*(-ups_mu_2_t_2
+        - ups_mu_2_t_3) - v.ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i];
     const real ups_c_true_in_axes2_y = ups_c_in_axes2_y -
         v.ups_acc_3_in_axes2_y*m->ups_link3_mass[i];
     const real ups_c_true_in_axes2_z = ups_c_in_axes2_z -
@@ -4757,54 +4799,53 @@ INLINE void legs_legs_ups_leg7(const prepared *m, size_t w, size_t i, size_t j, 
         v.ups_leg7_omega_1_in_axes2_y*v.ups_leg7_omega_1_in_axes2_y;
     const real ups_leg7_mu_2_t_3 = v.ups_leg7_qd_2*v.ups_leg7_qd_2;
     const real ups_leg7_mu_2_in_axes2_x =
+        v.ups_leg7_g_in_axes2_z*m->ups_leg7_h_2_in_spec2_z[i] +
+        v.ups_leg7_g_in_axes2_y*m->ups_leg7_h_2_in_spec2_y[i] -
+        v.ups_leg7_acc_3_in_axes2_z*m->ups_leg7_h_3_in_spec2_z[i] -
+        v.ups_leg7_acc_3_in_axes2_y*m->ups_leg7_h_3_in_spec2_y[i] +
         v.ups_leg7_B_2_in_axes2_yx*m->ups_leg7_J_group_2_in_axes2_xz[i] +
-        v.ups_leg7_B_2_in_axes2_zy*m->ups_leg7_Sigma_2_in_axes2_yy[i] +
         m->ups_leg7_J_group_2_in_axes2_yz[i]*(ups_leg7_mu_2_t_2 - ups_leg7_mu_2_t_3) +
         m->ups_leg7_Sigma_2_in_axes2_zz[i]*v.ups_leg7_alpha_1_in_axes2_x +
-        v.ups_leg7_g_in_axes2_y*m->ups_leg7_h_2_in_spec2_y[i] +
-        v.ups_leg7_g_in_axes2_z*m->ups_leg7_h_2_in_spec2_z[i] -
-        v.ups_leg7_B_2_in_axes2_zx*m->ups_leg7_J_group_2_in_axes2_xy[i] -
-        v.ups_leg7_acc_3_in_axes2_y*m->ups_leg7_h_3_in_spec2_y[i] -
-        v.ups_leg7_acc_3_in_axes2_z*m->ups_leg7_h_3_in_spec2_z[i];
+        v.ups_leg7_B_2_in_axes2_zy*m->ups_leg7_Sigma_2_in_axes2_yy[i] -
+        v.ups_leg7_B_2_in_axes2_zx*m->ups_leg7_J_group_2_in_axes2_xy[i];
     const real ups_leg7_mu_2_in_axes2_y =
-        v.ups_leg7_B_2_in_axes2_zy*m->ups_leg7_J_group_2_in_axes2_xy[i] +
-        m->ups_leg7_Sigma_2_in_axes2_zz[i]*v.ups_leg7_alpha_1_in_axes2_y +
-        v.ups_leg7_acc_3_in_axes2_x*m->ups_leg7_h_3_in_spec2_y[i] +
         v.ups_leg7_g_in_axes2_z*m->ups_leg7_h_2_in_spec2_x[i] -
-        v.ups_leg7_B_2_in_axes2_xy*m->ups_leg7_J_group_2_in_axes2_yz[i] -
-        v.ups_leg7_B_2_in_axes2_zx*m->ups_leg7_Sigma_2_in_axes2_xx[i] -
-        m->ups_leg7_J_group_2_in_axes2_xz[i]*(v.ups_leg7_mu_2_t - ups_leg7_mu_2_t_3) -
+        v.ups_leg7_g_in_axes2_x*m->ups_leg7_h_2_in_spec2_y[i] +
+        v.ups_leg7_acc_3_in_axes2_x*m->ups_leg7_h_3_in_spec2_y[i] -
         v.ups_leg7_acc_3_in_axes2_z*m->ups_leg7_h_3_in_spec2_x[i] -
-        v.ups_leg7_g_in_axes2_x*m->ups_leg7_h_2_in_spec2_y[i];
+        m->ups_leg7_J_group_2_in_axes2_xz[i]*(v.ups_leg7_mu_2_t - ups_leg7_mu_2_t_3) -
+        v.ups_leg7_B_2_in_axes2_xy*m->ups_leg7_J_group_2_in_axes2_yz[i] +
+        m->ups_leg7_Sigma_2_in_axes2_zz[i]*v.ups_leg7_alpha_1_in_axes2_y +
+        v.ups_leg7_B_2_in_axes2_zy*m->ups_leg7_J_group_2_in_axes2_xy[i] -
+        v.ups_leg7_B_2_in_axes2_zx*m->ups_leg7_Sigma_2_in_axes2_xx[i];
     const real ups_leg7_mu_2_in_axes2_z =
-        v.ups_leg7_B_2_in_axes2_yx*m->ups_leg7_Sigma_2_in_axes2_xx[i] +
-        m->ups_leg7_J_group_2_in_axes2_xy[i]*(v.ups_leg7_mu_2_t - ups_leg7_mu_2_t_2) +
-        m->ups_leg7_J_group_2_in_axes2_xz[i]*v.ups_leg7_alpha_1_in_axes2_x +
-        m->ups_leg7_J_group_2_in_axes2_yz[i]*v.ups_leg7_alpha_1_in_axes2_y +
-        v.ups_leg7_acc_3_in_axes2_x*m->ups_leg7_h_3_in_spec2_z[i] +
-        v.ups_leg7_acc_3_in_axes2_y*m->ups_leg7_h_3_in_spec2_x[i] -
-        v.ups_leg7_B_2_in_axes2_xy*m->ups_leg7_Sigma_2_in_axes2_yy[i] -
+        v.ups_leg7_acc_3_in_axes2_x*m->ups_leg7_h_3_in_spec2_z[i] -
         v.ups_leg7_g_in_axes2_x*m->ups_leg7_h_2_in_spec2_z[i] -
-        v.ups_leg7_g_in_axes2_y*m->ups_leg7_h_2_in_spec2_x[i];
+        v.ups_leg7_g_in_axes2_y*m->ups_leg7_h_2_in_spec2_x[i] +
+        v.ups_leg7_acc_3_in_axes2_y*m->ups_leg7_h_3_in_spec2_x[i] +
+        v.ups_leg7_B_2_in_axes2_yx*m->ups_leg7_Sigma_2_in_axes2_xx[i] +
+        m->ups_leg7_J_group_2_in_axes2_xy[i]*(v.ups_leg7_mu_2_t - ups_leg7_mu_2_t_2) -
+        v.ups_leg7_B_2_in_axes2_xy*m->ups_leg7_Sigma_2_in_axes2_yy[i] +
+        m->ups_leg7_J_group_2_in_axes2_xz[i]*v.ups_leg7_alpha_1_in_axes2_x +
+        m->ups_leg7_J_group_2_in_axes2_yz[i]*v.ups_leg7_alpha_1_in_axes2_y;
     /* (ups_leg7-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real ups_leg7_c_in_axes2_y =
         v.ups_leg7_alpha_1_in_axes2_x*m->ups_leg7_h_3_in_spec2_y[i] -
-        v.inv_ups_leg7_q_3*ups_leg7_mu_2_in_axes2_z -
         v.ups_leg7_B_2_in_axes2_yx*m->ups_leg7_h_3_in_spec2_x[i] -
-        m->ups_leg7_h_3_in_spec2_z[i]*(v.ups_leg7_mu_2_t + ups_leg7_mu_2_t_3);
-    const real ups_leg7_c_in_axes2_z =
+        m->ups_leg7_h_3_in_spec2_z[i]*(v.ups_leg7_mu_2_t + ups_leg7_mu_2_t_3) -
+        v.inv_ups_leg7_q_3*ups_leg7_mu_2_in_axes2_z;
+    const real ups_leg7_c_in_axes2_z = m->ups_leg7_h_3_in_spec2_y[i]*(v.ups_leg7_mu_2_t +
+        ups_leg7_mu_2_t_2) + v.ups_leg7_B_2_in_axes2_zy*m->ups_leg7_h_3_in_spec2_z[i] -
+        v.ups_leg7_B_2_in_axes2_zx*m->ups_leg7_h_3_in_spec2_x[i] +
         v.inv_ups_leg7_root_1*(v.ups_leg7_c_2*ups_leg7_mu_2_in_axes2_y -
-        v.ups_leg7_e_1_in_axes2_x*ups_leg7_mu_2_in_axes2_x) +
-        v.ups_leg7_B_2_in_axes2_zy*m->ups_leg7_h_3_in_spec2_z[i] +
-        m->ups_leg7_h_3_in_spec2_y[i]*(v.ups_leg7_mu_2_t + ups_leg7_mu_2_t_2) -
-        v.ups_leg7_B_2_in_axes2_zx*m->ups_leg7_h_3_in_spec2_x[i];
+        v.ups_leg7_e_1_in_axes2_x*ups_leg7_mu_2_in_axes2_x);
     /* (ups_leg7-c_true) leg force on the platform without actuation, the last link's mass included */
     const real ups_leg7_c_true_in_axes2_x =
         v.ups_leg7_B_2_in_axes2_xy*m->ups_leg7_h_3_in_spec2_z[i] -
         v.ups_leg7_acc_3_in_axes2_x*m->ups_leg7_link3_mass[i] -
-        v.ups_leg7_alpha_1_in_axes2_y*m->ups_leg7_h_3_in_spec2_y[i] -
-        m->ups_leg7_h_3_in_spec2_x[i]*(-ups_leg7_mu_2_t_2 - ups_leg7_mu_2_t_3);
+        m->ups_leg7_h_3_in_spec2_x[i]*(-ups_leg7_mu_2_t_2 - ups_leg7_mu_2_t_3) -
+        v.ups_leg7_alpha_1_in_axes2_y*m->ups_leg7_h_3_in_spec2_y[i];
     const real ups_leg7_c_true_in_axes2_y = ups_leg7_c_in_axes2_y -
         v.ups_leg7_acc_3_in_axes2_y*m->ups_leg7_link3_mass[i];
     const real ups_leg7_c_true_in_axes2_z = ups_leg7_c_in_axes2_z -
@@ -4842,7 +4883,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     real s[9] = {0};
     real o_ups[7*LEGS(LEGS_OF_ups)] = {0};
     real o_ups_leg7[4*LEGS(LEGS_OF_ups_leg7)] = {0};
-    legs_before(m, 1, 0, X, s, t);
+    values v;
+    legs_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         legs_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, V, A, o_ups);
     }
@@ -4858,32 +4900,36 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s)
+{
     /* (potential) potential energy */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
-    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x +
-        v.R_xy*m->h_star_in_platform_y + v.R_xz*m->h_star_in_platform_z + m->m_star*t_x) +
-        m->gravity_y*(v.R_yx*m->h_star_in_platform_x + v.R_yy*m->h_star_in_platform_y +
-        v.R_yz*m->h_star_in_platform_z + m->m_star*t_y) +
-        m->gravity_z*(v.R_zx*m->h_star_in_platform_x + v.R_zy*m->h_star_in_platform_y +
-        v.R_zz*m->h_star_in_platform_z + m->m_star*t_z);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+    const real potential_t = m->gravity_x*(m->m_star*t_x + v->R_xy*m->h_star_in_platform_y +
+        v->R_xz*m->h_star_in_platform_z + v->R_xx*m->h_star_in_platform_x) +
+        m->gravity_y*(m->m_star*t_y + v->R_yx*m->h_star_in_platform_x +
+        v->R_yz*m->h_star_in_platform_z + v->R_yy*m->h_star_in_platform_y) +
+        m->gravity_z*(m->m_star*t_z + v->R_zx*m->h_star_in_platform_x +
+        v->R_zy*m->h_star_in_platform_y + v->R_zz*m->h_star_in_platform_z);
     s[9*w + k] = potential_t;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void potential_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -4931,23 +4977,23 @@ INLINE void potential_legs_ups_leg7(const prepared *m, size_t w, size_t i, size_
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
     const real t_x = X[0*w + j];
-    const real ups_leg7_S_x = t_x + R_xx*m->ups_leg7_platform_point_x[i] +
-        R_xy*m->ups_leg7_platform_point_y[i] + R_xz*m->ups_leg7_platform_point_z[i] -
-        m->ups_leg7_base_point_x[i];
+    const real ups_leg7_S_x = t_x - m->ups_leg7_base_point_x[i] +
+        R_xy*m->ups_leg7_platform_point_y[i] + R_xz*m->ups_leg7_platform_point_z[i] +
+        R_xx*m->ups_leg7_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real t_y = X[1*w + j];
-    const real ups_leg7_S_y = t_y + R_yx*m->ups_leg7_platform_point_x[i] +
-        R_yy*m->ups_leg7_platform_point_y[i] + R_yz*m->ups_leg7_platform_point_z[i] -
-        m->ups_leg7_base_point_y[i];
+    const real ups_leg7_S_y = t_y - m->ups_leg7_base_point_y[i] +
+        R_yx*m->ups_leg7_platform_point_x[i] + R_yz*m->ups_leg7_platform_point_z[i] +
+        R_yy*m->ups_leg7_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real t_z = X[2*w + j];
-    const real ups_leg7_S_z = t_z + R_zx*m->ups_leg7_platform_point_x[i] +
-        R_zy*m->ups_leg7_platform_point_y[i] + R_zz*m->ups_leg7_platform_point_z[i] -
-        m->ups_leg7_base_point_z[i];
+    const real ups_leg7_S_z = t_z - m->ups_leg7_base_point_z[i] +
+        R_zx*m->ups_leg7_platform_point_x[i] + R_zy*m->ups_leg7_platform_point_y[i] +
+        R_zz*m->ups_leg7_platform_point_z[i];
     const real ups_leg7_S_in_turn1_x = ups_leg7_S_x*m->ups_leg7_base_frame_xx[i] +
         ups_leg7_S_y*m->ups_leg7_base_frame_yx[i] + ups_leg7_S_z*m->ups_leg7_base_frame_zx[i];
     const real ups_leg7_S_in_turn1_y = ups_leg7_S_x*m->ups_leg7_base_frame_xy[i] +
@@ -5017,7 +5063,8 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
     real s[10] = {0}, sums[1] = {0};
     real terms_ups[LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
     real terms_ups_leg7[LEGS(LEGS_OF_ups_leg7)] = {0}, o_ups_leg7[LEGS(LEGS_OF_ups_leg7)] = {0};
-    potential_before(m, 1, 0, X, s, t);
+    values v;
+    potential_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         potential_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, terms_ups, o_ups);
     }
@@ -5038,28 +5085,28 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
             sums[n] += terms_ups_leg7[n*LEGS(LEGS_OF_ups_leg7) + leg];
         }
     }
+    potential_between(m, 1, 0, X, &v, s);
     potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
-    *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, real *lengths, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     lengths[1*w + k] = R(0.8);
     t->total[k] += 0;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void condition_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -5126,23 +5173,23 @@ INLINE void condition_legs_ups_leg7(const prepared *m, size_t w, size_t i, size_
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
     const real t_x = X[0*w + j];
-    const real ups_leg7_S_x = t_x + R_xx*m->ups_leg7_platform_point_x[i] +
-        R_xy*m->ups_leg7_platform_point_y[i] + R_xz*m->ups_leg7_platform_point_z[i] -
-        m->ups_leg7_base_point_x[i];
+    const real ups_leg7_S_x = t_x - m->ups_leg7_base_point_x[i] +
+        R_xy*m->ups_leg7_platform_point_y[i] + R_xz*m->ups_leg7_platform_point_z[i] +
+        R_xx*m->ups_leg7_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real t_y = X[1*w + j];
-    const real ups_leg7_S_y = t_y + R_yx*m->ups_leg7_platform_point_x[i] +
-        R_yy*m->ups_leg7_platform_point_y[i] + R_yz*m->ups_leg7_platform_point_z[i] -
-        m->ups_leg7_base_point_y[i];
+    const real ups_leg7_S_y = t_y - m->ups_leg7_base_point_y[i] +
+        R_yx*m->ups_leg7_platform_point_x[i] + R_yz*m->ups_leg7_platform_point_z[i] +
+        R_yy*m->ups_leg7_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real t_z = X[2*w + j];
-    const real ups_leg7_S_z = t_z + R_zx*m->ups_leg7_platform_point_x[i] +
-        R_zy*m->ups_leg7_platform_point_y[i] + R_zz*m->ups_leg7_platform_point_z[i] -
-        m->ups_leg7_base_point_z[i];
+    const real ups_leg7_S_z = t_z - m->ups_leg7_base_point_z[i] +
+        R_zx*m->ups_leg7_platform_point_x[i] + R_zy*m->ups_leg7_platform_point_y[i] +
+        R_zz*m->ups_leg7_platform_point_z[i];
     const real ups_leg7_S_in_turn1_x = ups_leg7_S_x*m->ups_leg7_base_frame_xx[i] +
         ups_leg7_S_y*m->ups_leg7_base_frame_yx[i] + ups_leg7_S_z*m->ups_leg7_base_frame_zx[i];
     const real ups_leg7_S_in_turn1_y = ups_leg7_S_x*m->ups_leg7_base_frame_xy[i] +
@@ -5209,7 +5256,8 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     real terms_ups[2*LEGS(LEGS_OF_ups)] = {0}, o_ups[9*LEGS(LEGS_OF_ups)] = {0};
     real terms_ups_leg7[2*LEGS(LEGS_OF_ups_leg7)] = {0}, o_ups_leg7[3*LEGS(LEGS_OF_ups_leg7)] = {0};
     clear(reach, NL);
-    condition_before(m, 1, 0, X, s, lengths, t);
+    values v;
+    condition_before(m, 1, 0, X, &v, s, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         condition_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, terms_ups, o_ups);
     }
@@ -5244,11 +5292,7 @@ int stewart_7ups_free_M(const prepared *m, const real *X, real *M_out)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-    }
-    return code;
+    return settled(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -5275,11 +5319,7 @@ int stewart_7ups_free_Z(const prepared *m, const real *X, const real *V, real *Z
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, Z_out);
-    }
-    return code;
+    return settled(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -5303,11 +5343,7 @@ int stewart_7ups_free_H(const prepared *m, const real *X, real *H_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -5330,11 +5366,7 @@ int stewart_7ups_free_inverse_kinematics(const prepared *m, const real *X, real 
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, q_out);
-    }
-    return code;
+    return settled(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -5361,11 +5393,7 @@ int stewart_7ups_free_joint_rates(const prepared *m, const real *X, const real *
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qd_out);
-    }
-    return code;
+    return settled(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -5396,11 +5424,7 @@ int stewart_7ups_free_joint_accelerations(const prepared *m, const real *X, cons
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qdd_out);
-    }
-    return code;
+    return settled(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -5433,13 +5457,9 @@ int stewart_7ups_free_dynamics(const prepared *m, const real *X, const real *V, 
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-        refuse(NV, Z_out);
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    settled(&why, NV*NV, M_out);
+    settled(&why, NV, Z_out);
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -5633,7 +5653,8 @@ static const real sizes_tau[] = {0.25, 1.0, 0.25, 0.25, 0.25, 0.25};
 int stewart_7ups_free_inverse_dynamics(const prepared *m, const real *X, const real *V, const real
     *A, const real *wrench, real *tau_out)
 {
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    static const real no_wrench[NW] = {0};
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
@@ -5643,7 +5664,7 @@ int stewart_7ups_free_inverse_dynamics(const prepared *m, const real *X, const r
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -5657,11 +5678,7 @@ int stewart_7ups_free_inverse_dynamics(const prepared *m, const real *X, const r
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, tau_out);
-    }
-    return code;
+    return settled(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -5690,8 +5707,9 @@ static const real sizes_A[] = {16.0, 16.0, 16.0, 1.0, 1.0, 1.0};
 int stewart_7ups_free_forward_dynamics(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out)
 {
-    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] =
-        {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    static const real no_wrench[NW] = {0};
+    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
+        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
@@ -5700,7 +5718,7 @@ int stewart_7ups_free_forward_dynamics(const prepared *m, const real *X, const r
         check(NV, 1, V, why.invalid);
         check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     for (size_t i = 0; i < NV; ++i) {
@@ -5718,11 +5736,7 @@ int stewart_7ups_free_forward_dynamics(const prepared *m, const real *X, const r
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, A_out);
-    }
-    return code;
+    return settled(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -5763,18 +5777,15 @@ int stewart_7ups_free_complete_acceleration(const prepared *m, const real *X, co
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, completed_out);
-    }
-    return code;
+    return settled(&why, NV, completed_out);
 }
 
 int stewart_7ups_free_leg_reactions(const prepared *m, const real *X, const real *V, const real
     *A, const real *wrench, real *forces_out)
 {
+    static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2, 3, 4, 5};
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
         unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[18] = {0}, forces[3*NL] = {0},
         work[NV*PADDED(NV)];
     verdict why;
@@ -5785,7 +5796,7 @@ int stewart_7ups_free_leg_reactions(const prepared *m, const real *X, const real
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -5803,11 +5814,7 @@ int stewart_7ups_free_leg_reactions(const prepared *m, const real *X, const real
     add_forces(NV, 3, 1, places_forces, solve_1, actuator, forces);
     check(3*NL, 1, forces, why.overflow);
     copy(3*NL, forces, forces_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(3*NL, forces_out);
-    }
-    return code;
+    return settled(&why, 3*NL, forces_out);
 }
 
 int stewart_7ups_free_energy(const prepared *m, const real *X, const real *V, real *kinetic_out,
@@ -5829,25 +5836,22 @@ int stewart_7ups_free_energy(const prepared *m, const real *X, const real *V, re
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, kinetic_out);
-        refuse(1, potential_out);
-    }
-    return code;
+    settled(&why, 1, kinetic_out);
+    return settled(&why, 1, potential_out);
 }
 
 int stewart_7ups_free_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
     const real *length = NULL;
+    static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real length_in[1], H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
+        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, length, 0, length_in, why.invalid);
+    length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
@@ -5865,12 +5869,8 @@ int stewart_7ups_free_condition(const prepared *m, const real *X, real *sigma_ou
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, sigma_out);
-        refuse(NL, legs_out);
-    }
-    return code;
+    settled(&why, NV, sigma_out);
+    return settled(&why, NL, legs_out);
 }
 
 int stewart_7ups_free_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -5904,12 +5904,8 @@ int stewart_7ups_free_manipulability(const prepared *m, const real *X, real *mea
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, measure_out);
-        refuse(1, isotropy_out);
-    }
-    return code;
+    settled(&why, 1, measure_out);
+    return settled(&why, 1, isotropy_out);
 }
 
 int stewart_7ups_free_singularity_distance(const prepared *m, const real *X, real *actuators_out,
@@ -5943,12 +5939,8 @@ int stewart_7ups_free_singularity_distance(const prepared *m, const real *X, rea
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, actuators_out);
-        refuse(1, legs_out);
-    }
-    return code;
+    settled(&why, 1, actuators_out);
+    return settled(&why, 1, legs_out);
 }
 
 static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
@@ -5968,11 +5960,7 @@ static int mismatch_one(const prepared *m, const real *X, const real *q_actuated
     }
     check(NU, 1, gap, why.overflow);
     copy(NU, gap, gap_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, gap_out);
-    }
-    return code;
+    return settled(&why, NU, gap_out);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
@@ -5984,11 +5972,7 @@ static int slope_one(const prepared *m, const real *X, real *slope_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, slope_out);
-    }
-    return code;
+    return settled(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -6050,11 +6034,7 @@ int stewart_7ups_free_forward_kinematics(const prepared *m, const real *q_actuat
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int stewart_7ups_free_dissipation(const prepared *m, const real *X, const real *V, real
@@ -6072,11 +6052,7 @@ int stewart_7ups_free_dissipation(const prepared *m, const real *X, const real *
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, dissipation_out);
-    }
-    return code;
+    return settled(&why, 1, dissipation_out);
 }
 
 int stewart_7ups_free_momentum(const prepared *m, const real *X, const real *V, real
@@ -6094,11 +6070,7 @@ int stewart_7ups_free_momentum(const prepared *m, const real *X, const real *V, 
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, momentum_out);
-    }
-    return code;
+    return settled(&why, NV, momentum_out);
 }
 
 int stewart_7ups_free_joint_margins(const prepared *m, const real *X, real *margins_out)
@@ -6115,11 +6087,7 @@ int stewart_7ups_free_joint_margins(const prepared *m, const real *X, real *marg
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, margins_out);
-    }
-    return code;
+    return settled(&why, NJ, margins_out);
 }
 
 int stewart_7ups_free_within_limits(const prepared *m, const real *X, real *within_out)
@@ -6135,11 +6103,7 @@ int stewart_7ups_free_within_limits(const prepared *m, const real *X, real *with
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, within_out);
-    }
-    return code;
+    return settled(&why, 1, within_out);
 }
 
 int stewart_7ups_free_actuator_positions(const prepared *m, const real *X, real *q_out)
@@ -6152,11 +6116,7 @@ int stewart_7ups_free_actuator_positions(const prepared *m, const real *X, real 
     take(NU, 1, stewart_7ups_free_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, q_out);
-    }
-    return code;
+    return settled(&why, NU, q_out);
 }
 
 int stewart_7ups_free_actuator_rates(const prepared *m, const real *X, const real *V, real
@@ -6174,11 +6134,7 @@ int stewart_7ups_free_actuator_rates(const prepared *m, const real *X, const rea
     take(NU, 1, stewart_7ups_free_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qd_out);
-    }
-    return code;
+    return settled(&why, NU, qd_out);
 }
 
 int stewart_7ups_free_actuator_accelerations(const prepared *m, const real *X, const real *V,
@@ -6197,11 +6153,7 @@ int stewart_7ups_free_actuator_accelerations(const prepared *m, const real *X, c
     take(NU, 1, stewart_7ups_free_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qdd_out);
-    }
-    return code;
+    return settled(&why, NU, qdd_out);
 }
 
 int stewart_7ups_free_power(const prepared *m, const real *X, const real *V, const real *tau, real
@@ -6221,11 +6173,7 @@ int stewart_7ups_free_power(const prepared *m, const real *X, const real *V, con
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, power_out);
-    }
-    return code;
+    return settled(&why, 1, power_out);
 }
 
 int stewart_7ups_free_rotation(const real *X, real *R_out)
@@ -6238,11 +6186,7 @@ int stewart_7ups_free_rotation(const real *X, real *R_out)
     rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     copy(9, R, R_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(9, R_out);
-    }
-    return code;
+    return settled(&why, 9, R_out);
 }
 
 int stewart_7ups_free_pose(const real *t, const real *R, real *X_out)
@@ -6260,11 +6204,7 @@ int stewart_7ups_free_pose(const real *t, const real *R, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int stewart_7ups_free_X_dot(const real *X, const real *V, real *X_dot_out)
@@ -6284,11 +6224,7 @@ int stewart_7ups_free_X_dot(const real *X, const real *V, real *X_dot_out)
     beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_dot_out);
-    }
-    return code;
+    return settled(&why, NQ, X_dot_out);
 }
 
 int stewart_7ups_free_pose_from_rpy(const real *t, const real *rpy, real *X_out)
@@ -6306,11 +6242,7 @@ int stewart_7ups_free_pose_from_rpy(const real *t, const real *rpy, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int stewart_7ups_free_retract(const real *X, const real *step, real *X_moved_out)
@@ -6334,11 +6266,7 @@ int stewart_7ups_free_retract(const real *X, const real *step, real *X_moved_out
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_moved_out);
-    }
-    return code;
+    return settled(&why, NQ, X_moved_out);
 }
 
 int stewart_7ups_free_difference(const real *X0, const real *X1, real *step_out)
@@ -6362,11 +6290,7 @@ int stewart_7ups_free_difference(const real *X0, const real *X1, real *step_out)
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, step_out);
-    }
-    return code;
+    return settled(&why, NV, step_out);
 }
 
 int stewart_7ups_free_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
@@ -6404,11 +6328,7 @@ int stewart_7ups_free_interpolate(const real *X0, const real *X1, const real *s,
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 /* ---- one state, and batches ---- */

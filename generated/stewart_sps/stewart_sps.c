@@ -234,15 +234,12 @@ INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *t
 }
 
 /* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
-INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+INLINE const real *optional(size_t size, const real *x, const real *none, real *flags)
 {
-    for (size_t e = 0; e < size && !x; ++e) {
-        own[e] = none;
-    }
     if (x) {
         check(size, 1, x, flags);
     }
-    return x ? x : own;
+    return x ? x : none;
 }
 
 INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
@@ -299,6 +296,16 @@ APART void refuse(size_t size, real *out)
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
     }
+}
+
+/* The status of a state; an output is refused where it is impossible. */
+INLINE int settled(const verdict *t, size_t size, real *out)
+{
+    const int code = judge(t);
+    if (code != OK) {
+        refuse(size, out);
+    }
+    return code;
 }
 
 /* Outputs of a state where the user wants them, and of states side by side, state by state. */
@@ -419,10 +426,10 @@ INLINE int all_rotations(const real *x, size_t n)
 /* ---- parameters ---- */
 
 const stewart_sps_params stewart_sps_default_params = {
-    {R(0.0), R(0.0), R(-9.81)},  /* gravity */
+    {0, 0, R(-9.81)},  /* gravity */
     R(12.0),  /* platform_mass */
-    {R(0.0), R(0.0), R(0.04)},  /* platform_centre_of_mass */
-    {{R(0.35), R(0.0), R(0.0)}, {R(0.0), R(0.35), R(0.0)}, {R(0.0), R(0.0), R(0.6)}},  /* platform_inertia */
+    {0, 0, R(0.04)},  /* platform_centre_of_mass */
+    {{R(0.35), 0, 0}, {0, R(0.35), 0}, {0, 0, R(0.6)}},  /* platform_inertia */
     {  /* sps_base_point */
         {R(-0.07595833716604927), R(0.3902743704941056), R(0.017731158385886236)},
         {R(0.3759666878769001), R(0.12935533563203033), R(0.017731158385886236)},
@@ -432,12 +439,12 @@ const stewart_sps_params stewart_sps_default_params = {
         {R(-0.07595833716604977), R(-0.39027437049410546), R(0.017731158385886236)},
     },
     {  /* sps_base_frame */
-        {{R(0.0), R(0.7666445685820955), R(-0.6420717292200091)}, {R(0.0), R(0.6420717292200091), R(0.7666445685820955)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(0.17272814426528374), R(-0.9849695366754605)}, {R(0.0), R(0.9849695366754605), R(0.17272814426528374)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.9393727128473789), R(-0.34289780745545156)}, {R(0.0), R(0.34289780745545156), R(-0.9393727128473789)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.9393727128473789), R(0.34289780745545134)}, {R(0.0), R(-0.34289780745545134), R(-0.9393727128473789)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(0.17272814426528307), R(0.9849695366754606)}, {R(0.0), R(-0.9849695366754606), R(0.17272814426528307)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(0.7666445685820946), R(0.6420717292200101)}, {R(0.0), R(-0.6420717292200101), R(0.7666445685820946)}, {R(1.0), R(0.0), R(0.0)}},
+        {{0, R(0.7666445685820955), R(-0.6420717292200091)}, {0, R(0.6420717292200091), R(0.7666445685820955)}, {1, 0, 0}},
+        {{0, R(0.17272814426528374), R(-0.9849695366754605)}, {0, R(0.9849695366754605), R(0.17272814426528374)}, {1, 0, 0}},
+        {{0, R(-0.9393727128473789), R(-0.34289780745545156)}, {0, R(0.34289780745545156), R(-0.9393727128473789)}, {1, 0, 0}},
+        {{0, R(-0.9393727128473789), R(0.34289780745545134)}, {0, R(-0.34289780745545134), R(-0.9393727128473789)}, {1, 0, 0}},
+        {{0, R(0.17272814426528307), R(0.9849695366754606)}, {0, R(-0.9849695366754606), R(0.17272814426528307)}, {1, 0, 0}},
+        {{0, R(0.7666445685820946), R(0.6420717292200101)}, {0, R(-0.6420717292200101), R(0.7666445685820946)}, {1, 0, 0}},
     },
     {  /* sps_platform_point */
         {R(0.22999337057462865), R(0.19262151876600273), R(-0.02)},
@@ -456,20 +463,20 @@ const stewart_sps_params stewart_sps_default_params = {
         R(2.4),
     },
     {  /* sps_link3_centre_of_mass */
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
     },
     {  /* sps_link3_inertia */
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
     },
     {  /* sps_link4_mass */
         R(1.1),
@@ -480,24 +487,24 @@ const stewart_sps_params stewart_sps_default_params = {
         R(1.1),
     },
     {  /* sps_link4_centre_of_mass */
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
     },
     {  /* sps_link4_inertia */
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
     },
 };
 
-const stewart_sps_real stewart_sps_HOME_X[STEWART_SPS_NQ] = {R(0.0), R(0.0), R(0.75), R(0.0), R(0.0), R(0.0), R(1.0), R(0.3), R(0.3), R(0.3), R(0.3), R(0.3), R(0.3)};
+const stewart_sps_real stewart_sps_HOME_X[STEWART_SPS_NQ] = {0, 0, R(0.75), 0, 0, 0, 1, R(0.3), R(0.3), R(0.3), R(0.3), R(0.3), R(0.3)};
 const stewart_sps_real stewart_sps_HOME_Q[STEWART_SPS_NJ] = {R(0.15), R(0.45), R(0.3), R(0.8), R(0.15), R(-0.45), R(0.3), R(0.8), R(0.15), R(0.45), R(0.3), R(0.8), R(0.15), R(-0.45), R(0.3), R(0.8), R(0.15), R(0.45), R(0.3), R(0.8), R(0.15), R(-0.45), R(0.3), R(0.8)};
 const size_t stewart_sps_ACTUATED[STEWART_SPS_NU] = {3, 7, 11, 15, 19, 23};
 const char *const stewart_sps_ACTUATOR_NAMES[STEWART_SPS_NU] = {
@@ -534,6 +541,9 @@ static int acceptable(const stewart_sps_params *p)
     ok &= all_inertias(&p->sps_link4_inertia[0][0][0], LEGS_OF_sps);
     return ok;
 }
+
+#define KEEP(name) model->name = name
+#define KEEP_OF_LEG(name) model->name[leg] = name
 
 int stewart_sps_prepare(const stewart_sps_params *params, stewart_sps_model *model)
 {
@@ -586,11 +596,11 @@ int stewart_sps_prepare(const stewart_sps_params *params, stewart_sps_model *mod
     const real spread_t = R(0.16666666666666666)*root(6);
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = R(1.9595917942265426)*spread_t;
-    model->gravity_x = gravity_x;
-    model->gravity_y = gravity_y;
-    model->gravity_z = gravity_z;
-    model->legs_size = legs_size;
-    model->spread_t = spread_t;
+    KEEP(gravity_x);
+    KEEP(gravity_y);
+    KEEP(gravity_z);
+    KEEP(legs_size);
+    KEEP(spread_t);
     for (size_t leg = 0; leg < FILLED(LEGS_OF_sps); ++leg) {
         const size_t own = leg < LEGS_OF_sps ? leg : 0;
         const real sps_base_point_x = params->sps_base_point[own][0];
@@ -702,46 +712,46 @@ int stewart_sps_prepare(const stewart_sps_params *params, stewart_sps_model *mod
             sps_base_frame_yy*sps_base_point_y + sps_base_frame_zy*sps_base_point_z;
         const real sps_potential_t_6 = sps_base_frame_xz*sps_base_point_x +
             sps_base_frame_yz*sps_base_point_y + sps_base_frame_zz*sps_base_point_z;
-        model->sps_J_group_3_in_axes3_xx[leg] = sps_J_group_3_in_axes3_xx;
-        model->sps_J_group_3_in_axes3_xy[leg] = sps_J_group_3_in_axes3_xy;
-        model->sps_J_group_3_in_axes3_xz[leg] = sps_J_group_3_in_axes3_xz;
-        model->sps_J_group_3_in_axes3_yy[leg] = sps_J_group_3_in_axes3_yy;
-        model->sps_J_group_3_in_axes3_yz[leg] = sps_J_group_3_in_axes3_yz;
-        model->sps_J_group_3_in_axes3_zz[leg] = sps_J_group_3_in_axes3_zz;
-        model->sps_Sigma_3_in_axes3_xx[leg] = sps_Sigma_3_in_axes3_xx;
-        model->sps_Sigma_3_in_axes3_yy[leg] = sps_Sigma_3_in_axes3_yy;
-        model->sps_Sigma_3_in_axes3_zz[leg] = sps_Sigma_3_in_axes3_zz;
-        model->sps_base_frame_xx[leg] = sps_base_frame_xx;
-        model->sps_base_frame_xy[leg] = sps_base_frame_xy;
-        model->sps_base_frame_xz[leg] = sps_base_frame_xz;
-        model->sps_base_frame_yx[leg] = sps_base_frame_yx;
-        model->sps_base_frame_yy[leg] = sps_base_frame_yy;
-        model->sps_base_frame_yz[leg] = sps_base_frame_yz;
-        model->sps_base_frame_zx[leg] = sps_base_frame_zx;
-        model->sps_base_frame_zy[leg] = sps_base_frame_zy;
-        model->sps_base_frame_zz[leg] = sps_base_frame_zz;
-        model->sps_base_point_x[leg] = sps_base_point_x;
-        model->sps_base_point_y[leg] = sps_base_point_y;
-        model->sps_base_point_z[leg] = sps_base_point_z;
-        model->sps_branch_1[leg] = sps_branch_1;
-        model->sps_branch_2[leg] = sps_branch_2;
-        model->sps_h_3_in_spec3_x[leg] = sps_h_3_in_spec3_x;
-        model->sps_h_3_in_spec3_y[leg] = sps_h_3_in_spec3_y;
-        model->sps_h_3_in_spec3_z[leg] = sps_h_3_in_spec3_z;
-        model->sps_h_4_in_spec3_x[leg] = sps_h_4_in_spec3_x;
-        model->sps_h_4_in_spec3_y[leg] = sps_h_4_in_spec3_y;
-        model->sps_h_4_in_spec3_z[leg] = sps_h_4_in_spec3_z;
-        model->sps_link3_mass[leg] = sps_link3_mass;
-        model->sps_link4_mass[leg] = sps_link4_mass;
-        model->sps_platform_point_x[leg] = sps_platform_point_x;
-        model->sps_platform_point_y[leg] = sps_platform_point_y;
-        model->sps_platform_point_z[leg] = sps_platform_point_z;
-        model->sps_potential_t[leg] = sps_potential_t;
-        model->sps_potential_t_2[leg] = sps_potential_t_2;
-        model->sps_potential_t_3[leg] = sps_potential_t_3;
-        model->sps_potential_t_4[leg] = sps_potential_t_4;
-        model->sps_potential_t_5[leg] = sps_potential_t_5;
-        model->sps_potential_t_6[leg] = sps_potential_t_6;
+        KEEP_OF_LEG(sps_J_group_3_in_axes3_xx);
+        KEEP_OF_LEG(sps_J_group_3_in_axes3_xy);
+        KEEP_OF_LEG(sps_J_group_3_in_axes3_xz);
+        KEEP_OF_LEG(sps_J_group_3_in_axes3_yy);
+        KEEP_OF_LEG(sps_J_group_3_in_axes3_yz);
+        KEEP_OF_LEG(sps_J_group_3_in_axes3_zz);
+        KEEP_OF_LEG(sps_Sigma_3_in_axes3_xx);
+        KEEP_OF_LEG(sps_Sigma_3_in_axes3_yy);
+        KEEP_OF_LEG(sps_Sigma_3_in_axes3_zz);
+        KEEP_OF_LEG(sps_base_frame_xx);
+        KEEP_OF_LEG(sps_base_frame_xy);
+        KEEP_OF_LEG(sps_base_frame_xz);
+        KEEP_OF_LEG(sps_base_frame_yx);
+        KEEP_OF_LEG(sps_base_frame_yy);
+        KEEP_OF_LEG(sps_base_frame_yz);
+        KEEP_OF_LEG(sps_base_frame_zx);
+        KEEP_OF_LEG(sps_base_frame_zy);
+        KEEP_OF_LEG(sps_base_frame_zz);
+        KEEP_OF_LEG(sps_base_point_x);
+        KEEP_OF_LEG(sps_base_point_y);
+        KEEP_OF_LEG(sps_base_point_z);
+        KEEP_OF_LEG(sps_branch_1);
+        KEEP_OF_LEG(sps_branch_2);
+        KEEP_OF_LEG(sps_h_3_in_spec3_x);
+        KEEP_OF_LEG(sps_h_3_in_spec3_y);
+        KEEP_OF_LEG(sps_h_3_in_spec3_z);
+        KEEP_OF_LEG(sps_h_4_in_spec3_x);
+        KEEP_OF_LEG(sps_h_4_in_spec3_y);
+        KEEP_OF_LEG(sps_h_4_in_spec3_z);
+        KEEP_OF_LEG(sps_link3_mass);
+        KEEP_OF_LEG(sps_link4_mass);
+        KEEP_OF_LEG(sps_platform_point_x);
+        KEEP_OF_LEG(sps_platform_point_y);
+        KEEP_OF_LEG(sps_platform_point_z);
+        KEEP_OF_LEG(sps_potential_t);
+        KEEP_OF_LEG(sps_potential_t_2);
+        KEEP_OF_LEG(sps_potential_t_3);
+        KEEP_OF_LEG(sps_potential_t_4);
+        KEEP_OF_LEG(sps_potential_t_5);
+        KEEP_OF_LEG(sps_potential_t_6);
         m_star_of_legs += leg < LEGS_OF_sps ? sps_link4_mass : 0;
         h_star_in_platform_x_of_legs += leg < LEGS_OF_sps ? sps_h_star_t : 0;
         h_star_in_platform_y_of_legs += leg < LEGS_OF_sps ? sps_h_star_t_2 : 0;
@@ -787,24 +797,24 @@ int stewart_sps_prepare(const stewart_sps_params *params, stewart_sps_model *mod
     const real b_c_in_platform_x = R(0.16666666666666666)*b_c_sps_in_platform_x;
     const real b_c_in_platform_y = R(0.16666666666666666)*b_c_sps_in_platform_y;
     const real b_c_in_platform_z = R(0.16666666666666666)*b_c_sps_in_platform_z;
-    model->J_star_in_platform_xx = J_star_in_platform_xx;
-    model->J_star_in_platform_xy = J_star_in_platform_xy;
-    model->J_star_in_platform_xz = J_star_in_platform_xz;
-    model->J_star_in_platform_yy = J_star_in_platform_yy;
-    model->J_star_in_platform_yz = J_star_in_platform_yz;
-    model->J_star_in_platform_zz = J_star_in_platform_zz;
-    model->J_star_t_12 = J_star_t_12;
-    model->J_star_t_14 = J_star_t_14;
-    model->Z_p_t = Z_p_t;
-    model->Z_p_t_2 = Z_p_t_2;
-    model->Z_p_t_3 = Z_p_t_3;
-    model->b_c_in_platform_x = b_c_in_platform_x;
-    model->b_c_in_platform_y = b_c_in_platform_y;
-    model->b_c_in_platform_z = b_c_in_platform_z;
-    model->h_star_in_platform_x = h_star_in_platform_x;
-    model->h_star_in_platform_y = h_star_in_platform_y;
-    model->h_star_in_platform_z = h_star_in_platform_z;
-    model->m_star = m_star;
+    KEEP(J_star_in_platform_xx);
+    KEEP(J_star_in_platform_xy);
+    KEEP(J_star_in_platform_xz);
+    KEEP(J_star_in_platform_yy);
+    KEEP(J_star_in_platform_yz);
+    KEEP(J_star_in_platform_zz);
+    KEEP(J_star_t_12);
+    KEEP(J_star_t_14);
+    KEEP(Z_p_t);
+    KEEP(Z_p_t_2);
+    KEEP(Z_p_t_3);
+    KEEP(b_c_in_platform_x);
+    KEEP(b_c_in_platform_y);
+    KEEP(b_c_in_platform_z);
+    KEEP(h_star_in_platform_x);
+    KEEP(h_star_in_platform_y);
+    KEEP(h_star_in_platform_z);
+    KEEP(m_star);
     return OK;
 }
 
@@ -1509,10 +1519,10 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real R_zy = quaternion_wx + quaternion_yz;
     const real R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = R_xx*m->h_star_in_platform_x + R_xy*m->h_star_in_platform_y +
-        R_xz*m->h_star_in_platform_z;
-    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yy*m->h_star_in_platform_y +
-        R_yz*m->h_star_in_platform_z;
+    const real h_star_x = R_xy*m->h_star_in_platform_y + R_xz*m->h_star_in_platform_z +
+        R_xx*m->h_star_in_platform_x;
+    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yz*m->h_star_in_platform_z +
+        R_yy*m->h_star_in_platform_y;
     const real h_star_z = R_zx*m->h_star_in_platform_x + R_zy*m->h_star_in_platform_y +
         R_zz*m->h_star_in_platform_z;
     v->quaternion_scale = quaternion_scale;
@@ -1536,8 +1546,8 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
     const real omega_x = V[3*w + k];
     const real omega_y = V[4*w + k];
     const real omega_z = V[5*w + k];
-    const real omega_in_platform_x = v->R_xx*omega_x + v->R_yx*omega_y + v->R_zx*omega_z;
-    const real omega_in_platform_y = v->R_xy*omega_x + v->R_yy*omega_y + v->R_zy*omega_z;
+    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
     const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
     v->omega_in_platform_x = omega_in_platform_x;
     v->omega_in_platform_y = omega_in_platform_y;
@@ -1547,24 +1557,24 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
 INLINE void stage_M_dynamics(const prepared *m, values *v)
 {
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_t = m->J_star_in_platform_xy*v->R_xx + m->J_star_in_platform_yz*v->R_xz
-        - m->J_star_t_12*v->R_xy;
+    const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
+        m->J_star_in_platform_xy*v->R_xx;
     const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
         m->J_star_in_platform_yz*v->R_yz - m->J_star_t_12*v->R_yy;
-    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx +
-        m->J_star_in_platform_yz*v->R_zz - m->J_star_t_12*v->R_zy;
+    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx - m->J_star_t_12*v->R_zy +
+        m->J_star_in_platform_yz*v->R_zz;
     const real J_star_t_4 = m->J_star_t_14*v->R_xz - m->J_star_in_platform_xz*v->R_xx;
     const real J_star_t_5 = m->J_star_t_14*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
     const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
-    const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
-        J_star_t_5*v->R_xz;
+    const real J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
+        J_star_t_4*v->R_yz;
     const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
     const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
     const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
-    const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
+    const real J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
     const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
     const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
@@ -1589,10 +1599,10 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
     const real Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real g_in_platform_x = v->R_xx*m->gravity_x + v->R_yx*m->gravity_y +
-        v->R_zx*m->gravity_z;
-    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_yy*m->gravity_y +
-        v->R_zy*m->gravity_z;
+    const real g_in_platform_x = v->R_yx*m->gravity_y + v->R_zx*m->gravity_z +
+        v->R_xx*m->gravity_x;
+    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_zy*m->gravity_z +
+        v->R_yy*m->gravity_y;
     const real g_in_platform_z = v->R_xz*m->gravity_x + v->R_yz*m->gravity_y +
         v->R_zz*m->gravity_z;
     const real Z_q_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
@@ -1604,15 +1614,15 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
         m->J_star_in_platform_yz*v->omega_in_platform_y +
         m->J_star_in_platform_zz*v->omega_in_platform_z;
-    const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
-        g_in_platform_y*m->h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
-        g_in_platform_z*m->h_star_in_platform_y;
-    const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
-        g_in_platform_z*m->h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
-        g_in_platform_x*m->h_star_in_platform_z;
-    const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
-        g_in_platform_x*m->h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
-        g_in_platform_y*m->h_star_in_platform_x;
+    const real Z_q_in_platform_x = g_in_platform_y*m->h_star_in_platform_z -
+        g_in_platform_z*m->h_star_in_platform_y + Z_q_t_3*v->omega_in_platform_y -
+        Z_q_t_2*v->omega_in_platform_z;
+    const real Z_q_in_platform_y = g_in_platform_z*m->h_star_in_platform_x -
+        g_in_platform_x*m->h_star_in_platform_z + Z_q_t*v->omega_in_platform_z -
+        Z_q_t_3*v->omega_in_platform_x;
+    const real Z_q_in_platform_z = g_in_platform_x*m->h_star_in_platform_y -
+        g_in_platform_y*m->h_star_in_platform_x + Z_q_t_2*v->omega_in_platform_x -
+        Z_q_t*v->omega_in_platform_y;
     const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
         v->R_xz*Z_q_in_platform_z;
     const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
@@ -1656,24 +1666,24 @@ INLINE void stage_sps_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real sps_q_x = R_xx*m->sps_platform_point_x[i] + R_xy*m->sps_platform_point_y[i] +
-        R_xz*m->sps_platform_point_z[i];
+    const real sps_q_x = R_xy*m->sps_platform_point_y[i] + R_xz*m->sps_platform_point_z[i] +
+        R_xx*m->sps_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real sps_q_y = R_yx*m->sps_platform_point_x[i] + R_yy*m->sps_platform_point_y[i] +
-        R_yz*m->sps_platform_point_z[i];
+    const real sps_q_y = R_yx*m->sps_platform_point_x[i] + R_yz*m->sps_platform_point_z[i] +
+        R_yy*m->sps_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real sps_q_z = R_zx*m->sps_platform_point_x[i] + R_zy*m->sps_platform_point_y[i] +
         R_zz*m->sps_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real sps_S_x = sps_q_x + t_x - m->sps_base_point_x[i];
+    const real sps_S_x = t_x - m->sps_base_point_x[i] + sps_q_x;
     const real t_y = X[1*w + j];
-    const real sps_S_y = sps_q_y + t_y - m->sps_base_point_y[i];
+    const real sps_S_y = t_y - m->sps_base_point_y[i] + sps_q_y;
     const real t_z = X[2*w + j];
-    const real sps_S_z = sps_q_z + t_z - m->sps_base_point_z[i];
+    const real sps_S_z = t_z - m->sps_base_point_z[i] + sps_q_z;
     const real sps_S_in_turn1_x = sps_S_x*m->sps_base_frame_xx[i] +
         sps_S_y*m->sps_base_frame_yx[i] + sps_S_z*m->sps_base_frame_zx[i];
     const real sps_S_in_turn1_y = sps_S_x*m->sps_base_frame_xy[i] +
@@ -1720,16 +1730,16 @@ INLINE void stage_sps_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real sps_e_1_in_axes2_y = inv_sps_root_2*sps_S_in_turn1_z;
     const real sps_S_dot_rest_t = sps_c_3*sps_e_1_in_axes2_y;
     const real sps_S_dot_rest_t_2 = sps_s_1*sps_s_3 - sps_S_dot_rest_t*sps_c_1;
-    const real sps_S_dot_rest_t_3 = -sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_s_3;
-    const real axis_y_sps_axes3_x = sps_S_dot_rest_t_2*m->sps_base_frame_xx[i] +
-        sps_S_dot_rest_t_3*m->sps_base_frame_xy[i] +
-        m->sps_base_frame_xz[i]*sps_e_1_in_axes3_y;
-    const real axis_y_sps_axes3_y = sps_S_dot_rest_t_2*m->sps_base_frame_yx[i] +
-        sps_S_dot_rest_t_3*m->sps_base_frame_yy[i] +
-        m->sps_base_frame_yz[i]*sps_e_1_in_axes3_y;
-    const real axis_y_sps_axes3_z = sps_S_dot_rest_t_2*m->sps_base_frame_zx[i] +
-        sps_S_dot_rest_t_3*m->sps_base_frame_zy[i] +
-        m->sps_base_frame_zz[i]*sps_e_1_in_axes3_y;
+    const real sps_S_dot_rest_t_3 = -sps_c_1*sps_s_3 - sps_S_dot_rest_t*sps_s_1;
+    const real axis_y_sps_axes3_x = m->sps_base_frame_xz[i]*sps_e_1_in_axes3_y +
+        sps_S_dot_rest_t_2*m->sps_base_frame_xx[i] +
+        sps_S_dot_rest_t_3*m->sps_base_frame_xy[i];
+    const real axis_y_sps_axes3_y = m->sps_base_frame_yz[i]*sps_e_1_in_axes3_y +
+        sps_S_dot_rest_t_2*m->sps_base_frame_yx[i] +
+        sps_S_dot_rest_t_3*m->sps_base_frame_yy[i];
+    const real axis_y_sps_axes3_z = m->sps_base_frame_zz[i]*sps_e_1_in_axes3_y +
+        sps_S_dot_rest_t_2*m->sps_base_frame_zx[i] +
+        sps_S_dot_rest_t_3*m->sps_base_frame_zy[i];
     const real axis_x_sps_axes3_x = axis_y_sps_axes3_y*sps_w_4_z -
         axis_y_sps_axes3_z*sps_w_4_y;
     const real axis_x_sps_axes3_y = axis_y_sps_axes3_z*sps_w_4_x -
@@ -1814,11 +1824,11 @@ INLINE void stage_sps_V_X(size_t w, size_t i, size_t j, const real *V, values_sp
     const real sps_S_dot_t_2 = omega_z*v->sps_q_x - omega_x*v->sps_q_z;
     const real sps_S_dot_t_3 = omega_x*v->sps_q_y - omega_y*v->sps_q_x;
     const real t_dot_x = V[0*w + j];
-    const real sps_S_dot_x = sps_S_dot_t + t_dot_x;
+    const real sps_S_dot_x = t_dot_x + sps_S_dot_t;
     const real t_dot_y = V[1*w + j];
-    const real sps_S_dot_y = sps_S_dot_t_2 + t_dot_y;
+    const real sps_S_dot_y = t_dot_y + sps_S_dot_t_2;
     const real t_dot_z = V[2*w + j];
-    const real sps_S_dot_z = sps_S_dot_t_3 + t_dot_z;
+    const real sps_S_dot_z = t_dot_z + sps_S_dot_t_3;
     /* (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra */
     const real sps_S_dot_rest_in_axes3_x = v->axis_x_sps_axes3_x*sps_S_dot_x +
         v->axis_x_sps_axes3_y*sps_S_dot_y + v->axis_x_sps_axes3_z*sps_S_dot_z;
@@ -1827,8 +1837,8 @@ INLINE void stage_sps_V_X(size_t w, size_t i, size_t j, const real *V, values_sp
     const real sps_S_dot_rest_in_axes3_z = sps_S_dot_x*v->sps_w_4_x + sps_S_dot_y*v->sps_w_4_y
         + sps_S_dot_z*v->sps_w_4_z;
     /* (sps-qd_1) rate of joint 1 */
-    const real sps_qd_1 = v->inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_x*v->sps_v_2_t +
-        sps_S_dot_rest_in_axes3_y*v->sps_v_2_in_axes3_x);
+    const real sps_qd_1 = v->inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_y*v->sps_v_2_in_axes3_x +
+        sps_S_dot_rest_in_axes3_x*v->sps_v_2_t);
     /* (sps-qd_2) rate of joint 2 */
     const real sps_qd_2_t = v->inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_y*v->sps_v_1_in_axes3_x
         - sps_S_dot_rest_in_axes3_x*v->sps_v_1_in_axes3_y);
@@ -1838,11 +1848,11 @@ INLINE void stage_sps_V_X(size_t w, size_t i, size_t j, const real *V, values_sp
     /* (sps-omega_2) angular velocity of link 2 */
     const real sps_omega_2_in_axes3_x = sps_omega_1_in_axes2_x*v->sps_s_3 -
         v->sps_c_3*sps_qd_2_t;
-    const real sps_omega_2_in_axes3_y = v->sps_c_3*sps_omega_1_in_axes2_x +
-        sps_qd_2_t*v->sps_s_3;
+    const real sps_omega_2_in_axes3_y = sps_qd_2_t*v->sps_s_3 +
+        v->sps_c_3*sps_omega_1_in_axes2_x;
     /* (sps-omega_3) angular velocity of link 3 */
     const real sps_yd_3 = V[place_sps_yd_3[i]*w + j];
-    const real sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_y + sps_yd_3;
+    const real sps_omega_3_in_axes3_z = sps_yd_3 + sps_omega_1_in_axes2_y;
     /* (sps-W_3) centripetal tensor of link 3 */
     const real sps_W_3_in_axes3_xy = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_y;
     const real sps_W_3_in_axes3_xz = sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z;
@@ -1887,13 +1897,13 @@ INLINE void stage_sps_A_V_X(size_t w, size_t j, const real *V, values_sps *v)
     /* (sps-S_ddot) acceleration of the connection point */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
-    const real sps_S_ddot_x = v->sps_a_p_x + omega_y*v->sps_S_dot_t_3 -
-        omega_z*v->sps_S_dot_t_2;
+    const real sps_S_ddot_x = omega_y*v->sps_S_dot_t_3 - omega_z*v->sps_S_dot_t_2 +
+        v->sps_a_p_x;
     const real omega_x = V[3*w + j];
-    const real sps_S_ddot_y = v->sps_a_p_y + omega_z*v->sps_S_dot_t -
-        omega_x*v->sps_S_dot_t_3;
-    const real sps_S_ddot_z = v->sps_a_p_z + omega_x*v->sps_S_dot_t_2 -
-        omega_y*v->sps_S_dot_t;
+    const real sps_S_ddot_y = omega_z*v->sps_S_dot_t - omega_x*v->sps_S_dot_t_3 +
+        v->sps_a_p_y;
+    const real sps_S_ddot_z = omega_x*v->sps_S_dot_t_2 - omega_y*v->sps_S_dot_t +
+        v->sps_a_p_z;
     v->sps_S_ddot_x = sps_S_ddot_x;
     v->sps_S_ddot_y = sps_S_ddot_y;
     v->sps_S_ddot_z = sps_S_ddot_z;
@@ -1930,17 +1940,17 @@ INLINE void stage_sps_M_dynamics(const prepared *m, size_t i, values_sps *v)
         m->sps_J_group_3_in_axes3_yy[i]*sps_d_alpha_2_in_axes3_yy +
         m->sps_J_group_3_in_axes3_yz[i]*sps_d_alpha_1_in_axes3_zy;
     const real sps_d_mu_3_in_axes3_xy =
-        m->sps_J_group_3_in_axes3_xx[i]*sps_d_alpha_2_in_axes3_xy +
+        m->sps_J_group_3_in_axes3_xx[i]*sps_d_alpha_2_in_axes3_xy - m->sps_h_4_in_spec3_x[i] +
         m->sps_J_group_3_in_axes3_xy[i]*sps_d_alpha_2_in_axes3_yy +
-        m->sps_J_group_3_in_axes3_xz[i]*sps_d_alpha_1_in_axes3_zy - m->sps_h_4_in_spec3_x[i];
+        m->sps_J_group_3_in_axes3_xz[i]*sps_d_alpha_1_in_axes3_zy;
     const real sps_d_mu_3_in_axes3_yx = m->sps_h_4_in_spec3_x[i] +
         m->sps_J_group_3_in_axes3_xy[i]*sps_d_alpha_2_in_axes3_xx +
         m->sps_J_group_3_in_axes3_yy[i]*sps_d_alpha_2_in_axes3_yx +
         m->sps_J_group_3_in_axes3_yz[i]*sps_d_alpha_1_in_axes3_zx;
     const real sps_d_mu_3_in_axes3_zx =
-        m->sps_J_group_3_in_axes3_xz[i]*sps_d_alpha_2_in_axes3_xx +
+        m->sps_J_group_3_in_axes3_xz[i]*sps_d_alpha_2_in_axes3_xx - m->sps_h_4_in_spec3_z[i] +
         m->sps_J_group_3_in_axes3_yz[i]*sps_d_alpha_2_in_axes3_yx +
-        m->sps_J_group_3_in_axes3_zz[i]*sps_d_alpha_1_in_axes3_zx - m->sps_h_4_in_spec3_z[i];
+        m->sps_J_group_3_in_axes3_zz[i]*sps_d_alpha_1_in_axes3_zx;
     const real sps_d_mu_3_in_axes3_zy = m->sps_h_4_in_spec3_y[i] +
         m->sps_J_group_3_in_axes3_xz[i]*sps_d_alpha_2_in_axes3_xy +
         m->sps_J_group_3_in_axes3_yz[i]*sps_d_alpha_2_in_axes3_yy +
@@ -1953,8 +1963,8 @@ INLINE void stage_sps_M_dynamics(const prepared *m, size_t i, values_sps *v)
         m->sps_h_4_in_spec3_y[i]*v->sps_s_3;
     /* (sps-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
-    const real sps_d_Gamma_1_in_axes3_y = sps_d_mu_3_in_axes3_xy*v->sps_e_1_in_axes3_x +
-        sps_d_mu_3_in_axes3_yy*v->sps_e_1_in_axes3_y +
+    const real sps_d_Gamma_1_in_axes3_y = sps_d_mu_3_in_axes3_yy*v->sps_e_1_in_axes3_y +
+        sps_d_mu_3_in_axes3_xy*v->sps_e_1_in_axes3_x +
         sps_d_mu_3_in_axes3_zy*v->sps_e_1_in_axes2_y;
     const real sps_d_Gamma_1_in_axes3_z = v->sps_e_1_in_axes3_x*m->sps_h_4_in_spec3_z[i] -
         v->sps_e_1_in_axes3_y*m->sps_h_4_in_spec3_y[i];
@@ -1968,19 +1978,18 @@ INLINE void stage_sps_M_dynamics(const prepared *m, size_t i, values_sps *v)
        without the mass at the connection point */
     const real sps_d_c_in_axes3_xx = sps_d_alpha_1_in_axes3_zx*m->sps_h_4_in_spec3_z[i] -
         sps_d_alpha_2_in_axes3_yx*m->sps_h_4_in_spec3_x[i] -
+        sps_w_2_in_axes3_x*(v->sps_c_3*sps_d_mu_3_in_axes3_xx -
+        sps_d_mu_3_in_axes3_yx*v->sps_s_3) -
         sps_w_1_in_axes3_x*(sps_d_mu_3_in_axes3_xx*v->sps_e_1_in_axes3_x +
         sps_d_mu_3_in_axes3_yx*v->sps_e_1_in_axes3_y +
-        sps_d_mu_3_in_axes3_zx*v->sps_e_1_in_axes2_y) -
-        sps_w_2_in_axes3_x*(v->sps_c_3*sps_d_mu_3_in_axes3_xx -
-        sps_d_mu_3_in_axes3_yx*v->sps_s_3);
+        sps_d_mu_3_in_axes3_zx*v->sps_e_1_in_axes2_y);
     const real sps_d_c_in_axes3_xy = sps_d_alpha_1_in_axes3_zy*m->sps_h_4_in_spec3_z[i] -
-        sps_d_Gamma_1_in_axes3_y*sps_w_1_in_axes3_x -
+        sps_d_alpha_2_in_axes3_yy*m->sps_h_4_in_spec3_x[i] -
         sps_d_Gamma_2_in_axes3_y*sps_w_2_in_axes3_x -
-        sps_d_alpha_2_in_axes3_yy*m->sps_h_4_in_spec3_x[i];
-    const real sps_d_c_in_axes3_yy = sps_d_Gamma_2_in_axes3_y*sps_w_2_t +
-        sps_d_alpha_2_in_axes3_xy*m->sps_h_4_in_spec3_x[i] -
-        sps_d_Gamma_1_in_axes3_y*sps_w_1_in_axes3_y -
-        sps_d_alpha_1_in_axes3_zy*m->sps_h_4_in_spec3_y[i];
+        sps_d_Gamma_1_in_axes3_y*sps_w_1_in_axes3_x;
+    const real sps_d_c_in_axes3_yy = sps_d_alpha_2_in_axes3_xy*m->sps_h_4_in_spec3_x[i] -
+        sps_d_alpha_1_in_axes3_zy*m->sps_h_4_in_spec3_y[i] +
+        sps_d_Gamma_2_in_axes3_y*sps_w_2_t - sps_d_Gamma_1_in_axes3_y*sps_w_1_in_axes3_y;
     v->sps_d_mu_3_in_axes3_zx = sps_d_mu_3_in_axes3_zx;
     v->sps_d_mu_3_in_axes3_zy = sps_d_mu_3_in_axes3_zy;
     v->sps_d_G_in_axes3_xz = sps_d_G_in_axes3_xz;
@@ -2016,13 +2025,13 @@ INLINE void stage_sps_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
         sps_rel_o_in_axes3_x*v->sps_v_1_in_axes3_y);
     /* (sps-alpha_2_o) remainder of: angular acceleration of link 2 */
     const real sps_alpha_2_o_in_axes2_x = v->sps_c_2*sps_qdd_1_o - v->sps_zeta_2_t;
-    const real sps_alpha_2_o_in_axes2_y = v->sps_e_1_in_axes2_y*sps_qdd_1_o +
-        v->sps_omega_1_in_axes2_x*v->sps_qd_2_t;
+    const real sps_alpha_2_o_in_axes2_y = v->sps_omega_1_in_axes2_x*v->sps_qd_2_t +
+        v->sps_e_1_in_axes2_y*sps_qdd_1_o;
     /* (sps-alpha_3_o) remainder of: angular acceleration of link 3 */
-    const real sps_alpha_3_o_in_axes3_x = v->sps_zeta_3_in_axes3_x +
-        sps_alpha_2_o_in_axes2_x*v->sps_s_3 - v->sps_c_3*sps_qdd_2_o_t;
-    const real sps_alpha_3_o_in_axes3_y = v->sps_zeta_3_in_axes3_y +
-        sps_alpha_2_o_in_axes2_x*v->sps_c_3 + sps_qdd_2_o_t*v->sps_s_3;
+    const real sps_alpha_3_o_in_axes3_x = v->sps_zeta_3_in_axes3_x - v->sps_c_3*sps_qdd_2_o_t
+        + sps_alpha_2_o_in_axes2_x*v->sps_s_3;
+    const real sps_alpha_3_o_in_axes3_y = v->sps_zeta_3_in_axes3_y + sps_qdd_2_o_t*v->sps_s_3
+        + sps_alpha_2_o_in_axes2_x*v->sps_c_3;
     /* (sps-B_3_o) remainder of the acceleration tensor of link 3 */
     const real sps_B_3_o_in_axes3_xy = v->sps_W_3_in_axes3_xy - sps_alpha_2_o_in_axes2_y;
     const real sps_B_3_o_in_axes3_xz = v->sps_W_3_in_axes3_xz + sps_alpha_3_o_in_axes3_y;
@@ -2039,39 +2048,39 @@ INLINE void stage_sps_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
        */
     const real sps_phi_4_o_t = v->sps_omega_2_in_axes3_x*v->sps_omega_2_in_axes3_x;
     const real sps_phi_4_o_t_2 = v->sps_omega_2_in_axes3_y*v->sps_omega_2_in_axes3_y;
-    const real sps_phi_4_o_in_axes3_z = sps_B_3_o_in_axes3_zx*m->sps_h_4_in_spec3_y[i] +
-        sps_B_3_o_in_axes3_zy*m->sps_h_4_in_spec3_z[i] -
-        m->sps_h_4_in_spec3_x[i]*(sps_phi_4_o_t + sps_phi_4_o_t_2);
+    const real sps_phi_4_o_in_axes3_z = sps_B_3_o_in_axes3_zx*m->sps_h_4_in_spec3_y[i] -
+        m->sps_h_4_in_spec3_x[i]*(sps_phi_4_o_t + sps_phi_4_o_t_2) +
+        sps_B_3_o_in_axes3_zy*m->sps_h_4_in_spec3_z[i];
     /* (sps-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
        reference points */
     const real sps_mu_3_o_t = v->sps_omega_3_in_axes3_z*v->sps_omega_3_in_axes3_z;
-    const real sps_mu_3_o_in_axes3_x = sps_B_3_o_in_axes3_yx*m->sps_J_group_3_in_axes3_xz[i] +
-        sps_B_3_o_in_axes3_zy*m->sps_Sigma_3_in_axes3_yy[i] +
-        m->sps_J_group_3_in_axes3_yz[i]*(sps_phi_4_o_t_2 - sps_mu_3_o_t) +
-        sps_acc_4_o_in_axes3_z*m->sps_h_4_in_spec3_z[i] +
+    const real sps_mu_3_o_in_axes3_x = sps_acc_4_o_in_axes3_z*m->sps_h_4_in_spec3_z[i] -
+        v->sps_g_in_axes3_z*m->sps_h_3_in_spec3_z[i] +
         v->sps_g_in_axes3_y*m->sps_h_3_in_spec3_x[i] -
+        sps_acc_4_o_in_axes3_y*m->sps_h_4_in_spec3_x[i] +
+        m->sps_J_group_3_in_axes3_yz[i]*(sps_phi_4_o_t_2 - sps_mu_3_o_t) +
+        sps_B_3_o_in_axes3_yx*m->sps_J_group_3_in_axes3_xz[i] +
+        sps_B_3_o_in_axes3_zy*m->sps_Sigma_3_in_axes3_yy[i] -
         sps_B_3_o_in_axes3_yz*m->sps_Sigma_3_in_axes3_zz[i] -
-        sps_B_3_o_in_axes3_zx*m->sps_J_group_3_in_axes3_xy[i] -
-        sps_acc_4_o_in_axes3_y*m->sps_h_4_in_spec3_x[i] -
-        v->sps_g_in_axes3_z*m->sps_h_3_in_spec3_z[i];
-    const real sps_mu_3_o_in_axes3_y = sps_B_3_o_in_axes3_xz*m->sps_Sigma_3_in_axes3_zz[i] +
-        sps_B_3_o_in_axes3_zy*m->sps_J_group_3_in_axes3_xy[i] +
-        sps_acc_4_o_in_axes3_x*m->sps_h_4_in_spec3_x[i] +
-        v->sps_g_in_axes3_z*m->sps_h_3_in_spec3_y[i] -
-        sps_B_3_o_in_axes3_xy*m->sps_J_group_3_in_axes3_yz[i] -
-        sps_B_3_o_in_axes3_zx*m->sps_Sigma_3_in_axes3_xx[i] -
-        m->sps_J_group_3_in_axes3_xz[i]*(sps_phi_4_o_t - sps_mu_3_o_t) -
+        sps_B_3_o_in_axes3_zx*m->sps_J_group_3_in_axes3_xy[i];
+    const real sps_mu_3_o_in_axes3_y = v->sps_g_in_axes3_z*m->sps_h_3_in_spec3_y[i] -
         sps_acc_4_o_in_axes3_z*m->sps_h_4_in_spec3_y[i] -
-        v->sps_g_in_axes3_x*m->sps_h_3_in_spec3_x[i];
-    const real sps_mu_3_o_in_axes3_z = sps_B_3_o_in_axes3_xz*m->sps_J_group_3_in_axes3_yz[i] +
-        sps_B_3_o_in_axes3_yx*m->sps_Sigma_3_in_axes3_xx[i] +
-        m->sps_J_group_3_in_axes3_xy[i]*(sps_phi_4_o_t - sps_phi_4_o_t_2) +
-        sps_acc_4_o_in_axes3_y*m->sps_h_4_in_spec3_y[i] +
+        v->sps_g_in_axes3_x*m->sps_h_3_in_spec3_x[i] +
+        sps_acc_4_o_in_axes3_x*m->sps_h_4_in_spec3_x[i] -
+        m->sps_J_group_3_in_axes3_xz[i]*(sps_phi_4_o_t - sps_mu_3_o_t) -
+        sps_B_3_o_in_axes3_xy*m->sps_J_group_3_in_axes3_yz[i] +
+        sps_B_3_o_in_axes3_xz*m->sps_Sigma_3_in_axes3_zz[i] +
+        sps_B_3_o_in_axes3_zy*m->sps_J_group_3_in_axes3_xy[i] -
+        sps_B_3_o_in_axes3_zx*m->sps_Sigma_3_in_axes3_xx[i];
+    const real sps_mu_3_o_in_axes3_z = sps_acc_4_o_in_axes3_y*m->sps_h_4_in_spec3_y[i] -
+        v->sps_g_in_axes3_y*m->sps_h_3_in_spec3_y[i] +
         v->sps_g_in_axes3_x*m->sps_h_3_in_spec3_z[i] -
-        sps_B_3_o_in_axes3_xy*m->sps_Sigma_3_in_axes3_yy[i] -
-        sps_B_3_o_in_axes3_yz*m->sps_J_group_3_in_axes3_xz[i] -
-        sps_acc_4_o_in_axes3_x*m->sps_h_4_in_spec3_z[i] -
-        v->sps_g_in_axes3_y*m->sps_h_3_in_spec3_y[i];
+        sps_acc_4_o_in_axes3_x*m->sps_h_4_in_spec3_z[i] +
+        m->sps_J_group_3_in_axes3_xy[i]*(sps_phi_4_o_t - sps_phi_4_o_t_2) +
+        sps_B_3_o_in_axes3_yx*m->sps_Sigma_3_in_axes3_xx[i] -
+        sps_B_3_o_in_axes3_xy*m->sps_Sigma_3_in_axes3_yy[i] +
+        sps_B_3_o_in_axes3_xz*m->sps_J_group_3_in_axes3_yz[i] -
+        sps_B_3_o_in_axes3_yz*m->sps_J_group_3_in_axes3_xz[i];
     const real sps_mu_3_o_in_axes2_z = v->sps_c_3*sps_mu_3_o_in_axes3_x -
         sps_mu_3_o_in_axes3_y*v->sps_s_3;
     /* (sps-Gamma_1_o) remainder of: moment about axis 1 of the distal links' inertia and weight */
@@ -2081,15 +2090,15 @@ INLINE void stage_sps_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     /* (sps-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
     const real sps_c_o_in_axes3_x = m->sps_h_4_in_spec3_y[i]*(sps_mu_3_o_t + sps_phi_4_o_t_2)
-        - v->inv_sps_w_1_t*(sps_Gamma_1_o*v->sps_v_2_t +
-        sps_mu_3_o_in_axes2_z*v->sps_v_1_in_axes3_y) -
-        sps_B_3_o_in_axes3_xy*m->sps_h_4_in_spec3_z[i] -
-        sps_B_3_o_in_axes3_xz*m->sps_h_4_in_spec3_x[i];
-    const real sps_c_o_in_axes3_y =
+        - sps_B_3_o_in_axes3_xy*m->sps_h_4_in_spec3_z[i] -
+        sps_B_3_o_in_axes3_xz*m->sps_h_4_in_spec3_x[i] -
+        v->inv_sps_w_1_t*(sps_mu_3_o_in_axes2_z*v->sps_v_1_in_axes3_y +
+        sps_Gamma_1_o*v->sps_v_2_t);
+    const real sps_c_o_in_axes3_y = m->sps_h_4_in_spec3_z[i]*(sps_mu_3_o_t + sps_phi_4_o_t) -
+        sps_B_3_o_in_axes3_yx*m->sps_h_4_in_spec3_y[i] -
+        sps_B_3_o_in_axes3_yz*m->sps_h_4_in_spec3_x[i] +
         v->inv_sps_w_1_t*(sps_mu_3_o_in_axes2_z*v->sps_v_1_in_axes3_x -
-        sps_Gamma_1_o*v->sps_v_2_in_axes3_x) + m->sps_h_4_in_spec3_z[i]*(sps_mu_3_o_t +
-        sps_phi_4_o_t) - sps_B_3_o_in_axes3_yx*m->sps_h_4_in_spec3_y[i] -
-        sps_B_3_o_in_axes3_yz*m->sps_h_4_in_spec3_x[i];
+        sps_Gamma_1_o*v->sps_v_2_in_axes3_x);
     /* (sps-U) velocity and gravity terms of the leg force */
     const real sps_U_x = sps_phi_4_o_in_axes3_z*v->sps_w_4_x -
         v->axis_x_sps_axes3_x*sps_c_o_in_axes3_x - v->axis_y_sps_axes3_x*sps_c_o_in_axes3_y;
@@ -2118,23 +2127,20 @@ INLINE void stage_sps_inverse_kinematics_potential(const prepared *m, size_t w, 
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
     const real t_x = X[0*w + j];
-    const real sps_S_x = t_x + R_xx*m->sps_platform_point_x[i] +
-        R_xy*m->sps_platform_point_y[i] + R_xz*m->sps_platform_point_z[i] -
-        m->sps_base_point_x[i];
+    const real sps_S_x = t_x - m->sps_base_point_x[i] + R_xy*m->sps_platform_point_y[i] +
+        R_xz*m->sps_platform_point_z[i] + R_xx*m->sps_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real t_y = X[1*w + j];
-    const real sps_S_y = t_y + R_yx*m->sps_platform_point_x[i] +
-        R_yy*m->sps_platform_point_y[i] + R_yz*m->sps_platform_point_z[i] -
-        m->sps_base_point_y[i];
+    const real sps_S_y = t_y - m->sps_base_point_y[i] + R_yx*m->sps_platform_point_x[i] +
+        R_yz*m->sps_platform_point_z[i] + R_yy*m->sps_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real t_z = X[2*w + j];
-    const real sps_S_z = t_z + R_zx*m->sps_platform_point_x[i] +
-        R_zy*m->sps_platform_point_y[i] + R_zz*m->sps_platform_point_z[i] -
-        m->sps_base_point_z[i];
+    const real sps_S_z = t_z - m->sps_base_point_z[i] + R_zx*m->sps_platform_point_x[i] +
+        R_zy*m->sps_platform_point_y[i] + R_zz*m->sps_platform_point_z[i];
     const real sps_S_in_turn1_x = sps_S_x*m->sps_base_frame_xx[i] +
         sps_S_y*m->sps_base_frame_yx[i] + sps_S_z*m->sps_base_frame_zx[i];
     const real sps_S_in_turn1_y = sps_S_x*m->sps_base_frame_xy[i] +
@@ -2182,15 +2188,15 @@ INLINE void stage_sps_legs_required(size_t w, size_t i, size_t j, const real *A,
         sps_rel_in_axes3_x*v->sps_v_1_in_axes3_y);
     /* (sps-alpha_2) angular acceleration of link 2 */
     const real sps_alpha_2_in_axes2_x = v->sps_c_2*sps_qdd_1 - v->sps_zeta_2_t;
-    const real sps_alpha_2_in_axes2_y = v->sps_e_1_in_axes2_y*sps_qdd_1 +
-        v->sps_omega_1_in_axes2_x*v->sps_qd_2_t;
+    const real sps_alpha_2_in_axes2_y = v->sps_omega_1_in_axes2_x*v->sps_qd_2_t +
+        v->sps_e_1_in_axes2_y*sps_qdd_1;
     /* (sps-alpha_3) angular acceleration of link 3 */
-    const real sps_alpha_3_in_axes3_x = v->sps_zeta_3_in_axes3_x +
-        sps_alpha_2_in_axes2_x*v->sps_s_3 - v->sps_c_3*sps_qdd_2_t;
-    const real sps_alpha_3_in_axes3_y = v->sps_zeta_3_in_axes3_y +
-        sps_alpha_2_in_axes2_x*v->sps_c_3 + sps_qdd_2_t*v->sps_s_3;
+    const real sps_alpha_3_in_axes3_x = v->sps_zeta_3_in_axes3_x - v->sps_c_3*sps_qdd_2_t +
+        sps_alpha_2_in_axes2_x*v->sps_s_3;
+    const real sps_alpha_3_in_axes3_y = v->sps_zeta_3_in_axes3_y + sps_qdd_2_t*v->sps_s_3 +
+        sps_alpha_2_in_axes2_x*v->sps_c_3;
     const real sps_ydd_3 = A[place_sps_ydd_3[i]*w + j];
-    const real sps_alpha_3_in_axes3_z = sps_alpha_2_in_axes2_y + sps_ydd_3;
+    const real sps_alpha_3_in_axes3_z = sps_ydd_3 + sps_alpha_2_in_axes2_y;
     /* (sps-B_3) acceleration tensor of link 3 */
     const real sps_B_3_in_axes3_xy = v->sps_W_3_in_axes3_xy - sps_alpha_3_in_axes3_z;
     const real sps_B_3_in_axes3_xz = v->sps_W_3_in_axes3_xz + sps_alpha_3_in_axes3_y;
@@ -2217,39 +2223,43 @@ INLINE void stage_sps_legs_required(size_t w, size_t i, size_t j, const real *A,
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    real *s, verdict *t)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_M_dynamics(m, &v);
-    stage_Z_dynamics(m, w, k, V, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.h_star_x;
-    s[10*w + k] = v.h_star_y;
-    s[11*w + k] = v.h_star_z;
-    s[12*w + k] = v.J_star_xx;
-    s[13*w + k] = v.J_star_xy;
-    s[14*w + k] = v.J_star_xz;
-    s[15*w + k] = v.J_star_yy;
-    s[16*w + k] = v.J_star_yz;
-    s[17*w + k] = v.J_star_zz;
-    s[18*w + k] = v.Z_p_x;
-    s[19*w + k] = v.Z_p_y;
-    s[20*w + k] = v.Z_p_z;
-    s[21*w + k] = v.Z_q_x;
-    s[22*w + k] = v.Z_q_y;
-    s[23*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->h_star_x;
+    s[10*w + k] = v->h_star_y;
+    s[11*w + k] = v->h_star_z;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
+    *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_M_dynamics(m, v);
+    stage_Z_dynamics(m, w, k, V, v);
+    s[12*w + k] = v->J_star_xx;
+    s[13*w + k] = v->J_star_xy;
+    s[14*w + k] = v->J_star_xz;
+    s[15*w + k] = v->J_star_yy;
+    s[16*w + k] = v->J_star_yz;
+    s[17*w + k] = v->J_star_zz;
+    s[18*w + k] = v->Z_p_x;
+    s[19*w + k] = v->Z_p_y;
+    s[20*w + k] = v->Z_p_z;
+    s[21*w + k] = v->Z_q_x;
+    s[22*w + k] = v->Z_q_y;
+    s[23*w + k] = v->Z_q_z;
 }
 
 INLINE void dynamics_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2263,26 +2273,26 @@ INLINE void dynamics_legs_sps(const prepared *m, size_t w, size_t i, size_t j, s
     /* (sps-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real sps_Q_t = R(0.5)*v.sps_d_c_in_axes3_xx;
     const real sps_Q_t_2 = R(0.5)*v.sps_d_c_in_axes3_yy;
-    const real sps_Q_t_3 = v.axis_x_sps_axes3_x*sps_Q_t +
-        v.axis_y_sps_axes3_x*v.sps_d_c_in_axes3_xy - v.sps_d_G_in_axes3_xz*v.sps_w_4_x;
+    const real sps_Q_t_3 = v.axis_x_sps_axes3_x*sps_Q_t - v.sps_d_G_in_axes3_xz*v.sps_w_4_x +
+        v.axis_y_sps_axes3_x*v.sps_d_c_in_axes3_xy;
     const real sps_Q_t_4 = v.sps_d_G_in_axes3_xz*v.sps_w_4_y - v.axis_x_sps_axes3_y*sps_Q_t -
         v.axis_y_sps_axes3_y*v.sps_d_c_in_axes3_xy;
-    const real sps_Q_t_5 = v.axis_x_sps_axes3_z*sps_Q_t +
-        v.axis_y_sps_axes3_z*v.sps_d_c_in_axes3_xy - v.sps_d_G_in_axes3_xz*v.sps_w_4_z;
+    const real sps_Q_t_5 = v.axis_x_sps_axes3_z*sps_Q_t - v.sps_d_G_in_axes3_xz*v.sps_w_4_z +
+        v.axis_y_sps_axes3_z*v.sps_d_c_in_axes3_xy;
     const real sps_Q_t_6 = v.sps_d_G_in_axes3_yz*v.sps_w_4_x - v.axis_y_sps_axes3_x*sps_Q_t_2;
     const real sps_Q_t_7 = v.axis_y_sps_axes3_y*sps_Q_t_2 - v.sps_d_G_in_axes3_yz*v.sps_w_4_y;
     const real sps_Q_t_8 = v.axis_y_sps_axes3_z*sps_Q_t_2 - v.sps_d_G_in_axes3_yz*v.sps_w_4_z;
     const real sps_Q_t_9 = v.axis_x_sps_axes3_x*sps_Q_t_3 - v.axis_y_sps_axes3_x*sps_Q_t_6;
     const real sps_Q_xx = -2*sps_Q_t_9;
-    const real sps_Q_xy = v.axis_x_sps_axes3_x*sps_Q_t_4 + v.axis_y_sps_axes3_y*sps_Q_t_6 -
-        v.axis_x_sps_axes3_y*sps_Q_t_3 - v.axis_y_sps_axes3_x*sps_Q_t_7;
-    const real sps_Q_xz = v.axis_y_sps_axes3_z*sps_Q_t_6 - v.axis_x_sps_axes3_x*sps_Q_t_5 -
-        v.axis_x_sps_axes3_z*sps_Q_t_3 - v.axis_y_sps_axes3_x*sps_Q_t_8;
+    const real sps_Q_xy = v.axis_y_sps_axes3_y*sps_Q_t_6 - v.axis_y_sps_axes3_x*sps_Q_t_7 +
+        v.axis_x_sps_axes3_x*sps_Q_t_4 - v.axis_x_sps_axes3_y*sps_Q_t_3;
+    const real sps_Q_xz = v.axis_y_sps_axes3_z*sps_Q_t_6 - v.axis_y_sps_axes3_x*sps_Q_t_8 -
+        v.axis_x_sps_axes3_x*sps_Q_t_5 - v.axis_x_sps_axes3_z*sps_Q_t_3;
     const real sps_Q_t_10 = v.axis_y_sps_axes3_y*sps_Q_t_7 - v.axis_x_sps_axes3_y*sps_Q_t_4;
     const real sps_Q_yy = -2*sps_Q_t_10;
-    const real sps_Q_yz = v.axis_x_sps_axes3_z*sps_Q_t_4 - v.axis_x_sps_axes3_y*sps_Q_t_5 -
-        v.axis_y_sps_axes3_y*sps_Q_t_8 - v.axis_y_sps_axes3_z*sps_Q_t_7;
-    const real sps_Q_t_11 = v.axis_x_sps_axes3_z*sps_Q_t_5 + v.axis_y_sps_axes3_z*sps_Q_t_8;
+    const real sps_Q_yz = v.axis_x_sps_axes3_z*sps_Q_t_4 - v.axis_y_sps_axes3_y*sps_Q_t_8 -
+        v.axis_y_sps_axes3_z*sps_Q_t_7 - v.axis_x_sps_axes3_y*sps_Q_t_5;
+    const real sps_Q_t_11 = v.axis_y_sps_axes3_z*sps_Q_t_8 + v.axis_x_sps_axes3_z*sps_Q_t_5;
     const real sps_Q_zz = -2*sps_Q_t_11;
     /* (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra
        degree of freedom of joint 3 */
@@ -2417,15 +2427,15 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[11*w + k];
-    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
     const real h_star_y = s[10*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -2433,9 +2443,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[9*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
@@ -2470,13 +2480,13 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[24*w + k];
     const real Z_q_x = s[21*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[25*w + k];
     const real Z_q_y = s[22*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[26*w + k];
     const real Z_q_z = s[23*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
     const real M_tt_xy = sums[1*w + k];
@@ -2543,7 +2553,8 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     real terms_sps[27*LEGS(LEGS_OF_sps)] = {0}, o_sps[22*LEGS(LEGS_OF_sps)] = {0};
     clear(M, NV*NV);
     clear(H, NV*NU);
-    dynamics_before(m, 1, 0, X, V, s, t);
+    values v;
+    dynamics_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
         dynamics_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), 0, s, X, V, terms_sps, o_sps);
     }
@@ -2553,6 +2564,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t n = 0; n < 27; ++n) {
         sums[n] = total(terms_sps + n*LEGS(LEGS_OF_sps), LEGS_OF_sps);
     }
+    dynamics_between(m, 1, 0, V, &v, s);
     dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
@@ -2564,7 +2576,9 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     clear(M, NV*NV*LANES);
     clear(H, NV*NU*LANES);
     for (size_t k = 0; k < LANES; ++k) {
-        dynamics_before(m, LANES, k, X, V, s, t);
+        values v;
+        dynamics_before(m, LANES, k, X, &v, s, t);
+        dynamics_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 27*LANES);
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
@@ -2581,30 +2595,34 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_M_dynamics(m, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.h_star_x;
-    s[10*w + k] = v.h_star_y;
-    s[11*w + k] = v.h_star_z;
-    s[12*w + k] = v.J_star_xx;
-    s[13*w + k] = v.J_star_xy;
-    s[14*w + k] = v.J_star_xz;
-    s[15*w + k] = v.J_star_yy;
-    s[16*w + k] = v.J_star_yz;
-    s[17*w + k] = v.J_star_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->h_star_x;
+    s[10*w + k] = v->h_star_y;
+    s[11*w + k] = v->h_star_z;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void M_between(const prepared *m, size_t w, size_t k, values *v, real *s)
+{
+    stage_M_dynamics(m, v);
+    s[12*w + k] = v->J_star_xx;
+    s[13*w + k] = v->J_star_xy;
+    s[14*w + k] = v->J_star_xz;
+    s[15*w + k] = v->J_star_yy;
+    s[16*w + k] = v->J_star_yz;
+    s[17*w + k] = v->J_star_zz;
 }
 
 INLINE void M_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2616,13 +2634,13 @@ INLINE void M_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k
     /* (sps-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real sps_Q_t = v.sps_c_3*v.sps_e_1_in_axes2_y;
     const real sps_Q_t_2 = v.sps_s_1*v.sps_s_3 - sps_Q_t*v.sps_c_1;
-    const real sps_Q_t_3 = -sps_Q_t*v.sps_s_1 - v.sps_c_1*v.sps_s_3;
-    const real axis_y_sps_axes3_x = sps_Q_t_2*m->sps_base_frame_xx[i] +
-        sps_Q_t_3*m->sps_base_frame_xy[i] + m->sps_base_frame_xz[i]*v.sps_e_1_in_axes3_y;
-    const real axis_y_sps_axes3_y = sps_Q_t_2*m->sps_base_frame_yx[i] +
-        sps_Q_t_3*m->sps_base_frame_yy[i] + m->sps_base_frame_yz[i]*v.sps_e_1_in_axes3_y;
-    const real axis_y_sps_axes3_z = sps_Q_t_2*m->sps_base_frame_zx[i] +
-        sps_Q_t_3*m->sps_base_frame_zy[i] + m->sps_base_frame_zz[i]*v.sps_e_1_in_axes3_y;
+    const real sps_Q_t_3 = -v.sps_c_1*v.sps_s_3 - sps_Q_t*v.sps_s_1;
+    const real axis_y_sps_axes3_x = m->sps_base_frame_xz[i]*v.sps_e_1_in_axes3_y +
+        sps_Q_t_2*m->sps_base_frame_xx[i] + sps_Q_t_3*m->sps_base_frame_xy[i];
+    const real axis_y_sps_axes3_y = m->sps_base_frame_yz[i]*v.sps_e_1_in_axes3_y +
+        sps_Q_t_2*m->sps_base_frame_yx[i] + sps_Q_t_3*m->sps_base_frame_yy[i];
+    const real axis_y_sps_axes3_z = m->sps_base_frame_zz[i]*v.sps_e_1_in_axes3_y +
+        sps_Q_t_2*m->sps_base_frame_zx[i] + sps_Q_t_3*m->sps_base_frame_zy[i];
     const real axis_x_sps_axes3_x = axis_y_sps_axes3_y*v.sps_w_4_z -
         axis_y_sps_axes3_z*v.sps_w_4_y;
     const real axis_x_sps_axes3_y = axis_y_sps_axes3_z*v.sps_w_4_x -
@@ -2631,26 +2649,26 @@ INLINE void M_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k
         axis_y_sps_axes3_y*v.sps_w_4_x;
     const real sps_Q_t_4 = R(0.5)*v.sps_d_c_in_axes3_xx;
     const real sps_Q_t_5 = R(0.5)*v.sps_d_c_in_axes3_yy;
-    const real sps_Q_t_6 = axis_x_sps_axes3_x*sps_Q_t_4 +
-        axis_y_sps_axes3_x*v.sps_d_c_in_axes3_xy - v.sps_d_G_in_axes3_xz*v.sps_w_4_x;
+    const real sps_Q_t_6 = axis_x_sps_axes3_x*sps_Q_t_4 - v.sps_d_G_in_axes3_xz*v.sps_w_4_x +
+        axis_y_sps_axes3_x*v.sps_d_c_in_axes3_xy;
     const real sps_Q_t_7 = v.sps_d_G_in_axes3_xz*v.sps_w_4_y - axis_x_sps_axes3_y*sps_Q_t_4 -
         axis_y_sps_axes3_y*v.sps_d_c_in_axes3_xy;
-    const real sps_Q_t_8 = axis_x_sps_axes3_z*sps_Q_t_4 +
-        axis_y_sps_axes3_z*v.sps_d_c_in_axes3_xy - v.sps_d_G_in_axes3_xz*v.sps_w_4_z;
+    const real sps_Q_t_8 = axis_x_sps_axes3_z*sps_Q_t_4 - v.sps_d_G_in_axes3_xz*v.sps_w_4_z +
+        axis_y_sps_axes3_z*v.sps_d_c_in_axes3_xy;
     const real sps_Q_t_9 = v.sps_d_G_in_axes3_yz*v.sps_w_4_x - axis_y_sps_axes3_x*sps_Q_t_5;
     const real sps_Q_t_10 = axis_y_sps_axes3_y*sps_Q_t_5 - v.sps_d_G_in_axes3_yz*v.sps_w_4_y;
     const real sps_Q_t_11 = axis_y_sps_axes3_z*sps_Q_t_5 - v.sps_d_G_in_axes3_yz*v.sps_w_4_z;
     const real sps_Q_t_12 = axis_x_sps_axes3_x*sps_Q_t_6 - axis_y_sps_axes3_x*sps_Q_t_9;
     const real sps_Q_xx = -2*sps_Q_t_12;
-    const real sps_Q_xy = axis_x_sps_axes3_x*sps_Q_t_7 + axis_y_sps_axes3_y*sps_Q_t_9 -
-        axis_x_sps_axes3_y*sps_Q_t_6 - axis_y_sps_axes3_x*sps_Q_t_10;
-    const real sps_Q_xz = axis_y_sps_axes3_z*sps_Q_t_9 - axis_x_sps_axes3_x*sps_Q_t_8 -
-        axis_x_sps_axes3_z*sps_Q_t_6 - axis_y_sps_axes3_x*sps_Q_t_11;
+    const real sps_Q_xy = axis_y_sps_axes3_y*sps_Q_t_9 - axis_y_sps_axes3_x*sps_Q_t_10 +
+        axis_x_sps_axes3_x*sps_Q_t_7 - axis_x_sps_axes3_y*sps_Q_t_6;
+    const real sps_Q_xz = axis_y_sps_axes3_z*sps_Q_t_9 - axis_y_sps_axes3_x*sps_Q_t_11 -
+        axis_x_sps_axes3_x*sps_Q_t_8 - axis_x_sps_axes3_z*sps_Q_t_6;
     const real sps_Q_t_13 = axis_y_sps_axes3_y*sps_Q_t_10 - axis_x_sps_axes3_y*sps_Q_t_7;
     const real sps_Q_yy = -2*sps_Q_t_13;
-    const real sps_Q_yz = axis_x_sps_axes3_z*sps_Q_t_7 - axis_x_sps_axes3_y*sps_Q_t_8 -
-        axis_y_sps_axes3_y*sps_Q_t_11 - axis_y_sps_axes3_z*sps_Q_t_10;
-    const real sps_Q_t_14 = axis_x_sps_axes3_z*sps_Q_t_8 + axis_y_sps_axes3_z*sps_Q_t_11;
+    const real sps_Q_yz = axis_x_sps_axes3_z*sps_Q_t_7 - axis_y_sps_axes3_y*sps_Q_t_11 -
+        axis_y_sps_axes3_z*sps_Q_t_10 - axis_x_sps_axes3_y*sps_Q_t_8;
+    const real sps_Q_t_14 = axis_y_sps_axes3_z*sps_Q_t_11 + axis_x_sps_axes3_z*sps_Q_t_8;
     const real sps_Q_zz = -2*sps_Q_t_14;
     /* (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra
        degree of freedom of joint 3 */
@@ -2757,15 +2775,15 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[11*w + k];
-    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
     const real h_star_y = s[10*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -2773,9 +2791,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[9*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
@@ -2853,7 +2871,8 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     real s[18] = {0}, sums[21] = {0};
     real terms_sps[21*LEGS(LEGS_OF_sps)] = {0}, o_sps[15*LEGS(LEGS_OF_sps)] = {0};
     clear(M, NV*NV);
-    M_before(m, 1, 0, X, s, t);
+    values v;
+    M_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
         M_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), 0, s, X, terms_sps, o_sps);
     }
@@ -2863,6 +2882,7 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     for (size_t n = 0; n < 21; ++n) {
         sums[n] = total(terms_sps + n*LEGS(LEGS_OF_sps), LEGS_OF_sps);
     }
+    M_between(m, 1, 0, &v, s);
     M_after(m, 1, 0, s, sums, M, t);
 }
 
@@ -2872,7 +2892,9 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
     real o_sps[15*LANES];
     clear(M, NV*NV*LANES);
     for (size_t k = 0; k < LANES; ++k) {
-        M_before(m, LANES, k, X, s, t);
+        values v;
+        M_before(m, LANES, k, X, &v, s, t);
+        M_between(m, LANES, k, &v, s);
     }
     clear(sums, 21*LANES);
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
@@ -2889,29 +2911,32 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s,
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
     verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_Z_dynamics(m, w, k, V, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.Z_p_x;
-    s[10*w + k] = v.Z_p_y;
-    s[11*w + k] = v.Z_p_z;
-    s[12*w + k] = v.Z_q_x;
-    s[13*w + k] = v.Z_q_y;
-    s[14*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_Z_dynamics(m, w, k, V, v);
+    s[9*w + k] = v->Z_p_x;
+    s[10*w + k] = v->Z_p_y;
+    s[11*w + k] = v->Z_p_z;
+    s[12*w + k] = v->Z_q_x;
+    s[13*w + k] = v->Z_q_y;
+    s[14*w + k] = v->Z_q_z;
 }
 
 INLINE void Z_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2961,13 +2986,13 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[3*w + k];
     const real Z_q_x = s[12*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[4*w + k];
     const real Z_q_y = s[13*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[5*w + k];
     const real Z_q_z = s[14*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
     Z[1*w + k] = Z_t_y;
@@ -2983,7 +3008,8 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_sps[6*LEGS(LEGS_OF_sps)] = {0}, o_sps[3*LEGS(LEGS_OF_sps)] = {0};
-    Z_before(m, 1, 0, X, V, s, t);
+    values v;
+    Z_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
         Z_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), 0, s, X, V, terms_sps, o_sps);
     }
@@ -2993,6 +3019,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_sps + n*LEGS(LEGS_OF_sps), LEGS_OF_sps);
     }
+    Z_between(m, 1, 0, V, &v, s);
     Z_after(1, 0, s, sums, Z, t);
 }
 
@@ -3002,7 +3029,9 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real s[15*LANES], sums[6*LANES];
     real o_sps[3*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        Z_before(m, LANES, k, X, V, s, t);
+        values v;
+        Z_before(m, LANES, k, X, &v, s, t);
+        Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
@@ -3019,20 +3048,20 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void H_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3072,7 +3101,8 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
     real s[9] = {0};
     real o_sps[8*LEGS(LEGS_OF_sps)] = {0};
     clear(H, NV*NU);
-    H_before(m, 1, 0, X, s, t);
+    values v;
+    H_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
         H_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), s, X, o_sps);
     }
@@ -3087,7 +3117,8 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
     real o_sps[8*LANES];
     clear(H, NV*NU*LANES);
     for (size_t k = 0; k < LANES; ++k) {
-        H_before(m, LANES, k, X, s, t);
+        values v;
+        H_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3100,12 +3131,26 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, real *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
+    values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
     /* (W_p) centripetal tensor of the platform */
     const real omega_x = V[3*w + k];
     const real omega_y = V[4*w + k];
@@ -3120,72 +3165,62 @@ INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X
     const real a_t_y = t_ddot_y - m->gravity_y;
     const real t_ddot_z = A[2*w + k];
     const real a_t_z = t_ddot_z - m->gravity_z;
-    const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
-    const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
-    const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
+    const real a_t_in_platform_x = v->R_yx*a_t_y + v->R_zx*a_t_z + v->R_xx*a_t_x;
+    const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
+    const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
     const real f_p_t = omega_x*omega_x;
     const real f_p_t_2 = omega_y*omega_y;
     const real f_p_t_3 = omega_z*omega_z;
     const real alpha_y = A[4*w + k];
     const real alpha_z = A[5*w + k];
-    const real f_p_x = a_t_x*m->m_star + v.h_star_y*(W_p_xy - alpha_z) + v.h_star_z*(W_p_xz +
-        alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+    const real f_p_x = a_t_x*m->m_star + v->h_star_y*(W_p_xy - alpha_z) + v->h_star_z*(alpha_y
+        + W_p_xz) - v->h_star_x*(f_p_t_2 + f_p_t_3);
     const real alpha_x = A[3*w + k];
-    const real f_p_y = a_t_y*m->m_star + v.h_star_x*(W_p_xy + alpha_z) + v.h_star_z*(W_p_yz -
-        alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
-    const real f_p_z = a_t_z*m->m_star + v.h_star_x*(W_p_xz - alpha_y) + v.h_star_y*(W_p_yz +
-        alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
+    const real f_p_y = a_t_y*m->m_star + v->h_star_x*(alpha_z + W_p_xy) + v->h_star_z*(W_p_yz
+        - alpha_x) - v->h_star_y*(f_p_t + f_p_t_3);
+    const real f_p_z = a_t_z*m->m_star + v->h_star_x*(W_p_xz - alpha_y) + v->h_star_y*(alpha_x
+        + W_p_yz) - v->h_star_z*(f_p_t + f_p_t_2);
     /* (mu_p) inertia moment of the platform less that of its weight */
-    const real mu_p_t = m->J_star_in_platform_xx*v.omega_in_platform_x +
-        m->J_star_in_platform_xy*v.omega_in_platform_y +
-        m->J_star_in_platform_xz*v.omega_in_platform_z;
-    const real mu_p_t_2 = m->J_star_in_platform_xy*v.omega_in_platform_x +
-        m->J_star_in_platform_yy*v.omega_in_platform_y +
-        m->J_star_in_platform_yz*v.omega_in_platform_z;
-    const real mu_p_t_3 = m->J_star_in_platform_xz*v.omega_in_platform_x +
-        m->J_star_in_platform_yz*v.omega_in_platform_y +
-        m->J_star_in_platform_zz*v.omega_in_platform_z;
-    const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
-    const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
-    const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+    const real mu_p_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
+        m->J_star_in_platform_xy*v->omega_in_platform_y +
+        m->J_star_in_platform_xz*v->omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
+        m->J_star_in_platform_yy*v->omega_in_platform_y +
+        m->J_star_in_platform_yz*v->omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
+        m->J_star_in_platform_yz*v->omega_in_platform_y +
+        m->J_star_in_platform_zz*v->omega_in_platform_z;
+    const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
+    const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
+    const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
     const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
         m->J_star_in_platform_xy*alpha_in_platform_y +
         m->J_star_in_platform_xz*alpha_in_platform_z +
-        a_t_in_platform_z*m->h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
-        a_t_in_platform_y*m->h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+        a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
+        + mu_p_t_3*v->omega_in_platform_y - mu_p_t_2*v->omega_in_platform_z;
     const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
         m->J_star_in_platform_yz*alpha_in_platform_z +
-        a_t_in_platform_x*m->h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
-        a_t_in_platform_z*m->h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
+        a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
+        + mu_p_t*v->omega_in_platform_z - mu_p_t_3*v->omega_in_platform_x;
     const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
         m->J_star_in_platform_zz*alpha_in_platform_z +
-        a_t_in_platform_y*m->h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
-        a_t_in_platform_x*m->h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
-    const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
-        v.R_xz*mu_p_in_platform_z;
-    const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
-        v.R_yz*mu_p_in_platform_z;
-    const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
-        v.R_zz*mu_p_in_platform_z;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+        a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
+        + mu_p_t_2*v->omega_in_platform_x - mu_p_t*v->omega_in_platform_y;
+    const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
+        v->R_xz*mu_p_in_platform_z;
+    const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
+        v->R_yz*mu_p_in_platform_z;
+    const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
+        v->R_zz*mu_p_in_platform_z;
     s[9*w + k] = f_p_x;
     s[10*w + k] = f_p_y;
     s[11*w + k] = f_p_z;
     s[12*w + k] = mu_p_x;
     s[13*w + k] = mu_p_y;
     s[14*w + k] = mu_p_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void required_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3201,38 +3236,38 @@ INLINE void required_legs_sps(const prepared *m, size_t w, size_t i, size_t j, s
     /* (sps-phi_4) inertia force of link 4 from its turning about its reference point */
     const real sps_phi_4_t = v.sps_omega_2_in_axes3_x*v.sps_omega_2_in_axes3_x;
     const real sps_phi_4_t_2 = v.sps_omega_2_in_axes3_y*v.sps_omega_2_in_axes3_y;
-    const real sps_phi_4_in_axes3_z = v.sps_B_3_in_axes3_zx*m->sps_h_4_in_spec3_y[i] +
-        v.sps_B_3_in_axes3_zy*m->sps_h_4_in_spec3_z[i] - m->sps_h_4_in_spec3_x[i]*(sps_phi_4_t
-        + sps_phi_4_t_2);
+    const real sps_phi_4_in_axes3_z = v.sps_B_3_in_axes3_zx*m->sps_h_4_in_spec3_y[i] -
+        m->sps_h_4_in_spec3_x[i]*(sps_phi_4_t + sps_phi_4_t_2) +
+        v.sps_B_3_in_axes3_zy*m->sps_h_4_in_spec3_z[i];
     /* (sps-mu_3) inertia moment of the links that turn with link 3, about their reference points */
     const real sps_mu_3_t = v.sps_omega_3_in_axes3_z*v.sps_omega_3_in_axes3_z;
-    const real sps_mu_3_in_axes3_x = v.sps_B_3_in_axes3_yx*m->sps_J_group_3_in_axes3_xz[i] +
-        v.sps_B_3_in_axes3_zy*m->sps_Sigma_3_in_axes3_yy[i] +
-        m->sps_J_group_3_in_axes3_yz[i]*(sps_phi_4_t_2 - sps_mu_3_t) +
-        v.sps_acc_4_in_axes3_z*m->sps_h_4_in_spec3_z[i] +
+    const real sps_mu_3_in_axes3_x = v.sps_acc_4_in_axes3_z*m->sps_h_4_in_spec3_z[i] -
+        v.sps_g_in_axes3_z*m->sps_h_3_in_spec3_z[i] +
         v.sps_g_in_axes3_y*m->sps_h_3_in_spec3_x[i] -
+        v.sps_acc_4_in_axes3_y*m->sps_h_4_in_spec3_x[i] +
+        m->sps_J_group_3_in_axes3_yz[i]*(sps_phi_4_t_2 - sps_mu_3_t) +
+        v.sps_B_3_in_axes3_yx*m->sps_J_group_3_in_axes3_xz[i] +
+        v.sps_B_3_in_axes3_zy*m->sps_Sigma_3_in_axes3_yy[i] -
         v.sps_B_3_in_axes3_yz*m->sps_Sigma_3_in_axes3_zz[i] -
-        v.sps_B_3_in_axes3_zx*m->sps_J_group_3_in_axes3_xy[i] -
-        v.sps_acc_4_in_axes3_y*m->sps_h_4_in_spec3_x[i] -
-        v.sps_g_in_axes3_z*m->sps_h_3_in_spec3_z[i];
-    const real sps_mu_3_in_axes3_y = v.sps_B_3_in_axes3_xz*m->sps_Sigma_3_in_axes3_zz[i] +
-        v.sps_B_3_in_axes3_zy*m->sps_J_group_3_in_axes3_xy[i] +
-        v.sps_acc_4_in_axes3_x*m->sps_h_4_in_spec3_x[i] +
-        v.sps_g_in_axes3_z*m->sps_h_3_in_spec3_y[i] -
-        v.sps_B_3_in_axes3_xy*m->sps_J_group_3_in_axes3_yz[i] -
-        v.sps_B_3_in_axes3_zx*m->sps_Sigma_3_in_axes3_xx[i] -
-        m->sps_J_group_3_in_axes3_xz[i]*(sps_phi_4_t - sps_mu_3_t) -
+        v.sps_B_3_in_axes3_zx*m->sps_J_group_3_in_axes3_xy[i];
+    const real sps_mu_3_in_axes3_y = v.sps_g_in_axes3_z*m->sps_h_3_in_spec3_y[i] -
         v.sps_acc_4_in_axes3_z*m->sps_h_4_in_spec3_y[i] -
-        v.sps_g_in_axes3_x*m->sps_h_3_in_spec3_x[i];
-    const real sps_mu_3_in_axes3_z = v.sps_B_3_in_axes3_xz*m->sps_J_group_3_in_axes3_yz[i] +
-        v.sps_B_3_in_axes3_yx*m->sps_Sigma_3_in_axes3_xx[i] +
-        m->sps_J_group_3_in_axes3_xy[i]*(sps_phi_4_t - sps_phi_4_t_2) +
-        v.sps_acc_4_in_axes3_y*m->sps_h_4_in_spec3_y[i] +
+        v.sps_g_in_axes3_x*m->sps_h_3_in_spec3_x[i] +
+        v.sps_acc_4_in_axes3_x*m->sps_h_4_in_spec3_x[i] -
+        m->sps_J_group_3_in_axes3_xz[i]*(sps_phi_4_t - sps_mu_3_t) +
+        v.sps_B_3_in_axes3_xz*m->sps_Sigma_3_in_axes3_zz[i] +
+        v.sps_B_3_in_axes3_zy*m->sps_J_group_3_in_axes3_xy[i] -
+        v.sps_B_3_in_axes3_xy*m->sps_J_group_3_in_axes3_yz[i] -
+        v.sps_B_3_in_axes3_zx*m->sps_Sigma_3_in_axes3_xx[i];
+    const real sps_mu_3_in_axes3_z = v.sps_acc_4_in_axes3_y*m->sps_h_4_in_spec3_y[i] -
+        v.sps_g_in_axes3_y*m->sps_h_3_in_spec3_y[i] +
         v.sps_g_in_axes3_x*m->sps_h_3_in_spec3_z[i] -
+        v.sps_acc_4_in_axes3_x*m->sps_h_4_in_spec3_z[i] +
+        m->sps_J_group_3_in_axes3_xy[i]*(sps_phi_4_t - sps_phi_4_t_2) +
+        v.sps_B_3_in_axes3_xz*m->sps_J_group_3_in_axes3_yz[i] +
+        v.sps_B_3_in_axes3_yx*m->sps_Sigma_3_in_axes3_xx[i] -
         v.sps_B_3_in_axes3_xy*m->sps_Sigma_3_in_axes3_yy[i] -
-        v.sps_B_3_in_axes3_yz*m->sps_J_group_3_in_axes3_xz[i] -
-        v.sps_acc_4_in_axes3_x*m->sps_h_4_in_spec3_z[i] -
-        v.sps_g_in_axes3_y*m->sps_h_3_in_spec3_y[i];
+        v.sps_B_3_in_axes3_yz*m->sps_J_group_3_in_axes3_xz[i];
     const real sps_mu_3_in_axes2_z = v.sps_c_3*sps_mu_3_in_axes3_x -
         sps_mu_3_in_axes3_y*v.sps_s_3;
     /* (sps-Gamma_1) moment about axis 1 of the distal links' inertia and weight */
@@ -3241,19 +3276,20 @@ INLINE void required_legs_sps(const prepared *m, size_t w, size_t i, size_t j, s
     /* (sps-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real sps_c_in_axes3_x = m->sps_h_4_in_spec3_y[i]*(sps_mu_3_t + sps_phi_4_t_2) -
-        v.inv_sps_w_1_t*(sps_Gamma_1*v.sps_v_2_t + sps_mu_3_in_axes2_z*v.sps_v_1_in_axes3_y) -
         v.sps_B_3_in_axes3_xy*m->sps_h_4_in_spec3_z[i] -
-        v.sps_B_3_in_axes3_xz*m->sps_h_4_in_spec3_x[i];
-    const real sps_c_in_axes3_y = v.inv_sps_w_1_t*(sps_mu_3_in_axes2_z*v.sps_v_1_in_axes3_x -
-        sps_Gamma_1*v.sps_v_2_in_axes3_x) + m->sps_h_4_in_spec3_z[i]*(sps_mu_3_t +
-        sps_phi_4_t) - v.sps_B_3_in_axes3_yx*m->sps_h_4_in_spec3_y[i] -
-        v.sps_B_3_in_axes3_yz*m->sps_h_4_in_spec3_x[i];
-    const real sps_c_x = v.axis_x_sps_axes3_x*sps_c_in_axes3_x +
-        v.axis_y_sps_axes3_x*sps_c_in_axes3_y - sps_phi_4_in_axes3_z*v.sps_w_4_x;
-    const real sps_c_y = v.axis_x_sps_axes3_y*sps_c_in_axes3_x +
-        v.axis_y_sps_axes3_y*sps_c_in_axes3_y - sps_phi_4_in_axes3_z*v.sps_w_4_y;
-    const real sps_c_z = v.axis_x_sps_axes3_z*sps_c_in_axes3_x +
-        v.axis_y_sps_axes3_z*sps_c_in_axes3_y - sps_phi_4_in_axes3_z*v.sps_w_4_z;
+        v.sps_B_3_in_axes3_xz*m->sps_h_4_in_spec3_x[i] -
+        v.inv_sps_w_1_t*(sps_mu_3_in_axes2_z*v.sps_v_1_in_axes3_y + sps_Gamma_1*v.sps_v_2_t);
+    const real sps_c_in_axes3_y = m->sps_h_4_in_spec3_z[i]*(sps_mu_3_t + sps_phi_4_t) -
+        v.sps_B_3_in_axes3_yx*m->sps_h_4_in_spec3_y[i] -
+        v.sps_B_3_in_axes3_yz*m->sps_h_4_in_spec3_x[i] +
+        v.inv_sps_w_1_t*(sps_mu_3_in_axes2_z*v.sps_v_1_in_axes3_x -
+        sps_Gamma_1*v.sps_v_2_in_axes3_x);
+    const real sps_c_x = v.axis_x_sps_axes3_x*sps_c_in_axes3_x -
+        sps_phi_4_in_axes3_z*v.sps_w_4_x + v.axis_y_sps_axes3_x*sps_c_in_axes3_y;
+    const real sps_c_y = v.axis_x_sps_axes3_y*sps_c_in_axes3_x -
+        sps_phi_4_in_axes3_z*v.sps_w_4_y + v.axis_y_sps_axes3_y*sps_c_in_axes3_y;
+    const real sps_c_z = v.axis_x_sps_axes3_z*sps_c_in_axes3_x -
+        sps_phi_4_in_axes3_z*v.sps_w_4_z + v.axis_y_sps_axes3_z*sps_c_in_axes3_y;
     /* (R_a) moment that actuators and external wrench must give */
     const real sps_R_a_t = sps_c_y*v.sps_q_z - sps_c_z*v.sps_q_y;
     const real sps_R_a_t_2 = sps_c_z*v.sps_q_x - sps_c_x*v.sps_q_z;
@@ -3309,13 +3345,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[12*w + k];
-    const real R_a_x = R_a_x_of_legs + mu_p_x;
+    const real R_a_x = mu_p_x + R_a_x_of_legs;
     const real R_a_y_of_legs = sums[4*w + k];
     const real mu_p_y = s[13*w + k];
-    const real R_a_y = R_a_y_of_legs + mu_p_y;
+    const real R_a_y = mu_p_y + R_a_y_of_legs;
     const real R_a_z_of_legs = sums[5*w + k];
     const real mu_p_z = s[14*w + k];
-    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
     required[1*w + k] = R_t_y;
@@ -3326,13 +3362,14 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[5*w + k] = R_a_z;
 }
 
-APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_sps[6*LEGS(LEGS_OF_sps)] = {0}, o_sps[8*LEGS(LEGS_OF_sps)] = {0};
     clear(H, NV*NU);
-    required_before(m, 1, 0, X, V, A, s, t);
+    values v;
+    required_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
         required_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), 0, s, X, V, A, terms_sps, o_sps);
     }
@@ -3342,6 +3379,7 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_sps + n*LEGS(LEGS_OF_sps), LEGS_OF_sps);
     }
+    required_between(m, 1, 0, V, A, &v, s);
     required_after(1, 0, s, sums, required);
 }
 
@@ -3352,7 +3390,9 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real o_sps[8*LANES];
     clear(H, NV*NU*LANES);
     for (size_t k = 0; k < LANES; ++k) {
-        required_before(m, LANES, k, X, V, A, s, t);
+        values v;
+        required_before(m, LANES, k, X, &v, s, t);
+        required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
@@ -3369,21 +3409,20 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s, verdict *t)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
+    *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void inverse_kinematics_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k,
@@ -3427,7 +3466,8 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 {
     real s[9] = {0};
     real o_sps[6*LEGS(LEGS_OF_sps)] = {0};
-    inverse_kinematics_before(m, 1, 0, X, s, t);
+    values v;
+    inverse_kinematics_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
         inverse_kinematics_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), s, X, o_sps);
     }
@@ -3442,7 +3482,8 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real s[9*LANES];
     real o_sps[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        inverse_kinematics_before(m, LANES, k, X, s, t);
+        values v;
+        inverse_kinematics_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3455,21 +3496,20 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_rates_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3496,16 +3536,16 @@ INLINE void joint_rates_legs_sps(const prepared *m, size_t w, size_t i, size_t j
     /* (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra */
     const real sps_S_dot_rest_t = v.inv_sps_root_2*v.sps_S_in_turn1_z*v.sps_c_3;
     const real sps_S_dot_rest_t_2 = v.sps_s_1*v.sps_s_3 - sps_S_dot_rest_t*v.sps_c_1;
-    const real sps_S_dot_rest_t_3 = -sps_S_dot_rest_t*v.sps_s_1 - v.sps_c_1*v.sps_s_3;
-    const real axis_y_sps_axes3_x = sps_S_dot_rest_t_2*m->sps_base_frame_xx[i] +
-        sps_S_dot_rest_t_3*m->sps_base_frame_xy[i] +
-        m->sps_base_frame_xz[i]*v.sps_e_1_in_axes3_y;
-    const real axis_y_sps_axes3_y = sps_S_dot_rest_t_2*m->sps_base_frame_yx[i] +
-        sps_S_dot_rest_t_3*m->sps_base_frame_yy[i] +
-        m->sps_base_frame_yz[i]*v.sps_e_1_in_axes3_y;
-    const real axis_y_sps_axes3_z = sps_S_dot_rest_t_2*m->sps_base_frame_zx[i] +
-        sps_S_dot_rest_t_3*m->sps_base_frame_zy[i] +
-        m->sps_base_frame_zz[i]*v.sps_e_1_in_axes3_y;
+    const real sps_S_dot_rest_t_3 = -v.sps_c_1*v.sps_s_3 - sps_S_dot_rest_t*v.sps_s_1;
+    const real axis_y_sps_axes3_x = m->sps_base_frame_xz[i]*v.sps_e_1_in_axes3_y +
+        sps_S_dot_rest_t_2*m->sps_base_frame_xx[i] +
+        sps_S_dot_rest_t_3*m->sps_base_frame_xy[i];
+    const real axis_y_sps_axes3_y = m->sps_base_frame_yz[i]*v.sps_e_1_in_axes3_y +
+        sps_S_dot_rest_t_2*m->sps_base_frame_yx[i] +
+        sps_S_dot_rest_t_3*m->sps_base_frame_yy[i];
+    const real axis_y_sps_axes3_z = m->sps_base_frame_zz[i]*v.sps_e_1_in_axes3_y +
+        sps_S_dot_rest_t_2*m->sps_base_frame_zx[i] +
+        sps_S_dot_rest_t_3*m->sps_base_frame_zy[i];
     const real sps_S_dot_rest_in_axes3_x = sps_S_dot_x*(axis_y_sps_axes3_y*v.sps_w_4_z -
         axis_y_sps_axes3_z*v.sps_w_4_y) + sps_S_dot_y*(axis_y_sps_axes3_z*v.sps_w_4_x -
         axis_y_sps_axes3_x*v.sps_w_4_z) + sps_S_dot_z*(axis_y_sps_axes3_x*v.sps_w_4_y -
@@ -3516,8 +3556,8 @@ INLINE void joint_rates_legs_sps(const prepared *m, size_t w, size_t i, size_t j
         sps_S_dot_z*v.sps_w_4_z;
     /* (sps-qd_1) rate of joint 1 */
     const real inv_sps_w_1_t = 1/sps_w_1_t;
-    const real sps_qd_1 = inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_x*v.sps_v_2_t +
-        sps_S_dot_rest_in_axes3_y*v.sps_v_2_in_axes3_x);
+    const real sps_qd_1 = inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_y*v.sps_v_2_in_axes3_x +
+        sps_S_dot_rest_in_axes3_x*v.sps_v_2_t);
     /* (sps-qd_2) rate of joint 2 */
     const real sps_qd_2_t = inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_y*v.sps_v_1_in_axes3_x -
         sps_S_dot_rest_in_axes3_x*sps_v_1_in_axes3_y);
@@ -3550,7 +3590,8 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 {
     real s[9] = {0};
     real o_sps[6*LEGS(LEGS_OF_sps)] = {0};
-    joint_rates_before(m, 1, 0, X, s, t);
+    values v;
+    joint_rates_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
         joint_rates_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), s, X, V, o_sps);
     }
@@ -3565,7 +3606,8 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real s[9*LANES];
     real o_sps[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_rates_before(m, LANES, k, X, s, t);
+        values v;
+        joint_rates_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3578,21 +3620,20 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
+    values *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_accelerations_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t
@@ -3612,8 +3653,8 @@ INLINE void joint_accelerations_legs_sps(const prepared *m, size_t w, size_t i, 
         sps_v_1_in_axes3_y*v.sps_v_2_in_axes3_x;
     /* (sps-qd_1) rate of joint 1 */
     const real inv_sps_w_1_t = 1/sps_w_1_t;
-    const real sps_qd_1 = inv_sps_w_1_t*(v.sps_S_dot_rest_in_axes3_x*v.sps_v_2_t +
-        v.sps_S_dot_rest_in_axes3_y*v.sps_v_2_in_axes3_x);
+    const real sps_qd_1 = inv_sps_w_1_t*(v.sps_S_dot_rest_in_axes3_y*v.sps_v_2_in_axes3_x +
+        v.sps_S_dot_rest_in_axes3_x*v.sps_v_2_t);
     /* (sps-qd_2) rate of joint 2 */
     const real sps_qd_2_t = inv_sps_w_1_t*(v.sps_S_dot_rest_in_axes3_y*v.sps_v_1_in_axes3_x -
         v.sps_S_dot_rest_in_axes3_x*sps_v_1_in_axes3_y);
@@ -3623,11 +3664,11 @@ INLINE void joint_accelerations_legs_sps(const prepared *m, size_t w, size_t i, 
     /* (sps-omega_2) angular velocity of link 2 */
     const real sps_omega_2_in_axes3_x = sps_omega_1_in_axes2_x*v.sps_s_3 -
         v.sps_c_3*sps_qd_2_t;
-    const real sps_omega_2_in_axes3_y = v.sps_c_3*sps_omega_1_in_axes2_x +
-        sps_qd_2_t*v.sps_s_3;
+    const real sps_omega_2_in_axes3_y = sps_qd_2_t*v.sps_s_3 +
+        v.sps_c_3*sps_omega_1_in_axes2_x;
     /* (sps-omega_3) angular velocity of link 3 */
     const real sps_yd_3 = V[place_sps_yd_3[i]*w + j];
-    const real sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_y + sps_yd_3;
+    const real sps_omega_3_in_axes3_z = sps_yd_3 + sps_omega_1_in_axes2_y;
     /* (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
     const real sps_zeta_2_t = sps_omega_1_in_axes2_y*sps_qd_2_t;
     /* (sps-beta_3) angular acceleration of link 3 at zero joint accelerations */
@@ -3637,7 +3678,7 @@ INLINE void joint_accelerations_legs_sps(const prepared *m, size_t w, size_t i, 
         sps_omega_2_in_axes3_x*sps_yd_3;
     /* (sps-bias) acceleration of the connection point at zero joint accelerations */
     const real sps_bias_in_axes3_x = v.sps_bias_t*sps_omega_2_in_axes3_y +
-        v.sps_root_2*(sps_beta_3_in_axes3_y + sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z);
+        v.sps_root_2*(sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z + sps_beta_3_in_axes3_y);
     const real sps_bias_in_axes3_y =
         v.sps_root_2*(sps_omega_2_in_axes3_y*sps_omega_3_in_axes3_z - sps_beta_3_in_axes3_x) -
         v.sps_bias_t*sps_omega_2_in_axes3_x;
@@ -3688,7 +3729,8 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 {
     real s[9] = {0};
     real o_sps[6*LEGS(LEGS_OF_sps)] = {0};
-    joint_accelerations_before(m, 1, 0, X, s, t);
+    values v;
+    joint_accelerations_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
         joint_accelerations_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), s, X, V, A, o_sps);
     }
@@ -3703,7 +3745,8 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real s[9*LANES];
     real o_sps[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_accelerations_before(m, LANES, k, X, s, t);
+        values v;
+        joint_accelerations_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3716,20 +3759,20 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void legs_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3745,33 +3788,33 @@ INLINE void legs_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_
     const real sps_mu_3_t = v.sps_omega_2_in_axes3_x*v.sps_omega_2_in_axes3_x;
     const real sps_mu_3_t_2 = v.sps_omega_2_in_axes3_y*v.sps_omega_2_in_axes3_y;
     const real sps_mu_3_t_3 = v.sps_omega_3_in_axes3_z*v.sps_omega_3_in_axes3_z;
-    const real sps_mu_3_in_axes3_x = v.sps_B_3_in_axes3_yx*m->sps_J_group_3_in_axes3_xz[i] +
-        v.sps_B_3_in_axes3_zy*m->sps_Sigma_3_in_axes3_yy[i] +
-        m->sps_J_group_3_in_axes3_yz[i]*(sps_mu_3_t_2 - sps_mu_3_t_3) +
-        v.sps_acc_4_in_axes3_z*m->sps_h_4_in_spec3_z[i] +
+    const real sps_mu_3_in_axes3_x = v.sps_acc_4_in_axes3_z*m->sps_h_4_in_spec3_z[i] -
+        v.sps_g_in_axes3_z*m->sps_h_3_in_spec3_z[i] +
         v.sps_g_in_axes3_y*m->sps_h_3_in_spec3_x[i] -
+        v.sps_acc_4_in_axes3_y*m->sps_h_4_in_spec3_x[i] +
+        m->sps_J_group_3_in_axes3_yz[i]*(sps_mu_3_t_2 - sps_mu_3_t_3) +
+        v.sps_B_3_in_axes3_yx*m->sps_J_group_3_in_axes3_xz[i] +
+        v.sps_B_3_in_axes3_zy*m->sps_Sigma_3_in_axes3_yy[i] -
         v.sps_B_3_in_axes3_yz*m->sps_Sigma_3_in_axes3_zz[i] -
-        v.sps_B_3_in_axes3_zx*m->sps_J_group_3_in_axes3_xy[i] -
-        v.sps_acc_4_in_axes3_y*m->sps_h_4_in_spec3_x[i] -
-        v.sps_g_in_axes3_z*m->sps_h_3_in_spec3_z[i];
-    const real sps_mu_3_in_axes3_y = v.sps_B_3_in_axes3_xz*m->sps_Sigma_3_in_axes3_zz[i] +
-        v.sps_B_3_in_axes3_zy*m->sps_J_group_3_in_axes3_xy[i] +
-        v.sps_acc_4_in_axes3_x*m->sps_h_4_in_spec3_x[i] +
-        v.sps_g_in_axes3_z*m->sps_h_3_in_spec3_y[i] -
-        v.sps_B_3_in_axes3_xy*m->sps_J_group_3_in_axes3_yz[i] -
-        v.sps_B_3_in_axes3_zx*m->sps_Sigma_3_in_axes3_xx[i] -
-        m->sps_J_group_3_in_axes3_xz[i]*(sps_mu_3_t - sps_mu_3_t_3) -
+        v.sps_B_3_in_axes3_zx*m->sps_J_group_3_in_axes3_xy[i];
+    const real sps_mu_3_in_axes3_y = v.sps_g_in_axes3_z*m->sps_h_3_in_spec3_y[i] -
         v.sps_acc_4_in_axes3_z*m->sps_h_4_in_spec3_y[i] -
-        v.sps_g_in_axes3_x*m->sps_h_3_in_spec3_x[i];
-    const real sps_mu_3_in_axes3_z = v.sps_B_3_in_axes3_xz*m->sps_J_group_3_in_axes3_yz[i] +
-        v.sps_B_3_in_axes3_yx*m->sps_Sigma_3_in_axes3_xx[i] +
-        m->sps_J_group_3_in_axes3_xy[i]*(sps_mu_3_t - sps_mu_3_t_2) +
-        v.sps_acc_4_in_axes3_y*m->sps_h_4_in_spec3_y[i] +
+        v.sps_g_in_axes3_x*m->sps_h_3_in_spec3_x[i] +
+        v.sps_acc_4_in_axes3_x*m->sps_h_4_in_spec3_x[i] -
+        m->sps_J_group_3_in_axes3_xz[i]*(sps_mu_3_t - sps_mu_3_t_3) +
+        v.sps_B_3_in_axes3_xz*m->sps_Sigma_3_in_axes3_zz[i] +
+        v.sps_B_3_in_axes3_zy*m->sps_J_group_3_in_axes3_xy[i] -
+        v.sps_B_3_in_axes3_xy*m->sps_J_group_3_in_axes3_yz[i] -
+        v.sps_B_3_in_axes3_zx*m->sps_Sigma_3_in_axes3_xx[i];
+    const real sps_mu_3_in_axes3_z = v.sps_acc_4_in_axes3_y*m->sps_h_4_in_spec3_y[i] -
+        v.sps_g_in_axes3_y*m->sps_h_3_in_spec3_y[i] +
         v.sps_g_in_axes3_x*m->sps_h_3_in_spec3_z[i] -
+        v.sps_acc_4_in_axes3_x*m->sps_h_4_in_spec3_z[i] +
+        m->sps_J_group_3_in_axes3_xy[i]*(sps_mu_3_t - sps_mu_3_t_2) +
+        v.sps_B_3_in_axes3_xz*m->sps_J_group_3_in_axes3_yz[i] +
+        v.sps_B_3_in_axes3_yx*m->sps_Sigma_3_in_axes3_xx[i] -
         v.sps_B_3_in_axes3_xy*m->sps_Sigma_3_in_axes3_yy[i] -
-        v.sps_B_3_in_axes3_yz*m->sps_J_group_3_in_axes3_xz[i] -
-        v.sps_acc_4_in_axes3_x*m->sps_h_4_in_spec3_z[i] -
-        v.sps_g_in_axes3_y*m->sps_h_3_in_spec3_y[i];
+        v.sps_B_3_in_axes3_yz*m->sps_J_group_3_in_axes3_xz[i];
     const real sps_mu_3_in_axes2_z = v.sps_c_3*sps_mu_3_in_axes3_x -
         sps_mu_3_in_axes3_y*v.sps_s_3;
     /* (sps-Gamma_1) moment about axis 1 of the distal links' inertia and weight */
@@ -3780,28 +3823,32 @@ INLINE void legs_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_
     /* (sps-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real sps_c_in_axes3_x = m->sps_h_4_in_spec3_y[i]*(sps_mu_3_t_2 + sps_mu_3_t_3) -
-        v.inv_sps_w_1_t*(sps_Gamma_1*v.sps_v_2_t + sps_mu_3_in_axes2_z*v.sps_v_1_in_axes3_y) -
         v.sps_B_3_in_axes3_xy*m->sps_h_4_in_spec3_z[i] -
-        v.sps_B_3_in_axes3_xz*m->sps_h_4_in_spec3_x[i];
-    const real sps_c_in_axes3_y = v.inv_sps_w_1_t*(sps_mu_3_in_axes2_z*v.sps_v_1_in_axes3_x -
-        sps_Gamma_1*v.sps_v_2_in_axes3_x) + m->sps_h_4_in_spec3_z[i]*(sps_mu_3_t +
-        sps_mu_3_t_3) - v.sps_B_3_in_axes3_yx*m->sps_h_4_in_spec3_y[i] -
-        v.sps_B_3_in_axes3_yz*m->sps_h_4_in_spec3_x[i];
+        v.sps_B_3_in_axes3_xz*m->sps_h_4_in_spec3_x[i] -
+        v.inv_sps_w_1_t*(sps_mu_3_in_axes2_z*v.sps_v_1_in_axes3_y + sps_Gamma_1*v.sps_v_2_t);
+    const real sps_c_in_axes3_y = m->sps_h_4_in_spec3_z[i]*(sps_mu_3_t + sps_mu_3_t_3) -
+        v.sps_B_3_in_axes3_yx*m->sps_h_4_in_spec3_y[i] -
+        v.sps_B_3_in_axes3_yz*m->sps_h_4_in_spec3_x[i] +
+        v.inv_sps_w_1_t*(sps_mu_3_in_axes2_z*v.sps_v_1_in_axes3_x -
+        sps_Gamma_1*v.sps_v_2_in_axes3_x);
     /* (sps-c_true) leg force on the platform without actuation, the last link's mass included */
     const real sps_c_true_in_axes3_x = sps_c_in_axes3_x -
         v.sps_acc_4_in_axes3_x*m->sps_link4_mass[i];
     const real sps_c_true_in_axes3_y = sps_c_in_axes3_y -
         v.sps_acc_4_in_axes3_y*m->sps_link4_mass[i];
     const real sps_c_true_in_axes3_z = m->sps_h_4_in_spec3_x[i]*(sps_mu_3_t + sps_mu_3_t_2) -
+        v.sps_acc_4_in_axes3_z*m->sps_link4_mass[i] -
         v.sps_B_3_in_axes3_zx*m->sps_h_4_in_spec3_y[i] -
-        v.sps_B_3_in_axes3_zy*m->sps_h_4_in_spec3_z[i] -
-        v.sps_acc_4_in_axes3_z*m->sps_link4_mass[i];
-    const real sps_c_true_x = v.axis_x_sps_axes3_x*sps_c_true_in_axes3_x +
-        v.axis_y_sps_axes3_x*sps_c_true_in_axes3_y + sps_c_true_in_axes3_z*v.sps_w_4_x;
-    const real sps_c_true_y = v.axis_x_sps_axes3_y*sps_c_true_in_axes3_x +
-        v.axis_y_sps_axes3_y*sps_c_true_in_axes3_y + sps_c_true_in_axes3_z*v.sps_w_4_y;
-    const real sps_c_true_z = v.axis_x_sps_axes3_z*sps_c_true_in_axes3_x +
-        v.axis_y_sps_axes3_z*sps_c_true_in_axes3_y + sps_c_true_in_axes3_z*v.sps_w_4_z;
+        v.sps_B_3_in_axes3_zy*m->sps_h_4_in_spec3_z[i];
+    const real sps_c_true_x = sps_c_true_in_axes3_z*v.sps_w_4_x +
+        v.axis_x_sps_axes3_x*sps_c_true_in_axes3_x +
+        v.axis_y_sps_axes3_x*sps_c_true_in_axes3_y;
+    const real sps_c_true_y = sps_c_true_in_axes3_z*v.sps_w_4_y +
+        v.axis_x_sps_axes3_y*sps_c_true_in_axes3_x +
+        v.axis_y_sps_axes3_y*sps_c_true_in_axes3_y;
+    const real sps_c_true_z = sps_c_true_in_axes3_z*v.sps_w_4_z +
+        v.axis_x_sps_axes3_z*sps_c_true_in_axes3_x +
+        v.axis_y_sps_axes3_z*sps_c_true_in_axes3_y;
     /* (sps-c_true) */
     o[0*count + k] = sps_c_true_x;
     o[1*count + k] = sps_c_true_y;
@@ -3832,7 +3879,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 {
     real s[9] = {0};
     real o_sps[7*LEGS(LEGS_OF_sps)] = {0};
-    legs_before(m, 1, 0, X, s, t);
+    values v;
+    legs_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
         legs_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), s, X, V, A, o_sps);
     }
@@ -3842,32 +3890,36 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s)
+{
     /* (potential) potential energy */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
-    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x +
-        v.R_xy*m->h_star_in_platform_y + v.R_xz*m->h_star_in_platform_z + m->m_star*t_x) +
-        m->gravity_y*(v.R_yx*m->h_star_in_platform_x + v.R_yy*m->h_star_in_platform_y +
-        v.R_yz*m->h_star_in_platform_z + m->m_star*t_y) +
-        m->gravity_z*(v.R_zx*m->h_star_in_platform_x + v.R_zy*m->h_star_in_platform_y +
-        v.R_zz*m->h_star_in_platform_z + m->m_star*t_z);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+    const real potential_t = m->gravity_x*(m->m_star*t_x + v->R_xy*m->h_star_in_platform_y +
+        v->R_xz*m->h_star_in_platform_z + v->R_xx*m->h_star_in_platform_x) +
+        m->gravity_y*(m->m_star*t_y + v->R_yx*m->h_star_in_platform_x +
+        v->R_yz*m->h_star_in_platform_z + v->R_yy*m->h_star_in_platform_y) +
+        m->gravity_z*(m->m_star*t_z + v->R_zx*m->h_star_in_platform_x +
+        v->R_zy*m->h_star_in_platform_y + v->R_zz*m->h_star_in_platform_z);
     s[9*w + k] = potential_t;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void potential_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3921,7 +3973,7 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     /* (potential) */
     const real potential_of_legs = sums[0*w + k];
     const real potential_t = s[9*w + k];
-    const real potential_ = -potential_of_legs - potential_t;
+    const real potential_ = -potential_t - potential_of_legs;
     /* (potential) */
     potential[0*w + k] = potential_;
 }
@@ -3930,7 +3982,8 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 {
     real s[10] = {0}, sums[1] = {0};
     real terms_sps[LEGS(LEGS_OF_sps)] = {0}, o_sps[LEGS(LEGS_OF_sps)] = {0};
-    potential_before(m, 1, 0, X, s, t);
+    values v;
+    potential_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
         potential_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), 0, s, X, terms_sps, o_sps);
     }
@@ -3940,28 +3993,28 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_sps + n*LEGS(LEGS_OF_sps), LEGS_OF_sps);
     }
+    potential_between(m, 1, 0, X, &v, s);
     potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
-    *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, real *lengths, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void condition_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -4037,7 +4090,8 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     real terms_sps[LEGS(LEGS_OF_sps)] = {0}, o_sps[9*LEGS(LEGS_OF_sps)] = {0};
     clear(H, NV*NU);
     clear(reach, NL);
-    condition_before(m, 1, 0, X, s, lengths, t);
+    values v;
+    condition_before(m, 1, 0, X, &v, s, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
         condition_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), 0, s, X, terms_sps, o_sps);
     }
@@ -4063,11 +4117,7 @@ int stewart_sps_M(const prepared *m, const real *X, real *M_out)
         check(NV*NV, 1, M, why.overflow);
     }
     copy(NV*NV, M, M_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-    }
-    return code;
+    return settled(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -4096,11 +4146,7 @@ int stewart_sps_Z(const prepared *m, const real *X, const real *V, real *Z_out)
         check(NV, 1, Z, why.overflow);
     }
     copy(NV, Z, Z_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, Z_out);
-    }
-    return code;
+    return settled(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -4124,11 +4170,7 @@ int stewart_sps_H(const prepared *m, const real *X, real *H_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -4153,11 +4195,7 @@ int stewart_sps_inverse_kinematics(const prepared *m, const real *X, real *q_out
         check(NJ, 1, q, why.overflow);
     }
     copy(NJ, q, q_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, q_out);
-    }
-    return code;
+    return settled(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -4186,11 +4224,7 @@ int stewart_sps_joint_rates(const prepared *m, const real *X, const real *V, rea
         check(NJ, 1, qd, why.overflow);
     }
     copy(NJ, qd, qd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qd_out);
-    }
-    return code;
+    return settled(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -4223,11 +4257,7 @@ int stewart_sps_joint_accelerations(const prepared *m, const real *X, const real
         check(NJ, 1, qdd, why.overflow);
     }
     copy(NJ, qdd, qdd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qdd_out);
-    }
-    return code;
+    return settled(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4264,13 +4294,9 @@ int stewart_sps_dynamics(const prepared *m, const real *X, const real *V, real *
     copy(NV*NV, M, M_out);
     copy(NV, Z, Z_out);
     copy(NV*NU, H, H_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-        refuse(NV, Z_out);
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    settled(&why, NV*NV, M_out);
+    settled(&why, NV, Z_out);
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -4464,8 +4490,9 @@ static const real sizes_tau[] = {0.25, 1.0, 0.25, 0.25, 0.25, 0.25};
 int stewart_sps_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out)
 {
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, extend_1[12] = {0}, subtract_1[NV] = {0},
-        unsure_tau[1] = {0}, work[NU*PADDED(NU)];
+    static const real no_wrench[NW] = {0};
+    real required[NV] = {0}, H[NV*NU] = {0}, extend_1[12] = {0}, subtract_1[NV] = {0}, unsure_tau[1] =
+        {0}, work[NU*PADDED(NU)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
@@ -4474,7 +4501,7 @@ int stewart_sps_inverse_dynamics(const prepared *m, const real *X, const real *V
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < 12; ++i) {
         extend_1[i] = i < NW ? wrench[i] : 0;
@@ -4493,11 +4520,7 @@ int stewart_sps_inverse_dynamics(const prepared *m, const real *X, const real *V
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, tau_out);
-    }
-    return code;
+    return settled(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -4528,8 +4551,9 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 int stewart_sps_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau,
     const real *wrench, real *A_out)
 {
-    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, extend_1[12] =
-        {0}, add_1[NV] = {0}, subtract_1[NV] = {0}, work[NV*PADDED(NV)];
+    static const real no_wrench[NW] = {0};
+    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, extend_1[12] = {0}, add_1[NV]
+        = {0}, subtract_1[NV] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
@@ -4538,7 +4562,7 @@ int stewart_sps_forward_dynamics(const prepared *m, const real *X, const real *V
         check(NV, 1, V, why.invalid);
         check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     for (size_t i = 0; i < 12; ++i) {
@@ -4553,11 +4577,7 @@ int stewart_sps_forward_dynamics(const prepared *m, const real *X, const real *V
     set_matrix(NV, 1, M, work);
     solve_state(NV, subtract_1, work, A_out, why.singular);
     check(NV, 1, A_out, why.overflow);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, A_out);
-    }
-    return code;
+    return settled(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4597,11 +4617,12 @@ static const real sizes_solve_1[] = {0.0009765625, 0.0009765625, 0.0009765625, 0
 int stewart_sps_complete_acceleration(const prepared *m, const real *X, const real *V, const real
     *A, const real *wrench, real *completed_out)
 {
+    static const real no_wrench[NW] = {0};
     static const size_t places_clear_at_1[] = {6, 7, 8, 9, 10, 11};
     static const size_t places_take_columns_1[] = {6, 7, 8, 9, 10, 11};
     static const size_t places_completed[] = {6, 7, 8, 9, 10, 11};
-    real wrench_in[NW], clear_at_1[NV] = {0}, M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV]
-        = {0}, add_1[NV] = {0}, extend_1[12] = {0}, subtract_1[NV] = {0}, take_columns_1[6*NV] = {0},
+    real clear_at_1[NV] = {0}, M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0},
+        add_1[NV] = {0}, extend_1[12] = {0}, subtract_1[NV] = {0}, take_columns_1[6*NV] = {0},
         negative_1[6] = {0}, solve_1[6] = {0}, unsure_solve_1[1] = {0}, completed[NV] = {0},
         work[6*PADDED(6)];
     verdict why;
@@ -4612,7 +4633,7 @@ int stewart_sps_complete_acceleration(const prepared *m, const real *X, const re
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     for (size_t i = 0; i < NV; ++i) {
         clear_at_1[i] = A[i];
     }
@@ -4647,11 +4668,7 @@ int stewart_sps_complete_acceleration(const prepared *m, const real *X, const re
     check(NV, 1, completed, why.overflow);
     check(NV*NU, 1, H, why.overflow);
     copy(NV, completed, completed_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, completed_out);
-    }
-    return code;
+    return settled(&why, NV, completed_out);
 }
 
 INLINE void complete_acceleration_lanes(const prepared *m, const real *X, const real *V, const
@@ -4705,10 +4722,11 @@ INLINE void complete_acceleration_lanes(const prepared *m, const real *X, const 
 int stewart_sps_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out)
 {
+    static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2, 3, 4, 5};
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, extend_1[12] = {0}, subtract_1[NV] = {0},
-        solve_1[NU] = {0}, unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[18] = {0},
-        forces[3*NL] = {0}, work[NU*PADDED(NU)];
+    real required[NV] = {0}, H[NV*NU] = {0}, extend_1[12] = {0}, subtract_1[NV] = {0}, solve_1[NU] =
+        {0}, unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[18] = {0}, forces[3*NL] = {0},
+        work[NU*PADDED(NU)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
@@ -4717,7 +4735,7 @@ int stewart_sps_leg_reactions(const prepared *m, const real *X, const real *V, c
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < 12; ++i) {
         extend_1[i] = i < NW ? wrench[i] : 0;
@@ -4740,11 +4758,7 @@ int stewart_sps_leg_reactions(const prepared *m, const real *X, const real *V, c
     add_forces(NL, 3, 1, places_forces, solve_1, actuator, forces);
     check(3*NL, 1, forces, why.overflow);
     copy(3*NL, forces, forces_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(3*NL, forces_out);
-    }
-    return code;
+    return settled(&why, 3*NL, forces_out);
 }
 
 int stewart_sps_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
@@ -4766,25 +4780,22 @@ int stewart_sps_energy(const prepared *m, const real *X, const real *V, real *ki
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, kinetic_out);
-        refuse(1, potential_out);
-    }
-    return code;
+    settled(&why, 1, kinetic_out);
+    return settled(&why, 1, potential_out);
 }
 
 int stewart_sps_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
     const real *length = NULL;
+    static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5, 6, 7, 8, 9, 10, 11};
-    real length_in[1], H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NU] = {0};
+    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
+        divide_rows_1[NV*NU] = {0}, sigma[NU] = {0};
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, length, 0, length_in, why.invalid);
+    length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
@@ -4802,12 +4813,8 @@ int stewart_sps_condition(const prepared *m, const real *X, real *sigma_out, rea
     check(NL, 1, reach, why.overflow);
     copy(NU, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, sigma_out);
-        refuse(NL, legs_out);
-    }
-    return code;
+    settled(&why, NU, sigma_out);
+    return settled(&why, NL, legs_out);
 }
 
 int stewart_sps_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -4841,12 +4848,8 @@ int stewart_sps_manipulability(const prepared *m, const real *X, real *measure_o
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, measure_out);
-        refuse(1, isotropy_out);
-    }
-    return code;
+    settled(&why, 1, measure_out);
+    return settled(&why, 1, isotropy_out);
 }
 
 int stewart_sps_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
@@ -4880,12 +4883,8 @@ int stewart_sps_singularity_distance(const prepared *m, const real *X, real *act
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, actuators_out);
-        refuse(1, legs_out);
-    }
-    return code;
+    settled(&why, 1, actuators_out);
+    return settled(&why, 1, legs_out);
 }
 
 static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
@@ -4905,11 +4904,7 @@ static int mismatch_one(const prepared *m, const real *X, const real *q_actuated
     }
     check(NU, 1, gap, why.overflow);
     copy(NU, gap, gap_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, gap_out);
-    }
-    return code;
+    return settled(&why, NU, gap_out);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
@@ -4921,11 +4916,7 @@ static int slope_one(const prepared *m, const real *X, real *slope_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, slope_out);
-    }
-    return code;
+    return settled(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -4987,11 +4978,7 @@ int stewart_sps_forward_kinematics(const prepared *m, const real *q_actuated, co
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int stewart_sps_dissipation(const prepared *m, const real *X, const real *V, real
@@ -5009,11 +4996,7 @@ int stewart_sps_dissipation(const prepared *m, const real *X, const real *V, rea
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, dissipation_out);
-    }
-    return code;
+    return settled(&why, 1, dissipation_out);
 }
 
 int stewart_sps_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
@@ -5030,11 +5013,7 @@ int stewart_sps_momentum(const prepared *m, const real *X, const real *V, real *
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, momentum_out);
-    }
-    return code;
+    return settled(&why, NV, momentum_out);
 }
 
 int stewart_sps_joint_margins(const prepared *m, const real *X, real *margins_out)
@@ -5051,11 +5030,7 @@ int stewart_sps_joint_margins(const prepared *m, const real *X, real *margins_ou
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, margins_out);
-    }
-    return code;
+    return settled(&why, NJ, margins_out);
 }
 
 int stewart_sps_within_limits(const prepared *m, const real *X, real *within_out)
@@ -5071,11 +5046,7 @@ int stewart_sps_within_limits(const prepared *m, const real *X, real *within_out
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, within_out);
-    }
-    return code;
+    return settled(&why, 1, within_out);
 }
 
 int stewart_sps_actuator_positions(const prepared *m, const real *X, real *q_out)
@@ -5088,11 +5059,7 @@ int stewart_sps_actuator_positions(const prepared *m, const real *X, real *q_out
     take(NU, 1, stewart_sps_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, q_out);
-    }
-    return code;
+    return settled(&why, NU, q_out);
 }
 
 int stewart_sps_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
@@ -5109,11 +5076,7 @@ int stewart_sps_actuator_rates(const prepared *m, const real *X, const real *V, 
     take(NU, 1, stewart_sps_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qd_out);
-    }
-    return code;
+    return settled(&why, NU, qd_out);
 }
 
 int stewart_sps_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
@@ -5132,11 +5095,7 @@ int stewart_sps_actuator_accelerations(const prepared *m, const real *X, const r
     take(NU, 1, stewart_sps_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qdd_out);
-    }
-    return code;
+    return settled(&why, NU, qdd_out);
 }
 
 int stewart_sps_power(const prepared *m, const real *X, const real *V, const real *tau, real
@@ -5156,11 +5115,7 @@ int stewart_sps_power(const prepared *m, const real *X, const real *V, const rea
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, power_out);
-    }
-    return code;
+    return settled(&why, 1, power_out);
 }
 
 int stewart_sps_rotation(const real *X, real *R_out)
@@ -5173,11 +5128,7 @@ int stewart_sps_rotation(const real *X, real *R_out)
     rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     copy(9, R, R_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(9, R_out);
-    }
-    return code;
+    return settled(&why, 9, R_out);
 }
 
 int stewart_sps_pose(const real *t, const real *R, real *X_out)
@@ -5197,11 +5148,7 @@ int stewart_sps_pose(const real *t, const real *R, real *X_out)
     }
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int stewart_sps_X_dot(const real *X, const real *V, real *X_dot_out)
@@ -5223,11 +5170,7 @@ int stewart_sps_X_dot(const real *X, const real *V, real *X_dot_out)
     beside(1, 7, 6, join_1, V_from_6, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_dot_out);
-    }
-    return code;
+    return settled(&why, NQ, X_dot_out);
 }
 
 int stewart_sps_pose_from_rpy(const real *t, const real *rpy, real *X_out)
@@ -5247,11 +5190,7 @@ int stewart_sps_pose_from_rpy(const real *t, const real *rpy, real *X_out)
     }
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int stewart_sps_retract(const real *X, const real *step, real *X_moved_out)
@@ -5282,11 +5221,7 @@ int stewart_sps_retract(const real *X, const real *step, real *X_moved_out)
     beside(1, 7, 6, join_1, add_2, X_moved);
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_moved_out);
-    }
-    return code;
+    return settled(&why, NQ, X_moved_out);
 }
 
 int stewart_sps_difference(const real *X0, const real *X1, real *step_out)
@@ -5317,11 +5252,7 @@ int stewart_sps_difference(const real *X0, const real *X1, real *step_out)
     beside(1, 6, 6, join_1, subtract_2, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, step_out);
-    }
-    return code;
+    return settled(&why, NV, step_out);
 }
 
 int stewart_sps_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
@@ -5372,11 +5303,7 @@ int stewart_sps_interpolate(const real *X0, const real *X1, const real *s, real 
     beside(1, 7, 6, join_3, add_2, X);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 /* ---- one state, and batches ---- */

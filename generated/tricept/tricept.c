@@ -238,15 +238,12 @@ INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *t
 }
 
 /* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
-INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+INLINE const real *optional(size_t size, const real *x, const real *none, real *flags)
 {
-    for (size_t e = 0; e < size && !x; ++e) {
-        own[e] = none;
-    }
     if (x) {
         check(size, 1, x, flags);
     }
-    return x ? x : own;
+    return x ? x : none;
 }
 
 INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
@@ -303,6 +300,16 @@ APART void refuse(size_t size, real *out)
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
     }
+}
+
+/* The status of a state; an output is refused where it is impossible. */
+INLINE int settled(const verdict *t, size_t size, real *out)
+{
+    const int code = judge(t);
+    if (code != OK) {
+        refuse(size, out);
+    }
+    return code;
 }
 
 /* Outputs of a state where the user wants them, and of states side by side, state by state. */
@@ -423,24 +430,24 @@ INLINE int all_rotations(const real *x, size_t n)
 /* ---- parameters ---- */
 
 const tricept_params tricept_default_params = {
-    {R(0.0), R(0.0), R(-9.81)},  /* gravity */
+    {0, 0, R(-9.81)},  /* gravity */
     R(55.0),  /* platform_mass */
-    {R(0.0), R(0.02), R(-0.18)},  /* platform_centre_of_mass */
-    {{R(1.9), R(0.0), R(0.0)}, {R(0.0), R(1.8), R(0.05)}, {R(0.0), R(0.05), R(0.7)}},  /* platform_inertia */
+    {0, R(0.02), R(-0.18)},  /* platform_centre_of_mass */
+    {{R(1.9), 0, 0}, {0, R(1.8), R(0.05)}, {0, R(0.05), R(0.7)}},  /* platform_inertia */
     {  /* ups_base_point */
-        {R(0.433012701892219), R(0.25), R(0.0)},
-        {R(-0.433012701892219), R(0.25), R(0.0)},
-        {R(0.0), R(-0.5), R(0.0)},
+        {R(0.433012701892219), R(0.25), 0},
+        {R(-0.433012701892219), R(0.25), 0},
+        {0, R(-0.5), 0},
     },
     {  /* ups_base_frame */
-        {{R(0.0), R(-0.866025403784439), R(-0.5)}, {R(0.0), R(-0.5), R(0.866025403784439)}, {R(-1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(0.866025403784439), R(-0.5)}, {R(0.0), R(-0.5), R(-0.866025403784439)}, {R(-1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(0.0), R(1.0)}, {R(0.0), R(1.0), R(0.0)}, {R(-1.0), R(0.0), R(0.0)}},
+        {{0, R(-0.866025403784439), R(-0.5)}, {0, R(-0.5), R(0.866025403784439)}, {R(-1.0), 0, 0}},
+        {{0, R(0.866025403784439), R(-0.5)}, {0, R(-0.5), R(-0.866025403784439)}, {R(-1.0), 0, 0}},
+        {{0, 0, 1}, {0, 1, 0}, {R(-1.0), 0, 0}},
     },
     {  /* ups_platform_point */
-        {R(0.173205080756888), R(0.1), R(0.0)},
-        {R(-0.173205080756888), R(0.1), R(0.0)},
-        {R(0.0), R(-0.2), R(0.0)},
+        {R(0.173205080756888), R(0.1), 0},
+        {R(-0.173205080756888), R(0.1), 0},
+        {0, R(-0.2), 0},
     },
     {  /* ups_link2_mass */
         R(28.0),
@@ -448,14 +455,14 @@ const tricept_params tricept_default_params = {
         R(28.0),
     },
     {  /* ups_link2_centre_of_mass */
-        {R(-0.12), R(0.0), R(0.0)},
-        {R(-0.12), R(0.0), R(0.0)},
-        {R(-0.12), R(0.0), R(0.0)},
+        {R(-0.12), 0, 0},
+        {R(-0.12), 0, 0},
+        {R(-0.12), 0, 0},
     },
     {  /* ups_link2_inertia */
-        {{R(0.12), R(0.0), R(0.0)}, {R(0.0), R(0.65), R(0.0)}, {R(0.0), R(0.0), R(0.65)}},
-        {{R(0.12), R(0.0), R(0.0)}, {R(0.0), R(0.65), R(0.0)}, {R(0.0), R(0.0), R(0.65)}},
-        {{R(0.12), R(0.0), R(0.0)}, {R(0.0), R(0.65), R(0.0)}, {R(0.0), R(0.0), R(0.65)}},
+        {{R(0.12), 0, 0}, {0, R(0.65), 0}, {0, 0, R(0.65)}},
+        {{R(0.12), 0, 0}, {0, R(0.65), 0}, {0, 0, R(0.65)}},
+        {{R(0.12), 0, 0}, {0, R(0.65), 0}, {0, 0, R(0.65)}},
     },
     {  /* ups_link3_mass */
         R(14.0),
@@ -463,49 +470,49 @@ const tricept_params tricept_default_params = {
         R(14.0),
     },
     {  /* ups_link3_centre_of_mass */
-        {R(-0.7), R(0.0), R(0.0)},
-        {R(-0.7), R(0.0), R(0.0)},
-        {R(-0.7), R(0.0), R(0.0)},
+        {R(-0.7), 0, 0},
+        {R(-0.7), 0, 0},
+        {R(-0.7), 0, 0},
     },
     {  /* ups_link3_inertia */
-        {{R(0.004), R(0.0), R(0.0)}, {R(0.0), R(2.3), R(0.0)}, {R(0.0), R(0.0), R(2.3)}},
-        {{R(0.004), R(0.0), R(0.0)}, {R(0.0), R(2.3), R(0.0)}, {R(0.0), R(0.0), R(2.3)}},
-        {{R(0.004), R(0.0), R(0.0)}, {R(0.0), R(2.3), R(0.0)}, {R(0.0), R(0.0), R(2.3)}},
+        {{R(0.004), 0, 0}, {0, R(2.3), 0}, {0, 0, R(2.3)}},
+        {{R(0.004), 0, 0}, {0, R(2.3), 0}, {0, 0, R(2.3)}},
+        {{R(0.004), 0, 0}, {0, R(2.3), 0}, {0, 0, R(2.3)}},
     },
     {  /* tube_base_point */
-        {R(0.0), R(0.0), R(0.0)},
+        {0, 0, 0},
     },
     {  /* tube_base_frame */
-        {{R(0.0), R(0.0), R(1.0)}, {R(0.0), R(1.0), R(0.0)}, {R(-1.0), R(0.0), R(0.0)}},
+        {{0, 0, 1}, {0, 1, 0}, {R(-1.0), 0, 0}},
     },
     {  /* tube_platform_point */
-        {R(0.0), R(0.0), R(0.0)},
+        {0, 0, 0},
     },
     {  /* tube_platform_joint_rotation */
-        {{R(0.0), R(0.0), R(-1.0)}, {R(0.0), R(1.0), R(0.0)}, {R(1.0), R(0.0), R(0.0)}},
+        {{0, 0, R(-1.0)}, {0, 1, 0}, {1, 0, 0}},
     },
     {  /* tube_link2_mass */
         R(20.0),
     },
     {  /* tube_link2_centre_of_mass */
-        {R(0.03), R(0.0), R(0.0)},
+        {R(0.03), 0, 0},
     },
     {  /* tube_link2_inertia */
-        {{R(0.25), R(0.0), R(0.0)}, {R(0.0), R(0.2), R(0.0)}, {R(0.0), R(0.0), R(0.2)}},
+        {{R(0.25), 0, 0}, {0, R(0.2), 0}, {0, 0, R(0.2)}},
     },
     {  /* tube_link3_mass */
         R(62.0),
     },
     {  /* tube_link3_centre_of_mass */
-        {R(-0.75), R(0.0), R(0.0)},
+        {R(-0.75), 0, 0},
     },
     {  /* tube_link3_inertia */
-        {{R(0.3), R(0.0), R(0.0)}, {R(0.0), R(12.5), R(0.0)}, {R(0.0), R(0.0), R(12.5)}},
+        {{R(0.3), 0, 0}, {0, R(12.5), 0}, {0, 0, R(12.5)}},
     },
 };
 
-const tricept_real tricept_HOME_X[TRICEPT_NQ] = {R(0.0), R(0.0), R(-1.35), R(0.0), R(0.0), R(0.0), R(1.0)};
-const tricept_real tricept_HOME_Q[TRICEPT_NJ] = {R(0.21866894587394195), R(0.0), R(1.3829316685939332), R(0.21866894587394195), R(0.0), R(1.3829316685939332), R(0.21866894587394195), R(0.0), R(1.3829316685939332), R(0.0), R(0.0), R(1.35)};
+const tricept_real tricept_HOME_X[TRICEPT_NQ] = {0, 0, R(-1.35), 0, 0, 0, 1};
+const tricept_real tricept_HOME_Q[TRICEPT_NJ] = {R(0.21866894587394195), 0, R(1.3829316685939332), R(0.21866894587394195), 0, R(1.3829316685939332), R(0.21866894587394195), 0, R(1.3829316685939332), 0, 0, R(1.35)};
 const size_t tricept_ACTUATED[TRICEPT_NU] = {2, 5, 8};
 const char *const tricept_ACTUATOR_NAMES[TRICEPT_NU] = {
     "leg1_joint3",
@@ -554,6 +561,9 @@ static int acceptable(const tricept_params *p)
     ok &= all_inertias(&p->tube_link3_inertia[0][0][0], LEGS_OF_tube);
     return ok;
 }
+
+#define KEEP(name) model->name = name
+#define KEEP_OF_LEG(name) model->name[leg] = name
 
 int tricept_prepare(const tricept_params *params, tricept_model *model)
 {
@@ -605,9 +615,9 @@ int tricept_prepare(const tricept_params *params, tricept_model *model)
     const real J_star_t_8 = platform_mass*(J_star_t_2 - J_star_t_4);
     const real J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass;
     const real J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4);
-    model->gravity_x = gravity_x;
-    model->gravity_y = gravity_y;
-    model->gravity_z = gravity_z;
+    KEEP(gravity_x);
+    KEEP(gravity_y);
+    KEEP(gravity_z);
     for (size_t leg = 0; leg < FILLED(LEGS_OF_ups); ++leg) {
         const size_t own = leg < LEGS_OF_ups ? leg : 0;
         const real ups_base_point_x = params->ups_base_point[own][0];
@@ -722,46 +732,46 @@ int tricept_prepare(const tricept_params *params, tricept_model *model)
             ups_base_frame_yy*ups_base_point_y + ups_base_frame_zy*ups_base_point_z;
         const real ups_potential_t_3 = ups_base_frame_xz*ups_base_point_x +
             ups_base_frame_yz*ups_base_point_y + ups_base_frame_zz*ups_base_point_z;
-        model->ups_J_group_2_in_axes2_xx[leg] = ups_J_group_2_in_axes2_xx;
-        model->ups_J_group_2_in_axes2_xy[leg] = ups_J_group_2_in_axes2_xy;
-        model->ups_J_group_2_in_axes2_xz[leg] = ups_J_group_2_in_axes2_xz;
-        model->ups_J_group_2_in_axes2_yy[leg] = ups_J_group_2_in_axes2_yy;
-        model->ups_J_group_2_in_axes2_yz[leg] = ups_J_group_2_in_axes2_yz;
-        model->ups_J_group_2_in_axes2_zz[leg] = ups_J_group_2_in_axes2_zz;
-        model->ups_Sigma_2_in_axes2_xx[leg] = ups_Sigma_2_in_axes2_xx;
-        model->ups_Sigma_2_in_axes2_yy[leg] = ups_Sigma_2_in_axes2_yy;
-        model->ups_Sigma_2_in_axes2_zz[leg] = ups_Sigma_2_in_axes2_zz;
-        model->ups_acc_3_t[leg] = ups_acc_3_t;
-        model->ups_acc_3_t_2[leg] = ups_acc_3_t_2;
-        model->ups_acc_3_t_3[leg] = ups_acc_3_t_3;
-        model->ups_base_frame_xx[leg] = ups_base_frame_xx;
-        model->ups_base_frame_xy[leg] = ups_base_frame_xy;
-        model->ups_base_frame_xz[leg] = ups_base_frame_xz;
-        model->ups_base_frame_yx[leg] = ups_base_frame_yx;
-        model->ups_base_frame_yy[leg] = ups_base_frame_yy;
-        model->ups_base_frame_yz[leg] = ups_base_frame_yz;
-        model->ups_base_frame_zx[leg] = ups_base_frame_zx;
-        model->ups_base_frame_zy[leg] = ups_base_frame_zy;
-        model->ups_base_frame_zz[leg] = ups_base_frame_zz;
-        model->ups_base_point_x[leg] = ups_base_point_x;
-        model->ups_base_point_y[leg] = ups_base_point_y;
-        model->ups_base_point_z[leg] = ups_base_point_z;
-        model->ups_branch_1[leg] = ups_branch_1;
-        model->ups_branch_2[leg] = ups_branch_2;
-        model->ups_h_2_in_spec2_x[leg] = ups_h_2_in_spec2_x;
-        model->ups_h_2_in_spec2_y[leg] = ups_h_2_in_spec2_y;
-        model->ups_h_2_in_spec2_z[leg] = ups_h_2_in_spec2_z;
-        model->ups_h_3_in_spec2_x[leg] = ups_h_3_in_spec2_x;
-        model->ups_h_3_in_spec2_y[leg] = ups_h_3_in_spec2_y;
-        model->ups_h_3_in_spec2_z[leg] = ups_h_3_in_spec2_z;
-        model->ups_link2_mass[leg] = ups_link2_mass;
-        model->ups_link3_mass[leg] = ups_link3_mass;
-        model->ups_platform_point_x[leg] = ups_platform_point_x;
-        model->ups_platform_point_y[leg] = ups_platform_point_y;
-        model->ups_platform_point_z[leg] = ups_platform_point_z;
-        model->ups_potential_t[leg] = ups_potential_t;
-        model->ups_potential_t_2[leg] = ups_potential_t_2;
-        model->ups_potential_t_3[leg] = ups_potential_t_3;
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_xx);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_xy);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_xz);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_yy);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_yz);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_zz);
+        KEEP_OF_LEG(ups_Sigma_2_in_axes2_xx);
+        KEEP_OF_LEG(ups_Sigma_2_in_axes2_yy);
+        KEEP_OF_LEG(ups_Sigma_2_in_axes2_zz);
+        KEEP_OF_LEG(ups_acc_3_t);
+        KEEP_OF_LEG(ups_acc_3_t_2);
+        KEEP_OF_LEG(ups_acc_3_t_3);
+        KEEP_OF_LEG(ups_base_frame_xx);
+        KEEP_OF_LEG(ups_base_frame_xy);
+        KEEP_OF_LEG(ups_base_frame_xz);
+        KEEP_OF_LEG(ups_base_frame_yx);
+        KEEP_OF_LEG(ups_base_frame_yy);
+        KEEP_OF_LEG(ups_base_frame_yz);
+        KEEP_OF_LEG(ups_base_frame_zx);
+        KEEP_OF_LEG(ups_base_frame_zy);
+        KEEP_OF_LEG(ups_base_frame_zz);
+        KEEP_OF_LEG(ups_base_point_x);
+        KEEP_OF_LEG(ups_base_point_y);
+        KEEP_OF_LEG(ups_base_point_z);
+        KEEP_OF_LEG(ups_branch_1);
+        KEEP_OF_LEG(ups_branch_2);
+        KEEP_OF_LEG(ups_h_2_in_spec2_x);
+        KEEP_OF_LEG(ups_h_2_in_spec2_y);
+        KEEP_OF_LEG(ups_h_2_in_spec2_z);
+        KEEP_OF_LEG(ups_h_3_in_spec2_x);
+        KEEP_OF_LEG(ups_h_3_in_spec2_y);
+        KEEP_OF_LEG(ups_h_3_in_spec2_z);
+        KEEP_OF_LEG(ups_link2_mass);
+        KEEP_OF_LEG(ups_link3_mass);
+        KEEP_OF_LEG(ups_platform_point_x);
+        KEEP_OF_LEG(ups_platform_point_y);
+        KEEP_OF_LEG(ups_platform_point_z);
+        KEEP_OF_LEG(ups_potential_t);
+        KEEP_OF_LEG(ups_potential_t_2);
+        KEEP_OF_LEG(ups_potential_t_3);
         m_star_of_legs += leg < LEGS_OF_ups ? ups_link3_mass : 0;
         h_star_in_platform_x_of_legs += leg < LEGS_OF_ups ? ups_h_star_t : 0;
         h_star_in_platform_y_of_legs += leg < LEGS_OF_ups ? ups_h_star_t_2 : 0;
@@ -886,55 +896,55 @@ int tricept_prepare(const tricept_params *params, tricept_model *model)
             tube_base_frame_yy*tube_base_point_y + tube_base_frame_zy*tube_base_point_z;
         const real tube_potential_t_3 = tube_base_frame_xz*tube_base_point_x +
             tube_base_frame_yz*tube_base_point_y + tube_base_frame_zz*tube_base_point_z;
-        model->tube_J_group_2_in_axes2_xx[leg] = tube_J_group_2_in_axes2_xx;
-        model->tube_J_group_2_in_axes2_xy[leg] = tube_J_group_2_in_axes2_xy;
-        model->tube_J_group_2_in_axes2_xz[leg] = tube_J_group_2_in_axes2_xz;
-        model->tube_J_group_2_in_axes2_yy[leg] = tube_J_group_2_in_axes2_yy;
-        model->tube_J_group_2_in_axes2_yz[leg] = tube_J_group_2_in_axes2_yz;
-        model->tube_J_group_2_in_axes2_zz[leg] = tube_J_group_2_in_axes2_zz;
-        model->tube_Sigma_2_in_axes2_xx[leg] = tube_Sigma_2_in_axes2_xx;
-        model->tube_Sigma_2_in_axes2_yy[leg] = tube_Sigma_2_in_axes2_yy;
-        model->tube_Sigma_2_in_axes2_zz[leg] = tube_Sigma_2_in_axes2_zz;
-        model->tube_acc_3_t[leg] = tube_acc_3_t;
-        model->tube_acc_3_t_2[leg] = tube_acc_3_t_2;
-        model->tube_acc_3_t_3[leg] = tube_acc_3_t_3;
-        model->tube_base_frame_xx[leg] = tube_base_frame_xx;
-        model->tube_base_frame_xy[leg] = tube_base_frame_xy;
-        model->tube_base_frame_xz[leg] = tube_base_frame_xz;
-        model->tube_base_frame_yx[leg] = tube_base_frame_yx;
-        model->tube_base_frame_yy[leg] = tube_base_frame_yy;
-        model->tube_base_frame_yz[leg] = tube_base_frame_yz;
-        model->tube_base_frame_zx[leg] = tube_base_frame_zx;
-        model->tube_base_frame_zy[leg] = tube_base_frame_zy;
-        model->tube_base_frame_zz[leg] = tube_base_frame_zz;
-        model->tube_base_point_x[leg] = tube_base_point_x;
-        model->tube_base_point_y[leg] = tube_base_point_y;
-        model->tube_base_point_z[leg] = tube_base_point_z;
-        model->tube_branch_1[leg] = tube_branch_1;
-        model->tube_branch_2[leg] = tube_branch_2;
-        model->tube_h_2_in_spec2_x[leg] = tube_h_2_in_spec2_x;
-        model->tube_h_2_in_spec2_y[leg] = tube_h_2_in_spec2_y;
-        model->tube_h_2_in_spec2_z[leg] = tube_h_2_in_spec2_z;
-        model->tube_h_3_in_spec2_x[leg] = tube_h_3_in_spec2_x;
-        model->tube_h_3_in_spec2_y[leg] = tube_h_3_in_spec2_y;
-        model->tube_h_3_in_spec2_z[leg] = tube_h_3_in_spec2_z;
-        model->tube_link2_mass[leg] = tube_link2_mass;
-        model->tube_link3_mass[leg] = tube_link3_mass;
-        model->tube_platform_joint_rotation_xx[leg] = tube_platform_joint_rotation_xx;
-        model->tube_platform_joint_rotation_xy[leg] = tube_platform_joint_rotation_xy;
-        model->tube_platform_joint_rotation_xz[leg] = tube_platform_joint_rotation_xz;
-        model->tube_platform_joint_rotation_yx[leg] = tube_platform_joint_rotation_yx;
-        model->tube_platform_joint_rotation_yy[leg] = tube_platform_joint_rotation_yy;
-        model->tube_platform_joint_rotation_yz[leg] = tube_platform_joint_rotation_yz;
-        model->tube_platform_joint_rotation_zx[leg] = tube_platform_joint_rotation_zx;
-        model->tube_platform_joint_rotation_zy[leg] = tube_platform_joint_rotation_zy;
-        model->tube_platform_joint_rotation_zz[leg] = tube_platform_joint_rotation_zz;
-        model->tube_platform_point_x[leg] = tube_platform_point_x;
-        model->tube_platform_point_y[leg] = tube_platform_point_y;
-        model->tube_platform_point_z[leg] = tube_platform_point_z;
-        model->tube_potential_t[leg] = tube_potential_t;
-        model->tube_potential_t_2[leg] = tube_potential_t_2;
-        model->tube_potential_t_3[leg] = tube_potential_t_3;
+        KEEP_OF_LEG(tube_J_group_2_in_axes2_xx);
+        KEEP_OF_LEG(tube_J_group_2_in_axes2_xy);
+        KEEP_OF_LEG(tube_J_group_2_in_axes2_xz);
+        KEEP_OF_LEG(tube_J_group_2_in_axes2_yy);
+        KEEP_OF_LEG(tube_J_group_2_in_axes2_yz);
+        KEEP_OF_LEG(tube_J_group_2_in_axes2_zz);
+        KEEP_OF_LEG(tube_Sigma_2_in_axes2_xx);
+        KEEP_OF_LEG(tube_Sigma_2_in_axes2_yy);
+        KEEP_OF_LEG(tube_Sigma_2_in_axes2_zz);
+        KEEP_OF_LEG(tube_acc_3_t);
+        KEEP_OF_LEG(tube_acc_3_t_2);
+        KEEP_OF_LEG(tube_acc_3_t_3);
+        KEEP_OF_LEG(tube_base_frame_xx);
+        KEEP_OF_LEG(tube_base_frame_xy);
+        KEEP_OF_LEG(tube_base_frame_xz);
+        KEEP_OF_LEG(tube_base_frame_yx);
+        KEEP_OF_LEG(tube_base_frame_yy);
+        KEEP_OF_LEG(tube_base_frame_yz);
+        KEEP_OF_LEG(tube_base_frame_zx);
+        KEEP_OF_LEG(tube_base_frame_zy);
+        KEEP_OF_LEG(tube_base_frame_zz);
+        KEEP_OF_LEG(tube_base_point_x);
+        KEEP_OF_LEG(tube_base_point_y);
+        KEEP_OF_LEG(tube_base_point_z);
+        KEEP_OF_LEG(tube_branch_1);
+        KEEP_OF_LEG(tube_branch_2);
+        KEEP_OF_LEG(tube_h_2_in_spec2_x);
+        KEEP_OF_LEG(tube_h_2_in_spec2_y);
+        KEEP_OF_LEG(tube_h_2_in_spec2_z);
+        KEEP_OF_LEG(tube_h_3_in_spec2_x);
+        KEEP_OF_LEG(tube_h_3_in_spec2_y);
+        KEEP_OF_LEG(tube_h_3_in_spec2_z);
+        KEEP_OF_LEG(tube_link2_mass);
+        KEEP_OF_LEG(tube_link3_mass);
+        KEEP_OF_LEG(tube_platform_joint_rotation_xx);
+        KEEP_OF_LEG(tube_platform_joint_rotation_xy);
+        KEEP_OF_LEG(tube_platform_joint_rotation_xz);
+        KEEP_OF_LEG(tube_platform_joint_rotation_yx);
+        KEEP_OF_LEG(tube_platform_joint_rotation_yy);
+        KEEP_OF_LEG(tube_platform_joint_rotation_yz);
+        KEEP_OF_LEG(tube_platform_joint_rotation_zx);
+        KEEP_OF_LEG(tube_platform_joint_rotation_zy);
+        KEEP_OF_LEG(tube_platform_joint_rotation_zz);
+        KEEP_OF_LEG(tube_platform_point_x);
+        KEEP_OF_LEG(tube_platform_point_y);
+        KEEP_OF_LEG(tube_platform_point_z);
+        KEEP_OF_LEG(tube_potential_t);
+        KEEP_OF_LEG(tube_potential_t_2);
+        KEEP_OF_LEG(tube_potential_t_3);
         b_c_tube_in_platform_x += tube_platform_point_x;
         b_c_tube_in_platform_y += tube_platform_point_y;
         b_c_tube_in_platform_z += tube_platform_point_z;
@@ -973,24 +983,24 @@ int tricept_prepare(const tricept_params *params, tricept_model *model)
         R(0.25)*b_c_ups_in_platform_y;
     const real b_c_in_platform_z = R(0.25)*b_c_tube_in_platform_z +
         R(0.25)*b_c_ups_in_platform_z;
-    model->J_star_in_platform_xx = J_star_in_platform_xx;
-    model->J_star_in_platform_xy = J_star_in_platform_xy;
-    model->J_star_in_platform_xz = J_star_in_platform_xz;
-    model->J_star_in_platform_yy = J_star_in_platform_yy;
-    model->J_star_in_platform_yz = J_star_in_platform_yz;
-    model->J_star_in_platform_zz = J_star_in_platform_zz;
-    model->J_star_t_12 = J_star_t_12;
-    model->J_star_t_14 = J_star_t_14;
-    model->Z_p_t = Z_p_t;
-    model->Z_p_t_2 = Z_p_t_2;
-    model->Z_p_t_3 = Z_p_t_3;
-    model->b_c_in_platform_x = b_c_in_platform_x;
-    model->b_c_in_platform_y = b_c_in_platform_y;
-    model->b_c_in_platform_z = b_c_in_platform_z;
-    model->h_star_in_platform_x = h_star_in_platform_x;
-    model->h_star_in_platform_y = h_star_in_platform_y;
-    model->h_star_in_platform_z = h_star_in_platform_z;
-    model->m_star = m_star;
+    KEEP(J_star_in_platform_xx);
+    KEEP(J_star_in_platform_xy);
+    KEEP(J_star_in_platform_xz);
+    KEEP(J_star_in_platform_yy);
+    KEEP(J_star_in_platform_yz);
+    KEEP(J_star_in_platform_zz);
+    KEEP(J_star_t_12);
+    KEEP(J_star_t_14);
+    KEEP(Z_p_t);
+    KEEP(Z_p_t_2);
+    KEEP(Z_p_t_3);
+    KEEP(b_c_in_platform_x);
+    KEEP(b_c_in_platform_y);
+    KEEP(b_c_in_platform_z);
+    KEEP(h_star_in_platform_x);
+    KEEP(h_star_in_platform_y);
+    KEEP(h_star_in_platform_z);
+    KEEP(m_star);
     return OK;
 }
 
@@ -1757,10 +1767,10 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real R_zy = quaternion_wx + quaternion_yz;
     const real R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = R_xx*m->h_star_in_platform_x + R_xy*m->h_star_in_platform_y +
-        R_xz*m->h_star_in_platform_z;
-    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yy*m->h_star_in_platform_y +
-        R_yz*m->h_star_in_platform_z;
+    const real h_star_x = R_xy*m->h_star_in_platform_y + R_xz*m->h_star_in_platform_z +
+        R_xx*m->h_star_in_platform_x;
+    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yz*m->h_star_in_platform_z +
+        R_yy*m->h_star_in_platform_y;
     const real h_star_z = R_zx*m->h_star_in_platform_x + R_zy*m->h_star_in_platform_y +
         R_zz*m->h_star_in_platform_z;
     v->quaternion_scale = quaternion_scale;
@@ -1784,8 +1794,8 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
     const real omega_x = V[3*w + k];
     const real omega_y = V[4*w + k];
     const real omega_z = V[5*w + k];
-    const real omega_in_platform_x = v->R_xx*omega_x + v->R_yx*omega_y + v->R_zx*omega_z;
-    const real omega_in_platform_y = v->R_xy*omega_x + v->R_yy*omega_y + v->R_zy*omega_z;
+    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
     const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
     v->omega_in_platform_x = omega_in_platform_x;
     v->omega_in_platform_y = omega_in_platform_y;
@@ -1795,24 +1805,24 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
 INLINE void stage_M_dynamics(const prepared *m, values *v)
 {
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_t = m->J_star_in_platform_xy*v->R_xx + m->J_star_in_platform_yz*v->R_xz
-        - m->J_star_t_12*v->R_xy;
+    const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
+        m->J_star_in_platform_xy*v->R_xx;
     const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
         m->J_star_in_platform_yz*v->R_yz - m->J_star_t_12*v->R_yy;
-    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx +
-        m->J_star_in_platform_yz*v->R_zz - m->J_star_t_12*v->R_zy;
+    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx - m->J_star_t_12*v->R_zy +
+        m->J_star_in_platform_yz*v->R_zz;
     const real J_star_t_4 = m->J_star_t_14*v->R_xz - m->J_star_in_platform_xz*v->R_xx;
     const real J_star_t_5 = m->J_star_t_14*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
     const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
-    const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
-        J_star_t_5*v->R_xz;
+    const real J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
+        J_star_t_4*v->R_yz;
     const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
     const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
     const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
-    const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
+    const real J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
     const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
     const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
@@ -1837,10 +1847,10 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
     const real Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real g_in_platform_x = v->R_xx*m->gravity_x + v->R_yx*m->gravity_y +
-        v->R_zx*m->gravity_z;
-    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_yy*m->gravity_y +
-        v->R_zy*m->gravity_z;
+    const real g_in_platform_x = v->R_yx*m->gravity_y + v->R_zx*m->gravity_z +
+        v->R_xx*m->gravity_x;
+    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_zy*m->gravity_z +
+        v->R_yy*m->gravity_y;
     const real g_in_platform_z = v->R_xz*m->gravity_x + v->R_yz*m->gravity_y +
         v->R_zz*m->gravity_z;
     const real Z_q_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
@@ -1852,15 +1862,15 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
         m->J_star_in_platform_yz*v->omega_in_platform_y +
         m->J_star_in_platform_zz*v->omega_in_platform_z;
-    const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
-        g_in_platform_y*m->h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
-        g_in_platform_z*m->h_star_in_platform_y;
-    const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
-        g_in_platform_z*m->h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
-        g_in_platform_x*m->h_star_in_platform_z;
-    const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
-        g_in_platform_x*m->h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
-        g_in_platform_y*m->h_star_in_platform_x;
+    const real Z_q_in_platform_x = g_in_platform_y*m->h_star_in_platform_z -
+        g_in_platform_z*m->h_star_in_platform_y + Z_q_t_3*v->omega_in_platform_y -
+        Z_q_t_2*v->omega_in_platform_z;
+    const real Z_q_in_platform_y = g_in_platform_z*m->h_star_in_platform_x -
+        g_in_platform_x*m->h_star_in_platform_z + Z_q_t*v->omega_in_platform_z -
+        Z_q_t_3*v->omega_in_platform_x;
+    const real Z_q_in_platform_z = g_in_platform_x*m->h_star_in_platform_y -
+        g_in_platform_y*m->h_star_in_platform_x + Z_q_t_2*v->omega_in_platform_x -
+        Z_q_t*v->omega_in_platform_y;
     const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
         v->R_xz*Z_q_in_platform_z;
     const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
@@ -1918,24 +1928,24 @@ INLINE void stage_tube_X(const prepared *m, size_t w, size_t i, size_t j, const 
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real tube_q_x = R_xx*m->tube_platform_point_x[i] + R_xy*m->tube_platform_point_y[i]
-        + R_xz*m->tube_platform_point_z[i];
+    const real tube_q_x = R_xy*m->tube_platform_point_y[i] + R_xz*m->tube_platform_point_z[i]
+        + R_xx*m->tube_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real tube_q_y = R_yx*m->tube_platform_point_x[i] + R_yy*m->tube_platform_point_y[i]
-        + R_yz*m->tube_platform_point_z[i];
+    const real tube_q_y = R_yx*m->tube_platform_point_x[i] + R_yz*m->tube_platform_point_z[i]
+        + R_yy*m->tube_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real tube_q_z = R_zx*m->tube_platform_point_x[i] + R_zy*m->tube_platform_point_y[i]
         + R_zz*m->tube_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real tube_S_x = t_x + tube_q_x - m->tube_base_point_x[i];
+    const real tube_S_x = t_x - m->tube_base_point_x[i] + tube_q_x;
     const real t_y = X[1*w + j];
-    const real tube_S_y = t_y + tube_q_y - m->tube_base_point_y[i];
+    const real tube_S_y = t_y - m->tube_base_point_y[i] + tube_q_y;
     const real t_z = X[2*w + j];
-    const real tube_S_z = t_z + tube_q_z - m->tube_base_point_z[i];
+    const real tube_S_z = t_z - m->tube_base_point_z[i] + tube_q_z;
     const real tube_S_in_turn1_x = tube_S_x*m->tube_base_frame_xx[i] +
         tube_S_y*m->tube_base_frame_yx[i] + tube_S_z*m->tube_base_frame_zx[i];
     const real tube_S_in_turn1_y = tube_S_x*m->tube_base_frame_xy[i] +
@@ -1967,12 +1977,12 @@ INLINE void stage_tube_X(const prepared *m, size_t w, size_t i, size_t j, const 
         m->tube_base_frame_zx[i]*tube_s_1;
     const real tube_S_dot_t = tube_c_1*tube_e_1_in_axes2_x;
     const real tube_S_dot_t_2 = tube_e_1_in_axes2_x*tube_s_1;
-    const real axis_y_tube_axes2_x = tube_S_dot_t*m->tube_base_frame_xx[i] +
-        tube_S_dot_t_2*m->tube_base_frame_xy[i] - m->tube_base_frame_xz[i]*tube_c_2;
-    const real axis_y_tube_axes2_y = tube_S_dot_t*m->tube_base_frame_yx[i] +
-        tube_S_dot_t_2*m->tube_base_frame_yy[i] - m->tube_base_frame_yz[i]*tube_c_2;
-    const real axis_y_tube_axes2_z = tube_S_dot_t*m->tube_base_frame_zx[i] +
-        tube_S_dot_t_2*m->tube_base_frame_zy[i] - m->tube_base_frame_zz[i]*tube_c_2;
+    const real axis_y_tube_axes2_x = tube_S_dot_t*m->tube_base_frame_xx[i] -
+        m->tube_base_frame_xz[i]*tube_c_2 + tube_S_dot_t_2*m->tube_base_frame_xy[i];
+    const real axis_y_tube_axes2_y = tube_S_dot_t*m->tube_base_frame_yx[i] -
+        m->tube_base_frame_yz[i]*tube_c_2 + tube_S_dot_t_2*m->tube_base_frame_yy[i];
+    const real axis_y_tube_axes2_z = tube_S_dot_t*m->tube_base_frame_zx[i] -
+        m->tube_base_frame_zz[i]*tube_c_2 + tube_S_dot_t_2*m->tube_base_frame_zy[i];
     const real axis_x_tube_axes2_x = axis_y_tube_axes2_y*axis_z_tube_axes2_z -
         axis_y_tube_axes2_z*axis_z_tube_axes2_y;
     const real axis_x_tube_axes2_y = axis_y_tube_axes2_z*axis_z_tube_axes2_x -
@@ -1980,22 +1990,22 @@ INLINE void stage_tube_X(const prepared *m, size_t w, size_t i, size_t j, const 
     const real axis_x_tube_axes2_z = axis_y_tube_axes2_x*axis_z_tube_axes2_y -
         axis_y_tube_axes2_y*axis_z_tube_axes2_x;
     /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-    const real tube_n_m1_t = R_xx*m->tube_base_frame_xx[i] + R_yx*m->tube_base_frame_yx[i] +
-        R_zx*m->tube_base_frame_zx[i];
-    const real tube_n_m1_t_2 = R_xy*m->tube_base_frame_xx[i] + R_yy*m->tube_base_frame_yx[i] +
-        R_zy*m->tube_base_frame_zx[i];
+    const real tube_n_m1_t = R_yx*m->tube_base_frame_yx[i] + R_zx*m->tube_base_frame_zx[i] +
+        R_xx*m->tube_base_frame_xx[i];
+    const real tube_n_m1_t_2 = R_xy*m->tube_base_frame_xx[i] + R_zy*m->tube_base_frame_zx[i] +
+        R_yy*m->tube_base_frame_yx[i];
     const real tube_n_m1_t_3 = R_xz*m->tube_base_frame_xx[i] + R_yz*m->tube_base_frame_yx[i] +
         R_zz*m->tube_base_frame_zx[i];
-    const real tube_n_m1_t_4 = R_xx*m->tube_base_frame_xy[i] + R_yx*m->tube_base_frame_yy[i] +
-        R_zx*m->tube_base_frame_zy[i];
-    const real tube_n_m1_t_5 = R_xy*m->tube_base_frame_xy[i] + R_yy*m->tube_base_frame_yy[i] +
-        R_zy*m->tube_base_frame_zy[i];
+    const real tube_n_m1_t_4 = R_yx*m->tube_base_frame_yy[i] + R_zx*m->tube_base_frame_zy[i] +
+        R_xx*m->tube_base_frame_xy[i];
+    const real tube_n_m1_t_5 = R_xy*m->tube_base_frame_xy[i] + R_zy*m->tube_base_frame_zy[i] +
+        R_yy*m->tube_base_frame_yy[i];
     const real tube_n_m1_t_6 = R_xz*m->tube_base_frame_xy[i] + R_yz*m->tube_base_frame_yy[i] +
         R_zz*m->tube_base_frame_zy[i];
-    const real tube_n_m1_t_7 = R_xx*m->tube_base_frame_xz[i] + R_yx*m->tube_base_frame_yz[i] +
-        R_zx*m->tube_base_frame_zz[i];
-    const real tube_n_m1_t_8 = R_xy*m->tube_base_frame_xz[i] + R_yy*m->tube_base_frame_yz[i] +
-        R_zy*m->tube_base_frame_zz[i];
+    const real tube_n_m1_t_7 = R_yx*m->tube_base_frame_yz[i] + R_zx*m->tube_base_frame_zz[i] +
+        R_xx*m->tube_base_frame_xz[i];
+    const real tube_n_m1_t_8 = R_xy*m->tube_base_frame_xz[i] + R_zy*m->tube_base_frame_zz[i] +
+        R_yy*m->tube_base_frame_yz[i];
     const real tube_n_m1_t_9 = R_xz*m->tube_base_frame_xz[i] + R_yz*m->tube_base_frame_yz[i] +
         R_zz*m->tube_base_frame_zz[i];
     const real tube_n_m1_t_10 = tube_n_m1_t*m->tube_platform_joint_rotation_yx[i] +
@@ -2159,8 +2169,8 @@ INLINE void stage_tube_X(const prepared *m, size_t w, size_t i, size_t j, const 
     const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
     const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
     const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
-    const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 -
-        inv_tube_w_1_t_49*tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
+    const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 - inv_tube_w_1_t_49*tube_root_1 +
+        tube_w_1_t_48*tube_w_1_t_52 - tube_w_1_t_47*tube_w_1_t_51;
     const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
     const real tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
     const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
@@ -2200,12 +2210,12 @@ INLINE void stage_tube_X(const prepared *m, size_t w, size_t i, size_t j, const 
     /* (tube-n_c1) unit force of the constraint wrench */
     const real tube_n_c1_t = tube_c_1*tube_e_1_in_axes2_x;
     const real tube_n_c1_t_2 = tube_e_1_in_axes2_x*tube_s_1;
-    const real tube_n_c1_x = m->tube_base_frame_xx[i]*tube_n_c1_t +
-        m->tube_base_frame_xy[i]*tube_n_c1_t_2 - m->tube_base_frame_xz[i]*tube_c_2;
-    const real tube_n_c1_y = m->tube_base_frame_yx[i]*tube_n_c1_t +
-        m->tube_base_frame_yy[i]*tube_n_c1_t_2 - m->tube_base_frame_yz[i]*tube_c_2;
-    const real tube_n_c1_z = m->tube_base_frame_zx[i]*tube_n_c1_t +
-        m->tube_base_frame_zy[i]*tube_n_c1_t_2 - m->tube_base_frame_zz[i]*tube_c_2;
+    const real tube_n_c1_x = m->tube_base_frame_xx[i]*tube_n_c1_t -
+        m->tube_base_frame_xz[i]*tube_c_2 + m->tube_base_frame_xy[i]*tube_n_c1_t_2;
+    const real tube_n_c1_y = m->tube_base_frame_yx[i]*tube_n_c1_t -
+        m->tube_base_frame_yz[i]*tube_c_2 + m->tube_base_frame_yy[i]*tube_n_c1_t_2;
+    const real tube_n_c1_z = m->tube_base_frame_zx[i]*tube_n_c1_t -
+        m->tube_base_frame_zz[i]*tube_c_2 + m->tube_base_frame_zy[i]*tube_n_c1_t_2;
     /* (tube-n_c2) unit force of the constraint wrench */
     const real tube_n_c2_x = m->tube_base_frame_xy[i]*tube_c_1 -
         m->tube_base_frame_xx[i]*tube_s_1;
@@ -2443,13 +2453,13 @@ INLINE void stage_tube_A_V_X(size_t w, size_t j, const real *V, values_tube *v)
     /* (tube-S_ddot) acceleration of the connection point */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
-    const real tube_S_ddot_x = v->tube_a_p_x + omega_y*v->tube_S_dot_t_5 -
-        omega_z*v->tube_S_dot_t_4;
+    const real tube_S_ddot_x = omega_y*v->tube_S_dot_t_5 - omega_z*v->tube_S_dot_t_4 +
+        v->tube_a_p_x;
     const real omega_x = V[3*w + j];
-    const real tube_S_ddot_y = v->tube_a_p_y + omega_z*v->tube_S_dot_t_3 -
-        omega_x*v->tube_S_dot_t_5;
-    const real tube_S_ddot_z = v->tube_a_p_z + omega_x*v->tube_S_dot_t_4 -
-        omega_y*v->tube_S_dot_t_3;
+    const real tube_S_ddot_y = omega_z*v->tube_S_dot_t_3 - omega_x*v->tube_S_dot_t_5 +
+        v->tube_a_p_y;
+    const real tube_S_ddot_z = omega_x*v->tube_S_dot_t_4 - omega_y*v->tube_S_dot_t_3 +
+        v->tube_a_p_z;
     v->tube_S_ddot_x = tube_S_ddot_x;
     v->tube_S_ddot_y = tube_S_ddot_y;
     v->tube_S_ddot_z = tube_S_ddot_z;
@@ -2464,9 +2474,9 @@ INLINE void stage_tube_Z_dynamics(const prepared *m, size_t i, values_tube *v)
         m->tube_acc_3_t_3[i]*v->tube_e_1_in_axes2_x;
     const real tube_g_in_axes2_y = tube_acc_3_o_t*v->tube_e_1_in_axes2_x -
         m->tube_acc_3_t_3[i]*v->tube_c_2;
-    const real tube_acc_3_o_in_axes2_x = v->axis_x_tube_axes2_x*v->tube_u_1_x +
-        v->axis_x_tube_axes2_y*v->tube_u_1_y + v->axis_x_tube_axes2_z*v->tube_u_1_z -
-        tube_g_in_axes2_x;
+    const real tube_acc_3_o_in_axes2_x = v->axis_x_tube_axes2_x*v->tube_u_1_x -
+        tube_g_in_axes2_x + v->axis_x_tube_axes2_y*v->tube_u_1_y +
+        v->axis_x_tube_axes2_z*v->tube_u_1_z;
     v->tube_g_in_axes2_x = tube_g_in_axes2_x;
     v->tube_g_in_axes2_y = tube_g_in_axes2_y;
     v->tube_acc_3_o_in_axes2_x = tube_acc_3_o_in_axes2_x;
@@ -2533,8 +2543,8 @@ INLINE void stage_tube_Z_joint_accelerations(values_tube *v)
     const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
     const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
     const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
-    const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 -
-        inv_tube_w_1_t_49*v->tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
+    const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 - inv_tube_w_1_t_49*v->tube_root_1
+        + tube_w_1_t_48*tube_w_1_t_52 - tube_w_1_t_47*tube_w_1_t_51;
     const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
     const real tube_w_1_t_60 = v->tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
     const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
@@ -2575,16 +2585,14 @@ INLINE void stage_tube_Z_joint_accelerations(values_tube *v)
         v->tube_qd_1_t_7*tube_w_1_t_67 + v->tube_qd_1_t_8*tube_w_1_t_68 -
         tube_qd_1*tube_w_1_t_69);
     const real tube_qd_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_49*v->tube_S_dot_in_axes2_z +
-        v->tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
-        v->tube_qd_1_t_6*tube_w_1_t_51 + v->tube_qd_1_t_8*tube_w_1_t_52 +
-        tube_qd_2_t*tube_w_1_t_53);
+        v->tube_S_dot_in_axes2_y*tube_w_1_t_50 + v->tube_qd_1_t_6*tube_w_1_t_51 +
+        v->tube_qd_1_t_8*tube_w_1_t_52 + tube_qd_1*tube_w_1_t_58 + tube_qd_2_t*tube_w_1_t_53);
     const real tube_qd_2_t_3 = v->tube_S_dot_in_axes2_y*v->tube_w_1_t_14 +
-        v->tube_qd_1_t_6*v->tube_w_1_t_15 + v->tube_qd_1_t_8*v->tube_w_1_t_16 +
-        tube_qd_2_t_2*tube_w_1_t_21 +
+        v->tube_qd_1_t_6*v->tube_w_1_t_15 + v->tube_qd_1_t_8*v->tube_w_1_t_16 -
+        tube_qd_1*v->tube_w_1_t_29 - tube_qd_2_t*tube_w_1_t_25 + tube_qd_2_t_2*tube_w_1_t_21 +
         inv_tube_w_1_t_33*tube_w_1_t_17*(v->tube_S_dot_in_axes2_y*tube_w_1_t_34 +
-        tube_qd_1*tube_w_1_t_45 + v->tube_qd_1_t_6*tube_w_1_t_35 +
-        v->tube_qd_1_t_8*tube_w_1_t_36 + tube_qd_2_t*tube_w_1_t_41 -
-        tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*v->tube_w_1_t_29 - tube_qd_2_t*tube_w_1_t_25;
+        v->tube_qd_1_t_6*tube_w_1_t_35 + v->tube_qd_1_t_8*tube_w_1_t_36 +
+        tube_qd_1*tube_w_1_t_45 + tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37);
     const real tube_qd_2 = v->inv_tube_w_1_t_13*tube_qd_2_t_3;
     /* (tube-omega_1) angular velocity of link 1 */
     const real tube_omega_1_in_axes2_x = v->tube_e_1_in_axes2_x*tube_qd_1;
@@ -2594,23 +2602,24 @@ INLINE void stage_tube_Z_joint_accelerations(values_tube *v)
     const real tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2;
     /* (tube-nd_m1) rate of moment direction 1 */
     const real tube_nd_m1_in_axes2_y = v->tube_end_p1_in_axes2_x*v->tube_omega_in_axes2_y -
-        v->tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
-        v->tube_n_m1_in_axes2_z*v->tube_omega_in_axes2_x;
+        v->tube_n_m1_in_axes2_z*v->tube_omega_in_axes2_x -
+        v->tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y;
     const real tube_nd_m1_in_axes2_z = v->tube_end_p1_in_axes2_x*v->tube_omega_in_axes2_z -
-        v->tube_end_p1_in_axes2_x*tube_qd_2 -
-        v->tube_end_p1_in_axes2_z*v->tube_omega_in_axes2_x;
+        v->tube_end_p1_in_axes2_z*v->tube_omega_in_axes2_x -
+        v->tube_end_p1_in_axes2_x*tube_qd_2;
     /* (tube-nu_1) bias of the angular acceleration along moment direction 1 */
     const real tube_nu_1_t = tube_omega_1_in_axes2_x - v->tube_omega_in_axes2_x;
     const real tube_nu_1_t_2 = v->tube_omega_in_axes2_y - tube_omega_1_in_axes2_y;
     const real tube_nu_1_t_3 = v->tube_omega_in_axes2_z - tube_qd_2;
     const real tube_nu_1_t_4 = tube_nd_m1_in_axes2_y*tube_nu_1_t_2 +
-        tube_nd_m1_in_axes2_z*tube_nu_1_t_3 - tube_nu_1_t*(v->tube_end_p1_in_axes2_z*tube_qd_2
-        + v->tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y);
+        tube_nd_m1_in_axes2_z*tube_nu_1_t_3 -
+        tube_nu_1_t*(v->tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y +
+        v->tube_end_p1_in_axes2_z*tube_qd_2);
     const real tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*v->tube_end_p1_in_axes2_z;
     /* (tube-nd_m2) rate of moment direction 2 */
     const real tube_nd_m2_in_axes2_x = v->tube_end_p2_in_axes2_z*v->tube_omega_in_axes2_x -
-        v->tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
-        v->tube_n_m2_in_axes2_y*v->tube_omega_in_axes2_z;
+        v->tube_n_m2_in_axes2_y*v->tube_omega_in_axes2_z -
+        v->tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x;
     const real tube_nd_m2_in_axes2_y = v->tube_end_p2_in_axes2_z*v->tube_omega_in_axes2_y -
         v->tube_end_p2_in_axes2_y*v->tube_omega_in_axes2_z -
         v->tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y;
@@ -2623,17 +2632,16 @@ INLINE void stage_tube_Z_joint_accelerations(values_tube *v)
         v->tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x);
     const real tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t;
     /* (tube-nd_m3) rate of moment direction 3 */
-    const real tube_nd_m3_in_axes2_x = v->tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
-        v->tube_n_m3_in_axes2_z*v->tube_omega_in_axes2_y -
-        v->tube_end_p3_in_axes2_y*v->tube_omega_in_axes2_x;
-    const real tube_nd_m3_in_axes2_z = v->tube_end_p3_in_axes2_y*tube_qd_2 +
-        v->tube_end_p3_in_axes2_z*v->tube_omega_in_axes2_y -
-        v->tube_end_p3_in_axes2_y*v->tube_omega_in_axes2_z;
+    const real tube_nd_m3_in_axes2_x = v->tube_n_m3_in_axes2_z*v->tube_omega_in_axes2_y -
+        v->tube_end_p3_in_axes2_y*v->tube_omega_in_axes2_x +
+        v->tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x;
+    const real tube_nd_m3_in_axes2_z = v->tube_end_p3_in_axes2_z*v->tube_omega_in_axes2_y -
+        v->tube_end_p3_in_axes2_y*v->tube_omega_in_axes2_z +
+        v->tube_end_p3_in_axes2_y*tube_qd_2;
     /* (tube-nu_3) bias of the angular acceleration along moment direction 3 */
     const real tube_nu_3_t = tube_nd_m3_in_axes2_x*tube_nu_1_t +
-        tube_nu_1_t_2*(v->tube_end_p3_in_axes2_z*tube_qd_2 +
-        v->tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) -
-        tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
+        tube_nu_1_t_2*(v->tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x +
+        v->tube_end_p3_in_axes2_z*tube_qd_2) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
     const real tube_nu_3 = tube_W_2_in_axes2_yz*v->tube_end_p3_in_axes2_z - tube_nu_3_t;
     v->tube_w_1_t_17 = tube_w_1_t_17;
     v->tube_w_1_t_21 = tube_w_1_t_21;
@@ -2681,25 +2689,31 @@ INLINE void stage_tube_Z_joint_accelerations(values_tube *v)
 INLINE void stage_tube_dynamics_required(values_tube *v)
 {
     /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
-    const real tube_Hk_a_1_x = v->axis_x_tube_axes2_x*v->tube_mu_c1_in_axes2_x +
-        v->axis_y_tube_axes2_x*v->tube_mu_c1_in_axes2_y + v->axis_y_tube_axes2_z*v->tube_q_y +
-        v->axis_z_tube_axes2_x*v->tube_mu_c1_in_axes2_z - v->axis_y_tube_axes2_y*v->tube_q_z;
-    const real tube_Hk_a_1_y = v->axis_x_tube_axes2_y*v->tube_mu_c1_in_axes2_x +
-        v->axis_y_tube_axes2_x*v->tube_q_z + v->axis_y_tube_axes2_y*v->tube_mu_c1_in_axes2_y +
-        v->axis_z_tube_axes2_y*v->tube_mu_c1_in_axes2_z - v->axis_y_tube_axes2_z*v->tube_q_x;
-    const real tube_Hk_a_1_z = v->axis_x_tube_axes2_z*v->tube_mu_c1_in_axes2_x +
-        v->axis_y_tube_axes2_y*v->tube_q_x + v->axis_y_tube_axes2_z*v->tube_mu_c1_in_axes2_y +
-        v->axis_z_tube_axes2_z*v->tube_mu_c1_in_axes2_z - v->axis_y_tube_axes2_x*v->tube_q_y;
+    const real tube_Hk_a_1_x = v->axis_y_tube_axes2_z*v->tube_q_y -
+        v->axis_y_tube_axes2_y*v->tube_q_z + v->axis_x_tube_axes2_x*v->tube_mu_c1_in_axes2_x +
+        v->axis_y_tube_axes2_x*v->tube_mu_c1_in_axes2_y +
+        v->axis_z_tube_axes2_x*v->tube_mu_c1_in_axes2_z;
+    const real tube_Hk_a_1_y = v->axis_y_tube_axes2_x*v->tube_q_z -
+        v->axis_y_tube_axes2_z*v->tube_q_x + v->axis_x_tube_axes2_y*v->tube_mu_c1_in_axes2_x +
+        v->axis_y_tube_axes2_y*v->tube_mu_c1_in_axes2_y +
+        v->axis_z_tube_axes2_y*v->tube_mu_c1_in_axes2_z;
+    const real tube_Hk_a_1_z = v->axis_y_tube_axes2_y*v->tube_q_x -
+        v->axis_y_tube_axes2_x*v->tube_q_y + v->axis_x_tube_axes2_z*v->tube_mu_c1_in_axes2_x +
+        v->axis_y_tube_axes2_z*v->tube_mu_c1_in_axes2_y +
+        v->axis_z_tube_axes2_z*v->tube_mu_c1_in_axes2_z;
     /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
-    const real tube_Hk_a_2_x = v->axis_y_tube_axes2_x*v->tube_mu_c2_in_axes2_y +
-        v->axis_z_tube_axes2_x*v->tube_mu_c2_in_axes2_z + v->axis_z_tube_axes2_z*v->tube_q_y -
-        v->axis_x_tube_axes2_x*v->tube_mu_c2_t - v->axis_z_tube_axes2_y*v->tube_q_z;
-    const real tube_Hk_a_2_y = v->axis_y_tube_axes2_y*v->tube_mu_c2_in_axes2_y +
-        v->axis_z_tube_axes2_x*v->tube_q_z + v->axis_z_tube_axes2_y*v->tube_mu_c2_in_axes2_z -
-        v->axis_x_tube_axes2_y*v->tube_mu_c2_t - v->axis_z_tube_axes2_z*v->tube_q_x;
-    const real tube_Hk_a_2_z = v->axis_y_tube_axes2_z*v->tube_mu_c2_in_axes2_y +
-        v->axis_z_tube_axes2_y*v->tube_q_x + v->axis_z_tube_axes2_z*v->tube_mu_c2_in_axes2_z -
-        v->axis_x_tube_axes2_z*v->tube_mu_c2_t - v->axis_z_tube_axes2_x*v->tube_q_y;
+    const real tube_Hk_a_2_x = v->axis_z_tube_axes2_z*v->tube_q_y -
+        v->axis_z_tube_axes2_y*v->tube_q_z + v->axis_y_tube_axes2_x*v->tube_mu_c2_in_axes2_y +
+        v->axis_z_tube_axes2_x*v->tube_mu_c2_in_axes2_z -
+        v->axis_x_tube_axes2_x*v->tube_mu_c2_t;
+    const real tube_Hk_a_2_y = v->axis_z_tube_axes2_x*v->tube_q_z -
+        v->axis_z_tube_axes2_z*v->tube_q_x + v->axis_y_tube_axes2_y*v->tube_mu_c2_in_axes2_y +
+        v->axis_z_tube_axes2_y*v->tube_mu_c2_in_axes2_z -
+        v->axis_x_tube_axes2_y*v->tube_mu_c2_t;
+    const real tube_Hk_a_2_z = v->axis_z_tube_axes2_y*v->tube_q_x -
+        v->axis_z_tube_axes2_x*v->tube_q_y + v->axis_y_tube_axes2_z*v->tube_mu_c2_in_axes2_y +
+        v->axis_z_tube_axes2_z*v->tube_mu_c2_in_axes2_z -
+        v->axis_x_tube_axes2_z*v->tube_mu_c2_t;
     v->tube_Hk_a_1_x = tube_Hk_a_1_x;
     v->tube_Hk_a_1_y = tube_Hk_a_1_y;
     v->tube_Hk_a_1_z = tube_Hk_a_1_z;
@@ -2726,17 +2740,17 @@ INLINE void stage_tube_legs_required(const prepared *m, size_t i, values_tube *v
         tube_qd_1*v->tube_w_1_t_69);
     const real tube_qd_2_t_2 =
         v->inv_tube_w_1_t_49*(v->inv_tube_w_1_t_49*v->tube_S_dot_in_axes2_z +
-        v->tube_S_dot_in_axes2_y*v->tube_w_1_t_50 + tube_qd_1*v->tube_w_1_t_58 +
-        v->tube_qd_1_t_6*v->tube_w_1_t_51 + v->tube_qd_1_t_8*v->tube_w_1_t_52 +
+        v->tube_S_dot_in_axes2_y*v->tube_w_1_t_50 + v->tube_qd_1_t_6*v->tube_w_1_t_51 +
+        v->tube_qd_1_t_8*v->tube_w_1_t_52 + tube_qd_1*v->tube_w_1_t_58 +
         tube_qd_2_t*v->tube_w_1_t_53);
     const real tube_qd_2_t_3 = v->tube_S_dot_in_axes2_y*v->tube_w_1_t_14 +
-        v->tube_qd_1_t_6*v->tube_w_1_t_15 + v->tube_qd_1_t_8*v->tube_w_1_t_16 +
+        v->tube_qd_1_t_6*v->tube_w_1_t_15 + v->tube_qd_1_t_8*v->tube_w_1_t_16 -
+        tube_qd_1*v->tube_w_1_t_29 - tube_qd_2_t*v->tube_w_1_t_25 +
         tube_qd_2_t_2*v->tube_w_1_t_21 +
         v->inv_tube_w_1_t_33*v->tube_w_1_t_17*(v->tube_S_dot_in_axes2_y*v->tube_w_1_t_34 +
-        tube_qd_1*v->tube_w_1_t_45 + v->tube_qd_1_t_6*v->tube_w_1_t_35 +
-        v->tube_qd_1_t_8*v->tube_w_1_t_36 + tube_qd_2_t*v->tube_w_1_t_41 -
-        tube_qd_2_t_2*v->tube_w_1_t_37) - tube_qd_1*v->tube_w_1_t_29 -
-        tube_qd_2_t*v->tube_w_1_t_25;
+        v->tube_qd_1_t_6*v->tube_w_1_t_35 + v->tube_qd_1_t_8*v->tube_w_1_t_36 +
+        tube_qd_1*v->tube_w_1_t_45 + tube_qd_2_t*v->tube_w_1_t_41 -
+        tube_qd_2_t_2*v->tube_w_1_t_37);
     const real tube_qd_2 = v->inv_tube_w_1_t_13*tube_qd_2_t_3;
     /* (tube-omega_1) angular velocity of link 1 */
     const real tube_omega_1_in_axes2_x = v->tube_e_1_in_axes2_x*tube_qd_1;
@@ -2761,23 +2775,24 @@ INLINE void stage_tube_legs_required(const prepared *m, size_t i, values_tube *v
         tube_bias_in_axes2_z;
     /* (tube-nd_m1) rate of moment direction 1 */
     const real tube_nd_m1_in_axes2_y = v->tube_end_p1_in_axes2_x*v->tube_omega_in_axes2_y -
-        v->tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
-        v->tube_n_m1_in_axes2_z*v->tube_omega_in_axes2_x;
+        v->tube_n_m1_in_axes2_z*v->tube_omega_in_axes2_x -
+        v->tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y;
     const real tube_nd_m1_in_axes2_z = v->tube_end_p1_in_axes2_x*v->tube_omega_in_axes2_z -
-        v->tube_end_p1_in_axes2_x*tube_qd_2 -
-        v->tube_end_p1_in_axes2_z*v->tube_omega_in_axes2_x;
+        v->tube_end_p1_in_axes2_z*v->tube_omega_in_axes2_x -
+        v->tube_end_p1_in_axes2_x*tube_qd_2;
     /* (tube-nu_1) bias of the angular acceleration along moment direction 1 */
     const real tube_nu_1_t = tube_omega_1_in_axes2_x - v->tube_omega_in_axes2_x;
     const real tube_nu_1_t_2 = v->tube_omega_in_axes2_y - tube_omega_1_in_axes2_y;
     const real tube_nu_1_t_3 = v->tube_omega_in_axes2_z - tube_qd_2;
     const real tube_nu_1_t_4 = tube_nd_m1_in_axes2_y*tube_nu_1_t_2 +
-        tube_nd_m1_in_axes2_z*tube_nu_1_t_3 - tube_nu_1_t*(v->tube_end_p1_in_axes2_z*tube_qd_2
-        + v->tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y);
+        tube_nd_m1_in_axes2_z*tube_nu_1_t_3 -
+        tube_nu_1_t*(v->tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y +
+        v->tube_end_p1_in_axes2_z*tube_qd_2);
     const real tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*v->tube_end_p1_in_axes2_z;
     /* (tube-nd_m2) rate of moment direction 2 */
     const real tube_nd_m2_in_axes2_x = v->tube_end_p2_in_axes2_z*v->tube_omega_in_axes2_x -
-        v->tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
-        v->tube_n_m2_in_axes2_y*v->tube_omega_in_axes2_z;
+        v->tube_n_m2_in_axes2_y*v->tube_omega_in_axes2_z -
+        v->tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x;
     const real tube_nd_m2_in_axes2_y = v->tube_end_p2_in_axes2_z*v->tube_omega_in_axes2_y -
         v->tube_end_p2_in_axes2_y*v->tube_omega_in_axes2_z -
         v->tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y;
@@ -2790,17 +2805,16 @@ INLINE void stage_tube_legs_required(const prepared *m, size_t i, values_tube *v
         v->tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x);
     const real tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t;
     /* (tube-nd_m3) rate of moment direction 3 */
-    const real tube_nd_m3_in_axes2_x = v->tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
-        v->tube_n_m3_in_axes2_z*v->tube_omega_in_axes2_y -
-        v->tube_end_p3_in_axes2_y*v->tube_omega_in_axes2_x;
-    const real tube_nd_m3_in_axes2_z = v->tube_end_p3_in_axes2_y*tube_qd_2 +
-        v->tube_end_p3_in_axes2_z*v->tube_omega_in_axes2_y -
-        v->tube_end_p3_in_axes2_y*v->tube_omega_in_axes2_z;
+    const real tube_nd_m3_in_axes2_x = v->tube_n_m3_in_axes2_z*v->tube_omega_in_axes2_y -
+        v->tube_end_p3_in_axes2_y*v->tube_omega_in_axes2_x +
+        v->tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x;
+    const real tube_nd_m3_in_axes2_z = v->tube_end_p3_in_axes2_z*v->tube_omega_in_axes2_y -
+        v->tube_end_p3_in_axes2_y*v->tube_omega_in_axes2_z +
+        v->tube_end_p3_in_axes2_y*tube_qd_2;
     /* (tube-nu_3) bias of the angular acceleration along moment direction 3 */
     const real tube_nu_3_t = tube_nd_m3_in_axes2_x*tube_nu_1_t +
-        tube_nu_1_t_2*(v->tube_end_p3_in_axes2_z*tube_qd_2 +
-        v->tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) -
-        tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
+        tube_nu_1_t_2*(v->tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x +
+        v->tube_end_p3_in_axes2_z*tube_qd_2) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
     const real tube_nu_3 = tube_W_2_in_axes2_yz*v->tube_end_p3_in_axes2_z - tube_nu_3_t;
     /* (tube-etad_1) acceleration with which the joints turn along moment direction 1 */
     const real tube_etad_1 = tube_nu_1 - v->tube_etad_1_t;
@@ -2813,25 +2827,25 @@ INLINE void stage_tube_legs_required(const prepared *m, size_t i, values_tube *v
     const real tube_qdd_1_t_2 = R(1.35)*tube_etad_2;
     const real tube_qdd_1_t_3 = R(1.35)*tube_etad_3;
     const real tube_qdd_1 = v->inv_tube_w_1_t_75*(tube_qd_1_t*tube_rel_in_axes2_y +
-        tube_qd_1_t_2*tube_rel_in_axes2_z + tube_qd_1_t_3*tube_qdd_1_t +
-        tube_qd_1_t_5*tube_qdd_1_t_3 - tube_qd_1_t_4*tube_qdd_1_t_2);
+        tube_qd_1_t_2*tube_rel_in_axes2_z - tube_qd_1_t_4*tube_qdd_1_t_2 +
+        tube_qd_1_t_3*tube_qdd_1_t + tube_qd_1_t_5*tube_qdd_1_t_3);
     /* (tube-qdd_2) acceleration of joint 2 */
-    const real tube_qdd_2_t = v->inv_tube_w_1_t_63*(tube_qdd_1_t*v->tube_w_1_t_66 +
-        tube_qdd_1_t_2*v->tube_w_1_t_67 + tube_qdd_1_t_3*v->tube_w_1_t_68 +
-        tube_rel_in_axes2_y*v->tube_w_1_t_64 + tube_rel_in_axes2_z*v->tube_w_1_t_65 -
+    const real tube_qdd_2_t = v->inv_tube_w_1_t_63*(tube_rel_in_axes2_y*v->tube_w_1_t_64 +
+        tube_qdd_1_t_2*v->tube_w_1_t_67 + tube_rel_in_axes2_z*v->tube_w_1_t_65 +
+        tube_qdd_1_t*v->tube_w_1_t_66 + tube_qdd_1_t_3*v->tube_w_1_t_68 -
         tube_qdd_1*v->tube_w_1_t_69);
-    const real tube_qdd_2_t_2 = v->inv_tube_w_1_t_49*(v->inv_tube_w_1_t_49*tube_rel_in_axes2_z
-        + tube_qdd_1*v->tube_w_1_t_58 + tube_qdd_1_t*v->tube_w_1_t_51 +
-        tube_qdd_1_t_3*v->tube_w_1_t_52 + tube_qdd_2_t*v->tube_w_1_t_53 +
-        tube_rel_in_axes2_y*v->tube_w_1_t_50);
-    const real tube_qdd_2_t_3 = tube_qdd_1_t*v->tube_w_1_t_15 +
-        tube_qdd_1_t_3*v->tube_w_1_t_16 + tube_qdd_2_t_2*v->tube_w_1_t_21 +
-        tube_rel_in_axes2_y*v->tube_w_1_t_14 +
-        v->inv_tube_w_1_t_33*v->tube_w_1_t_17*(tube_qdd_1*v->tube_w_1_t_45 +
+    const real tube_qdd_2_t_2 = v->inv_tube_w_1_t_49*(tube_rel_in_axes2_y*v->tube_w_1_t_50 +
+        v->inv_tube_w_1_t_49*tube_rel_in_axes2_z + tube_qdd_1_t*v->tube_w_1_t_51 +
+        tube_qdd_1_t_3*v->tube_w_1_t_52 + tube_qdd_1*v->tube_w_1_t_58 +
+        tube_qdd_2_t*v->tube_w_1_t_53);
+    const real tube_qdd_2_t_3 = tube_rel_in_axes2_y*v->tube_w_1_t_14 +
+        tube_qdd_1_t*v->tube_w_1_t_15 + tube_qdd_1_t_3*v->tube_w_1_t_16 -
+        tube_qdd_1*v->tube_w_1_t_29 - tube_qdd_2_t*v->tube_w_1_t_25 +
+        tube_qdd_2_t_2*v->tube_w_1_t_21 +
+        v->inv_tube_w_1_t_33*v->tube_w_1_t_17*(tube_rel_in_axes2_y*v->tube_w_1_t_34 +
         tube_qdd_1_t*v->tube_w_1_t_35 + tube_qdd_1_t_3*v->tube_w_1_t_36 +
-        tube_qdd_2_t*v->tube_w_1_t_41 + tube_rel_in_axes2_y*v->tube_w_1_t_34 -
-        tube_qdd_2_t_2*v->tube_w_1_t_37) - tube_qdd_1*v->tube_w_1_t_29 -
-        tube_qdd_2_t*v->tube_w_1_t_25;
+        tube_qdd_1*v->tube_w_1_t_45 + tube_qdd_2_t*v->tube_w_1_t_41 -
+        tube_qdd_2_t_2*v->tube_w_1_t_37);
     const real tube_qdd_2 = v->inv_tube_w_1_t_13*tube_qdd_2_t_3;
     /* (tube-alpha_1) angular acceleration of link 1 */
     const real tube_alpha_1_in_axes2_x = v->tube_e_1_in_axes2_x*tube_qdd_1;
@@ -2851,72 +2865,73 @@ INLINE void stage_tube_legs_required(const prepared *m, size_t i, values_tube *v
         tube_acc_3_t_4*v->tube_c_2;
     const real tube_g_in_axes2_y = tube_acc_3_t_4*v->tube_e_1_in_axes2_x -
         m->tube_acc_3_t_3[i]*v->tube_c_2;
-    const real tube_acc_3_in_axes2_x = v->axis_x_tube_axes2_x*v->tube_S_ddot_x +
-        v->axis_x_tube_axes2_y*v->tube_S_ddot_y + v->axis_x_tube_axes2_z*v->tube_S_ddot_z -
-        tube_g_in_axes2_x;
-    const real tube_acc_3_in_axes2_y = tube_bias_t_4 + v->tube_q_3*tube_qdd_2 - tube_bias_t_2
-        - tube_g_in_axes2_y;
-    const real tube_acc_3_in_axes2_z = tube_bias_t - tube_bias_t_5 - v->tube_g_in_axes2_z -
+    const real tube_acc_3_in_axes2_x = v->axis_x_tube_axes2_x*v->tube_S_ddot_x -
+        tube_g_in_axes2_x + v->axis_x_tube_axes2_y*v->tube_S_ddot_y +
+        v->axis_x_tube_axes2_z*v->tube_S_ddot_z;
+    const real tube_acc_3_in_axes2_y = tube_bias_t_4 - tube_g_in_axes2_y - tube_bias_t_2 +
+        v->tube_q_3*tube_qdd_2;
+    const real tube_acc_3_in_axes2_z = tube_bias_t - v->tube_g_in_axes2_z - tube_bias_t_5 -
         tube_alpha_2_in_axes2_y*v->tube_q_3;
     /* (tube-f_3) inertia force of link 3 less its weight */
     const real tube_f_3_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x;
     const real tube_f_3_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y;
     const real tube_f_3_t_3 = tube_qd_2*tube_qd_2;
-    const real tube_f_3_in_axes2_x = tube_acc_3_in_axes2_x*m->tube_link3_mass[i] +
+    const real tube_f_3_in_axes2_x = tube_acc_3_in_axes2_x*m->tube_link3_mass[i] -
+        m->tube_h_3_in_spec2_x[i]*(tube_f_3_t_2 + tube_f_3_t_3) +
         tube_alpha_1_in_axes2_y*m->tube_h_3_in_spec2_y[i] -
-        tube_B_2_in_axes2_xy*m->tube_h_3_in_spec2_z[i] -
-        m->tube_h_3_in_spec2_x[i]*(tube_f_3_t_2 + tube_f_3_t_3);
-    const real tube_f_3_in_axes2_y = tube_B_2_in_axes2_yx*m->tube_h_3_in_spec2_x[i] +
-        tube_acc_3_in_axes2_y*m->tube_link3_mass[i] + m->tube_h_3_in_spec2_z[i]*(tube_f_3_t +
-        tube_f_3_t_3) - tube_alpha_1_in_axes2_x*m->tube_h_3_in_spec2_y[i];
-    const real tube_f_3_in_axes2_z = tube_B_2_in_axes2_zx*m->tube_h_3_in_spec2_x[i] +
+        tube_B_2_in_axes2_xy*m->tube_h_3_in_spec2_z[i];
+    const real tube_f_3_in_axes2_y = m->tube_h_3_in_spec2_z[i]*(tube_f_3_t + tube_f_3_t_3) -
+        tube_alpha_1_in_axes2_x*m->tube_h_3_in_spec2_y[i] +
+        tube_B_2_in_axes2_yx*m->tube_h_3_in_spec2_x[i] +
+        tube_acc_3_in_axes2_y*m->tube_link3_mass[i];
+    const real tube_f_3_in_axes2_z = tube_B_2_in_axes2_zx*m->tube_h_3_in_spec2_x[i] -
+        m->tube_h_3_in_spec2_y[i]*(tube_f_3_t + tube_f_3_t_2) +
         tube_acc_3_in_axes2_z*m->tube_link3_mass[i] -
-        tube_B_2_in_axes2_zy*m->tube_h_3_in_spec2_z[i] - m->tube_h_3_in_spec2_y[i]*(tube_f_3_t
-        + tube_f_3_t_2);
+        tube_B_2_in_axes2_zy*m->tube_h_3_in_spec2_z[i];
     /* (tube-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real tube_mu_2_in_axes2_x = tube_B_2_in_axes2_yx*m->tube_J_group_2_in_axes2_xz[i] +
-        tube_B_2_in_axes2_zy*m->tube_Sigma_2_in_axes2_yy[i] +
+    const real tube_mu_2_in_axes2_x = v->tube_g_in_axes2_z*m->tube_h_2_in_spec2_z[i] +
+        tube_g_in_axes2_y*m->tube_h_2_in_spec2_y[i] +
         m->tube_J_group_2_in_axes2_yz[i]*(tube_f_3_t_2 - tube_f_3_t_3) +
         m->tube_Sigma_2_in_axes2_zz[i]*tube_alpha_1_in_axes2_x +
-        tube_g_in_axes2_y*m->tube_h_2_in_spec2_y[i] +
-        v->tube_g_in_axes2_z*m->tube_h_2_in_spec2_z[i] -
+        tube_B_2_in_axes2_zy*m->tube_Sigma_2_in_axes2_yy[i] -
         tube_B_2_in_axes2_zx*m->tube_J_group_2_in_axes2_xy[i] -
-        tube_acc_3_in_axes2_y*m->tube_h_3_in_spec2_y[i] -
-        tube_acc_3_in_axes2_z*m->tube_h_3_in_spec2_z[i];
-    const real tube_mu_2_in_axes2_y = tube_B_2_in_axes2_zy*m->tube_J_group_2_in_axes2_xy[i] +
+        tube_acc_3_in_axes2_z*m->tube_h_3_in_spec2_z[i] +
+        tube_B_2_in_axes2_yx*m->tube_J_group_2_in_axes2_xz[i] -
+        tube_acc_3_in_axes2_y*m->tube_h_3_in_spec2_y[i];
+    const real tube_mu_2_in_axes2_y = v->tube_g_in_axes2_z*m->tube_h_2_in_spec2_x[i] -
+        tube_g_in_axes2_x*m->tube_h_2_in_spec2_y[i] +
+        tube_acc_3_in_axes2_x*m->tube_h_3_in_spec2_y[i] -
+        m->tube_J_group_2_in_axes2_xz[i]*(tube_f_3_t - tube_f_3_t_3) +
         m->tube_Sigma_2_in_axes2_zz[i]*tube_alpha_1_in_axes2_y +
-        tube_acc_3_in_axes2_x*m->tube_h_3_in_spec2_y[i] +
-        v->tube_g_in_axes2_z*m->tube_h_2_in_spec2_x[i] -
-        tube_B_2_in_axes2_xy*m->tube_J_group_2_in_axes2_yz[i] -
+        tube_B_2_in_axes2_zy*m->tube_J_group_2_in_axes2_xy[i] -
         tube_B_2_in_axes2_zx*m->tube_Sigma_2_in_axes2_xx[i] -
-        m->tube_J_group_2_in_axes2_xz[i]*(tube_f_3_t - tube_f_3_t_3) -
         tube_acc_3_in_axes2_z*m->tube_h_3_in_spec2_x[i] -
-        tube_g_in_axes2_x*m->tube_h_2_in_spec2_y[i];
-    const real tube_mu_2_in_axes2_z = tube_B_2_in_axes2_yx*m->tube_Sigma_2_in_axes2_xx[i] +
+        tube_B_2_in_axes2_xy*m->tube_J_group_2_in_axes2_yz[i];
+    const real tube_mu_2_in_axes2_z = tube_acc_3_in_axes2_x*m->tube_h_3_in_spec2_z[i] -
+        tube_g_in_axes2_x*m->tube_h_2_in_spec2_z[i] -
+        tube_g_in_axes2_y*m->tube_h_2_in_spec2_x[i] +
         m->tube_J_group_2_in_axes2_xy[i]*(tube_f_3_t - tube_f_3_t_2) +
         m->tube_J_group_2_in_axes2_xz[i]*tube_alpha_1_in_axes2_x +
         m->tube_J_group_2_in_axes2_yz[i]*tube_alpha_1_in_axes2_y +
-        tube_acc_3_in_axes2_x*m->tube_h_3_in_spec2_z[i] +
+        tube_B_2_in_axes2_yx*m->tube_Sigma_2_in_axes2_xx[i] +
         tube_acc_3_in_axes2_y*m->tube_h_3_in_spec2_x[i] -
-        tube_B_2_in_axes2_xy*m->tube_Sigma_2_in_axes2_yy[i] -
-        tube_g_in_axes2_x*m->tube_h_2_in_spec2_z[i] -
-        tube_g_in_axes2_y*m->tube_h_2_in_spec2_x[i];
+        tube_B_2_in_axes2_xy*m->tube_Sigma_2_in_axes2_yy[i];
     /* (tube-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
        left out */
     const real tube_N_2_in_axes2_y = tube_mu_2_in_axes2_y - tube_f_3_in_axes2_z*v->tube_q_3;
-    const real tube_N_2_in_axes2_z = tube_mu_2_in_axes2_z + tube_f_3_in_axes2_y*v->tube_q_3;
+    const real tube_N_2_in_axes2_z = tube_f_3_in_axes2_y*v->tube_q_3 + tube_mu_2_in_axes2_z;
     /* (tube-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
     const real tube_G_t = v->inv_tube_w_1_t_13*tube_N_2_in_axes2_z;
     const real tube_G_t_2 = v->inv_tube_w_1_t_33*tube_G_t*v->tube_w_1_t_17;
     const real tube_G_t_3 = v->inv_tube_w_1_t_49*(tube_G_t*v->tube_w_1_t_21 -
         tube_G_t_2*v->tube_w_1_t_37);
-    const real tube_G_t_4 = v->inv_tube_w_1_t_63*(tube_G_t_2*v->tube_w_1_t_41 +
-        tube_G_t_3*v->tube_w_1_t_53 - tube_G_t*v->tube_w_1_t_25);
-    const real tube_G_t_5 = v->inv_tube_w_1_t_75*(tube_G_t*v->tube_w_1_t_29 +
-        tube_G_t_4*v->tube_w_1_t_69 + tube_N_2_in_axes2_y*v->tube_c_2 -
-        tube_G_t_2*v->tube_w_1_t_45 - tube_G_t_3*v->tube_w_1_t_58 -
-        v->tube_e_1_in_axes2_x*tube_mu_2_in_axes2_x);
+    const real tube_G_t_4 = v->inv_tube_w_1_t_63*(tube_G_t_2*v->tube_w_1_t_41 -
+        tube_G_t*v->tube_w_1_t_25 + tube_G_t_3*v->tube_w_1_t_53);
+    const real tube_G_t_5 = v->inv_tube_w_1_t_75*(tube_N_2_in_axes2_y*v->tube_c_2 -
+        v->tube_e_1_in_axes2_x*tube_mu_2_in_axes2_x + tube_G_t*v->tube_w_1_t_29 -
+        tube_G_t_2*v->tube_w_1_t_45 - tube_G_t_3*v->tube_w_1_t_58 +
+        tube_G_t_4*v->tube_w_1_t_69);
     const real tube_G_in_axes2_y = tube_G_t*v->tube_w_1_t_14 + tube_G_t_2*v->tube_w_1_t_34 +
         tube_G_t_3*v->tube_w_1_t_50 + tube_G_t_4*v->tube_w_1_t_64 - tube_G_t_5*tube_qd_1_t;
     const real tube_G_in_axes2_z = v->inv_tube_w_1_t_49*tube_G_t_3 +
@@ -2982,24 +2997,24 @@ INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real ups_q_x = R_xx*m->ups_platform_point_x[i] + R_xy*m->ups_platform_point_y[i] +
-        R_xz*m->ups_platform_point_z[i];
+    const real ups_q_x = R_xy*m->ups_platform_point_y[i] + R_xz*m->ups_platform_point_z[i] +
+        R_xx*m->ups_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real ups_q_y = R_yx*m->ups_platform_point_x[i] + R_yy*m->ups_platform_point_y[i] +
-        R_yz*m->ups_platform_point_z[i];
+    const real ups_q_y = R_yx*m->ups_platform_point_x[i] + R_yz*m->ups_platform_point_z[i] +
+        R_yy*m->ups_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real ups_q_z = R_zx*m->ups_platform_point_x[i] + R_zy*m->ups_platform_point_y[i] +
         R_zz*m->ups_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real ups_S_x = t_x + ups_q_x - m->ups_base_point_x[i];
+    const real ups_S_x = t_x - m->ups_base_point_x[i] + ups_q_x;
     const real t_y = X[1*w + j];
-    const real ups_S_y = t_y + ups_q_y - m->ups_base_point_y[i];
+    const real ups_S_y = t_y - m->ups_base_point_y[i] + ups_q_y;
     const real t_z = X[2*w + j];
-    const real ups_S_z = t_z + ups_q_z - m->ups_base_point_z[i];
+    const real ups_S_z = t_z - m->ups_base_point_z[i] + ups_q_z;
     const real ups_S_in_turn1_x = ups_S_x*m->ups_base_frame_xx[i] +
         ups_S_y*m->ups_base_frame_yx[i] + ups_S_z*m->ups_base_frame_zx[i];
     const real ups_S_in_turn1_y = ups_S_x*m->ups_base_frame_xy[i] +
@@ -3149,13 +3164,13 @@ INLINE void stage_ups_A_V_X(size_t w, size_t j, const real *V, values_ups *v)
     /* (ups-S_ddot) acceleration of the connection point */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
-    const real ups_S_ddot_x = v->ups_a_p_x + omega_y*v->ups_S_dot_t_3 -
-        omega_z*v->ups_S_dot_t_2;
+    const real ups_S_ddot_x = omega_y*v->ups_S_dot_t_3 - omega_z*v->ups_S_dot_t_2 +
+        v->ups_a_p_x;
     const real omega_x = V[3*w + j];
-    const real ups_S_ddot_y = v->ups_a_p_y + omega_z*v->ups_S_dot_t -
-        omega_x*v->ups_S_dot_t_3;
-    const real ups_S_ddot_z = v->ups_a_p_z + omega_x*v->ups_S_dot_t_2 -
-        omega_y*v->ups_S_dot_t;
+    const real ups_S_ddot_y = omega_z*v->ups_S_dot_t - omega_x*v->ups_S_dot_t_3 +
+        v->ups_a_p_y;
+    const real ups_S_ddot_z = omega_x*v->ups_S_dot_t_2 - omega_y*v->ups_S_dot_t +
+        v->ups_a_p_z;
     v->ups_S_ddot_x = ups_S_ddot_x;
     v->ups_S_ddot_y = ups_S_ddot_y;
     v->ups_S_ddot_z = ups_S_ddot_z;
@@ -3201,55 +3216,56 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
         m->ups_acc_3_t_3[i]*v->ups_c_2;
     const real ups_acc_3_o_in_axes2_x = v->axis_x_ups_axes2_x*ups_u_1_x +
         v->axis_x_ups_axes2_y*ups_u_1_y + v->axis_x_ups_axes2_z*ups_u_1_z - ups_g_in_axes2_x;
-    const real ups_acc_3_o_in_axes2_y = ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 -
-        ups_g_in_axes2_y;
+    const real ups_acc_3_o_in_axes2_y = ups_B_2_o_t - ups_g_in_axes2_y + ups_B_2_o_t_2 +
+        ups_B_2_o_t_3;
     const real ups_acc_3_o_in_axes2_z = ups_u_1_in_axes2_z - v->ups_g_in_axes2_z;
     /* (ups-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
        */
     const real ups_phi_3_o_t = v->ups_omega_1_in_axes2_y*v->ups_omega_1_in_axes2_y;
     const real ups_phi_3_o_t_2 = v->ups_qd_2*v->ups_qd_2;
-    const real ups_phi_3_o_in_axes2_x = ups_alpha_1_o_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
-        m->ups_h_3_in_spec2_x[i]*(-ups_phi_3_o_t - ups_phi_3_o_t_2) -
-        ups_B_2_o_in_axes2_xy*m->ups_h_3_in_spec2_z[i];
+    const real ups_phi_3_o_in_axes2_x = m->ups_h_3_in_spec2_x[i]*(-ups_phi_3_o_t -
+        ups_phi_3_o_t_2) - ups_B_2_o_in_axes2_xy*m->ups_h_3_in_spec2_z[i] +
+        ups_alpha_1_o_in_axes2_y*m->ups_h_3_in_spec2_y[i];
     /* (ups-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real ups_mu_2_o_t = v->ups_omega_1_in_axes2_x*v->ups_omega_1_in_axes2_x;
-    const real ups_mu_2_o_in_axes2_x = ups_B_2_o_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
-        ups_B_2_o_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] +
+    const real ups_mu_2_o_in_axes2_x = v->ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] +
+        ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] -
+        ups_acc_3_o_in_axes2_z*m->ups_h_3_in_spec2_z[i] -
+        ups_acc_3_o_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
+        ups_B_2_o_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
         m->ups_J_group_2_in_axes2_yz[i]*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
         m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_in_axes2_x +
-        ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] +
-        v->ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] -
-        ups_B_2_o_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i] -
-        ups_acc_3_o_in_axes2_y*m->ups_h_3_in_spec2_y[i] -
-        ups_acc_3_o_in_axes2_z*m->ups_h_3_in_spec2_z[i];
-    const real ups_mu_2_o_in_axes2_y = ups_B_2_o_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] +
-        m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_in_axes2_y +
-        ups_acc_3_o_in_axes2_x*m->ups_h_3_in_spec2_y[i] +
-        v->ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
-        ups_B_2_o_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] -
-        ups_B_2_o_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i] -
-        m->ups_J_group_2_in_axes2_xz[i]*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
+        ups_B_2_o_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
+        ups_B_2_o_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
+    const real ups_mu_2_o_in_axes2_y = v->ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
+        ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i] +
+        ups_acc_3_o_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
         ups_acc_3_o_in_axes2_z*m->ups_h_3_in_spec2_x[i] -
-        ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i];
-    const real ups_mu_2_o_in_axes2_z = ups_B_2_o_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
-        m->ups_J_group_2_in_axes2_xy[i]*(ups_mu_2_o_t - ups_phi_3_o_t) +
+        m->ups_J_group_2_in_axes2_xz[i]*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
+        ups_B_2_o_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
+        m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_in_axes2_y +
+        ups_B_2_o_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
+        ups_B_2_o_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
+    const real ups_mu_2_o_in_axes2_z = ups_acc_3_o_in_axes2_x*m->ups_h_3_in_spec2_z[i] -
+        ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] - ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i]
+        + ups_acc_3_o_in_axes2_y*m->ups_h_3_in_spec2_x[i] +
+        ups_B_2_o_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
+        m->ups_J_group_2_in_axes2_xy[i]*(ups_mu_2_o_t - ups_phi_3_o_t) -
+        ups_B_2_o_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] +
         m->ups_J_group_2_in_axes2_xz[i]*ups_alpha_1_o_in_axes2_x +
-        m->ups_J_group_2_in_axes2_yz[i]*ups_alpha_1_o_in_axes2_y +
-        ups_acc_3_o_in_axes2_x*m->ups_h_3_in_spec2_z[i] +
-        ups_acc_3_o_in_axes2_y*m->ups_h_3_in_spec2_x[i] -
-        ups_B_2_o_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] -
-        ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] - ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i];
+        m->ups_J_group_2_in_axes2_yz[i]*ups_alpha_1_o_in_axes2_y;
     /* (ups-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
     const real ups_c_o_in_axes2_y = ups_alpha_1_o_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        v->inv_ups_q_3*ups_mu_2_o_in_axes2_z - ups_B_2_o_in_axes2_yx*m->ups_h_3_in_spec2_x[i]
-        - m->ups_h_3_in_spec2_z[i]*(ups_mu_2_o_t + ups_phi_3_o_t_2);
-    const real ups_c_o_in_axes2_z = v->inv_ups_root_1*(v->ups_c_2*ups_mu_2_o_in_axes2_y -
-        v->ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x) +
-        ups_B_2_o_in_axes2_zy*m->ups_h_3_in_spec2_z[i] +
-        m->ups_h_3_in_spec2_y[i]*(ups_mu_2_o_t + ups_phi_3_o_t) -
-        ups_B_2_o_in_axes2_zx*m->ups_h_3_in_spec2_x[i];
+        ups_B_2_o_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
+        m->ups_h_3_in_spec2_z[i]*(ups_mu_2_o_t + ups_phi_3_o_t_2) -
+        v->inv_ups_q_3*ups_mu_2_o_in_axes2_z;
+    const real ups_c_o_in_axes2_z = m->ups_h_3_in_spec2_y[i]*(ups_mu_2_o_t + ups_phi_3_o_t) +
+        ups_B_2_o_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
+        ups_B_2_o_in_axes2_zx*m->ups_h_3_in_spec2_x[i] +
+        v->inv_ups_root_1*(v->ups_c_2*ups_mu_2_o_in_axes2_y -
+        v->ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x);
     /* (ups-U) velocity and gravity terms of the leg force */
     const real ups_U_x = v->axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x -
         v->axis_y_ups_axes2_x*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_x*ups_c_o_in_axes2_z;
@@ -3277,23 +3293,20 @@ INLINE void stage_ups_inverse_kinematics_potential(const prepared *m, size_t w, 
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
     const real t_x = X[0*w + j];
-    const real ups_S_x = t_x + R_xx*m->ups_platform_point_x[i] +
-        R_xy*m->ups_platform_point_y[i] + R_xz*m->ups_platform_point_z[i] -
-        m->ups_base_point_x[i];
+    const real ups_S_x = t_x - m->ups_base_point_x[i] + R_xy*m->ups_platform_point_y[i] +
+        R_xz*m->ups_platform_point_z[i] + R_xx*m->ups_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real t_y = X[1*w + j];
-    const real ups_S_y = t_y + R_yx*m->ups_platform_point_x[i] +
-        R_yy*m->ups_platform_point_y[i] + R_yz*m->ups_platform_point_z[i] -
-        m->ups_base_point_y[i];
+    const real ups_S_y = t_y - m->ups_base_point_y[i] + R_yx*m->ups_platform_point_x[i] +
+        R_yz*m->ups_platform_point_z[i] + R_yy*m->ups_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real t_z = X[2*w + j];
-    const real ups_S_z = t_z + R_zx*m->ups_platform_point_x[i] +
-        R_zy*m->ups_platform_point_y[i] + R_zz*m->ups_platform_point_z[i] -
-        m->ups_base_point_z[i];
+    const real ups_S_z = t_z - m->ups_base_point_z[i] + R_zx*m->ups_platform_point_x[i] +
+        R_zy*m->ups_platform_point_y[i] + R_zz*m->ups_platform_point_z[i];
     const real ups_S_in_turn1_x = ups_S_x*m->ups_base_frame_xx[i] +
         ups_S_y*m->ups_base_frame_yx[i] + ups_S_z*m->ups_base_frame_zx[i];
     const real ups_S_in_turn1_y = ups_S_x*m->ups_base_frame_xy[i] +
@@ -3355,8 +3368,8 @@ INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
     const real ups_acc_3_in_axes2_x = v->axis_x_ups_axes2_x*v->ups_S_ddot_x +
         v->axis_x_ups_axes2_y*v->ups_S_ddot_y + v->axis_x_ups_axes2_z*v->ups_S_ddot_z -
         ups_g_in_axes2_x;
-    const real ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
-        ups_g_in_axes2_y;
+    const real ups_acc_3_in_axes2_y = ups_B_2_t - ups_g_in_axes2_y + ups_B_2_t_2 +
+        ups_B_2_t_3;
     const real ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - v->ups_g_in_axes2_z;
     /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real ups_mu_2_t = v->ups_omega_1_in_axes2_x*v->ups_omega_1_in_axes2_x;
@@ -3377,39 +3390,43 @@ INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    real *s, verdict *t)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_M_dynamics(m, &v);
-    stage_Z_dynamics(m, w, k, V, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.h_star_x;
-    s[10*w + k] = v.h_star_y;
-    s[11*w + k] = v.h_star_z;
-    s[12*w + k] = v.J_star_xx;
-    s[13*w + k] = v.J_star_xy;
-    s[14*w + k] = v.J_star_xz;
-    s[15*w + k] = v.J_star_yy;
-    s[16*w + k] = v.J_star_yz;
-    s[17*w + k] = v.J_star_zz;
-    s[18*w + k] = v.Z_p_x;
-    s[19*w + k] = v.Z_p_y;
-    s[20*w + k] = v.Z_p_z;
-    s[21*w + k] = v.Z_q_x;
-    s[22*w + k] = v.Z_q_y;
-    s[23*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->h_star_x;
+    s[10*w + k] = v->h_star_y;
+    s[11*w + k] = v->h_star_z;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
+    *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_M_dynamics(m, v);
+    stage_Z_dynamics(m, w, k, V, v);
+    s[12*w + k] = v->J_star_xx;
+    s[13*w + k] = v->J_star_xy;
+    s[14*w + k] = v->J_star_xz;
+    s[15*w + k] = v->J_star_yy;
+    s[16*w + k] = v->J_star_yz;
+    s[17*w + k] = v->J_star_zz;
+    s[18*w + k] = v->Z_p_x;
+    s[19*w + k] = v->Z_p_y;
+    s[20*w + k] = v->Z_p_z;
+    s[21*w + k] = v->Z_q_x;
+    s[22*w + k] = v->Z_q_y;
+    s[23*w + k] = v->Z_q_z;
 }
 
 INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3447,9 +3464,9 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
         v.axis_y_ups_axes2_x*ups_Q_t - v.axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
     const real ups_Q_t_4 = v.axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy -
         v.axis_y_ups_axes2_y*ups_Q_t - v.axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_5 = v.axis_y_ups_axes2_z*ups_Q_t +
-        v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz -
-        v.axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy;
+    const real ups_Q_t_5 = v.axis_y_ups_axes2_z*ups_Q_t -
+        v.axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy +
+        v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz;
     const real ups_Q_t_6 = v.axis_x_ups_axes2_x*ups_d_c_in_axes2_xz +
         v.axis_z_ups_axes2_x*ups_Q_t_2;
     const real ups_Q_t_7 = v.axis_x_ups_axes2_y*ups_d_c_in_axes2_xz +
@@ -3580,11 +3597,11 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
     const real tube_w_2_t = v.inv_tube_w_1_t_13*v.inv_tube_w_1_t_33*v.tube_w_1_t_17;
     const real tube_w_2_t_2 = v.inv_tube_w_1_t_49*(v.inv_tube_w_1_t_13*v.tube_w_1_t_21 -
         v.tube_w_1_t_37*tube_w_2_t);
-    const real tube_w_2_t_3 = v.inv_tube_w_1_t_63*(v.tube_w_1_t_41*tube_w_2_t +
-        v.tube_w_1_t_53*tube_w_2_t_2 - v.inv_tube_w_1_t_13*v.tube_w_1_t_25);
-    const real tube_w_2_t_4 = v.inv_tube_w_1_t_75*(v.inv_tube_w_1_t_13*v.tube_w_1_t_29 +
-        v.tube_w_1_t_69*tube_w_2_t_3 - v.tube_w_1_t_45*tube_w_2_t -
-        v.tube_w_1_t_58*tube_w_2_t_2);
+    const real tube_w_2_t_3 = v.inv_tube_w_1_t_63*(v.tube_w_1_t_41*tube_w_2_t -
+        v.inv_tube_w_1_t_13*v.tube_w_1_t_25 + v.tube_w_1_t_53*tube_w_2_t_2);
+    const real tube_w_2_t_4 = v.inv_tube_w_1_t_75*(v.inv_tube_w_1_t_13*v.tube_w_1_t_29 -
+        v.tube_w_1_t_45*tube_w_2_t - v.tube_w_1_t_58*tube_w_2_t_2 +
+        v.tube_w_1_t_69*tube_w_2_t_3);
     const real tube_w_2_in_axes2_y = v.inv_tube_w_1_t_13*v.tube_w_1_t_14 +
         v.tube_w_1_t_34*tube_w_2_t + v.tube_w_1_t_50*tube_w_2_t_2 +
         v.tube_w_1_t_64*tube_w_2_t_3 - tube_w_1_t_76*tube_w_2_t_4;
@@ -3596,7 +3613,7 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
         v.tube_w_1_t_66*tube_w_2_t_3 - tube_m1_w_1_t*tube_w_2_t_4;
     const real tube_m1_w_2 = R(1.35)*tube_m1_w_2_t;
     /* (tube-m2_w_2) moment part 2 of reciprocal wrench 2 */
-    const real tube_m2_w_2_t = tube_m2_w_1_t*tube_w_2_t_4 + v.tube_w_1_t_67*tube_w_2_t_3;
+    const real tube_m2_w_2_t = v.tube_w_1_t_67*tube_w_2_t_3 + tube_m2_w_1_t*tube_w_2_t_4;
     const real tube_m2_w_2 = R(1.35)*tube_m2_w_2_t;
     /* (tube-m3_w_2) moment part 3 of reciprocal wrench 2 */
     const real tube_m3_w_2_t = v.inv_tube_w_1_t_13*v.tube_w_1_t_16 +
@@ -3631,17 +3648,17 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
         tube_qd_1*v.tube_w_1_t_69);
     const real tube_qd_2_t_2 =
         v.inv_tube_w_1_t_49*(v.inv_tube_w_1_t_49*v.tube_S_dot_in_axes2_z +
-        v.tube_S_dot_in_axes2_y*v.tube_w_1_t_50 + tube_qd_1*v.tube_w_1_t_58 +
-        tube_qd_1_t*v.tube_w_1_t_51 + tube_qd_1_t_3*v.tube_w_1_t_52 +
+        v.tube_S_dot_in_axes2_y*v.tube_w_1_t_50 + tube_qd_1_t*v.tube_w_1_t_51 +
+        tube_qd_1_t_3*v.tube_w_1_t_52 + tube_qd_1*v.tube_w_1_t_58 +
         tube_qd_2_t*v.tube_w_1_t_53);
     const real tube_qd_2_t_3 = v.tube_S_dot_in_axes2_y*v.tube_w_1_t_14 +
-        tube_qd_1_t*v.tube_w_1_t_15 + tube_qd_1_t_3*v.tube_w_1_t_16 +
+        tube_qd_1_t*v.tube_w_1_t_15 + tube_qd_1_t_3*v.tube_w_1_t_16 -
+        tube_qd_1*v.tube_w_1_t_29 - tube_qd_2_t*v.tube_w_1_t_25 +
         tube_qd_2_t_2*v.tube_w_1_t_21 +
         v.inv_tube_w_1_t_33*v.tube_w_1_t_17*(v.tube_S_dot_in_axes2_y*v.tube_w_1_t_34 +
-        tube_qd_1*v.tube_w_1_t_45 + tube_qd_1_t*v.tube_w_1_t_35 +
-        tube_qd_1_t_3*v.tube_w_1_t_36 + tube_qd_2_t*v.tube_w_1_t_41 -
-        tube_qd_2_t_2*v.tube_w_1_t_37) - tube_qd_1*v.tube_w_1_t_29 -
-        tube_qd_2_t*v.tube_w_1_t_25;
+        tube_qd_1_t*v.tube_w_1_t_35 + tube_qd_1_t_3*v.tube_w_1_t_36 +
+        tube_qd_1*v.tube_w_1_t_45 + tube_qd_2_t*v.tube_w_1_t_41 -
+        tube_qd_2_t_2*v.tube_w_1_t_37);
     const real tube_qd_2 = v.inv_tube_w_1_t_13*tube_qd_2_t_3;
     /* (tube-omega_1) angular velocity of link 1 */
     const real tube_omega_1_in_axes2_x = v.tube_e_1_in_axes2_x*tube_qd_1;
@@ -3667,22 +3684,23 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
         tube_bias_in_axes2_z;
     /* (tube-nd_m1) rate of moment direction 1 */
     const real tube_nd_m1_in_axes2_y = v.tube_end_p1_in_axes2_x*v.tube_omega_in_axes2_y -
-        v.tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
-        v.tube_n_m1_in_axes2_z*v.tube_omega_in_axes2_x;
+        v.tube_n_m1_in_axes2_z*v.tube_omega_in_axes2_x -
+        v.tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y;
     const real tube_nd_m1_in_axes2_z = v.tube_end_p1_in_axes2_x*v.tube_omega_in_axes2_z -
-        v.tube_end_p1_in_axes2_x*tube_qd_2 - v.tube_end_p1_in_axes2_z*v.tube_omega_in_axes2_x;
+        v.tube_end_p1_in_axes2_z*v.tube_omega_in_axes2_x - v.tube_end_p1_in_axes2_x*tube_qd_2;
     /* (tube-nu_1) bias of the angular acceleration along moment direction 1 */
     const real tube_nu_1_t = tube_omega_1_in_axes2_x - v.tube_omega_in_axes2_x;
     const real tube_nu_1_t_2 = v.tube_omega_in_axes2_y - tube_omega_1_in_axes2_y;
     const real tube_nu_1_t_3 = v.tube_omega_in_axes2_z - tube_qd_2;
     const real tube_nu_1_t_4 = tube_nd_m1_in_axes2_y*tube_nu_1_t_2 +
-        tube_nd_m1_in_axes2_z*tube_nu_1_t_3 - tube_nu_1_t*(v.tube_end_p1_in_axes2_z*tube_qd_2
-        + v.tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y);
+        tube_nd_m1_in_axes2_z*tube_nu_1_t_3 -
+        tube_nu_1_t*(v.tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y +
+        v.tube_end_p1_in_axes2_z*tube_qd_2);
     const real tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*v.tube_end_p1_in_axes2_z;
     /* (tube-nd_m2) rate of moment direction 2 */
     const real tube_nd_m2_in_axes2_x = v.tube_end_p2_in_axes2_z*v.tube_omega_in_axes2_x -
-        v.tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
-        v.tube_n_m2_in_axes2_y*v.tube_omega_in_axes2_z;
+        v.tube_n_m2_in_axes2_y*v.tube_omega_in_axes2_z -
+        v.tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x;
     const real tube_nd_m2_in_axes2_y = v.tube_end_p2_in_axes2_z*v.tube_omega_in_axes2_y -
         v.tube_end_p2_in_axes2_y*v.tube_omega_in_axes2_z -
         v.tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y;
@@ -3695,42 +3713,40 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
         v.tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x);
     const real tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t;
     /* (tube-nd_m3) rate of moment direction 3 */
-    const real tube_nd_m3_in_axes2_x = v.tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
-        v.tube_n_m3_in_axes2_z*v.tube_omega_in_axes2_y -
-        v.tube_end_p3_in_axes2_y*v.tube_omega_in_axes2_x;
-    const real tube_nd_m3_in_axes2_z = v.tube_end_p3_in_axes2_y*tube_qd_2 +
-        v.tube_end_p3_in_axes2_z*v.tube_omega_in_axes2_y -
-        v.tube_end_p3_in_axes2_y*v.tube_omega_in_axes2_z;
+    const real tube_nd_m3_in_axes2_x = v.tube_n_m3_in_axes2_z*v.tube_omega_in_axes2_y -
+        v.tube_end_p3_in_axes2_y*v.tube_omega_in_axes2_x +
+        v.tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x;
+    const real tube_nd_m3_in_axes2_z = v.tube_end_p3_in_axes2_z*v.tube_omega_in_axes2_y -
+        v.tube_end_p3_in_axes2_y*v.tube_omega_in_axes2_z + v.tube_end_p3_in_axes2_y*tube_qd_2;
     /* (tube-nu_3) bias of the angular acceleration along moment direction 3 */
     const real tube_nu_3_t = tube_nd_m3_in_axes2_x*tube_nu_1_t +
-        tube_nu_1_t_2*(v.tube_end_p3_in_axes2_z*tube_qd_2 +
-        v.tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
+        tube_nu_1_t_2*(v.tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x +
+        v.tube_end_p3_in_axes2_z*tube_qd_2) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
     const real tube_nu_3 = tube_W_2_in_axes2_yz*v.tube_end_p3_in_axes2_z - tube_nu_3_t;
     /* (tube-qdd_1_o) remainder of: acceleration of joint 1 */
     const real tube_qdd_1_o_t = R(1.35)*tube_nu_1;
     const real tube_qdd_1_o_t_2 = R(1.35)*tube_nu_2;
     const real tube_qdd_1_o_t_3 = R(1.35)*tube_nu_3;
-    const real tube_qdd_1_o = v.inv_tube_w_1_t_75*(tube_m1_w_1_t*tube_qdd_1_o_t +
-        tube_m3_w_1_t*tube_qdd_1_o_t_3 + tube_rel_o_in_axes2_y*tube_w_1_t_76 +
-        tube_rel_o_in_axes2_z*tube_w_1_t_77 - tube_m2_w_1_t*tube_qdd_1_o_t_2);
+    const real tube_qdd_1_o = v.inv_tube_w_1_t_75*(tube_rel_o_in_axes2_y*tube_w_1_t_76 -
+        tube_m2_w_1_t*tube_qdd_1_o_t_2 + tube_m1_w_1_t*tube_qdd_1_o_t +
+        tube_m3_w_1_t*tube_qdd_1_o_t_3 + tube_rel_o_in_axes2_z*tube_w_1_t_77);
     /* (tube-qdd_2_o) remainder of: acceleration of joint 2 */
-    const real tube_qdd_2_o_t = v.inv_tube_w_1_t_63*(tube_qdd_1_o_t*v.tube_w_1_t_66 +
-        tube_qdd_1_o_t_2*v.tube_w_1_t_67 + tube_qdd_1_o_t_3*v.tube_w_1_t_68 +
-        tube_rel_o_in_axes2_y*v.tube_w_1_t_64 + tube_rel_o_in_axes2_z*v.tube_w_1_t_65 -
+    const real tube_qdd_2_o_t = v.inv_tube_w_1_t_63*(tube_qdd_1_o_t_2*v.tube_w_1_t_67 +
+        tube_rel_o_in_axes2_y*v.tube_w_1_t_64 + tube_qdd_1_o_t*v.tube_w_1_t_66 +
+        tube_qdd_1_o_t_3*v.tube_w_1_t_68 + tube_rel_o_in_axes2_z*v.tube_w_1_t_65 -
         tube_qdd_1_o*v.tube_w_1_t_69);
-    const real tube_qdd_2_o_t_2 =
-        v.inv_tube_w_1_t_49*(v.inv_tube_w_1_t_49*tube_rel_o_in_axes2_z +
-        tube_qdd_1_o*v.tube_w_1_t_58 + tube_qdd_1_o_t*v.tube_w_1_t_51 +
-        tube_qdd_1_o_t_3*v.tube_w_1_t_52 + tube_qdd_2_o_t*v.tube_w_1_t_53 +
-        tube_rel_o_in_axes2_y*v.tube_w_1_t_50);
-    const real tube_qdd_2_o_t_3 = tube_qdd_1_o_t*v.tube_w_1_t_15 +
-        tube_qdd_1_o_t_3*v.tube_w_1_t_16 + tube_qdd_2_o_t_2*v.tube_w_1_t_21 +
-        tube_rel_o_in_axes2_y*v.tube_w_1_t_14 +
-        v.inv_tube_w_1_t_33*v.tube_w_1_t_17*(tube_qdd_1_o*v.tube_w_1_t_45 +
+    const real tube_qdd_2_o_t_2 = v.inv_tube_w_1_t_49*(tube_rel_o_in_axes2_y*v.tube_w_1_t_50 +
+        v.inv_tube_w_1_t_49*tube_rel_o_in_axes2_z + tube_qdd_1_o_t*v.tube_w_1_t_51 +
+        tube_qdd_1_o_t_3*v.tube_w_1_t_52 + tube_qdd_1_o*v.tube_w_1_t_58 +
+        tube_qdd_2_o_t*v.tube_w_1_t_53);
+    const real tube_qdd_2_o_t_3 = tube_rel_o_in_axes2_y*v.tube_w_1_t_14 +
+        tube_qdd_1_o_t*v.tube_w_1_t_15 + tube_qdd_1_o_t_3*v.tube_w_1_t_16 -
+        tube_qdd_1_o*v.tube_w_1_t_29 - tube_qdd_2_o_t*v.tube_w_1_t_25 +
+        tube_qdd_2_o_t_2*v.tube_w_1_t_21 +
+        v.inv_tube_w_1_t_33*v.tube_w_1_t_17*(tube_rel_o_in_axes2_y*v.tube_w_1_t_34 +
         tube_qdd_1_o_t*v.tube_w_1_t_35 + tube_qdd_1_o_t_3*v.tube_w_1_t_36 +
-        tube_qdd_2_o_t*v.tube_w_1_t_41 + tube_rel_o_in_axes2_y*v.tube_w_1_t_34 -
-        tube_qdd_2_o_t_2*v.tube_w_1_t_37) - tube_qdd_1_o*v.tube_w_1_t_29 -
-        tube_qdd_2_o_t*v.tube_w_1_t_25;
+        tube_qdd_1_o*v.tube_w_1_t_45 + tube_qdd_2_o_t*v.tube_w_1_t_41 -
+        tube_qdd_2_o_t_2*v.tube_w_1_t_37);
     const real tube_qdd_2_o = v.inv_tube_w_1_t_13*tube_qdd_2_o_t_3;
     /* (tube-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
     const real tube_dalpha_alpha_1_t = v.tube_c_2*tube_o_1_in_axes2_x;
@@ -3768,147 +3784,144 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
     const real tube_d_acc_3_in_axes2_zy = v.tube_q_3*tube_w_1_t_78;
     const real tube_d_acc_3_in_axes2_zz = tube_d_alpha_1_t*v.tube_q_3;
     /* (tube-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real tube_acc_3_o_in_axes2_y = tube_bias_t_4 + v.tube_q_3*tube_qdd_2_o -
-        tube_bias_t_2 - v.tube_g_in_axes2_y;
-    const real tube_acc_3_o_in_axes2_z = tube_bias_t - tube_bias_t_5 - v.tube_g_in_axes2_z -
+    const real tube_acc_3_o_in_axes2_y = tube_bias_t_4 - v.tube_g_in_axes2_y - tube_bias_t_2 +
+        v.tube_q_3*tube_qdd_2_o;
+    const real tube_acc_3_o_in_axes2_z = tube_bias_t - v.tube_g_in_axes2_z - tube_bias_t_5 -
         tube_alpha_2_o_in_axes2_y*v.tube_q_3;
     /* (tube-f_3_o) remainder of: inertia force of link 3 less its weight */
     const real tube_f_3_o_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x;
     const real tube_f_3_o_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y;
     const real tube_f_3_o_t_3 = tube_qd_2*tube_qd_2;
-    const real tube_f_3_o_in_axes2_x = v.tube_acc_3_o_in_axes2_x*m->tube_link3_mass[i] +
+    const real tube_f_3_o_in_axes2_x = v.tube_acc_3_o_in_axes2_x*m->tube_link3_mass[i] -
+        m->tube_h_3_in_spec2_x[i]*(tube_f_3_o_t_2 + tube_f_3_o_t_3) +
         tube_alpha_1_o_in_axes2_y*m->tube_h_3_in_spec2_y[i] -
-        tube_B_2_o_in_axes2_xy*m->tube_h_3_in_spec2_z[i] -
-        m->tube_h_3_in_spec2_x[i]*(tube_f_3_o_t_2 + tube_f_3_o_t_3);
-    const real tube_f_3_o_in_axes2_y = tube_B_2_o_in_axes2_yx*m->tube_h_3_in_spec2_x[i] +
-        tube_acc_3_o_in_axes2_y*m->tube_link3_mass[i] +
-        m->tube_h_3_in_spec2_z[i]*(tube_f_3_o_t + tube_f_3_o_t_3) -
-        tube_alpha_1_o_in_axes2_x*m->tube_h_3_in_spec2_y[i];
-    const real tube_f_3_o_in_axes2_z = tube_B_2_o_in_axes2_zx*m->tube_h_3_in_spec2_x[i] +
+        tube_B_2_o_in_axes2_xy*m->tube_h_3_in_spec2_z[i];
+    const real tube_f_3_o_in_axes2_y = m->tube_h_3_in_spec2_z[i]*(tube_f_3_o_t +
+        tube_f_3_o_t_3) - tube_alpha_1_o_in_axes2_x*m->tube_h_3_in_spec2_y[i] +
+        tube_B_2_o_in_axes2_yx*m->tube_h_3_in_spec2_x[i] +
+        tube_acc_3_o_in_axes2_y*m->tube_link3_mass[i];
+    const real tube_f_3_o_in_axes2_z = tube_B_2_o_in_axes2_zx*m->tube_h_3_in_spec2_x[i] -
+        m->tube_h_3_in_spec2_y[i]*(tube_f_3_o_t + tube_f_3_o_t_2) +
         tube_acc_3_o_in_axes2_z*m->tube_link3_mass[i] -
-        tube_B_2_o_in_axes2_zy*m->tube_h_3_in_spec2_z[i] -
-        m->tube_h_3_in_spec2_y[i]*(tube_f_3_o_t + tube_f_3_o_t_2);
+        tube_B_2_o_in_axes2_zy*m->tube_h_3_in_spec2_z[i];
     /* (tube-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
-    const real tube_mu_2_o_in_axes2_x =
-        tube_B_2_o_in_axes2_yx*m->tube_J_group_2_in_axes2_xz[i] +
-        tube_B_2_o_in_axes2_zy*m->tube_Sigma_2_in_axes2_yy[i] +
+    const real tube_mu_2_o_in_axes2_x = v.tube_g_in_axes2_z*m->tube_h_2_in_spec2_z[i] +
+        v.tube_g_in_axes2_y*m->tube_h_2_in_spec2_y[i] +
         m->tube_J_group_2_in_axes2_yz[i]*(tube_f_3_o_t_2 - tube_f_3_o_t_3) +
         m->tube_Sigma_2_in_axes2_zz[i]*tube_alpha_1_o_in_axes2_x +
-        v.tube_g_in_axes2_y*m->tube_h_2_in_spec2_y[i] +
-        v.tube_g_in_axes2_z*m->tube_h_2_in_spec2_z[i] -
+        tube_B_2_o_in_axes2_zy*m->tube_Sigma_2_in_axes2_yy[i] -
         tube_B_2_o_in_axes2_zx*m->tube_J_group_2_in_axes2_xy[i] -
-        tube_acc_3_o_in_axes2_y*m->tube_h_3_in_spec2_y[i] -
-        tube_acc_3_o_in_axes2_z*m->tube_h_3_in_spec2_z[i];
-    const real tube_mu_2_o_in_axes2_y =
-        tube_B_2_o_in_axes2_zy*m->tube_J_group_2_in_axes2_xy[i] +
+        tube_acc_3_o_in_axes2_z*m->tube_h_3_in_spec2_z[i] +
+        tube_B_2_o_in_axes2_yx*m->tube_J_group_2_in_axes2_xz[i] -
+        tube_acc_3_o_in_axes2_y*m->tube_h_3_in_spec2_y[i];
+    const real tube_mu_2_o_in_axes2_y = v.tube_g_in_axes2_z*m->tube_h_2_in_spec2_x[i] -
+        v.tube_g_in_axes2_x*m->tube_h_2_in_spec2_y[i] +
+        v.tube_acc_3_o_in_axes2_x*m->tube_h_3_in_spec2_y[i] -
+        m->tube_J_group_2_in_axes2_xz[i]*(tube_f_3_o_t - tube_f_3_o_t_3) +
         m->tube_Sigma_2_in_axes2_zz[i]*tube_alpha_1_o_in_axes2_y +
-        v.tube_acc_3_o_in_axes2_x*m->tube_h_3_in_spec2_y[i] +
-        v.tube_g_in_axes2_z*m->tube_h_2_in_spec2_x[i] -
-        tube_B_2_o_in_axes2_xy*m->tube_J_group_2_in_axes2_yz[i] -
+        tube_B_2_o_in_axes2_zy*m->tube_J_group_2_in_axes2_xy[i] -
         tube_B_2_o_in_axes2_zx*m->tube_Sigma_2_in_axes2_xx[i] -
-        m->tube_J_group_2_in_axes2_xz[i]*(tube_f_3_o_t - tube_f_3_o_t_3) -
         tube_acc_3_o_in_axes2_z*m->tube_h_3_in_spec2_x[i] -
-        v.tube_g_in_axes2_x*m->tube_h_2_in_spec2_y[i];
-    const real tube_mu_2_o_in_axes2_z = tube_B_2_o_in_axes2_yx*m->tube_Sigma_2_in_axes2_xx[i]
-        + m->tube_J_group_2_in_axes2_xy[i]*(tube_f_3_o_t - tube_f_3_o_t_2) +
+        tube_B_2_o_in_axes2_xy*m->tube_J_group_2_in_axes2_yz[i];
+    const real tube_mu_2_o_in_axes2_z = v.tube_acc_3_o_in_axes2_x*m->tube_h_3_in_spec2_z[i] -
+        v.tube_g_in_axes2_x*m->tube_h_2_in_spec2_z[i] -
+        v.tube_g_in_axes2_y*m->tube_h_2_in_spec2_x[i] +
+        m->tube_J_group_2_in_axes2_xy[i]*(tube_f_3_o_t - tube_f_3_o_t_2) +
         m->tube_J_group_2_in_axes2_xz[i]*tube_alpha_1_o_in_axes2_x +
         m->tube_J_group_2_in_axes2_yz[i]*tube_alpha_1_o_in_axes2_y +
-        v.tube_acc_3_o_in_axes2_x*m->tube_h_3_in_spec2_z[i] +
+        tube_B_2_o_in_axes2_yx*m->tube_Sigma_2_in_axes2_xx[i] +
         tube_acc_3_o_in_axes2_y*m->tube_h_3_in_spec2_x[i] -
-        tube_B_2_o_in_axes2_xy*m->tube_Sigma_2_in_axes2_yy[i] -
-        v.tube_g_in_axes2_x*m->tube_h_2_in_spec2_z[i] -
-        v.tube_g_in_axes2_y*m->tube_h_2_in_spec2_x[i];
+        tube_B_2_o_in_axes2_xy*m->tube_Sigma_2_in_axes2_yy[i];
     /* (tube-dalpha_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2
        outwards, the force at the connection point left out */
     const real tube_dalpha_N_2_in_axes2_zx =
-        m->tube_J_group_2_in_axes2_xz[i]*tube_dalpha_alpha_1_in_axes2_xx +
         m->tube_J_group_2_in_axes2_zz[i]*tube_o_2_in_axes2_x +
-        tube_dalpha_acc_3_in_axes2_yx*m->tube_h_3_in_spec2_x[i] +
-        v.tube_q_3*(tube_dalpha_acc_3_in_axes2_yx*m->tube_link3_mass[i] +
-        m->tube_h_3_in_spec2_x[i]*tube_o_2_in_axes2_x -
-        tube_dalpha_alpha_1_in_axes2_xx*m->tube_h_3_in_spec2_y[i]) -
-        m->tube_J_group_2_in_axes2_yz[i]*tube_dalpha_alpha_1_t;
+        m->tube_J_group_2_in_axes2_xz[i]*tube_dalpha_alpha_1_in_axes2_xx +
+        tube_dalpha_acc_3_in_axes2_yx*m->tube_h_3_in_spec2_x[i] -
+        m->tube_J_group_2_in_axes2_yz[i]*tube_dalpha_alpha_1_t +
+        v.tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_o_2_in_axes2_x +
+        tube_dalpha_acc_3_in_axes2_yx*m->tube_link3_mass[i] -
+        tube_dalpha_alpha_1_in_axes2_xx*m->tube_h_3_in_spec2_y[i]);
     const real tube_dalpha_N_2_in_axes2_zy =
-        m->tube_J_group_2_in_axes2_xz[i]*tube_dalpha_alpha_1_in_axes2_xy +
         m->tube_J_group_2_in_axes2_zz[i]*tube_o_2_in_axes2_y +
-        tube_dalpha_acc_3_in_axes2_yy*m->tube_h_3_in_spec2_x[i] +
-        v.tube_q_3*(tube_dalpha_acc_3_in_axes2_yy*m->tube_link3_mass[i] +
-        m->tube_h_3_in_spec2_x[i]*tube_o_2_in_axes2_y -
-        tube_dalpha_alpha_1_in_axes2_xy*m->tube_h_3_in_spec2_y[i]) -
-        m->tube_J_group_2_in_axes2_yz[i]*tube_dalpha_alpha_1_t_2;
+        m->tube_J_group_2_in_axes2_xz[i]*tube_dalpha_alpha_1_in_axes2_xy +
+        tube_dalpha_acc_3_in_axes2_yy*m->tube_h_3_in_spec2_x[i] -
+        m->tube_J_group_2_in_axes2_yz[i]*tube_dalpha_alpha_1_t_2 +
+        v.tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_o_2_in_axes2_y +
+        tube_dalpha_acc_3_in_axes2_yy*m->tube_link3_mass[i] -
+        tube_dalpha_alpha_1_in_axes2_xy*m->tube_h_3_in_spec2_y[i]);
     const real tube_dalpha_N_2_in_axes2_zz =
-        m->tube_J_group_2_in_axes2_xz[i]*tube_dalpha_alpha_1_in_axes2_xz +
         m->tube_J_group_2_in_axes2_zz[i]*tube_o_2_in_axes2_z +
-        tube_dalpha_acc_3_in_axes2_yz*m->tube_h_3_in_spec2_x[i] +
-        v.tube_q_3*(tube_dalpha_acc_3_in_axes2_yz*m->tube_link3_mass[i] +
-        m->tube_h_3_in_spec2_x[i]*tube_o_2_in_axes2_z -
-        tube_dalpha_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_y[i]) -
-        m->tube_J_group_2_in_axes2_yz[i]*tube_dalpha_alpha_1_t_3;
+        m->tube_J_group_2_in_axes2_xz[i]*tube_dalpha_alpha_1_in_axes2_xz +
+        tube_dalpha_acc_3_in_axes2_yz*m->tube_h_3_in_spec2_x[i] -
+        m->tube_J_group_2_in_axes2_yz[i]*tube_dalpha_alpha_1_t_3 +
+        v.tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_o_2_in_axes2_z +
+        tube_dalpha_acc_3_in_axes2_yz*m->tube_link3_mass[i] -
+        tube_dalpha_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_y[i]);
     /* (tube-d_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2
        outwards, the force at the connection point left out */
-    const real tube_d_N_2_in_axes2_zy = m->tube_J_group_2_in_axes2_xz[i]*tube_w_1_in_axes1_x +
-        m->tube_J_group_2_in_axes2_zz[i]*tube_w_2_in_axes2_y +
-        tube_d_acc_3_in_axes2_yy*m->tube_h_3_in_spec2_x[i] +
-        v.tube_q_3*(tube_d_acc_3_in_axes2_yy*m->tube_link3_mass[i] +
-        m->tube_h_3_in_spec2_x[i]*tube_w_2_in_axes2_y -
-        m->tube_h_3_in_spec2_y[i]*tube_w_1_in_axes1_x) -
-        m->tube_J_group_2_in_axes2_yz[i]*tube_w_1_t_78;
-    const real tube_d_N_2_in_axes2_zz =
+    const real tube_d_N_2_in_axes2_zy = m->tube_J_group_2_in_axes2_zz[i]*tube_w_2_in_axes2_y +
+        m->tube_J_group_2_in_axes2_xz[i]*tube_w_1_in_axes1_x +
+        tube_d_acc_3_in_axes2_yy*m->tube_h_3_in_spec2_x[i] -
+        m->tube_J_group_2_in_axes2_yz[i]*tube_w_1_t_78 +
+        v.tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_w_2_in_axes2_y +
+        tube_d_acc_3_in_axes2_yy*m->tube_link3_mass[i] -
+        m->tube_h_3_in_spec2_y[i]*tube_w_1_in_axes1_x);
+    const real tube_d_N_2_in_axes2_zz = m->tube_J_group_2_in_axes2_zz[i]*tube_w_2_in_axes2_z +
         m->tube_J_group_2_in_axes2_xz[i]*tube_d_alpha_1_in_axes2_xz +
-        m->tube_J_group_2_in_axes2_zz[i]*tube_w_2_in_axes2_z +
-        tube_d_acc_3_in_axes2_yz*m->tube_h_3_in_spec2_x[i] +
-        v.tube_q_3*(tube_d_acc_3_in_axes2_yz*m->tube_link3_mass[i] +
-        m->tube_h_3_in_spec2_x[i]*tube_w_2_in_axes2_z -
-        tube_d_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_y[i]) -
-        m->tube_J_group_2_in_axes2_yz[i]*tube_d_alpha_1_t;
+        tube_d_acc_3_in_axes2_yz*m->tube_h_3_in_spec2_x[i] -
+        m->tube_J_group_2_in_axes2_yz[i]*tube_d_alpha_1_t +
+        v.tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_w_2_in_axes2_z +
+        tube_d_acc_3_in_axes2_yz*m->tube_link3_mass[i] -
+        tube_d_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_y[i]);
     /* (tube-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
        connection point left out */
     const real tube_N_2_o_in_axes2_y = tube_mu_2_o_in_axes2_y -
         tube_f_3_o_in_axes2_z*v.tube_q_3;
-    const real tube_N_2_o_in_axes2_z = tube_mu_2_o_in_axes2_z +
-        tube_f_3_o_in_axes2_y*v.tube_q_3;
+    const real tube_N_2_o_in_axes2_z = tube_f_3_o_in_axes2_y*v.tube_q_3 +
+        tube_mu_2_o_in_axes2_z;
     /* (tube-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
        links' inertia and weight */
     const real tube_dalpha_Gamma_1_t =
-        v.tube_c_2*(m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_in_axes2_xx +
-        m->tube_J_group_2_in_axes2_yz[i]*tube_o_2_in_axes2_x -
+        v.tube_c_2*(m->tube_J_group_2_in_axes2_yz[i]*tube_o_2_in_axes2_x +
+        m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_in_axes2_xx -
         m->tube_J_group_2_in_axes2_yy[i]*tube_dalpha_alpha_1_t -
         tube_dalpha_acc_3_in_axes2_zx*m->tube_h_3_in_spec2_x[i] -
-        v.tube_q_3*(tube_dalpha_acc_3_in_axes2_zx*m->tube_link3_mass[i] +
-        tube_dalpha_alpha_1_t*m->tube_h_3_in_spec2_x[i] -
-        tube_dalpha_alpha_1_in_axes2_xx*m->tube_h_3_in_spec2_z[i]));
+        v.tube_q_3*(tube_dalpha_alpha_1_t*m->tube_h_3_in_spec2_x[i] -
+        tube_dalpha_alpha_1_in_axes2_xx*m->tube_h_3_in_spec2_z[i] +
+        tube_dalpha_acc_3_in_axes2_zx*m->tube_link3_mass[i]));
     const real tube_dalpha_Gamma_1_in_axes2_x =
-        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xx[i]*tube_dalpha_alpha_1_in_axes2_xx
-        + m->tube_J_group_2_in_axes2_xz[i]*tube_o_2_in_axes2_x -
+        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xz[i]*tube_o_2_in_axes2_x +
+        m->tube_J_group_2_in_axes2_xx[i]*tube_dalpha_alpha_1_in_axes2_xx -
         m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_t -
         tube_dalpha_acc_3_in_axes2_yx*m->tube_h_3_in_spec2_y[i] -
         tube_dalpha_acc_3_in_axes2_zx*m->tube_h_3_in_spec2_z[i]) - tube_dalpha_Gamma_1_t;
     const real tube_dalpha_Gamma_1_t_2 =
-        v.tube_c_2*(m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_in_axes2_xy +
-        m->tube_J_group_2_in_axes2_yz[i]*tube_o_2_in_axes2_y -
+        v.tube_c_2*(m->tube_J_group_2_in_axes2_yz[i]*tube_o_2_in_axes2_y +
+        m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_in_axes2_xy -
         m->tube_J_group_2_in_axes2_yy[i]*tube_dalpha_alpha_1_t_2 -
         tube_dalpha_acc_3_in_axes2_zy*m->tube_h_3_in_spec2_x[i] -
-        v.tube_q_3*(tube_dalpha_acc_3_in_axes2_zy*m->tube_link3_mass[i] +
-        tube_dalpha_alpha_1_t_2*m->tube_h_3_in_spec2_x[i] -
-        tube_dalpha_alpha_1_in_axes2_xy*m->tube_h_3_in_spec2_z[i]));
+        v.tube_q_3*(tube_dalpha_alpha_1_t_2*m->tube_h_3_in_spec2_x[i] -
+        tube_dalpha_alpha_1_in_axes2_xy*m->tube_h_3_in_spec2_z[i] +
+        tube_dalpha_acc_3_in_axes2_zy*m->tube_link3_mass[i]));
     const real tube_dalpha_Gamma_1_in_axes2_y =
-        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xx[i]*tube_dalpha_alpha_1_in_axes2_xy
-        + m->tube_J_group_2_in_axes2_xz[i]*tube_o_2_in_axes2_y -
+        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xz[i]*tube_o_2_in_axes2_y +
+        m->tube_J_group_2_in_axes2_xx[i]*tube_dalpha_alpha_1_in_axes2_xy -
         m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_t_2 -
         tube_dalpha_acc_3_in_axes2_yy*m->tube_h_3_in_spec2_y[i] -
         tube_dalpha_acc_3_in_axes2_zy*m->tube_h_3_in_spec2_z[i]) - tube_dalpha_Gamma_1_t_2;
     const real tube_dalpha_Gamma_1_t_3 =
-        v.tube_c_2*(m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_in_axes2_xz +
-        m->tube_J_group_2_in_axes2_yz[i]*tube_o_2_in_axes2_z -
+        v.tube_c_2*(m->tube_J_group_2_in_axes2_yz[i]*tube_o_2_in_axes2_z +
+        m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_in_axes2_xz -
         m->tube_J_group_2_in_axes2_yy[i]*tube_dalpha_alpha_1_t_3 -
         tube_dalpha_acc_3_in_axes2_zz*m->tube_h_3_in_spec2_x[i] -
-        v.tube_q_3*(tube_dalpha_acc_3_in_axes2_zz*m->tube_link3_mass[i] +
-        tube_dalpha_alpha_1_t_3*m->tube_h_3_in_spec2_x[i] -
-        tube_dalpha_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_z[i]));
+        v.tube_q_3*(tube_dalpha_alpha_1_t_3*m->tube_h_3_in_spec2_x[i] -
+        tube_dalpha_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_z[i] +
+        tube_dalpha_acc_3_in_axes2_zz*m->tube_link3_mass[i]));
     const real tube_dalpha_Gamma_1_in_axes2_z =
-        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xx[i]*tube_dalpha_alpha_1_in_axes2_xz
-        + m->tube_J_group_2_in_axes2_xz[i]*tube_o_2_in_axes2_z -
+        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xz[i]*tube_o_2_in_axes2_z +
+        m->tube_J_group_2_in_axes2_xx[i]*tube_dalpha_alpha_1_in_axes2_xz -
         m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_t_3 -
         tube_dalpha_acc_3_in_axes2_yz*m->tube_h_3_in_spec2_y[i] -
         tube_dalpha_acc_3_in_axes2_zz*m->tube_h_3_in_spec2_z[i]) - tube_dalpha_Gamma_1_t_3;
@@ -3916,63 +3929,63 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
        inertia and weight */
     const real tube_d_Gamma_1_t = v.tube_c_2*m->tube_h_3_in_spec2_y[i];
     const real tube_d_Gamma_1_t_2 =
-        v.tube_c_2*(m->tube_J_group_2_in_axes2_xy[i]*tube_w_1_in_axes1_x +
-        m->tube_J_group_2_in_axes2_yz[i]*tube_w_2_in_axes2_y -
+        v.tube_c_2*(m->tube_J_group_2_in_axes2_yz[i]*tube_w_2_in_axes2_y +
+        m->tube_J_group_2_in_axes2_xy[i]*tube_w_1_in_axes1_x -
         m->tube_J_group_2_in_axes2_yy[i]*tube_w_1_t_78 -
         tube_d_acc_3_in_axes2_zy*m->tube_h_3_in_spec2_x[i] -
-        v.tube_q_3*(tube_d_acc_3_in_axes2_zy*m->tube_link3_mass[i] +
-        m->tube_h_3_in_spec2_x[i]*tube_w_1_t_78 -
-        m->tube_h_3_in_spec2_z[i]*tube_w_1_in_axes1_x));
+        v.tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_w_1_t_78 -
+        m->tube_h_3_in_spec2_z[i]*tube_w_1_in_axes1_x +
+        tube_d_acc_3_in_axes2_zy*m->tube_link3_mass[i]));
     const real tube_d_Gamma_1_in_axes2_y =
-        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xx[i]*tube_w_1_in_axes1_x +
-        m->tube_J_group_2_in_axes2_xz[i]*tube_w_2_in_axes2_y -
+        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xz[i]*tube_w_2_in_axes2_y +
+        m->tube_J_group_2_in_axes2_xx[i]*tube_w_1_in_axes1_x -
         m->tube_J_group_2_in_axes2_xy[i]*tube_w_1_t_78 -
         tube_d_acc_3_in_axes2_yy*m->tube_h_3_in_spec2_y[i] -
         tube_d_acc_3_in_axes2_zy*m->tube_h_3_in_spec2_z[i]) - tube_d_Gamma_1_t_2;
     const real tube_d_Gamma_1_t_3 =
-        v.tube_c_2*(m->tube_J_group_2_in_axes2_xy[i]*tube_d_alpha_1_in_axes2_xz +
-        m->tube_J_group_2_in_axes2_yz[i]*tube_w_2_in_axes2_z -
+        v.tube_c_2*(m->tube_J_group_2_in_axes2_yz[i]*tube_w_2_in_axes2_z +
+        m->tube_J_group_2_in_axes2_xy[i]*tube_d_alpha_1_in_axes2_xz -
         m->tube_J_group_2_in_axes2_yy[i]*tube_d_alpha_1_t -
         tube_d_acc_3_in_axes2_zz*m->tube_h_3_in_spec2_x[i] -
-        v.tube_q_3*(tube_d_acc_3_in_axes2_zz*m->tube_link3_mass[i] +
-        tube_d_alpha_1_t*m->tube_h_3_in_spec2_x[i] -
-        tube_d_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_z[i]));
+        v.tube_q_3*(tube_d_alpha_1_t*m->tube_h_3_in_spec2_x[i] -
+        tube_d_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_z[i] +
+        tube_d_acc_3_in_axes2_zz*m->tube_link3_mass[i]));
     const real tube_d_Gamma_1_in_axes2_z =
-        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xx[i]*tube_d_alpha_1_in_axes2_xz +
-        m->tube_J_group_2_in_axes2_xz[i]*tube_w_2_in_axes2_z -
+        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xz[i]*tube_w_2_in_axes2_z +
+        m->tube_J_group_2_in_axes2_xx[i]*tube_d_alpha_1_in_axes2_xz -
         m->tube_J_group_2_in_axes2_xy[i]*tube_d_alpha_1_t -
         tube_d_acc_3_in_axes2_yz*m->tube_h_3_in_spec2_y[i] -
         tube_d_acc_3_in_axes2_zz*m->tube_h_3_in_spec2_z[i]) - tube_d_Gamma_1_t_3;
     /* (tube-dalpha_G) coefficient of the acceleration in: force at the connection point that balances
        the leg's inertia and weight along all degrees of freedom */
-    const real tube_dalpha_G_in_axes2_yx = tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_y
-        + tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_y;
-    const real tube_dalpha_G_in_axes2_yy = tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y
-        + tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_y;
-    const real tube_dalpha_G_in_axes2_yz = tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y
-        + tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_y;
-    const real tube_dalpha_G_in_axes2_zx = tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_z
-        + tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_z;
-    const real tube_dalpha_G_in_axes2_zy = tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_z
-        + tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_z;
-    const real tube_dalpha_G_in_axes2_zz = tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z
-        + tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_z;
+    const real tube_dalpha_G_in_axes2_yx = tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_y +
+        tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_y;
+    const real tube_dalpha_G_in_axes2_yy = tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_y +
+        tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y;
+    const real tube_dalpha_G_in_axes2_yz = tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_y +
+        tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y;
+    const real tube_dalpha_G_in_axes2_zx = tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_z +
+        tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_z;
+    const real tube_dalpha_G_in_axes2_zy = tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_z +
+        tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_z;
+    const real tube_dalpha_G_in_axes2_zz = tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_z +
+        tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z;
     /* (tube-d_G) coefficient of the acceleration in: force at the connection point that balances the
        leg's inertia and weight along all degrees of freedom */
-    const real tube_d_G_in_axes2_yz = tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y +
-        tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_y;
+    const real tube_d_G_in_axes2_yz = tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_y +
+        tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y;
     /* (tube-G_o) remainder of: force at the connection point that balances the leg's inertia and
        weight along all degrees of freedom */
     const real tube_G_o_t = v.inv_tube_w_1_t_13*tube_N_2_o_in_axes2_z;
     const real tube_G_o_t_2 = v.inv_tube_w_1_t_33*tube_G_o_t*v.tube_w_1_t_17;
     const real tube_G_o_t_3 = v.inv_tube_w_1_t_49*(tube_G_o_t*v.tube_w_1_t_21 -
         tube_G_o_t_2*v.tube_w_1_t_37);
-    const real tube_G_o_t_4 = v.inv_tube_w_1_t_63*(tube_G_o_t_2*v.tube_w_1_t_41 +
-        tube_G_o_t_3*v.tube_w_1_t_53 - tube_G_o_t*v.tube_w_1_t_25);
-    const real tube_G_o_t_5 = v.inv_tube_w_1_t_75*(tube_G_o_t*v.tube_w_1_t_29 +
-        tube_G_o_t_4*v.tube_w_1_t_69 + tube_N_2_o_in_axes2_y*v.tube_c_2 -
-        tube_G_o_t_2*v.tube_w_1_t_45 - tube_G_o_t_3*v.tube_w_1_t_58 -
-        v.tube_e_1_in_axes2_x*tube_mu_2_o_in_axes2_x);
+    const real tube_G_o_t_4 = v.inv_tube_w_1_t_63*(tube_G_o_t_2*v.tube_w_1_t_41 -
+        tube_G_o_t*v.tube_w_1_t_25 + tube_G_o_t_3*v.tube_w_1_t_53);
+    const real tube_G_o_t_5 = v.inv_tube_w_1_t_75*(tube_N_2_o_in_axes2_y*v.tube_c_2 -
+        v.tube_e_1_in_axes2_x*tube_mu_2_o_in_axes2_x + tube_G_o_t*v.tube_w_1_t_29 -
+        tube_G_o_t_2*v.tube_w_1_t_45 - tube_G_o_t_3*v.tube_w_1_t_58 +
+        tube_G_o_t_4*v.tube_w_1_t_69);
     const real tube_G_o_in_axes2_y = tube_G_o_t*v.tube_w_1_t_14 + tube_G_o_t_2*v.tube_w_1_t_34
         + tube_G_o_t_3*v.tube_w_1_t_50 + tube_G_o_t_4*v.tube_w_1_t_64 -
         tube_G_o_t_5*tube_w_1_t_76;
@@ -3980,20 +3993,20 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
         tube_G_o_t_4*v.tube_w_1_t_65 - tube_G_o_t_5*tube_w_1_t_77;
     /* (tube-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
        balances the leg's inertia and weight along all degrees of freedom */
-    const real tube_dalpha_G_m1_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m1_w_1 +
-        tube_dalpha_N_2_in_axes2_zx*tube_m1_w_2;
-    const real tube_dalpha_G_m1_in_axes2_y = tube_dalpha_Gamma_1_in_axes2_y*tube_m1_w_1 +
-        tube_dalpha_N_2_in_axes2_zy*tube_m1_w_2;
-    const real tube_dalpha_G_m1_in_axes2_z = tube_dalpha_Gamma_1_in_axes2_z*tube_m1_w_1 +
-        tube_dalpha_N_2_in_axes2_zz*tube_m1_w_2;
+    const real tube_dalpha_G_m1_in_axes2_x = tube_dalpha_N_2_in_axes2_zx*tube_m1_w_2 +
+        tube_dalpha_Gamma_1_in_axes2_x*tube_m1_w_1;
+    const real tube_dalpha_G_m1_in_axes2_y = tube_dalpha_N_2_in_axes2_zy*tube_m1_w_2 +
+        tube_dalpha_Gamma_1_in_axes2_y*tube_m1_w_1;
+    const real tube_dalpha_G_m1_in_axes2_z = tube_dalpha_N_2_in_axes2_zz*tube_m1_w_2 +
+        tube_dalpha_Gamma_1_in_axes2_z*tube_m1_w_1;
     /* (tube-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
        the leg's inertia and weight along all degrees of freedom */
     const real tube_d_G_m1_in_axes2_x = m->tube_h_3_in_spec2_z[i]*tube_m1_w_2 -
         tube_d_Gamma_1_t*tube_m1_w_1;
-    const real tube_d_G_m1_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m1_w_1 +
-        tube_d_N_2_in_axes2_zy*tube_m1_w_2;
-    const real tube_d_G_m1_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m1_w_1 +
-        tube_d_N_2_in_axes2_zz*tube_m1_w_2;
+    const real tube_d_G_m1_in_axes2_y = tube_d_N_2_in_axes2_zy*tube_m1_w_2 +
+        tube_d_Gamma_1_in_axes2_y*tube_m1_w_1;
+    const real tube_d_G_m1_in_axes2_z = tube_d_N_2_in_axes2_zz*tube_m1_w_2 +
+        tube_d_Gamma_1_in_axes2_z*tube_m1_w_1;
     /* (tube-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and
        weight along all degrees of freedom */
     const real tube_G_m1_o_t = tube_G_o_t*v.tube_w_1_t_15 + tube_G_o_t_2*v.tube_w_1_t_35 +
@@ -4002,40 +4015,40 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
     const real tube_G_m1_o = R(1.35)*tube_G_m1_o_t;
     /* (tube-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
        balances the leg's inertia and weight along all degrees of freedom */
-    const real tube_dalpha_G_m2_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m2_w_1 +
-        tube_dalpha_N_2_in_axes2_zx*tube_m2_w_2;
-    const real tube_dalpha_G_m2_in_axes2_y = tube_dalpha_Gamma_1_in_axes2_y*tube_m2_w_1 +
-        tube_dalpha_N_2_in_axes2_zy*tube_m2_w_2;
-    const real tube_dalpha_G_m2_in_axes2_z = tube_dalpha_Gamma_1_in_axes2_z*tube_m2_w_1 +
-        tube_dalpha_N_2_in_axes2_zz*tube_m2_w_2;
+    const real tube_dalpha_G_m2_in_axes2_x = tube_dalpha_N_2_in_axes2_zx*tube_m2_w_2 +
+        tube_dalpha_Gamma_1_in_axes2_x*tube_m2_w_1;
+    const real tube_dalpha_G_m2_in_axes2_y = tube_dalpha_N_2_in_axes2_zy*tube_m2_w_2 +
+        tube_dalpha_Gamma_1_in_axes2_y*tube_m2_w_1;
+    const real tube_dalpha_G_m2_in_axes2_z = tube_dalpha_N_2_in_axes2_zz*tube_m2_w_2 +
+        tube_dalpha_Gamma_1_in_axes2_z*tube_m2_w_1;
     /* (tube-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances
        the leg's inertia and weight along all degrees of freedom */
     const real tube_d_G_m2_in_axes2_x = m->tube_h_3_in_spec2_z[i]*tube_m2_w_2 -
         tube_d_Gamma_1_t*tube_m2_w_1;
-    const real tube_d_G_m2_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m2_w_1 +
-        tube_d_N_2_in_axes2_zy*tube_m2_w_2;
-    const real tube_d_G_m2_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m2_w_1 +
-        tube_d_N_2_in_axes2_zz*tube_m2_w_2;
+    const real tube_d_G_m2_in_axes2_y = tube_d_N_2_in_axes2_zy*tube_m2_w_2 +
+        tube_d_Gamma_1_in_axes2_y*tube_m2_w_1;
+    const real tube_d_G_m2_in_axes2_z = tube_d_N_2_in_axes2_zz*tube_m2_w_2 +
+        tube_d_Gamma_1_in_axes2_z*tube_m2_w_1;
     /* (tube-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia and
        weight along all degrees of freedom */
     const real tube_G_m2_o_t = tube_G_o_t_4*v.tube_w_1_t_67 + tube_G_o_t_5*tube_m2_w_1_t;
     const real tube_G_m2_o = R(1.35)*tube_G_m2_o_t;
     /* (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that
        balances the leg's inertia and weight along all degrees of freedom */
-    const real tube_dalpha_G_m3_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m3_w_1 +
-        tube_dalpha_N_2_in_axes2_zx*tube_m3_w_2;
-    const real tube_dalpha_G_m3_in_axes2_y = tube_dalpha_Gamma_1_in_axes2_y*tube_m3_w_1 +
-        tube_dalpha_N_2_in_axes2_zy*tube_m3_w_2;
-    const real tube_dalpha_G_m3_in_axes2_z = tube_dalpha_Gamma_1_in_axes2_z*tube_m3_w_1 +
-        tube_dalpha_N_2_in_axes2_zz*tube_m3_w_2;
+    const real tube_dalpha_G_m3_in_axes2_x = tube_dalpha_N_2_in_axes2_zx*tube_m3_w_2 +
+        tube_dalpha_Gamma_1_in_axes2_x*tube_m3_w_1;
+    const real tube_dalpha_G_m3_in_axes2_y = tube_dalpha_N_2_in_axes2_zy*tube_m3_w_2 +
+        tube_dalpha_Gamma_1_in_axes2_y*tube_m3_w_1;
+    const real tube_dalpha_G_m3_in_axes2_z = tube_dalpha_N_2_in_axes2_zz*tube_m3_w_2 +
+        tube_dalpha_Gamma_1_in_axes2_z*tube_m3_w_1;
     /* (tube-d_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances
        the leg's inertia and weight along all degrees of freedom */
     const real tube_d_G_m3_in_axes2_x = m->tube_h_3_in_spec2_z[i]*tube_m3_w_2 -
         tube_d_Gamma_1_t*tube_m3_w_1;
-    const real tube_d_G_m3_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m3_w_1 +
-        tube_d_N_2_in_axes2_zy*tube_m3_w_2;
-    const real tube_d_G_m3_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m3_w_1 +
-        tube_d_N_2_in_axes2_zz*tube_m3_w_2;
+    const real tube_d_G_m3_in_axes2_y = tube_d_N_2_in_axes2_zy*tube_m3_w_2 +
+        tube_d_Gamma_1_in_axes2_y*tube_m3_w_1;
+    const real tube_d_G_m3_in_axes2_z = tube_d_N_2_in_axes2_zz*tube_m3_w_2 +
+        tube_d_Gamma_1_in_axes2_z*tube_m3_w_1;
     /* (tube-G_m3_o) remainder of: moment along moment direction 3 that balances the leg's inertia and
        weight along all degrees of freedom */
     const real tube_G_m3_o_t = tube_G_o_t*v.tube_w_1_t_16 + tube_G_o_t_2*v.tube_w_1_t_36 +
@@ -4114,42 +4127,44 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
     const real tube_d_c_in_axes2_xz = tube_d_alpha_1_t*m->tube_h_3_in_spec2_y[i] -
         m->tube_h_3_in_spec2_z[i]*tube_w_2_in_axes2_z;
     /* (tube-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real tube_Q_t = tube_d_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y +
-        tube_d_N_2_in_axes2_zy*tube_w_2_in_axes2_y - m->tube_link3_mass[i];
+    const real tube_Q_t = tube_d_N_2_in_axes2_zy*tube_w_2_in_axes2_y - m->tube_link3_mass[i] +
+        tube_d_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y;
     const real tube_Q_t_2 = R(0.5)*tube_Q_t;
-    const real tube_Q_t_3 = tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z +
-        tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_z - m->tube_link3_mass[i];
+    const real tube_Q_t_3 = tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_z - m->tube_link3_mass[i]
+        + tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z;
     const real tube_Q_t_4 = R(0.5)*tube_Q_t_3;
-    const real tube_Q_t_5 = v.axis_y_tube_axes2_x*tube_Q_t_2 +
-        v.axis_z_tube_axes2_x*tube_d_G_in_axes2_yz -
-        v.axis_x_tube_axes2_x*tube_d_c_in_axes2_xy;
-    const real tube_Q_t_6 = v.axis_y_tube_axes2_y*tube_Q_t_2 +
-        v.axis_z_tube_axes2_y*tube_d_G_in_axes2_yz -
-        v.axis_x_tube_axes2_y*tube_d_c_in_axes2_xy;
-    const real tube_Q_t_7 = v.axis_y_tube_axes2_z*tube_Q_t_2 +
-        v.axis_z_tube_axes2_z*tube_d_G_in_axes2_yz -
-        v.axis_x_tube_axes2_z*tube_d_c_in_axes2_xy;
+    const real tube_Q_t_5 = v.axis_y_tube_axes2_x*tube_Q_t_2 -
+        v.axis_x_tube_axes2_x*tube_d_c_in_axes2_xy +
+        v.axis_z_tube_axes2_x*tube_d_G_in_axes2_yz;
+    const real tube_Q_t_6 = v.axis_y_tube_axes2_y*tube_Q_t_2 -
+        v.axis_x_tube_axes2_y*tube_d_c_in_axes2_xy +
+        v.axis_z_tube_axes2_y*tube_d_G_in_axes2_yz;
+    const real tube_Q_t_7 = v.axis_y_tube_axes2_z*tube_Q_t_2 -
+        v.axis_x_tube_axes2_z*tube_d_c_in_axes2_xy +
+        v.axis_z_tube_axes2_z*tube_d_G_in_axes2_yz;
     const real tube_Q_t_8 = v.axis_z_tube_axes2_x*tube_Q_t_4 -
         v.axis_x_tube_axes2_x*tube_d_c_in_axes2_xz;
     const real tube_Q_t_9 = v.axis_z_tube_axes2_y*tube_Q_t_4 -
         v.axis_x_tube_axes2_y*tube_d_c_in_axes2_xz;
     const real tube_Q_t_10 = v.axis_z_tube_axes2_z*tube_Q_t_4 -
         v.axis_x_tube_axes2_z*tube_d_c_in_axes2_xz;
-    const real tube_Q_t_11 = v.axis_y_tube_axes2_x*tube_Q_t_5 +
-        v.axis_z_tube_axes2_x*tube_Q_t_8;
-    const real tube_Q_xx = 2*tube_Q_t_11 + m->tube_link3_mass[i];
-    const real tube_Q_xy = v.axis_y_tube_axes2_x*tube_Q_t_6 + v.axis_y_tube_axes2_y*tube_Q_t_5
-        + v.axis_z_tube_axes2_x*tube_Q_t_9 + v.axis_z_tube_axes2_y*tube_Q_t_8;
-    const real tube_Q_xz = v.axis_y_tube_axes2_x*tube_Q_t_7 + v.axis_y_tube_axes2_z*tube_Q_t_5
-        + v.axis_z_tube_axes2_x*tube_Q_t_10 + v.axis_z_tube_axes2_z*tube_Q_t_8;
-    const real tube_Q_t_12 = v.axis_y_tube_axes2_y*tube_Q_t_6 +
-        v.axis_z_tube_axes2_y*tube_Q_t_9;
-    const real tube_Q_yy = 2*tube_Q_t_12 + m->tube_link3_mass[i];
-    const real tube_Q_yz = v.axis_y_tube_axes2_y*tube_Q_t_7 + v.axis_y_tube_axes2_z*tube_Q_t_6
-        + v.axis_z_tube_axes2_y*tube_Q_t_10 + v.axis_z_tube_axes2_z*tube_Q_t_9;
-    const real tube_Q_t_13 = v.axis_y_tube_axes2_z*tube_Q_t_7 +
-        v.axis_z_tube_axes2_z*tube_Q_t_10;
-    const real tube_Q_zz = 2*tube_Q_t_13 + m->tube_link3_mass[i];
+    const real tube_Q_t_11 = v.axis_z_tube_axes2_x*tube_Q_t_8 +
+        v.axis_y_tube_axes2_x*tube_Q_t_5;
+    const real tube_Q_xx = m->tube_link3_mass[i] + 2*tube_Q_t_11;
+    const real tube_Q_xy = v.axis_z_tube_axes2_x*tube_Q_t_9 + v.axis_z_tube_axes2_y*tube_Q_t_8
+        + v.axis_y_tube_axes2_x*tube_Q_t_6 + v.axis_y_tube_axes2_y*tube_Q_t_5;
+    const real tube_Q_xz = v.axis_z_tube_axes2_x*tube_Q_t_10 +
+        v.axis_z_tube_axes2_z*tube_Q_t_8 + v.axis_y_tube_axes2_x*tube_Q_t_7 +
+        v.axis_y_tube_axes2_z*tube_Q_t_5;
+    const real tube_Q_t_12 = v.axis_z_tube_axes2_y*tube_Q_t_9 +
+        v.axis_y_tube_axes2_y*tube_Q_t_6;
+    const real tube_Q_yy = m->tube_link3_mass[i] + 2*tube_Q_t_12;
+    const real tube_Q_yz = v.axis_z_tube_axes2_y*tube_Q_t_10 +
+        v.axis_z_tube_axes2_z*tube_Q_t_9 + v.axis_y_tube_axes2_y*tube_Q_t_7 +
+        v.axis_y_tube_axes2_z*tube_Q_t_6;
+    const real tube_Q_t_13 = v.axis_z_tube_axes2_z*tube_Q_t_10 +
+        v.axis_y_tube_axes2_z*tube_Q_t_7;
+    const real tube_Q_zz = m->tube_link3_mass[i] + 2*tube_Q_t_13;
     /* (tube-dalpha_c_m) coefficient of the acceleration in: moment of the leg on the platform without
        actuation */
     const real tube_dalpha_c_m_zz =
@@ -4228,9 +4243,9 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
     const real tube_M_ta_t_10 = tube_Q_xy*v.tube_q_z;
     const real tube_M_ta_t_11 = tube_Q_xz*v.tube_q_y;
     const real tube_M_ta_t_12 = tube_Q_yz*v.tube_q_x;
-    const real tube_M_ta_t_13 = tube_M_ta_t_11 - tube_M_ta_t_10 -
-        v.axis_x_tube_axes2_x*tube_M_ta_t - v.axis_y_tube_axes2_x*tube_M_ta_t_4 -
-        v.axis_z_tube_axes2_x*tube_M_ta_t_7;
+    const real tube_M_ta_t_13 = tube_M_ta_t_11 - v.axis_x_tube_axes2_x*tube_M_ta_t -
+        v.axis_y_tube_axes2_x*tube_M_ta_t_4 - v.axis_z_tube_axes2_x*tube_M_ta_t_7 -
+        tube_M_ta_t_10;
     const real tube_M_ta_t_14 = tube_Q_xx*v.tube_q_z - v.axis_x_tube_axes2_y*tube_M_ta_t -
         v.axis_y_tube_axes2_y*tube_M_ta_t_4 - v.axis_z_tube_axes2_y*tube_M_ta_t_7 -
         tube_Q_xz*v.tube_q_x;
@@ -4240,9 +4255,9 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
     const real tube_M_ta_t_16 = tube_Q_yz*v.tube_q_y - v.axis_x_tube_axes2_x*tube_M_ta_t_2 -
         v.axis_y_tube_axes2_x*tube_M_ta_t_5 - v.axis_z_tube_axes2_x*tube_M_ta_t_8 -
         tube_Q_yy*v.tube_q_z;
-    const real tube_M_ta_t_17 = tube_M_ta_t_10 - tube_M_ta_t_12 -
-        v.axis_x_tube_axes2_y*tube_M_ta_t_2 - v.axis_y_tube_axes2_y*tube_M_ta_t_5 -
-        v.axis_z_tube_axes2_y*tube_M_ta_t_8;
+    const real tube_M_ta_t_17 = tube_M_ta_t_10 - v.axis_x_tube_axes2_y*tube_M_ta_t_2 -
+        v.axis_y_tube_axes2_y*tube_M_ta_t_5 - v.axis_z_tube_axes2_y*tube_M_ta_t_8 -
+        tube_M_ta_t_12;
     const real tube_M_ta_t_18 = tube_Q_yy*v.tube_q_x - v.axis_x_tube_axes2_z*tube_M_ta_t_2 -
         v.axis_y_tube_axes2_z*tube_M_ta_t_5 - v.axis_z_tube_axes2_z*tube_M_ta_t_8 -
         tube_Q_xy*v.tube_q_y;
@@ -4252,9 +4267,9 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
     const real tube_M_ta_t_20 = tube_Q_xz*v.tube_q_z - v.axis_x_tube_axes2_y*tube_M_ta_t_3 -
         v.axis_y_tube_axes2_y*tube_M_ta_t_6 - v.axis_z_tube_axes2_y*tube_M_ta_t_9 -
         tube_Q_zz*v.tube_q_x;
-    const real tube_M_ta_t_21 = tube_M_ta_t_12 - tube_M_ta_t_11 -
-        v.axis_x_tube_axes2_z*tube_M_ta_t_3 - v.axis_y_tube_axes2_z*tube_M_ta_t_6 -
-        v.axis_z_tube_axes2_z*tube_M_ta_t_9;
+    const real tube_M_ta_t_21 = tube_M_ta_t_12 - v.axis_x_tube_axes2_z*tube_M_ta_t_3 -
+        v.axis_y_tube_axes2_z*tube_M_ta_t_6 - v.axis_z_tube_axes2_z*tube_M_ta_t_9 -
+        tube_M_ta_t_11;
     /* (M_aa) */
     const real tube_M_aa_t = -v.axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xx -
         v.axis_y_tube_axes2_x*tube_dalpha_G_m_in_axes2_yx -
@@ -4283,34 +4298,30 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
     const real tube_M_aa_t_9 = -v.axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xz -
         v.axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yz -
         v.axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zz;
-    const real tube_M_aa_t_10 = tube_M_ta_t_19*v.tube_q_y + tube_d_c_m_xy*v.tube_q_z -
-        v.axis_x_tube_axes2_x*tube_M_aa_t - v.axis_y_tube_axes2_x*tube_M_aa_t_3 -
-        v.axis_z_tube_axes2_x*tube_M_aa_t_5 - tube_M_ta_t_16*v.tube_q_z -
-        tube_d_c_m_xz*v.tube_q_y;
-    const real tube_M_aa_t_11 = tube_M_ta_t_20*v.tube_q_y + tube_d_c_m_xz*v.tube_q_x -
-        v.axis_x_tube_axes2_y*tube_M_aa_t - v.axis_y_tube_axes2_y*tube_M_aa_t_3 -
-        v.axis_z_tube_axes2_y*tube_M_aa_t_5 - tube_M_ta_t_17*v.tube_q_z -
-        tube_d_c_m_xx*v.tube_q_z;
-    const real tube_M_aa_t_12 = tube_M_ta_t_21*v.tube_q_y + tube_d_c_m_xx*v.tube_q_y -
-        v.axis_x_tube_axes2_z*tube_M_aa_t - v.axis_y_tube_axes2_z*tube_M_aa_t_3 -
-        v.axis_z_tube_axes2_z*tube_M_aa_t_5 - tube_M_ta_t_18*v.tube_q_z -
-        tube_d_c_m_xy*v.tube_q_x;
-    const real tube_M_aa_t_13 = tube_M_ta_t_14*v.tube_q_z +
-        v.tube_q_x*(v.axis_x_tube_axes2_z*tube_d_c_m_t_2 +
+    const real tube_M_aa_t_10 = tube_d_c_m_xy*v.tube_q_z - v.axis_x_tube_axes2_x*tube_M_aa_t -
+        v.axis_y_tube_axes2_x*tube_M_aa_t_3 - v.axis_z_tube_axes2_x*tube_M_aa_t_5 -
+        tube_d_c_m_xz*v.tube_q_y + tube_M_ta_t_19*v.tube_q_y - tube_M_ta_t_16*v.tube_q_z;
+    const real tube_M_aa_t_11 = tube_d_c_m_xz*v.tube_q_x - v.axis_x_tube_axes2_y*tube_M_aa_t -
+        v.axis_y_tube_axes2_y*tube_M_aa_t_3 - v.axis_z_tube_axes2_y*tube_M_aa_t_5 -
+        tube_d_c_m_xx*v.tube_q_z + tube_M_ta_t_20*v.tube_q_y - tube_M_ta_t_17*v.tube_q_z;
+    const real tube_M_aa_t_12 = tube_d_c_m_xx*v.tube_q_y - v.axis_x_tube_axes2_z*tube_M_aa_t -
+        v.axis_y_tube_axes2_z*tube_M_aa_t_3 - v.axis_z_tube_axes2_z*tube_M_aa_t_5 -
+        tube_d_c_m_xy*v.tube_q_x + tube_M_ta_t_21*v.tube_q_y - tube_M_ta_t_18*v.tube_q_z;
+    const real tube_M_aa_t_13 = v.tube_q_x*(v.axis_x_tube_axes2_z*tube_d_c_m_t_2 +
         v.axis_y_tube_axes2_z*tube_d_c_m_t_4 + v.axis_z_tube_axes2_z*tube_d_c_m_t_6) -
         v.axis_x_tube_axes2_y*tube_M_aa_t_2 - v.axis_y_tube_axes2_y*tube_M_aa_t_4 -
-        v.axis_z_tube_axes2_y*tube_M_aa_t_6 - tube_M_ta_t_20*v.tube_q_x -
-        tube_d_c_m_yx*v.tube_q_z;
-    const real tube_M_aa_t_14 = tube_M_ta_t_15*v.tube_q_z + tube_d_c_m_yx*v.tube_q_y -
-        v.axis_x_tube_axes2_z*tube_M_aa_t_2 - v.axis_y_tube_axes2_z*tube_M_aa_t_4 -
-        v.axis_z_tube_axes2_z*tube_M_aa_t_6 - tube_M_ta_t_21*v.tube_q_x -
+        v.axis_z_tube_axes2_y*tube_M_aa_t_6 - tube_d_c_m_yx*v.tube_q_z +
+        tube_M_ta_t_14*v.tube_q_z - tube_M_ta_t_20*v.tube_q_x;
+    const real tube_M_aa_t_14 = tube_d_c_m_yx*v.tube_q_y - v.axis_x_tube_axes2_z*tube_M_aa_t_2
+        - v.axis_y_tube_axes2_z*tube_M_aa_t_4 - v.axis_z_tube_axes2_z*tube_M_aa_t_6 -
         v.tube_q_x*(v.axis_x_tube_axes2_y*tube_d_c_m_t_2 +
-        v.axis_y_tube_axes2_y*tube_d_c_m_t_4 + v.axis_z_tube_axes2_y*tube_d_c_m_t_6);
-    const real tube_M_aa_t_15 = tube_M_ta_t_18*v.tube_q_x +
-        v.tube_q_y*(v.axis_x_tube_axes2_x*tube_M_aa_t_7 + v.axis_y_tube_axes2_x*tube_M_aa_t_8
-        + v.axis_z_tube_axes2_x*tube_M_aa_t_9) - tube_dalpha_c_m_zz -
-        tube_M_ta_t_15*v.tube_q_y - v.tube_q_x*(v.axis_x_tube_axes2_y*tube_M_aa_t_7 +
-        v.axis_y_tube_axes2_y*tube_M_aa_t_8 + v.axis_z_tube_axes2_y*tube_M_aa_t_9);
+        v.axis_y_tube_axes2_y*tube_d_c_m_t_4 + v.axis_z_tube_axes2_y*tube_d_c_m_t_6) +
+        tube_M_ta_t_15*v.tube_q_z - tube_M_ta_t_21*v.tube_q_x;
+    const real tube_M_aa_t_15 = v.tube_q_y*(v.axis_x_tube_axes2_x*tube_M_aa_t_7 +
+        v.axis_y_tube_axes2_x*tube_M_aa_t_8 + v.axis_z_tube_axes2_x*tube_M_aa_t_9) -
+        v.tube_q_x*(v.axis_x_tube_axes2_y*tube_M_aa_t_7 + v.axis_y_tube_axes2_y*tube_M_aa_t_8
+        + v.axis_z_tube_axes2_y*tube_M_aa_t_9) - tube_dalpha_c_m_zz +
+        tube_M_ta_t_18*v.tube_q_x - tube_M_ta_t_15*v.tube_q_y;
     /* (Z_a) */
     const real tube_Z_a_t = v.axis_x_tube_axes2_x*tube_G_m_o_in_axes2_x +
         v.axis_y_tube_axes2_x*tube_G_m_o_in_axes2_y +
@@ -4438,15 +4449,15 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[11*w + k];
-    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
     const real h_star_y = s[10*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -4454,9 +4465,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[9*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
@@ -4491,13 +4502,13 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[24*w + k];
     const real Z_q_x = s[21*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[25*w + k];
     const real Z_q_y = s[22*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[26*w + k];
     const real Z_q_z = s[23*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
     const real M_tt_xy = sums[1*w + k];
@@ -4564,7 +4575,8 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     real terms_ups[27*LEGS(LEGS_OF_ups)] = {0}, o_ups[8*LEGS(LEGS_OF_ups)] = {0};
     real terms_tube[27*LEGS(LEGS_OF_tube)] = {0}, o_tube[20*LEGS(LEGS_OF_tube)] = {0};
     clear(Hk, NV*NC);
-    dynamics_before(m, 1, 0, X, V, s, t);
+    values v;
+    dynamics_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         dynamics_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, V, terms_ups, o_ups);
     }
@@ -4585,6 +4597,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
             sums[n] += terms_tube[n*LEGS(LEGS_OF_tube) + leg];
         }
     }
+    dynamics_between(m, 1, 0, V, &v, s);
     dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
@@ -4597,7 +4610,9 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real o_tube[20*LANES];
     clear(Hk, NV*NC*LANES);
     for (size_t k = 0; k < LANES; ++k) {
-        dynamics_before(m, LANES, k, X, V, s, t);
+        values v;
+        dynamics_before(m, LANES, k, X, &v, s, t);
+        dynamics_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 27*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
@@ -4622,30 +4637,34 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_M_dynamics(m, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.h_star_x;
-    s[10*w + k] = v.h_star_y;
-    s[11*w + k] = v.h_star_z;
-    s[12*w + k] = v.J_star_xx;
-    s[13*w + k] = v.J_star_xy;
-    s[14*w + k] = v.J_star_xz;
-    s[15*w + k] = v.J_star_yy;
-    s[16*w + k] = v.J_star_yz;
-    s[17*w + k] = v.J_star_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->h_star_x;
+    s[10*w + k] = v->h_star_y;
+    s[11*w + k] = v->h_star_z;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void M_between(const prepared *m, size_t w, size_t k, values *v, real *s)
+{
+    stage_M_dynamics(m, v);
+    s[12*w + k] = v->J_star_xx;
+    s[13*w + k] = v->J_star_xy;
+    s[14*w + k] = v->J_star_xz;
+    s[15*w + k] = v->J_star_yy;
+    s[16*w + k] = v->J_star_yz;
+    s[17*w + k] = v->J_star_zz;
 }
 
 INLINE void M_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -4688,11 +4707,11 @@ INLINE void M_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
         v.axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
     const real ups_Q_t_4 = ups_d_phi_3_in_axes2_xy*v.ups_w_3_y - axis_y_ups_axes2_y*ups_Q_t -
         v.axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t +
-        v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz - ups_d_phi_3_in_axes2_xy*v.ups_w_3_z;
-    const real ups_Q_t_6 = v.axis_z_ups_axes2_x*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_x;
-    const real ups_Q_t_7 = v.axis_z_ups_axes2_y*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_y;
-    const real ups_Q_t_8 = v.axis_z_ups_axes2_z*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_z;
+    const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t - ups_d_phi_3_in_axes2_xy*v.ups_w_3_z +
+        v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_6 = ups_d_c_in_axes2_xz*v.ups_w_3_x + v.axis_z_ups_axes2_x*ups_Q_t_2;
+    const real ups_Q_t_7 = ups_d_c_in_axes2_xz*v.ups_w_3_y + v.axis_z_ups_axes2_y*ups_Q_t_2;
+    const real ups_Q_t_8 = ups_d_c_in_axes2_xz*v.ups_w_3_z + v.axis_z_ups_axes2_z*ups_Q_t_2;
     const real ups_Q_t_9 = v.axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3;
     const real ups_Q_xx = -2*ups_Q_t_9;
     const real ups_Q_xy = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 -
@@ -4873,8 +4892,8 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t 
     const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
     const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
     const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
-    const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 -
-        inv_tube_w_1_t_49*v.tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
+    const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 - inv_tube_w_1_t_49*v.tube_root_1 +
+        tube_w_1_t_48*tube_w_1_t_52 - tube_w_1_t_47*tube_w_1_t_51;
     const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
     const real tube_w_1_t_60 = v.tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
     const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
@@ -4919,10 +4938,10 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t 
     const real tube_w_2_t = inv_tube_w_1_t_13*inv_tube_w_1_t_33*tube_w_1_t_17;
     const real tube_w_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_13*tube_w_1_t_21 -
         tube_w_1_t_37*tube_w_2_t);
-    const real tube_w_2_t_3 = inv_tube_w_1_t_63*(tube_w_1_t_41*tube_w_2_t +
-        tube_w_1_t_53*tube_w_2_t_2 - inv_tube_w_1_t_13*tube_w_1_t_25);
-    const real tube_w_2_t_4 = inv_tube_w_1_t_75*(inv_tube_w_1_t_13*tube_w_1_t_29 +
-        tube_w_1_t_69*tube_w_2_t_3 - tube_w_1_t_45*tube_w_2_t - tube_w_1_t_58*tube_w_2_t_2);
+    const real tube_w_2_t_3 = inv_tube_w_1_t_63*(tube_w_1_t_41*tube_w_2_t -
+        inv_tube_w_1_t_13*tube_w_1_t_25 + tube_w_1_t_53*tube_w_2_t_2);
+    const real tube_w_2_t_4 = inv_tube_w_1_t_75*(inv_tube_w_1_t_13*tube_w_1_t_29 -
+        tube_w_1_t_45*tube_w_2_t - tube_w_1_t_58*tube_w_2_t_2 + tube_w_1_t_69*tube_w_2_t_3);
     const real tube_w_2_in_axes2_y = inv_tube_w_1_t_13*tube_w_1_t_14 +
         tube_w_1_t_34*tube_w_2_t + tube_w_1_t_50*tube_w_2_t_2 + tube_w_1_t_64*tube_w_2_t_3 -
         tube_w_1_t_76*tube_w_2_t_4;
@@ -4933,7 +4952,7 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t 
         tube_w_1_t_51*tube_w_2_t_2 + tube_w_1_t_66*tube_w_2_t_3 - tube_m1_w_1_t*tube_w_2_t_4;
     const real tube_m1_w_2 = R(1.35)*tube_m1_w_2_t;
     /* (tube-m2_w_2) moment part 2 of reciprocal wrench 2 */
-    const real tube_m2_w_2_t = tube_m2_w_1_t*tube_w_2_t_4 + tube_w_1_t_67*tube_w_2_t_3;
+    const real tube_m2_w_2_t = tube_w_1_t_67*tube_w_2_t_3 + tube_m2_w_1_t*tube_w_2_t_4;
     const real tube_m2_w_2 = R(1.35)*tube_m2_w_2_t;
     /* (tube-m3_w_2) moment part 3 of reciprocal wrench 2 */
     const real tube_m3_w_2_t = inv_tube_w_1_t_13*tube_w_1_t_16 + tube_w_1_t_36*tube_w_2_t +
@@ -4980,87 +4999,86 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t 
     /* (tube-dalpha_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2
        outwards, the force at the connection point left out */
     const real tube_dalpha_N_2_in_axes2_zx =
-        m->tube_J_group_2_in_axes2_xz[i]*tube_dalpha_alpha_1_in_axes2_xx +
         m->tube_J_group_2_in_axes2_zz[i]*tube_o_2_in_axes2_x +
-        tube_dalpha_acc_3_in_axes2_yx*m->tube_h_3_in_spec2_x[i] +
-        v.tube_q_3*(tube_dalpha_acc_3_in_axes2_yx*m->tube_link3_mass[i] +
-        m->tube_h_3_in_spec2_x[i]*tube_o_2_in_axes2_x -
-        tube_dalpha_alpha_1_in_axes2_xx*m->tube_h_3_in_spec2_y[i]) -
-        m->tube_J_group_2_in_axes2_yz[i]*tube_dalpha_alpha_1_t;
+        m->tube_J_group_2_in_axes2_xz[i]*tube_dalpha_alpha_1_in_axes2_xx +
+        tube_dalpha_acc_3_in_axes2_yx*m->tube_h_3_in_spec2_x[i] -
+        m->tube_J_group_2_in_axes2_yz[i]*tube_dalpha_alpha_1_t +
+        v.tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_o_2_in_axes2_x +
+        tube_dalpha_acc_3_in_axes2_yx*m->tube_link3_mass[i] -
+        tube_dalpha_alpha_1_in_axes2_xx*m->tube_h_3_in_spec2_y[i]);
     const real tube_dalpha_N_2_in_axes2_zy =
-        m->tube_J_group_2_in_axes2_xz[i]*tube_dalpha_alpha_1_in_axes2_xy +
         m->tube_J_group_2_in_axes2_zz[i]*tube_o_2_in_axes2_y +
-        tube_dalpha_acc_3_in_axes2_yy*m->tube_h_3_in_spec2_x[i] +
-        v.tube_q_3*(tube_dalpha_acc_3_in_axes2_yy*m->tube_link3_mass[i] +
-        m->tube_h_3_in_spec2_x[i]*tube_o_2_in_axes2_y -
-        tube_dalpha_alpha_1_in_axes2_xy*m->tube_h_3_in_spec2_y[i]) -
-        m->tube_J_group_2_in_axes2_yz[i]*tube_dalpha_alpha_1_t_2;
+        m->tube_J_group_2_in_axes2_xz[i]*tube_dalpha_alpha_1_in_axes2_xy +
+        tube_dalpha_acc_3_in_axes2_yy*m->tube_h_3_in_spec2_x[i] -
+        m->tube_J_group_2_in_axes2_yz[i]*tube_dalpha_alpha_1_t_2 +
+        v.tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_o_2_in_axes2_y +
+        tube_dalpha_acc_3_in_axes2_yy*m->tube_link3_mass[i] -
+        tube_dalpha_alpha_1_in_axes2_xy*m->tube_h_3_in_spec2_y[i]);
     const real tube_dalpha_N_2_in_axes2_zz =
-        m->tube_J_group_2_in_axes2_xz[i]*tube_dalpha_alpha_1_in_axes2_xz +
         m->tube_J_group_2_in_axes2_zz[i]*tube_o_2_in_axes2_z +
-        tube_dalpha_acc_3_in_axes2_yz*m->tube_h_3_in_spec2_x[i] +
-        v.tube_q_3*(tube_dalpha_acc_3_in_axes2_yz*m->tube_link3_mass[i] +
-        m->tube_h_3_in_spec2_x[i]*tube_o_2_in_axes2_z -
-        tube_dalpha_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_y[i]) -
-        m->tube_J_group_2_in_axes2_yz[i]*tube_dalpha_alpha_1_t_3;
+        m->tube_J_group_2_in_axes2_xz[i]*tube_dalpha_alpha_1_in_axes2_xz +
+        tube_dalpha_acc_3_in_axes2_yz*m->tube_h_3_in_spec2_x[i] -
+        m->tube_J_group_2_in_axes2_yz[i]*tube_dalpha_alpha_1_t_3 +
+        v.tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_o_2_in_axes2_z +
+        tube_dalpha_acc_3_in_axes2_yz*m->tube_link3_mass[i] -
+        tube_dalpha_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_y[i]);
     /* (tube-d_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2
        outwards, the force at the connection point left out */
-    const real tube_d_N_2_in_axes2_zy = m->tube_J_group_2_in_axes2_xz[i]*tube_w_1_in_axes1_x +
-        m->tube_J_group_2_in_axes2_zz[i]*tube_w_2_in_axes2_y +
-        tube_d_acc_3_in_axes2_yy*m->tube_h_3_in_spec2_x[i] +
-        v.tube_q_3*(tube_d_acc_3_in_axes2_yy*m->tube_link3_mass[i] +
-        m->tube_h_3_in_spec2_x[i]*tube_w_2_in_axes2_y -
-        m->tube_h_3_in_spec2_y[i]*tube_w_1_in_axes1_x) -
-        m->tube_J_group_2_in_axes2_yz[i]*tube_w_1_t_78;
-    const real tube_d_N_2_in_axes2_zz =
+    const real tube_d_N_2_in_axes2_zy = m->tube_J_group_2_in_axes2_zz[i]*tube_w_2_in_axes2_y +
+        m->tube_J_group_2_in_axes2_xz[i]*tube_w_1_in_axes1_x +
+        tube_d_acc_3_in_axes2_yy*m->tube_h_3_in_spec2_x[i] -
+        m->tube_J_group_2_in_axes2_yz[i]*tube_w_1_t_78 +
+        v.tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_w_2_in_axes2_y +
+        tube_d_acc_3_in_axes2_yy*m->tube_link3_mass[i] -
+        m->tube_h_3_in_spec2_y[i]*tube_w_1_in_axes1_x);
+    const real tube_d_N_2_in_axes2_zz = m->tube_J_group_2_in_axes2_zz[i]*tube_w_2_in_axes2_z +
         m->tube_J_group_2_in_axes2_xz[i]*tube_d_alpha_1_in_axes2_xz +
-        m->tube_J_group_2_in_axes2_zz[i]*tube_w_2_in_axes2_z +
-        tube_d_acc_3_in_axes2_yz*m->tube_h_3_in_spec2_x[i] +
-        v.tube_q_3*(tube_d_acc_3_in_axes2_yz*m->tube_link3_mass[i] +
-        m->tube_h_3_in_spec2_x[i]*tube_w_2_in_axes2_z -
-        tube_d_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_y[i]) -
-        m->tube_J_group_2_in_axes2_yz[i]*tube_d_alpha_1_t;
+        tube_d_acc_3_in_axes2_yz*m->tube_h_3_in_spec2_x[i] -
+        m->tube_J_group_2_in_axes2_yz[i]*tube_d_alpha_1_t +
+        v.tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_w_2_in_axes2_z +
+        tube_d_acc_3_in_axes2_yz*m->tube_link3_mass[i] -
+        tube_d_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_y[i]);
     /* (tube-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
        links' inertia and weight */
     const real tube_dalpha_Gamma_1_t =
-        v.tube_c_2*(m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_in_axes2_xx +
-        m->tube_J_group_2_in_axes2_yz[i]*tube_o_2_in_axes2_x -
+        v.tube_c_2*(m->tube_J_group_2_in_axes2_yz[i]*tube_o_2_in_axes2_x +
+        m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_in_axes2_xx -
         m->tube_J_group_2_in_axes2_yy[i]*tube_dalpha_alpha_1_t -
         tube_dalpha_acc_3_in_axes2_zx*m->tube_h_3_in_spec2_x[i] -
-        v.tube_q_3*(tube_dalpha_acc_3_in_axes2_zx*m->tube_link3_mass[i] +
-        tube_dalpha_alpha_1_t*m->tube_h_3_in_spec2_x[i] -
-        tube_dalpha_alpha_1_in_axes2_xx*m->tube_h_3_in_spec2_z[i]));
+        v.tube_q_3*(tube_dalpha_alpha_1_t*m->tube_h_3_in_spec2_x[i] -
+        tube_dalpha_alpha_1_in_axes2_xx*m->tube_h_3_in_spec2_z[i] +
+        tube_dalpha_acc_3_in_axes2_zx*m->tube_link3_mass[i]));
     const real tube_dalpha_Gamma_1_in_axes2_x =
-        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xx[i]*tube_dalpha_alpha_1_in_axes2_xx
-        + m->tube_J_group_2_in_axes2_xz[i]*tube_o_2_in_axes2_x -
+        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xz[i]*tube_o_2_in_axes2_x +
+        m->tube_J_group_2_in_axes2_xx[i]*tube_dalpha_alpha_1_in_axes2_xx -
         m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_t -
         tube_dalpha_acc_3_in_axes2_yx*m->tube_h_3_in_spec2_y[i] -
         tube_dalpha_acc_3_in_axes2_zx*m->tube_h_3_in_spec2_z[i]) - tube_dalpha_Gamma_1_t;
     const real tube_dalpha_Gamma_1_t_2 =
-        v.tube_c_2*(m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_in_axes2_xy +
-        m->tube_J_group_2_in_axes2_yz[i]*tube_o_2_in_axes2_y -
+        v.tube_c_2*(m->tube_J_group_2_in_axes2_yz[i]*tube_o_2_in_axes2_y +
+        m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_in_axes2_xy -
         m->tube_J_group_2_in_axes2_yy[i]*tube_dalpha_alpha_1_t_2 -
         tube_dalpha_acc_3_in_axes2_zy*m->tube_h_3_in_spec2_x[i] -
-        v.tube_q_3*(tube_dalpha_acc_3_in_axes2_zy*m->tube_link3_mass[i] +
-        tube_dalpha_alpha_1_t_2*m->tube_h_3_in_spec2_x[i] -
-        tube_dalpha_alpha_1_in_axes2_xy*m->tube_h_3_in_spec2_z[i]));
+        v.tube_q_3*(tube_dalpha_alpha_1_t_2*m->tube_h_3_in_spec2_x[i] -
+        tube_dalpha_alpha_1_in_axes2_xy*m->tube_h_3_in_spec2_z[i] +
+        tube_dalpha_acc_3_in_axes2_zy*m->tube_link3_mass[i]));
     const real tube_dalpha_Gamma_1_in_axes2_y =
-        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xx[i]*tube_dalpha_alpha_1_in_axes2_xy
-        + m->tube_J_group_2_in_axes2_xz[i]*tube_o_2_in_axes2_y -
+        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xz[i]*tube_o_2_in_axes2_y +
+        m->tube_J_group_2_in_axes2_xx[i]*tube_dalpha_alpha_1_in_axes2_xy -
         m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_t_2 -
         tube_dalpha_acc_3_in_axes2_yy*m->tube_h_3_in_spec2_y[i] -
         tube_dalpha_acc_3_in_axes2_zy*m->tube_h_3_in_spec2_z[i]) - tube_dalpha_Gamma_1_t_2;
     const real tube_dalpha_Gamma_1_t_3 =
-        v.tube_c_2*(m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_in_axes2_xz +
-        m->tube_J_group_2_in_axes2_yz[i]*tube_o_2_in_axes2_z -
+        v.tube_c_2*(m->tube_J_group_2_in_axes2_yz[i]*tube_o_2_in_axes2_z +
+        m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_in_axes2_xz -
         m->tube_J_group_2_in_axes2_yy[i]*tube_dalpha_alpha_1_t_3 -
         tube_dalpha_acc_3_in_axes2_zz*m->tube_h_3_in_spec2_x[i] -
-        v.tube_q_3*(tube_dalpha_acc_3_in_axes2_zz*m->tube_link3_mass[i] +
-        tube_dalpha_alpha_1_t_3*m->tube_h_3_in_spec2_x[i] -
-        tube_dalpha_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_z[i]));
+        v.tube_q_3*(tube_dalpha_alpha_1_t_3*m->tube_h_3_in_spec2_x[i] -
+        tube_dalpha_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_z[i] +
+        tube_dalpha_acc_3_in_axes2_zz*m->tube_link3_mass[i]));
     const real tube_dalpha_Gamma_1_in_axes2_z =
-        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xx[i]*tube_dalpha_alpha_1_in_axes2_xz
-        + m->tube_J_group_2_in_axes2_xz[i]*tube_o_2_in_axes2_z -
+        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xz[i]*tube_o_2_in_axes2_z +
+        m->tube_J_group_2_in_axes2_xx[i]*tube_dalpha_alpha_1_in_axes2_xz -
         m->tube_J_group_2_in_axes2_xy[i]*tube_dalpha_alpha_1_t_3 -
         tube_dalpha_acc_3_in_axes2_yz*m->tube_h_3_in_spec2_y[i] -
         tube_dalpha_acc_3_in_axes2_zz*m->tube_h_3_in_spec2_z[i]) - tube_dalpha_Gamma_1_t_3;
@@ -5068,99 +5086,99 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t 
        inertia and weight */
     const real tube_d_Gamma_1_t = v.tube_c_2*m->tube_h_3_in_spec2_y[i];
     const real tube_d_Gamma_1_t_2 =
-        v.tube_c_2*(m->tube_J_group_2_in_axes2_xy[i]*tube_w_1_in_axes1_x +
-        m->tube_J_group_2_in_axes2_yz[i]*tube_w_2_in_axes2_y -
+        v.tube_c_2*(m->tube_J_group_2_in_axes2_yz[i]*tube_w_2_in_axes2_y +
+        m->tube_J_group_2_in_axes2_xy[i]*tube_w_1_in_axes1_x -
         m->tube_J_group_2_in_axes2_yy[i]*tube_w_1_t_78 -
         tube_d_acc_3_in_axes2_zy*m->tube_h_3_in_spec2_x[i] -
-        v.tube_q_3*(tube_d_acc_3_in_axes2_zy*m->tube_link3_mass[i] +
-        m->tube_h_3_in_spec2_x[i]*tube_w_1_t_78 -
-        m->tube_h_3_in_spec2_z[i]*tube_w_1_in_axes1_x));
+        v.tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_w_1_t_78 -
+        m->tube_h_3_in_spec2_z[i]*tube_w_1_in_axes1_x +
+        tube_d_acc_3_in_axes2_zy*m->tube_link3_mass[i]));
     const real tube_d_Gamma_1_in_axes2_y =
-        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xx[i]*tube_w_1_in_axes1_x +
-        m->tube_J_group_2_in_axes2_xz[i]*tube_w_2_in_axes2_y -
+        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xz[i]*tube_w_2_in_axes2_y +
+        m->tube_J_group_2_in_axes2_xx[i]*tube_w_1_in_axes1_x -
         m->tube_J_group_2_in_axes2_xy[i]*tube_w_1_t_78 -
         tube_d_acc_3_in_axes2_yy*m->tube_h_3_in_spec2_y[i] -
         tube_d_acc_3_in_axes2_zy*m->tube_h_3_in_spec2_z[i]) - tube_d_Gamma_1_t_2;
     const real tube_d_Gamma_1_t_3 =
-        v.tube_c_2*(m->tube_J_group_2_in_axes2_xy[i]*tube_d_alpha_1_in_axes2_xz +
-        m->tube_J_group_2_in_axes2_yz[i]*tube_w_2_in_axes2_z -
+        v.tube_c_2*(m->tube_J_group_2_in_axes2_yz[i]*tube_w_2_in_axes2_z +
+        m->tube_J_group_2_in_axes2_xy[i]*tube_d_alpha_1_in_axes2_xz -
         m->tube_J_group_2_in_axes2_yy[i]*tube_d_alpha_1_t -
         tube_d_acc_3_in_axes2_zz*m->tube_h_3_in_spec2_x[i] -
-        v.tube_q_3*(tube_d_acc_3_in_axes2_zz*m->tube_link3_mass[i] +
-        tube_d_alpha_1_t*m->tube_h_3_in_spec2_x[i] -
-        tube_d_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_z[i]));
+        v.tube_q_3*(tube_d_alpha_1_t*m->tube_h_3_in_spec2_x[i] -
+        tube_d_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_z[i] +
+        tube_d_acc_3_in_axes2_zz*m->tube_link3_mass[i]));
     const real tube_d_Gamma_1_in_axes2_z =
-        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xx[i]*tube_d_alpha_1_in_axes2_xz +
-        m->tube_J_group_2_in_axes2_xz[i]*tube_w_2_in_axes2_z -
+        v.tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xz[i]*tube_w_2_in_axes2_z +
+        m->tube_J_group_2_in_axes2_xx[i]*tube_d_alpha_1_in_axes2_xz -
         m->tube_J_group_2_in_axes2_xy[i]*tube_d_alpha_1_t -
         tube_d_acc_3_in_axes2_yz*m->tube_h_3_in_spec2_y[i] -
         tube_d_acc_3_in_axes2_zz*m->tube_h_3_in_spec2_z[i]) - tube_d_Gamma_1_t_3;
     /* (tube-dalpha_G) coefficient of the acceleration in: force at the connection point that balances
        the leg's inertia and weight along all degrees of freedom */
-    const real tube_dalpha_G_in_axes2_yx = tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_y
-        + tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_y;
-    const real tube_dalpha_G_in_axes2_yy = tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y
-        + tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_y;
-    const real tube_dalpha_G_in_axes2_yz = tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y
-        + tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_y;
-    const real tube_dalpha_G_in_axes2_zx = tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_z
-        + tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_z;
-    const real tube_dalpha_G_in_axes2_zy = tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_z
-        + tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_z;
-    const real tube_dalpha_G_in_axes2_zz = tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z
-        + tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_z;
+    const real tube_dalpha_G_in_axes2_yx = tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_y +
+        tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_y;
+    const real tube_dalpha_G_in_axes2_yy = tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_y +
+        tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y;
+    const real tube_dalpha_G_in_axes2_yz = tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_y +
+        tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y;
+    const real tube_dalpha_G_in_axes2_zx = tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_z +
+        tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_z;
+    const real tube_dalpha_G_in_axes2_zy = tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_z +
+        tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_z;
+    const real tube_dalpha_G_in_axes2_zz = tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_z +
+        tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z;
     /* (tube-d_G) coefficient of the acceleration in: force at the connection point that balances the
        leg's inertia and weight along all degrees of freedom */
-    const real tube_d_G_in_axes2_yz = tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y +
-        tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_y;
+    const real tube_d_G_in_axes2_yz = tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_y +
+        tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y;
     /* (tube-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
        balances the leg's inertia and weight along all degrees of freedom */
-    const real tube_dalpha_G_m1_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m1_w_1 +
-        tube_dalpha_N_2_in_axes2_zx*tube_m1_w_2;
-    const real tube_dalpha_G_m1_in_axes2_y = tube_dalpha_Gamma_1_in_axes2_y*tube_m1_w_1 +
-        tube_dalpha_N_2_in_axes2_zy*tube_m1_w_2;
-    const real tube_dalpha_G_m1_in_axes2_z = tube_dalpha_Gamma_1_in_axes2_z*tube_m1_w_1 +
-        tube_dalpha_N_2_in_axes2_zz*tube_m1_w_2;
+    const real tube_dalpha_G_m1_in_axes2_x = tube_dalpha_N_2_in_axes2_zx*tube_m1_w_2 +
+        tube_dalpha_Gamma_1_in_axes2_x*tube_m1_w_1;
+    const real tube_dalpha_G_m1_in_axes2_y = tube_dalpha_N_2_in_axes2_zy*tube_m1_w_2 +
+        tube_dalpha_Gamma_1_in_axes2_y*tube_m1_w_1;
+    const real tube_dalpha_G_m1_in_axes2_z = tube_dalpha_N_2_in_axes2_zz*tube_m1_w_2 +
+        tube_dalpha_Gamma_1_in_axes2_z*tube_m1_w_1;
     /* (tube-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
        the leg's inertia and weight along all degrees of freedom */
     const real tube_d_G_m1_in_axes2_x = m->tube_h_3_in_spec2_z[i]*tube_m1_w_2 -
         tube_d_Gamma_1_t*tube_m1_w_1;
-    const real tube_d_G_m1_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m1_w_1 +
-        tube_d_N_2_in_axes2_zy*tube_m1_w_2;
-    const real tube_d_G_m1_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m1_w_1 +
-        tube_d_N_2_in_axes2_zz*tube_m1_w_2;
+    const real tube_d_G_m1_in_axes2_y = tube_d_N_2_in_axes2_zy*tube_m1_w_2 +
+        tube_d_Gamma_1_in_axes2_y*tube_m1_w_1;
+    const real tube_d_G_m1_in_axes2_z = tube_d_N_2_in_axes2_zz*tube_m1_w_2 +
+        tube_d_Gamma_1_in_axes2_z*tube_m1_w_1;
     /* (tube-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
        balances the leg's inertia and weight along all degrees of freedom */
-    const real tube_dalpha_G_m2_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m2_w_1 +
-        tube_dalpha_N_2_in_axes2_zx*tube_m2_w_2;
-    const real tube_dalpha_G_m2_in_axes2_y = tube_dalpha_Gamma_1_in_axes2_y*tube_m2_w_1 +
-        tube_dalpha_N_2_in_axes2_zy*tube_m2_w_2;
-    const real tube_dalpha_G_m2_in_axes2_z = tube_dalpha_Gamma_1_in_axes2_z*tube_m2_w_1 +
-        tube_dalpha_N_2_in_axes2_zz*tube_m2_w_2;
+    const real tube_dalpha_G_m2_in_axes2_x = tube_dalpha_N_2_in_axes2_zx*tube_m2_w_2 +
+        tube_dalpha_Gamma_1_in_axes2_x*tube_m2_w_1;
+    const real tube_dalpha_G_m2_in_axes2_y = tube_dalpha_N_2_in_axes2_zy*tube_m2_w_2 +
+        tube_dalpha_Gamma_1_in_axes2_y*tube_m2_w_1;
+    const real tube_dalpha_G_m2_in_axes2_z = tube_dalpha_N_2_in_axes2_zz*tube_m2_w_2 +
+        tube_dalpha_Gamma_1_in_axes2_z*tube_m2_w_1;
     /* (tube-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances
        the leg's inertia and weight along all degrees of freedom */
     const real tube_d_G_m2_in_axes2_x = m->tube_h_3_in_spec2_z[i]*tube_m2_w_2 -
         tube_d_Gamma_1_t*tube_m2_w_1;
-    const real tube_d_G_m2_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m2_w_1 +
-        tube_d_N_2_in_axes2_zy*tube_m2_w_2;
-    const real tube_d_G_m2_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m2_w_1 +
-        tube_d_N_2_in_axes2_zz*tube_m2_w_2;
+    const real tube_d_G_m2_in_axes2_y = tube_d_N_2_in_axes2_zy*tube_m2_w_2 +
+        tube_d_Gamma_1_in_axes2_y*tube_m2_w_1;
+    const real tube_d_G_m2_in_axes2_z = tube_d_N_2_in_axes2_zz*tube_m2_w_2 +
+        tube_d_Gamma_1_in_axes2_z*tube_m2_w_1;
     /* (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that
        balances the leg's inertia and weight along all degrees of freedom */
-    const real tube_dalpha_G_m3_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m3_w_1 +
-        tube_dalpha_N_2_in_axes2_zx*tube_m3_w_2;
-    const real tube_dalpha_G_m3_in_axes2_y = tube_dalpha_Gamma_1_in_axes2_y*tube_m3_w_1 +
-        tube_dalpha_N_2_in_axes2_zy*tube_m3_w_2;
-    const real tube_dalpha_G_m3_in_axes2_z = tube_dalpha_Gamma_1_in_axes2_z*tube_m3_w_1 +
-        tube_dalpha_N_2_in_axes2_zz*tube_m3_w_2;
+    const real tube_dalpha_G_m3_in_axes2_x = tube_dalpha_N_2_in_axes2_zx*tube_m3_w_2 +
+        tube_dalpha_Gamma_1_in_axes2_x*tube_m3_w_1;
+    const real tube_dalpha_G_m3_in_axes2_y = tube_dalpha_N_2_in_axes2_zy*tube_m3_w_2 +
+        tube_dalpha_Gamma_1_in_axes2_y*tube_m3_w_1;
+    const real tube_dalpha_G_m3_in_axes2_z = tube_dalpha_N_2_in_axes2_zz*tube_m3_w_2 +
+        tube_dalpha_Gamma_1_in_axes2_z*tube_m3_w_1;
     /* (tube-d_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances
        the leg's inertia and weight along all degrees of freedom */
     const real tube_d_G_m3_in_axes2_x = m->tube_h_3_in_spec2_z[i]*tube_m3_w_2 -
         tube_d_Gamma_1_t*tube_m3_w_1;
-    const real tube_d_G_m3_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m3_w_1 +
-        tube_d_N_2_in_axes2_zy*tube_m3_w_2;
-    const real tube_d_G_m3_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m3_w_1 +
-        tube_d_N_2_in_axes2_zz*tube_m3_w_2;
+    const real tube_d_G_m3_in_axes2_y = tube_d_N_2_in_axes2_zy*tube_m3_w_2 +
+        tube_d_Gamma_1_in_axes2_y*tube_m3_w_1;
+    const real tube_d_G_m3_in_axes2_z = tube_d_N_2_in_axes2_zz*tube_m3_w_2 +
+        tube_d_Gamma_1_in_axes2_z*tube_m3_w_1;
     /* (tube-dalpha_G_m) coefficient of the acceleration in: moment at the connection point that
        balances the leg's inertia and weight along all degrees of freedom */
     const real tube_dalpha_G_m_in_axes2_xx =
@@ -5225,36 +5243,36 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t 
         v.tube_n_c1_x*v.tube_n_c2_z;
     const real axis_x_tube_axes2_z = v.tube_n_c1_x*v.tube_n_c2_y -
         v.tube_n_c1_y*v.tube_n_c2_x;
-    const real tube_Q_t = tube_d_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y +
-        tube_d_N_2_in_axes2_zy*tube_w_2_in_axes2_y - m->tube_link3_mass[i];
+    const real tube_Q_t = tube_d_N_2_in_axes2_zy*tube_w_2_in_axes2_y - m->tube_link3_mass[i] +
+        tube_d_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y;
     const real tube_Q_t_2 = R(0.5)*tube_Q_t;
-    const real tube_Q_t_3 = tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z +
-        tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_z - m->tube_link3_mass[i];
+    const real tube_Q_t_3 = tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_z - m->tube_link3_mass[i]
+        + tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z;
     const real tube_Q_t_4 = R(0.5)*tube_Q_t_3;
-    const real tube_Q_t_5 = tube_Q_t_2*v.tube_n_c1_x + tube_d_G_in_axes2_yz*v.tube_n_c2_x -
-        axis_x_tube_axes2_x*tube_d_c_in_axes2_xy;
-    const real tube_Q_t_6 = tube_Q_t_2*v.tube_n_c1_y + tube_d_G_in_axes2_yz*v.tube_n_c2_y -
-        axis_x_tube_axes2_y*tube_d_c_in_axes2_xy;
-    const real tube_Q_t_7 = tube_Q_t_2*v.tube_n_c1_z + tube_d_G_in_axes2_yz*v.tube_n_c2_z -
-        axis_x_tube_axes2_z*tube_d_c_in_axes2_xy;
+    const real tube_Q_t_5 = tube_Q_t_2*v.tube_n_c1_x -
+        axis_x_tube_axes2_x*tube_d_c_in_axes2_xy + tube_d_G_in_axes2_yz*v.tube_n_c2_x;
+    const real tube_Q_t_6 = tube_Q_t_2*v.tube_n_c1_y -
+        axis_x_tube_axes2_y*tube_d_c_in_axes2_xy + tube_d_G_in_axes2_yz*v.tube_n_c2_y;
+    const real tube_Q_t_7 = tube_Q_t_2*v.tube_n_c1_z -
+        axis_x_tube_axes2_z*tube_d_c_in_axes2_xy + tube_d_G_in_axes2_yz*v.tube_n_c2_z;
     const real tube_Q_t_8 = tube_Q_t_4*v.tube_n_c2_x -
         axis_x_tube_axes2_x*tube_d_c_in_axes2_xz;
     const real tube_Q_t_9 = tube_Q_t_4*v.tube_n_c2_y -
         axis_x_tube_axes2_y*tube_d_c_in_axes2_xz;
     const real tube_Q_t_10 = tube_Q_t_4*v.tube_n_c2_z -
         axis_x_tube_axes2_z*tube_d_c_in_axes2_xz;
-    const real tube_Q_t_11 = tube_Q_t_5*v.tube_n_c1_x + tube_Q_t_8*v.tube_n_c2_x;
-    const real tube_Q_xx = 2*tube_Q_t_11 + m->tube_link3_mass[i];
-    const real tube_Q_xy = tube_Q_t_5*v.tube_n_c1_y + tube_Q_t_6*v.tube_n_c1_x +
-        tube_Q_t_8*v.tube_n_c2_y + tube_Q_t_9*v.tube_n_c2_x;
-    const real tube_Q_xz = tube_Q_t_10*v.tube_n_c2_x + tube_Q_t_5*v.tube_n_c1_z +
-        tube_Q_t_7*v.tube_n_c1_x + tube_Q_t_8*v.tube_n_c2_z;
-    const real tube_Q_t_12 = tube_Q_t_6*v.tube_n_c1_y + tube_Q_t_9*v.tube_n_c2_y;
-    const real tube_Q_yy = 2*tube_Q_t_12 + m->tube_link3_mass[i];
-    const real tube_Q_yz = tube_Q_t_10*v.tube_n_c2_y + tube_Q_t_6*v.tube_n_c1_z +
-        tube_Q_t_7*v.tube_n_c1_y + tube_Q_t_9*v.tube_n_c2_z;
+    const real tube_Q_t_11 = tube_Q_t_8*v.tube_n_c2_x + tube_Q_t_5*v.tube_n_c1_x;
+    const real tube_Q_xx = m->tube_link3_mass[i] + 2*tube_Q_t_11;
+    const real tube_Q_xy = tube_Q_t_8*v.tube_n_c2_y + tube_Q_t_9*v.tube_n_c2_x +
+        tube_Q_t_5*v.tube_n_c1_y + tube_Q_t_6*v.tube_n_c1_x;
+    const real tube_Q_xz = tube_Q_t_10*v.tube_n_c2_x + tube_Q_t_8*v.tube_n_c2_z +
+        tube_Q_t_5*v.tube_n_c1_z + tube_Q_t_7*v.tube_n_c1_x;
+    const real tube_Q_t_12 = tube_Q_t_9*v.tube_n_c2_y + tube_Q_t_6*v.tube_n_c1_y;
+    const real tube_Q_yy = m->tube_link3_mass[i] + 2*tube_Q_t_12;
+    const real tube_Q_yz = tube_Q_t_10*v.tube_n_c2_y + tube_Q_t_9*v.tube_n_c2_z +
+        tube_Q_t_6*v.tube_n_c1_z + tube_Q_t_7*v.tube_n_c1_y;
     const real tube_Q_t_13 = tube_Q_t_10*v.tube_n_c2_z + tube_Q_t_7*v.tube_n_c1_z;
-    const real tube_Q_zz = 2*tube_Q_t_13 + m->tube_link3_mass[i];
+    const real tube_Q_zz = m->tube_link3_mass[i] + 2*tube_Q_t_13;
     /* (tube-dalpha_c_m) coefficient of the acceleration in: moment of the leg on the platform without
        actuation */
     const real tube_dalpha_c_m_zz =
@@ -5309,27 +5327,24 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t 
     const real tube_M_ta_t_10 = tube_Q_xy*v.tube_q_z;
     const real tube_M_ta_t_11 = tube_Q_xz*v.tube_q_y;
     const real tube_M_ta_t_12 = tube_Q_yz*v.tube_q_x;
-    const real tube_M_ta_t_13 = tube_M_ta_t_11 - tube_M_ta_t_10 -
-        axis_x_tube_axes2_x*tube_M_ta_t - tube_M_ta_t_4*v.tube_n_c1_x -
-        tube_M_ta_t_7*v.tube_n_c2_x;
+    const real tube_M_ta_t_13 = tube_M_ta_t_11 - axis_x_tube_axes2_x*tube_M_ta_t -
+        tube_M_ta_t_4*v.tube_n_c1_x - tube_M_ta_t_7*v.tube_n_c2_x - tube_M_ta_t_10;
     const real tube_M_ta_t_14 = tube_Q_xx*v.tube_q_z - axis_x_tube_axes2_y*tube_M_ta_t -
         tube_M_ta_t_4*v.tube_n_c1_y - tube_M_ta_t_7*v.tube_n_c2_y - tube_Q_xz*v.tube_q_x;
     const real tube_M_ta_t_15 = tube_Q_xy*v.tube_q_x - axis_x_tube_axes2_z*tube_M_ta_t -
         tube_M_ta_t_4*v.tube_n_c1_z - tube_M_ta_t_7*v.tube_n_c2_z - tube_Q_xx*v.tube_q_y;
     const real tube_M_ta_t_16 = tube_Q_yz*v.tube_q_y - axis_x_tube_axes2_x*tube_M_ta_t_2 -
         tube_M_ta_t_5*v.tube_n_c1_x - tube_M_ta_t_8*v.tube_n_c2_x - tube_Q_yy*v.tube_q_z;
-    const real tube_M_ta_t_17 = tube_M_ta_t_10 - tube_M_ta_t_12 -
-        axis_x_tube_axes2_y*tube_M_ta_t_2 - tube_M_ta_t_5*v.tube_n_c1_y -
-        tube_M_ta_t_8*v.tube_n_c2_y;
+    const real tube_M_ta_t_17 = tube_M_ta_t_10 - axis_x_tube_axes2_y*tube_M_ta_t_2 -
+        tube_M_ta_t_5*v.tube_n_c1_y - tube_M_ta_t_8*v.tube_n_c2_y - tube_M_ta_t_12;
     const real tube_M_ta_t_18 = tube_Q_yy*v.tube_q_x - axis_x_tube_axes2_z*tube_M_ta_t_2 -
         tube_M_ta_t_5*v.tube_n_c1_z - tube_M_ta_t_8*v.tube_n_c2_z - tube_Q_xy*v.tube_q_y;
     const real tube_M_ta_t_19 = tube_Q_zz*v.tube_q_y - axis_x_tube_axes2_x*tube_M_ta_t_3 -
         tube_M_ta_t_6*v.tube_n_c1_x - tube_M_ta_t_9*v.tube_n_c2_x - tube_Q_yz*v.tube_q_z;
     const real tube_M_ta_t_20 = tube_Q_xz*v.tube_q_z - axis_x_tube_axes2_y*tube_M_ta_t_3 -
         tube_M_ta_t_6*v.tube_n_c1_y - tube_M_ta_t_9*v.tube_n_c2_y - tube_Q_zz*v.tube_q_x;
-    const real tube_M_ta_t_21 = tube_M_ta_t_12 - tube_M_ta_t_11 -
-        axis_x_tube_axes2_z*tube_M_ta_t_3 - tube_M_ta_t_6*v.tube_n_c1_z -
-        tube_M_ta_t_9*v.tube_n_c2_z;
+    const real tube_M_ta_t_21 = tube_M_ta_t_12 - axis_x_tube_axes2_z*tube_M_ta_t_3 -
+        tube_M_ta_t_6*v.tube_n_c1_z - tube_M_ta_t_9*v.tube_n_c2_z - tube_M_ta_t_11;
     /* (M_aa) */
     const real tube_M_aa_t = -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xx -
         tube_dalpha_G_m_in_axes2_yx*v.tube_n_c1_x - tube_dalpha_G_m_in_axes2_zx*v.tube_n_c2_x;
@@ -5349,30 +5364,29 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t 
         tube_d_G_m_in_axes2_yy*v.tube_n_c1_z - tube_d_G_m_in_axes2_zy*v.tube_n_c2_z;
     const real tube_M_aa_t_9 = -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xz -
         tube_d_G_m_in_axes2_yz*v.tube_n_c1_z - tube_d_G_m_in_axes2_zz*v.tube_n_c2_z;
-    const real tube_M_aa_t_10 = tube_M_ta_t_19*v.tube_q_y + tube_d_c_m_xy*v.tube_q_z -
-        axis_x_tube_axes2_x*tube_M_aa_t - tube_M_aa_t_3*v.tube_n_c1_x -
-        tube_M_aa_t_5*v.tube_n_c2_x - tube_M_ta_t_16*v.tube_q_z - tube_d_c_m_xz*v.tube_q_y;
-    const real tube_M_aa_t_11 = tube_M_ta_t_20*v.tube_q_y + tube_d_c_m_xz*v.tube_q_x -
-        axis_x_tube_axes2_y*tube_M_aa_t - tube_M_aa_t_3*v.tube_n_c1_y -
-        tube_M_aa_t_5*v.tube_n_c2_y - tube_M_ta_t_17*v.tube_q_z - tube_d_c_m_xx*v.tube_q_z;
-    const real tube_M_aa_t_12 = tube_M_ta_t_21*v.tube_q_y + tube_d_c_m_xx*v.tube_q_y -
-        axis_x_tube_axes2_z*tube_M_aa_t - tube_M_aa_t_3*v.tube_n_c1_z -
-        tube_M_aa_t_5*v.tube_n_c2_z - tube_M_ta_t_18*v.tube_q_z - tube_d_c_m_xy*v.tube_q_x;
-    const real tube_M_aa_t_13 = tube_M_ta_t_14*v.tube_q_z +
-        v.tube_q_x*(axis_x_tube_axes2_z*tube_d_c_m_t_2 + tube_d_c_m_t_4*v.tube_n_c1_z +
-        tube_d_c_m_t_6*v.tube_n_c2_z) - axis_x_tube_axes2_y*tube_M_aa_t_2 -
-        tube_M_aa_t_4*v.tube_n_c1_y - tube_M_aa_t_6*v.tube_n_c2_y - tube_M_ta_t_20*v.tube_q_x
-        - tube_d_c_m_yx*v.tube_q_z;
-    const real tube_M_aa_t_14 = tube_M_ta_t_15*v.tube_q_z + tube_d_c_m_yx*v.tube_q_y -
-        axis_x_tube_axes2_z*tube_M_aa_t_2 - tube_M_aa_t_4*v.tube_n_c1_z -
-        tube_M_aa_t_6*v.tube_n_c2_z - tube_M_ta_t_21*v.tube_q_x -
+    const real tube_M_aa_t_10 = tube_d_c_m_xy*v.tube_q_z - axis_x_tube_axes2_x*tube_M_aa_t -
+        tube_M_aa_t_3*v.tube_n_c1_x - tube_M_aa_t_5*v.tube_n_c2_x - tube_d_c_m_xz*v.tube_q_y +
+        tube_M_ta_t_19*v.tube_q_y - tube_M_ta_t_16*v.tube_q_z;
+    const real tube_M_aa_t_11 = tube_d_c_m_xz*v.tube_q_x - axis_x_tube_axes2_y*tube_M_aa_t -
+        tube_M_aa_t_3*v.tube_n_c1_y - tube_M_aa_t_5*v.tube_n_c2_y - tube_d_c_m_xx*v.tube_q_z +
+        tube_M_ta_t_20*v.tube_q_y - tube_M_ta_t_17*v.tube_q_z;
+    const real tube_M_aa_t_12 = tube_d_c_m_xx*v.tube_q_y - axis_x_tube_axes2_z*tube_M_aa_t -
+        tube_M_aa_t_3*v.tube_n_c1_z - tube_M_aa_t_5*v.tube_n_c2_z - tube_d_c_m_xy*v.tube_q_x +
+        tube_M_ta_t_21*v.tube_q_y - tube_M_ta_t_18*v.tube_q_z;
+    const real tube_M_aa_t_13 = v.tube_q_x*(axis_x_tube_axes2_z*tube_d_c_m_t_2 +
+        tube_d_c_m_t_4*v.tube_n_c1_z + tube_d_c_m_t_6*v.tube_n_c2_z) -
+        axis_x_tube_axes2_y*tube_M_aa_t_2 - tube_M_aa_t_4*v.tube_n_c1_y -
+        tube_M_aa_t_6*v.tube_n_c2_y - tube_d_c_m_yx*v.tube_q_z + tube_M_ta_t_14*v.tube_q_z -
+        tube_M_ta_t_20*v.tube_q_x;
+    const real tube_M_aa_t_14 = tube_d_c_m_yx*v.tube_q_y - axis_x_tube_axes2_z*tube_M_aa_t_2 -
+        tube_M_aa_t_4*v.tube_n_c1_z - tube_M_aa_t_6*v.tube_n_c2_z -
         v.tube_q_x*(axis_x_tube_axes2_y*tube_d_c_m_t_2 + tube_d_c_m_t_4*v.tube_n_c1_y +
-        tube_d_c_m_t_6*v.tube_n_c2_y);
-    const real tube_M_aa_t_15 = tube_M_ta_t_18*v.tube_q_x +
-        v.tube_q_y*(axis_x_tube_axes2_x*tube_M_aa_t_7 + tube_M_aa_t_8*v.tube_n_c1_x +
-        tube_M_aa_t_9*v.tube_n_c2_x) - tube_dalpha_c_m_zz - tube_M_ta_t_15*v.tube_q_y -
+        tube_d_c_m_t_6*v.tube_n_c2_y) + tube_M_ta_t_15*v.tube_q_z - tube_M_ta_t_21*v.tube_q_x;
+    const real tube_M_aa_t_15 = v.tube_q_y*(axis_x_tube_axes2_x*tube_M_aa_t_7 +
+        tube_M_aa_t_8*v.tube_n_c1_x + tube_M_aa_t_9*v.tube_n_c2_x) -
         v.tube_q_x*(axis_x_tube_axes2_y*tube_M_aa_t_7 + tube_M_aa_t_8*v.tube_n_c1_y +
-        tube_M_aa_t_9*v.tube_n_c2_y);
+        tube_M_aa_t_9*v.tube_n_c2_y) - tube_dalpha_c_m_zz + tube_M_ta_t_18*v.tube_q_x -
+        tube_M_ta_t_15*v.tube_q_y;
     /* (M_tt) */
     gather(&terms[0*count + k], add, tube_Q_xx);  /* M_tt_xx_of_legs */
     gather(&terms[1*count + k], add, tube_Q_xy);  /* M_tt_xy */
@@ -5415,15 +5429,15 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[11*w + k];
-    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
     const real h_star_y = s[10*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -5431,9 +5445,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[9*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
@@ -5511,7 +5525,8 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     real s[18] = {0}, sums[21] = {0};
     real terms_ups[21*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
     real terms_tube[21*LEGS(LEGS_OF_tube)] = {0}, o_tube[LEGS(LEGS_OF_tube)] = {0};
-    M_before(m, 1, 0, X, s, t);
+    values v;
+    M_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         M_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, terms_ups, o_ups);
     }
@@ -5532,6 +5547,7 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
             sums[n] += terms_tube[n*LEGS(LEGS_OF_tube) + leg];
         }
     }
+    M_between(m, 1, 0, &v, s);
     M_after(m, 1, 0, s, sums, M, t);
 }
 
@@ -5541,7 +5557,9 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
     real o_ups[LANES];
     real o_tube[LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        M_before(m, LANES, k, X, s, t);
+        values v;
+        M_before(m, LANES, k, X, &v, s, t);
+        M_between(m, LANES, k, &v, s);
     }
     clear(sums, 21*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
@@ -5566,29 +5584,32 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s,
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
     verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_Z_dynamics(m, w, k, V, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.Z_p_x;
-    s[10*w + k] = v.Z_p_y;
-    s[11*w + k] = v.Z_p_z;
-    s[12*w + k] = v.Z_q_x;
-    s[13*w + k] = v.Z_q_y;
-    s[14*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_Z_dynamics(m, w, k, V, v);
+    s[9*w + k] = v->Z_p_x;
+    s[10*w + k] = v->Z_p_y;
+    s[11*w + k] = v->Z_p_z;
+    s[12*w + k] = v->Z_q_x;
+    s[13*w + k] = v->Z_q_y;
+    s[14*w + k] = v->Z_q_z;
 }
 
 INLINE void Z_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -5645,27 +5666,26 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t 
     const real tube_qdd_1_o_t = R(1.35)*v.tube_nu_1;
     const real tube_qdd_1_o_t_2 = R(1.35)*v.tube_nu_2;
     const real tube_qdd_1_o_t_3 = R(1.35)*v.tube_nu_3;
-    const real tube_qdd_1_o = v.inv_tube_w_1_t_75*(v.tube_qd_1_t*tube_rel_o_in_axes2_y +
-        v.tube_qd_1_t_2*tube_rel_o_in_axes2_z + v.tube_qd_1_t_3*tube_qdd_1_o_t +
-        v.tube_qd_1_t_5*tube_qdd_1_o_t_3 - v.tube_qd_1_t_4*tube_qdd_1_o_t_2);
+    const real tube_qdd_1_o = v.inv_tube_w_1_t_75*(v.tube_qd_1_t*tube_rel_o_in_axes2_y -
+        v.tube_qd_1_t_4*tube_qdd_1_o_t_2 + v.tube_qd_1_t_2*tube_rel_o_in_axes2_z +
+        v.tube_qd_1_t_3*tube_qdd_1_o_t + v.tube_qd_1_t_5*tube_qdd_1_o_t_3);
     /* (tube-qdd_2_o) remainder of: acceleration of joint 2 */
-    const real tube_qdd_2_o_t = v.inv_tube_w_1_t_63*(tube_qdd_1_o_t*v.tube_w_1_t_66 +
-        tube_qdd_1_o_t_2*v.tube_w_1_t_67 + tube_qdd_1_o_t_3*v.tube_w_1_t_68 +
-        tube_rel_o_in_axes2_y*v.tube_w_1_t_64 + tube_rel_o_in_axes2_z*v.tube_w_1_t_65 -
+    const real tube_qdd_2_o_t = v.inv_tube_w_1_t_63*(tube_qdd_1_o_t_2*v.tube_w_1_t_67 +
+        tube_rel_o_in_axes2_y*v.tube_w_1_t_64 + tube_qdd_1_o_t*v.tube_w_1_t_66 +
+        tube_qdd_1_o_t_3*v.tube_w_1_t_68 + tube_rel_o_in_axes2_z*v.tube_w_1_t_65 -
         tube_qdd_1_o*v.tube_w_1_t_69);
-    const real tube_qdd_2_o_t_2 =
-        v.inv_tube_w_1_t_49*(v.inv_tube_w_1_t_49*tube_rel_o_in_axes2_z +
-        tube_qdd_1_o*v.tube_w_1_t_58 + tube_qdd_1_o_t*v.tube_w_1_t_51 +
-        tube_qdd_1_o_t_3*v.tube_w_1_t_52 + tube_qdd_2_o_t*v.tube_w_1_t_53 +
-        tube_rel_o_in_axes2_y*v.tube_w_1_t_50);
-    const real tube_qdd_2_o_t_3 = tube_qdd_1_o_t*v.tube_w_1_t_15 +
-        tube_qdd_1_o_t_3*v.tube_w_1_t_16 + tube_qdd_2_o_t_2*v.tube_w_1_t_21 +
-        tube_rel_o_in_axes2_y*v.tube_w_1_t_14 +
-        v.inv_tube_w_1_t_33*v.tube_w_1_t_17*(tube_qdd_1_o*v.tube_w_1_t_45 +
+    const real tube_qdd_2_o_t_2 = v.inv_tube_w_1_t_49*(tube_rel_o_in_axes2_y*v.tube_w_1_t_50 +
+        v.inv_tube_w_1_t_49*tube_rel_o_in_axes2_z + tube_qdd_1_o_t*v.tube_w_1_t_51 +
+        tube_qdd_1_o_t_3*v.tube_w_1_t_52 + tube_qdd_1_o*v.tube_w_1_t_58 +
+        tube_qdd_2_o_t*v.tube_w_1_t_53);
+    const real tube_qdd_2_o_t_3 = tube_rel_o_in_axes2_y*v.tube_w_1_t_14 +
+        tube_qdd_1_o_t*v.tube_w_1_t_15 + tube_qdd_1_o_t_3*v.tube_w_1_t_16 -
+        tube_qdd_1_o*v.tube_w_1_t_29 - tube_qdd_2_o_t*v.tube_w_1_t_25 +
+        tube_qdd_2_o_t_2*v.tube_w_1_t_21 +
+        v.inv_tube_w_1_t_33*v.tube_w_1_t_17*(tube_rel_o_in_axes2_y*v.tube_w_1_t_34 +
         tube_qdd_1_o_t*v.tube_w_1_t_35 + tube_qdd_1_o_t_3*v.tube_w_1_t_36 +
-        tube_qdd_2_o_t*v.tube_w_1_t_41 + tube_rel_o_in_axes2_y*v.tube_w_1_t_34 -
-        tube_qdd_2_o_t_2*v.tube_w_1_t_37) - tube_qdd_1_o*v.tube_w_1_t_29 -
-        tube_qdd_2_o_t*v.tube_w_1_t_25;
+        tube_qdd_1_o*v.tube_w_1_t_45 + tube_qdd_2_o_t*v.tube_w_1_t_41 -
+        tube_qdd_2_o_t_2*v.tube_w_1_t_37);
     const real tube_qdd_2_o = v.inv_tube_w_1_t_13*tube_qdd_2_o_t_3;
     /* (tube-alpha_1_o) remainder of: angular acceleration of link 1 */
     const real tube_alpha_1_o_in_axes2_x = v.tube_e_1_in_axes2_x*tube_qdd_1_o;
@@ -5679,75 +5699,73 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t 
     const real tube_B_2_o_in_axes2_zx = v.tube_W_2_in_axes2_xz - tube_alpha_2_o_in_axes2_y;
     const real tube_B_2_o_in_axes2_zy = v.tube_W_2_in_axes2_yz + tube_alpha_2_o_in_axes2_x;
     /* (tube-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real tube_acc_3_o_in_axes2_y = tube_bias_t_4 + v.tube_q_3*tube_qdd_2_o -
-        tube_bias_t_2 - v.tube_g_in_axes2_y;
-    const real tube_acc_3_o_in_axes2_z = tube_bias_t - tube_bias_t_5 - v.tube_g_in_axes2_z -
+    const real tube_acc_3_o_in_axes2_y = tube_bias_t_4 - v.tube_g_in_axes2_y - tube_bias_t_2 +
+        v.tube_q_3*tube_qdd_2_o;
+    const real tube_acc_3_o_in_axes2_z = tube_bias_t - v.tube_g_in_axes2_z - tube_bias_t_5 -
         tube_alpha_2_o_in_axes2_y*v.tube_q_3;
     /* (tube-f_3_o) remainder of: inertia force of link 3 less its weight */
     const real tube_f_3_o_t = v.tube_omega_1_in_axes2_x*v.tube_omega_1_in_axes2_x;
     const real tube_f_3_o_t_2 = v.tube_omega_1_in_axes2_y*v.tube_omega_1_in_axes2_y;
     const real tube_f_3_o_t_3 = v.tube_qd_2*v.tube_qd_2;
-    const real tube_f_3_o_in_axes2_x = v.tube_acc_3_o_in_axes2_x*m->tube_link3_mass[i] +
+    const real tube_f_3_o_in_axes2_x = v.tube_acc_3_o_in_axes2_x*m->tube_link3_mass[i] -
+        m->tube_h_3_in_spec2_x[i]*(tube_f_3_o_t_2 + tube_f_3_o_t_3) +
         tube_alpha_1_o_in_axes2_y*m->tube_h_3_in_spec2_y[i] -
-        tube_B_2_o_in_axes2_xy*m->tube_h_3_in_spec2_z[i] -
-        m->tube_h_3_in_spec2_x[i]*(tube_f_3_o_t_2 + tube_f_3_o_t_3);
-    const real tube_f_3_o_in_axes2_y = tube_B_2_o_in_axes2_yx*m->tube_h_3_in_spec2_x[i] +
-        tube_acc_3_o_in_axes2_y*m->tube_link3_mass[i] +
-        m->tube_h_3_in_spec2_z[i]*(tube_f_3_o_t + tube_f_3_o_t_3) -
-        tube_alpha_1_o_in_axes2_x*m->tube_h_3_in_spec2_y[i];
-    const real tube_f_3_o_in_axes2_z = tube_B_2_o_in_axes2_zx*m->tube_h_3_in_spec2_x[i] +
+        tube_B_2_o_in_axes2_xy*m->tube_h_3_in_spec2_z[i];
+    const real tube_f_3_o_in_axes2_y = m->tube_h_3_in_spec2_z[i]*(tube_f_3_o_t +
+        tube_f_3_o_t_3) - tube_alpha_1_o_in_axes2_x*m->tube_h_3_in_spec2_y[i] +
+        tube_B_2_o_in_axes2_yx*m->tube_h_3_in_spec2_x[i] +
+        tube_acc_3_o_in_axes2_y*m->tube_link3_mass[i];
+    const real tube_f_3_o_in_axes2_z = tube_B_2_o_in_axes2_zx*m->tube_h_3_in_spec2_x[i] -
+        m->tube_h_3_in_spec2_y[i]*(tube_f_3_o_t + tube_f_3_o_t_2) +
         tube_acc_3_o_in_axes2_z*m->tube_link3_mass[i] -
-        tube_B_2_o_in_axes2_zy*m->tube_h_3_in_spec2_z[i] -
-        m->tube_h_3_in_spec2_y[i]*(tube_f_3_o_t + tube_f_3_o_t_2);
+        tube_B_2_o_in_axes2_zy*m->tube_h_3_in_spec2_z[i];
     /* (tube-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
-    const real tube_mu_2_o_in_axes2_x =
-        tube_B_2_o_in_axes2_yx*m->tube_J_group_2_in_axes2_xz[i] +
-        tube_B_2_o_in_axes2_zy*m->tube_Sigma_2_in_axes2_yy[i] +
+    const real tube_mu_2_o_in_axes2_x = v.tube_g_in_axes2_z*m->tube_h_2_in_spec2_z[i] +
+        v.tube_g_in_axes2_y*m->tube_h_2_in_spec2_y[i] +
         m->tube_J_group_2_in_axes2_yz[i]*(tube_f_3_o_t_2 - tube_f_3_o_t_3) +
         m->tube_Sigma_2_in_axes2_zz[i]*tube_alpha_1_o_in_axes2_x +
-        v.tube_g_in_axes2_y*m->tube_h_2_in_spec2_y[i] +
-        v.tube_g_in_axes2_z*m->tube_h_2_in_spec2_z[i] -
+        tube_B_2_o_in_axes2_zy*m->tube_Sigma_2_in_axes2_yy[i] -
         tube_B_2_o_in_axes2_zx*m->tube_J_group_2_in_axes2_xy[i] -
-        tube_acc_3_o_in_axes2_y*m->tube_h_3_in_spec2_y[i] -
-        tube_acc_3_o_in_axes2_z*m->tube_h_3_in_spec2_z[i];
-    const real tube_mu_2_o_in_axes2_y =
-        tube_B_2_o_in_axes2_zy*m->tube_J_group_2_in_axes2_xy[i] +
+        tube_acc_3_o_in_axes2_z*m->tube_h_3_in_spec2_z[i] +
+        tube_B_2_o_in_axes2_yx*m->tube_J_group_2_in_axes2_xz[i] -
+        tube_acc_3_o_in_axes2_y*m->tube_h_3_in_spec2_y[i];
+    const real tube_mu_2_o_in_axes2_y = v.tube_g_in_axes2_z*m->tube_h_2_in_spec2_x[i] -
+        v.tube_g_in_axes2_x*m->tube_h_2_in_spec2_y[i] +
+        v.tube_acc_3_o_in_axes2_x*m->tube_h_3_in_spec2_y[i] -
+        m->tube_J_group_2_in_axes2_xz[i]*(tube_f_3_o_t - tube_f_3_o_t_3) +
         m->tube_Sigma_2_in_axes2_zz[i]*tube_alpha_1_o_in_axes2_y +
-        v.tube_acc_3_o_in_axes2_x*m->tube_h_3_in_spec2_y[i] +
-        v.tube_g_in_axes2_z*m->tube_h_2_in_spec2_x[i] -
-        tube_B_2_o_in_axes2_xy*m->tube_J_group_2_in_axes2_yz[i] -
+        tube_B_2_o_in_axes2_zy*m->tube_J_group_2_in_axes2_xy[i] -
         tube_B_2_o_in_axes2_zx*m->tube_Sigma_2_in_axes2_xx[i] -
-        m->tube_J_group_2_in_axes2_xz[i]*(tube_f_3_o_t - tube_f_3_o_t_3) -
         tube_acc_3_o_in_axes2_z*m->tube_h_3_in_spec2_x[i] -
-        v.tube_g_in_axes2_x*m->tube_h_2_in_spec2_y[i];
-    const real tube_mu_2_o_in_axes2_z = tube_B_2_o_in_axes2_yx*m->tube_Sigma_2_in_axes2_xx[i]
-        + m->tube_J_group_2_in_axes2_xy[i]*(tube_f_3_o_t - tube_f_3_o_t_2) +
+        tube_B_2_o_in_axes2_xy*m->tube_J_group_2_in_axes2_yz[i];
+    const real tube_mu_2_o_in_axes2_z = v.tube_acc_3_o_in_axes2_x*m->tube_h_3_in_spec2_z[i] -
+        v.tube_g_in_axes2_x*m->tube_h_2_in_spec2_z[i] -
+        v.tube_g_in_axes2_y*m->tube_h_2_in_spec2_x[i] +
+        m->tube_J_group_2_in_axes2_xy[i]*(tube_f_3_o_t - tube_f_3_o_t_2) +
         m->tube_J_group_2_in_axes2_xz[i]*tube_alpha_1_o_in_axes2_x +
         m->tube_J_group_2_in_axes2_yz[i]*tube_alpha_1_o_in_axes2_y +
-        v.tube_acc_3_o_in_axes2_x*m->tube_h_3_in_spec2_z[i] +
+        tube_B_2_o_in_axes2_yx*m->tube_Sigma_2_in_axes2_xx[i] +
         tube_acc_3_o_in_axes2_y*m->tube_h_3_in_spec2_x[i] -
-        tube_B_2_o_in_axes2_xy*m->tube_Sigma_2_in_axes2_yy[i] -
-        v.tube_g_in_axes2_x*m->tube_h_2_in_spec2_z[i] -
-        v.tube_g_in_axes2_y*m->tube_h_2_in_spec2_x[i];
+        tube_B_2_o_in_axes2_xy*m->tube_Sigma_2_in_axes2_yy[i];
     /* (tube-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
        connection point left out */
     const real tube_N_2_o_in_axes2_y = tube_mu_2_o_in_axes2_y -
         tube_f_3_o_in_axes2_z*v.tube_q_3;
-    const real tube_N_2_o_in_axes2_z = tube_mu_2_o_in_axes2_z +
-        tube_f_3_o_in_axes2_y*v.tube_q_3;
+    const real tube_N_2_o_in_axes2_z = tube_f_3_o_in_axes2_y*v.tube_q_3 +
+        tube_mu_2_o_in_axes2_z;
     /* (tube-G_o) remainder of: force at the connection point that balances the leg's inertia and
        weight along all degrees of freedom */
     const real tube_G_o_t = v.inv_tube_w_1_t_13*tube_N_2_o_in_axes2_z;
     const real tube_G_o_t_2 = v.inv_tube_w_1_t_33*tube_G_o_t*v.tube_w_1_t_17;
     const real tube_G_o_t_3 = v.inv_tube_w_1_t_49*(tube_G_o_t*v.tube_w_1_t_21 -
         tube_G_o_t_2*v.tube_w_1_t_37);
-    const real tube_G_o_t_4 = v.inv_tube_w_1_t_63*(tube_G_o_t_2*v.tube_w_1_t_41 +
-        tube_G_o_t_3*v.tube_w_1_t_53 - tube_G_o_t*v.tube_w_1_t_25);
-    const real tube_G_o_t_5 = v.inv_tube_w_1_t_75*(tube_G_o_t*v.tube_w_1_t_29 +
-        tube_G_o_t_4*v.tube_w_1_t_69 + tube_N_2_o_in_axes2_y*v.tube_c_2 -
-        tube_G_o_t_2*v.tube_w_1_t_45 - tube_G_o_t_3*v.tube_w_1_t_58 -
-        v.tube_e_1_in_axes2_x*tube_mu_2_o_in_axes2_x);
+    const real tube_G_o_t_4 = v.inv_tube_w_1_t_63*(tube_G_o_t_2*v.tube_w_1_t_41 -
+        tube_G_o_t*v.tube_w_1_t_25 + tube_G_o_t_3*v.tube_w_1_t_53);
+    const real tube_G_o_t_5 = v.inv_tube_w_1_t_75*(tube_N_2_o_in_axes2_y*v.tube_c_2 -
+        v.tube_e_1_in_axes2_x*tube_mu_2_o_in_axes2_x + tube_G_o_t*v.tube_w_1_t_29 -
+        tube_G_o_t_2*v.tube_w_1_t_45 - tube_G_o_t_3*v.tube_w_1_t_58 +
+        tube_G_o_t_4*v.tube_w_1_t_69);
     const real tube_G_o_in_axes2_y = tube_G_o_t*v.tube_w_1_t_14 + tube_G_o_t_2*v.tube_w_1_t_34
         + tube_G_o_t_3*v.tube_w_1_t_50 + tube_G_o_t_4*v.tube_w_1_t_64 -
         tube_G_o_t_5*v.tube_qd_1_t;
@@ -5833,13 +5851,13 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[3*w + k];
     const real Z_q_x = s[12*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[4*w + k];
     const real Z_q_y = s[13*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[5*w + k];
     const real Z_q_z = s[14*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
     Z[1*w + k] = Z_t_y;
@@ -5856,7 +5874,8 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     real s[15] = {0}, sums[6] = {0};
     real terms_ups[6*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
     real terms_tube[6*LEGS(LEGS_OF_tube)] = {0}, o_tube[LEGS(LEGS_OF_tube)] = {0};
-    Z_before(m, 1, 0, X, V, s, t);
+    values v;
+    Z_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         Z_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, V, terms_ups, o_ups);
     }
@@ -5877,6 +5896,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
             sums[n] += terms_tube[n*LEGS(LEGS_OF_tube) + leg];
         }
     }
+    Z_between(m, 1, 0, V, &v, s);
     Z_after(1, 0, s, sums, Z, t);
 }
 
@@ -5887,7 +5907,9 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real o_ups[LANES];
     real o_tube[LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        Z_before(m, LANES, k, X, V, s, t);
+        values v;
+        Z_before(m, LANES, k, X, &v, s, t);
+        Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
@@ -5912,20 +5934,20 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void H_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -5968,7 +5990,8 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
     real s[9] = {0};
     real o_ups[8*LEGS(LEGS_OF_ups)] = {0};
-    H_before(m, 1, 0, X, s, t);
+    values v;
+    H_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         H_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, o_ups);
     }
@@ -5982,7 +6005,8 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
     real s[9*LANES];
     real o_ups[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        H_before(m, LANES, k, X, s, t);
+        values v;
+        H_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -5995,20 +6019,20 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 }
 
 /* ---- Hk ---- */
-INLINE void Hk_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void Hk_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void Hk_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -6098,25 +6122,25 @@ INLINE void Hk_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t
     const real tube_mu_c3_z = axis_x_tube_axes2_z*tube_mu_c3_in_axes2_x +
         tube_mu_c3_in_axes2_y*v.tube_n_c1_z + tube_mu_c3_in_axes2_z*v.tube_n_c2_z;
     /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
-    const real tube_Hk_a_1_x = axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x +
-        tube_mu_c1_in_axes2_y*v.tube_n_c1_x + tube_mu_c1_in_axes2_z*v.tube_n_c2_x +
-        v.tube_n_c1_z*v.tube_q_y - v.tube_n_c1_y*v.tube_q_z;
-    const real tube_Hk_a_1_y = axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x +
-        tube_mu_c1_in_axes2_y*v.tube_n_c1_y + tube_mu_c1_in_axes2_z*v.tube_n_c2_y +
-        v.tube_n_c1_x*v.tube_q_z - v.tube_n_c1_z*v.tube_q_x;
-    const real tube_Hk_a_1_z = axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x +
-        tube_mu_c1_in_axes2_y*v.tube_n_c1_z + tube_mu_c1_in_axes2_z*v.tube_n_c2_z +
-        v.tube_n_c1_y*v.tube_q_x - v.tube_n_c1_x*v.tube_q_y;
+    const real tube_Hk_a_1_x = v.tube_n_c1_z*v.tube_q_y - v.tube_n_c1_y*v.tube_q_z +
+        axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x + tube_mu_c1_in_axes2_y*v.tube_n_c1_x +
+        tube_mu_c1_in_axes2_z*v.tube_n_c2_x;
+    const real tube_Hk_a_1_y = v.tube_n_c1_x*v.tube_q_z - v.tube_n_c1_z*v.tube_q_x +
+        axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x + tube_mu_c1_in_axes2_y*v.tube_n_c1_y +
+        tube_mu_c1_in_axes2_z*v.tube_n_c2_y;
+    const real tube_Hk_a_1_z = v.tube_n_c1_y*v.tube_q_x - v.tube_n_c1_x*v.tube_q_y +
+        axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x + tube_mu_c1_in_axes2_y*v.tube_n_c1_z +
+        tube_mu_c1_in_axes2_z*v.tube_n_c2_z;
     /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
-    const real tube_Hk_a_2_x = tube_mu_c2_in_axes2_y*v.tube_n_c1_x +
-        tube_mu_c2_in_axes2_z*v.tube_n_c2_x + v.tube_n_c2_z*v.tube_q_y -
-        axis_x_tube_axes2_x*tube_mu_c2_t - v.tube_n_c2_y*v.tube_q_z;
-    const real tube_Hk_a_2_y = tube_mu_c2_in_axes2_y*v.tube_n_c1_y +
-        tube_mu_c2_in_axes2_z*v.tube_n_c2_y + v.tube_n_c2_x*v.tube_q_z -
-        axis_x_tube_axes2_y*tube_mu_c2_t - v.tube_n_c2_z*v.tube_q_x;
-    const real tube_Hk_a_2_z = tube_mu_c2_in_axes2_y*v.tube_n_c1_z +
-        tube_mu_c2_in_axes2_z*v.tube_n_c2_z + v.tube_n_c2_y*v.tube_q_x -
-        axis_x_tube_axes2_z*tube_mu_c2_t - v.tube_n_c2_x*v.tube_q_y;
+    const real tube_Hk_a_2_x = v.tube_n_c2_z*v.tube_q_y - v.tube_n_c2_y*v.tube_q_z +
+        tube_mu_c2_in_axes2_y*v.tube_n_c1_x + tube_mu_c2_in_axes2_z*v.tube_n_c2_x -
+        axis_x_tube_axes2_x*tube_mu_c2_t;
+    const real tube_Hk_a_2_y = v.tube_n_c2_x*v.tube_q_z - v.tube_n_c2_z*v.tube_q_x +
+        tube_mu_c2_in_axes2_y*v.tube_n_c1_y + tube_mu_c2_in_axes2_z*v.tube_n_c2_y -
+        axis_x_tube_axes2_y*tube_mu_c2_t;
+    const real tube_Hk_a_2_z = v.tube_n_c2_y*v.tube_q_x - v.tube_n_c2_x*v.tube_q_y +
+        tube_mu_c2_in_axes2_y*v.tube_n_c1_z + tube_mu_c2_in_axes2_z*v.tube_n_c2_z -
+        axis_x_tube_axes2_z*tube_mu_c2_t;
     /* (tube-n_c1) unit force of the constraint wrench */
     o[0*count + k] = v.tube_n_c1_x;
     o[1*count + k] = v.tube_n_c1_y;
@@ -6173,7 +6197,8 @@ APART void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
     real s[9] = {0};
     real o_tube[17*LEGS(LEGS_OF_tube)] = {0};
     clear(Hk, NV*NC);
-    Hk_before(m, 1, 0, X, s, t);
+    values v;
+    Hk_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
         Hk_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), s, X, o_tube);
     }
@@ -6188,7 +6213,8 @@ INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, ve
     real o_tube[17*LANES];
     clear(Hk, NV*NC*LANES);
     for (size_t k = 0; k < LANES; ++k) {
-        Hk_before(m, LANES, k, X, s, t);
+        values v;
+        Hk_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_tube; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -6201,21 +6227,20 @@ INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, ve
 }
 
 /* ---- constraint_bias ---- */
-INLINE void constraint_bias_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void constraint_bias_before(const prepared *m, size_t w, size_t k, const real *X, values
+    *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void constraint_bias_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t k,
@@ -6241,17 +6266,17 @@ INLINE void constraint_bias_legs_tube(const prepared *m, size_t w, size_t i, siz
         tube_qd_1*v.tube_w_1_t_69);
     const real tube_qd_2_t_2 =
         v.inv_tube_w_1_t_49*(v.inv_tube_w_1_t_49*v.tube_S_dot_in_axes2_z +
-        v.tube_S_dot_in_axes2_y*v.tube_w_1_t_50 + tube_qd_1*v.tube_w_1_t_58 +
-        tube_qd_1_t*v.tube_w_1_t_51 + tube_qd_1_t_3*v.tube_w_1_t_52 +
+        v.tube_S_dot_in_axes2_y*v.tube_w_1_t_50 + tube_qd_1_t*v.tube_w_1_t_51 +
+        tube_qd_1_t_3*v.tube_w_1_t_52 + tube_qd_1*v.tube_w_1_t_58 +
         tube_qd_2_t*v.tube_w_1_t_53);
     const real tube_qd_2_t_3 = v.tube_S_dot_in_axes2_y*v.tube_w_1_t_14 +
-        tube_qd_1_t*v.tube_w_1_t_15 + tube_qd_1_t_3*v.tube_w_1_t_16 +
+        tube_qd_1_t*v.tube_w_1_t_15 + tube_qd_1_t_3*v.tube_w_1_t_16 -
+        tube_qd_1*v.tube_w_1_t_29 - tube_qd_2_t*v.tube_w_1_t_25 +
         tube_qd_2_t_2*v.tube_w_1_t_21 +
         v.inv_tube_w_1_t_33*v.tube_w_1_t_17*(v.tube_S_dot_in_axes2_y*v.tube_w_1_t_34 +
-        tube_qd_1*v.tube_w_1_t_45 + tube_qd_1_t*v.tube_w_1_t_35 +
-        tube_qd_1_t_3*v.tube_w_1_t_36 + tube_qd_2_t*v.tube_w_1_t_41 -
-        tube_qd_2_t_2*v.tube_w_1_t_37) - tube_qd_1*v.tube_w_1_t_29 -
-        tube_qd_2_t*v.tube_w_1_t_25;
+        tube_qd_1_t*v.tube_w_1_t_35 + tube_qd_1_t_3*v.tube_w_1_t_36 +
+        tube_qd_1*v.tube_w_1_t_45 + tube_qd_2_t*v.tube_w_1_t_41 -
+        tube_qd_2_t_2*v.tube_w_1_t_37);
     const real tube_qd_2 = v.inv_tube_w_1_t_13*tube_qd_2_t_3;
     /* (tube-omega_1) angular velocity of link 1 */
     const real tube_omega_1_in_axes2_x = v.tube_e_1_in_axes2_x*tube_qd_1;
@@ -6261,8 +6286,8 @@ INLINE void constraint_bias_legs_tube(const prepared *m, size_t w, size_t i, siz
     const real tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2;
     /* (tube-bias) acceleration of the connection point at zero joint accelerations */
     const real tube_bias_t = 2*v.tube_S_dot_in_axes2_x;
-    const real tube_bias_in_axes2_y = tube_bias_t*tube_qd_2 +
-        tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y*v.tube_q_3;
+    const real tube_bias_in_axes2_y =
+        tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y*v.tube_q_3 + tube_bias_t*tube_qd_2;
     const real tube_bias_in_axes2_z = 2*tube_W_2_in_axes2_xz*v.tube_q_3 -
         tube_bias_t*tube_omega_1_in_axes2_y;
     /* (tube-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
@@ -6275,22 +6300,23 @@ INLINE void constraint_bias_legs_tube(const prepared *m, size_t w, size_t i, siz
         tube_bias_in_axes2_z;
     /* (tube-nd_m1) rate of moment direction 1 */
     const real tube_nd_m1_in_axes2_y = v.tube_end_p1_in_axes2_x*v.tube_omega_in_axes2_y -
-        v.tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
-        v.tube_n_m1_in_axes2_z*v.tube_omega_in_axes2_x;
+        v.tube_n_m1_in_axes2_z*v.tube_omega_in_axes2_x -
+        v.tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y;
     const real tube_nd_m1_in_axes2_z = v.tube_end_p1_in_axes2_x*v.tube_omega_in_axes2_z -
-        v.tube_end_p1_in_axes2_x*tube_qd_2 - v.tube_end_p1_in_axes2_z*v.tube_omega_in_axes2_x;
+        v.tube_end_p1_in_axes2_z*v.tube_omega_in_axes2_x - v.tube_end_p1_in_axes2_x*tube_qd_2;
     /* (tube-nu_1) bias of the angular acceleration along moment direction 1 */
     const real tube_nu_1_t = tube_omega_1_in_axes2_x - v.tube_omega_in_axes2_x;
     const real tube_nu_1_t_2 = v.tube_omega_in_axes2_y - tube_omega_1_in_axes2_y;
     const real tube_nu_1_t_3 = v.tube_omega_in_axes2_z - tube_qd_2;
     const real tube_nu_1_t_4 = tube_nd_m1_in_axes2_y*tube_nu_1_t_2 +
-        tube_nd_m1_in_axes2_z*tube_nu_1_t_3 - tube_nu_1_t*(v.tube_end_p1_in_axes2_z*tube_qd_2
-        + v.tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y);
+        tube_nd_m1_in_axes2_z*tube_nu_1_t_3 -
+        tube_nu_1_t*(v.tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y +
+        v.tube_end_p1_in_axes2_z*tube_qd_2);
     const real tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*v.tube_end_p1_in_axes2_z;
     /* (tube-nd_m2) rate of moment direction 2 */
     const real tube_nd_m2_in_axes2_x = v.tube_end_p2_in_axes2_z*v.tube_omega_in_axes2_x -
-        v.tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
-        v.tube_n_m2_in_axes2_y*v.tube_omega_in_axes2_z;
+        v.tube_n_m2_in_axes2_y*v.tube_omega_in_axes2_z -
+        v.tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x;
     const real tube_nd_m2_in_axes2_y = v.tube_end_p2_in_axes2_z*v.tube_omega_in_axes2_y -
         v.tube_end_p2_in_axes2_y*v.tube_omega_in_axes2_z -
         v.tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y;
@@ -6303,16 +6329,15 @@ INLINE void constraint_bias_legs_tube(const prepared *m, size_t w, size_t i, siz
         v.tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x);
     const real tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t;
     /* (tube-nd_m3) rate of moment direction 3 */
-    const real tube_nd_m3_in_axes2_x = v.tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
-        v.tube_n_m3_in_axes2_z*v.tube_omega_in_axes2_y -
-        v.tube_end_p3_in_axes2_y*v.tube_omega_in_axes2_x;
-    const real tube_nd_m3_in_axes2_z = v.tube_end_p3_in_axes2_y*tube_qd_2 +
-        v.tube_end_p3_in_axes2_z*v.tube_omega_in_axes2_y -
-        v.tube_end_p3_in_axes2_y*v.tube_omega_in_axes2_z;
+    const real tube_nd_m3_in_axes2_x = v.tube_n_m3_in_axes2_z*v.tube_omega_in_axes2_y -
+        v.tube_end_p3_in_axes2_y*v.tube_omega_in_axes2_x +
+        v.tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x;
+    const real tube_nd_m3_in_axes2_z = v.tube_end_p3_in_axes2_z*v.tube_omega_in_axes2_y -
+        v.tube_end_p3_in_axes2_y*v.tube_omega_in_axes2_z + v.tube_end_p3_in_axes2_y*tube_qd_2;
     /* (tube-nu_3) bias of the angular acceleration along moment direction 3 */
     const real tube_nu_3_t = tube_nd_m3_in_axes2_x*tube_nu_1_t +
-        tube_nu_1_t_2*(v.tube_end_p3_in_axes2_z*tube_qd_2 +
-        v.tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
+        tube_nu_1_t_2*(v.tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x +
+        v.tube_end_p3_in_axes2_z*tube_qd_2) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
     const real tube_nu_3 = tube_W_2_in_axes2_yz*v.tube_end_p3_in_axes2_z - tube_nu_3_t;
     /* (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
        */
@@ -6356,7 +6381,8 @@ INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V,
 {
     real s[9] = {0};
     real o_tube[5*LEGS(LEGS_OF_tube)] = {0};
-    constraint_bias_before(m, 1, 0, X, s, t);
+    values v;
+    constraint_bias_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
         constraint_bias_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), s, X, V, o_tube);
     }
@@ -6371,7 +6397,8 @@ INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const re
     real s[9*LANES];
     real o_tube[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        constraint_bias_before(m, LANES, k, X, s, t);
+        values v;
+        constraint_bias_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_tube; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -6384,12 +6411,26 @@ INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const re
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, real *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
+    values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
     /* (W_p) centripetal tensor of the platform */
     const real omega_x = V[3*w + k];
     const real omega_y = V[4*w + k];
@@ -6404,72 +6445,62 @@ INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X
     const real a_t_y = t_ddot_y - m->gravity_y;
     const real t_ddot_z = A[2*w + k];
     const real a_t_z = t_ddot_z - m->gravity_z;
-    const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
-    const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
-    const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
+    const real a_t_in_platform_x = v->R_yx*a_t_y + v->R_zx*a_t_z + v->R_xx*a_t_x;
+    const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
+    const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
     const real f_p_t = omega_x*omega_x;
     const real f_p_t_2 = omega_y*omega_y;
     const real f_p_t_3 = omega_z*omega_z;
     const real alpha_y = A[4*w + k];
     const real alpha_z = A[5*w + k];
-    const real f_p_x = a_t_x*m->m_star + v.h_star_y*(W_p_xy - alpha_z) + v.h_star_z*(W_p_xz +
-        alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+    const real f_p_x = a_t_x*m->m_star + v->h_star_y*(W_p_xy - alpha_z) + v->h_star_z*(alpha_y
+        + W_p_xz) - v->h_star_x*(f_p_t_2 + f_p_t_3);
     const real alpha_x = A[3*w + k];
-    const real f_p_y = a_t_y*m->m_star + v.h_star_x*(W_p_xy + alpha_z) + v.h_star_z*(W_p_yz -
-        alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
-    const real f_p_z = a_t_z*m->m_star + v.h_star_x*(W_p_xz - alpha_y) + v.h_star_y*(W_p_yz +
-        alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
+    const real f_p_y = a_t_y*m->m_star + v->h_star_x*(alpha_z + W_p_xy) + v->h_star_z*(W_p_yz
+        - alpha_x) - v->h_star_y*(f_p_t + f_p_t_3);
+    const real f_p_z = a_t_z*m->m_star + v->h_star_x*(W_p_xz - alpha_y) + v->h_star_y*(alpha_x
+        + W_p_yz) - v->h_star_z*(f_p_t + f_p_t_2);
     /* (mu_p) inertia moment of the platform less that of its weight */
-    const real mu_p_t = m->J_star_in_platform_xx*v.omega_in_platform_x +
-        m->J_star_in_platform_xy*v.omega_in_platform_y +
-        m->J_star_in_platform_xz*v.omega_in_platform_z;
-    const real mu_p_t_2 = m->J_star_in_platform_xy*v.omega_in_platform_x +
-        m->J_star_in_platform_yy*v.omega_in_platform_y +
-        m->J_star_in_platform_yz*v.omega_in_platform_z;
-    const real mu_p_t_3 = m->J_star_in_platform_xz*v.omega_in_platform_x +
-        m->J_star_in_platform_yz*v.omega_in_platform_y +
-        m->J_star_in_platform_zz*v.omega_in_platform_z;
-    const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
-    const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
-    const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+    const real mu_p_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
+        m->J_star_in_platform_xy*v->omega_in_platform_y +
+        m->J_star_in_platform_xz*v->omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
+        m->J_star_in_platform_yy*v->omega_in_platform_y +
+        m->J_star_in_platform_yz*v->omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
+        m->J_star_in_platform_yz*v->omega_in_platform_y +
+        m->J_star_in_platform_zz*v->omega_in_platform_z;
+    const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
+    const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
+    const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
     const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
         m->J_star_in_platform_xy*alpha_in_platform_y +
         m->J_star_in_platform_xz*alpha_in_platform_z +
-        a_t_in_platform_z*m->h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
-        a_t_in_platform_y*m->h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+        a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
+        + mu_p_t_3*v->omega_in_platform_y - mu_p_t_2*v->omega_in_platform_z;
     const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
         m->J_star_in_platform_yz*alpha_in_platform_z +
-        a_t_in_platform_x*m->h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
-        a_t_in_platform_z*m->h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
+        a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
+        + mu_p_t*v->omega_in_platform_z - mu_p_t_3*v->omega_in_platform_x;
     const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
         m->J_star_in_platform_zz*alpha_in_platform_z +
-        a_t_in_platform_y*m->h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
-        a_t_in_platform_x*m->h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
-    const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
-        v.R_xz*mu_p_in_platform_z;
-    const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
-        v.R_yz*mu_p_in_platform_z;
-    const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
-        v.R_zz*mu_p_in_platform_z;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+        a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
+        + mu_p_t_2*v->omega_in_platform_x - mu_p_t*v->omega_in_platform_y;
+    const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
+        v->R_xz*mu_p_in_platform_z;
+    const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
+        v->R_yz*mu_p_in_platform_z;
+    const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
+        v->R_zz*mu_p_in_platform_z;
     s[9*w + k] = f_p_x;
     s[10*w + k] = f_p_y;
     s[11*w + k] = f_p_z;
     s[12*w + k] = mu_p_x;
     s[13*w + k] = mu_p_y;
     s[14*w + k] = mu_p_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void required_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -6485,53 +6516,54 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
     /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
     const real ups_phi_3_t = v.ups_omega_1_in_axes2_y*v.ups_omega_1_in_axes2_y;
     const real ups_phi_3_t_2 = v.ups_qd_2*v.ups_qd_2;
-    const real ups_phi_3_in_axes2_x = v.ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
-        m->ups_h_3_in_spec2_x[i]*(-ups_phi_3_t - ups_phi_3_t_2) -
-        v.ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i];
+    const real ups_phi_3_in_axes2_x = m->ups_h_3_in_spec2_x[i]*(-ups_phi_3_t - ups_phi_3_t_2)
+        - v.ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i] +
+        v.ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i];
     /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real ups_mu_2_in_axes2_x = v.ups_B_2_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
-        v.ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] +
+    const real ups_mu_2_in_axes2_x = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] +
+        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] -
+        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_z[i] -
+        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
+        v.ups_B_2_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
         m->ups_J_group_2_in_axes2_yz[i]*(ups_phi_3_t - ups_phi_3_t_2) +
         m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_x +
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] +
-        v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i] -
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_y[i] -
-        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_z[i];
-    const real ups_mu_2_in_axes2_y = v.ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] +
-        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_y +
-        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_y[i] +
-        v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
-        v.ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i] -
-        m->ups_J_group_2_in_axes2_xz[i]*(v.ups_mu_2_t - ups_phi_3_t_2) -
+        v.ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
+    const real ups_mu_2_in_axes2_y = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
+        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i] +
+        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
         v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_x[i] -
-        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i];
-    const real ups_mu_2_in_axes2_z = v.ups_B_2_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
-        m->ups_J_group_2_in_axes2_xy[i]*(v.ups_mu_2_t - ups_phi_3_t) +
-        m->ups_J_group_2_in_axes2_xz[i]*v.ups_alpha_1_in_axes2_x +
-        m->ups_J_group_2_in_axes2_yz[i]*v.ups_alpha_1_in_axes2_y +
-        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_z[i] +
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_x[i] -
-        v.ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] -
+        m->ups_J_group_2_in_axes2_xz[i]*(v.ups_mu_2_t - ups_phi_3_t_2) -
+        v.ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
+        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_y +
+        v.ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
+    const real ups_mu_2_in_axes2_z = v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_z[i] -
         v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] -
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i];
+        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i] +
+        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_x[i] +
+        v.ups_B_2_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
+        m->ups_J_group_2_in_axes2_xy[i]*(v.ups_mu_2_t - ups_phi_3_t) -
+        v.ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] +
+        m->ups_J_group_2_in_axes2_xz[i]*v.ups_alpha_1_in_axes2_x +
+        m->ups_J_group_2_in_axes2_yz[i]*v.ups_alpha_1_in_axes2_y;
     /* (ups-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real ups_c_in_axes2_y = v.ups_alpha_1_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        v.inv_ups_q_3*ups_mu_2_in_axes2_z - v.ups_B_2_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
-        m->ups_h_3_in_spec2_z[i]*(v.ups_mu_2_t + ups_phi_3_t_2);
-    const real ups_c_in_axes2_z = v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
-        v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) +
-        v.ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] +
-        m->ups_h_3_in_spec2_y[i]*(v.ups_mu_2_t + ups_phi_3_t) -
-        v.ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i];
-    const real ups_c_x = v.axis_y_ups_axes2_x*ups_c_in_axes2_y +
-        v.axis_z_ups_axes2_x*ups_c_in_axes2_z - v.axis_x_ups_axes2_x*ups_phi_3_in_axes2_x;
-    const real ups_c_y = v.axis_y_ups_axes2_y*ups_c_in_axes2_y +
-        v.axis_z_ups_axes2_y*ups_c_in_axes2_z - v.axis_x_ups_axes2_y*ups_phi_3_in_axes2_x;
-    const real ups_c_z = v.axis_y_ups_axes2_z*ups_c_in_axes2_y +
-        v.axis_z_ups_axes2_z*ups_c_in_axes2_z - v.axis_x_ups_axes2_z*ups_phi_3_in_axes2_x;
+        v.ups_B_2_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
+        m->ups_h_3_in_spec2_z[i]*(v.ups_mu_2_t + ups_phi_3_t_2) -
+        v.inv_ups_q_3*ups_mu_2_in_axes2_z;
+    const real ups_c_in_axes2_z = m->ups_h_3_in_spec2_y[i]*(v.ups_mu_2_t + ups_phi_3_t) +
+        v.ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i] +
+        v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
+        v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x);
+    const real ups_c_x = v.axis_y_ups_axes2_x*ups_c_in_axes2_y -
+        v.axis_x_ups_axes2_x*ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_x*ups_c_in_axes2_z;
+    const real ups_c_y = v.axis_y_ups_axes2_y*ups_c_in_axes2_y -
+        v.axis_x_ups_axes2_y*ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_y*ups_c_in_axes2_z;
+    const real ups_c_z = v.axis_y_ups_axes2_z*ups_c_in_axes2_y -
+        v.axis_x_ups_axes2_z*ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_z*ups_c_in_axes2_z;
     /* (R_a) moment that actuators and external wrench must give */
     const real ups_R_a_t = ups_c_y*v.ups_q_z - ups_c_z*v.ups_q_y;
     const real ups_R_a_t_2 = ups_c_z*v.ups_q_x - ups_c_x*v.ups_q_z;
@@ -6669,13 +6701,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[12*w + k];
-    const real R_a_x = R_a_x_of_legs + mu_p_x;
+    const real R_a_x = mu_p_x + R_a_x_of_legs;
     const real R_a_y_of_legs = sums[4*w + k];
     const real mu_p_y = s[13*w + k];
-    const real R_a_y = R_a_y_of_legs + mu_p_y;
+    const real R_a_y = mu_p_y + R_a_y_of_legs;
     const real R_a_z_of_legs = sums[5*w + k];
     const real mu_p_z = s[14*w + k];
-    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
     required[1*w + k] = R_t_y;
@@ -6686,14 +6718,15 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[5*w + k] = R_a_z;
 }
 
-APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, real *Hk, verdict *t)
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_ups[6*LEGS(LEGS_OF_ups)] = {0}, o_ups[7*LEGS(LEGS_OF_ups)] = {0};
     real terms_tube[6*LEGS(LEGS_OF_tube)] = {0}, o_tube[16*LEGS(LEGS_OF_tube)] = {0};
     clear(Hk, NV*NC);
-    required_before(m, 1, 0, X, V, A, s, t);
+    values v;
+    required_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         required_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, V, A, terms_ups, o_ups);
     }
@@ -6714,6 +6747,7 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
             sums[n] += terms_tube[n*LEGS(LEGS_OF_tube) + leg];
         }
     }
+    required_between(m, 1, 0, V, A, &v, s);
     required_after(1, 0, s, sums, required);
 }
 
@@ -6725,7 +6759,9 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real o_tube[16*LANES];
     clear(Hk, NV*NC*LANES);
     for (size_t k = 0; k < LANES; ++k) {
-        required_before(m, LANES, k, X, V, A, s, t);
+        values v;
+        required_before(m, LANES, k, X, &v, s, t);
+        required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
@@ -6750,21 +6786,20 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s, verdict *t)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
+    *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k,
@@ -6806,23 +6841,20 @@ INLINE void inverse_kinematics_legs_tube(const prepared *m, size_t w, size_t i, 
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
     const real t_x = X[0*w + j];
-    const real tube_S_x = t_x + R_xx*m->tube_platform_point_x[i] +
-        R_xy*m->tube_platform_point_y[i] + R_xz*m->tube_platform_point_z[i] -
-        m->tube_base_point_x[i];
+    const real tube_S_x = t_x - m->tube_base_point_x[i] + R_xy*m->tube_platform_point_y[i] +
+        R_xz*m->tube_platform_point_z[i] + R_xx*m->tube_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real t_y = X[1*w + j];
-    const real tube_S_y = t_y + R_yx*m->tube_platform_point_x[i] +
-        R_yy*m->tube_platform_point_y[i] + R_yz*m->tube_platform_point_z[i] -
-        m->tube_base_point_y[i];
+    const real tube_S_y = t_y - m->tube_base_point_y[i] + R_yx*m->tube_platform_point_x[i] +
+        R_yz*m->tube_platform_point_z[i] + R_yy*m->tube_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real t_z = X[2*w + j];
-    const real tube_S_z = t_z + R_zx*m->tube_platform_point_x[i] +
-        R_zy*m->tube_platform_point_y[i] + R_zz*m->tube_platform_point_z[i] -
-        m->tube_base_point_z[i];
+    const real tube_S_z = t_z - m->tube_base_point_z[i] + R_zx*m->tube_platform_point_x[i] +
+        R_zy*m->tube_platform_point_y[i] + R_zz*m->tube_platform_point_z[i];
     const real tube_S_in_turn1_x = tube_S_x*m->tube_base_frame_xx[i] +
         tube_S_y*m->tube_base_frame_yx[i] + tube_S_z*m->tube_base_frame_zx[i];
     const real tube_S_in_turn1_y = tube_S_x*m->tube_base_frame_xy[i] +
@@ -6869,7 +6901,8 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
     real s[9] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
     real o_tube[5*LEGS(LEGS_OF_tube)] = {0};
-    inverse_kinematics_before(m, 1, 0, X, s, t);
+    values v;
+    inverse_kinematics_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         inverse_kinematics_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, o_ups);
     }
@@ -6891,7 +6924,8 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real o_ups[5*LANES];
     real o_tube[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        inverse_kinematics_before(m, LANES, k, X, s, t);
+        values v;
+        inverse_kinematics_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -6912,21 +6946,20 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -7110,8 +7143,8 @@ INLINE void joint_rates_legs_tube(const prepared *m, size_t w, size_t i, size_t 
     const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
     const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
     const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
-    const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 -
-        inv_tube_w_1_t_49*v.tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
+    const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 - inv_tube_w_1_t_49*v.tube_root_1 +
+        tube_w_1_t_48*tube_w_1_t_52 - tube_w_1_t_47*tube_w_1_t_51;
     const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
     const real tube_w_1_t_60 = v.tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
     const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
@@ -7161,14 +7194,14 @@ INLINE void joint_rates_legs_tube(const prepared *m, size_t w, size_t i, size_t 
         tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t*tube_w_1_t_66 +
         tube_qd_1_t_2*tube_w_1_t_67 + tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69);
     const real tube_qd_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
-        tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
-        tube_qd_1_t*tube_w_1_t_51 + tube_qd_1_t_3*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53);
+        tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1_t*tube_w_1_t_51 +
+        tube_qd_1_t_3*tube_w_1_t_52 + tube_qd_1*tube_w_1_t_58 + tube_qd_2_t*tube_w_1_t_53);
     const real tube_qd_2_t_3 = tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t*tube_w_1_t_15
-        + tube_qd_1_t_3*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
+        + tube_qd_1_t_3*tube_w_1_t_16 - tube_qd_1*tube_w_1_t_29 - tube_qd_2_t*tube_w_1_t_25 +
+        tube_qd_2_t_2*tube_w_1_t_21 +
         inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
-        tube_qd_1*tube_w_1_t_45 + tube_qd_1_t*tube_w_1_t_35 + tube_qd_1_t_3*tube_w_1_t_36 +
-        tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
-        tube_qd_2_t*tube_w_1_t_25;
+        tube_qd_1_t*tube_w_1_t_35 + tube_qd_1_t_3*tube_w_1_t_36 + tube_qd_1*tube_w_1_t_45 +
+        tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37);
     const real tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3;
     /* (tube-qd_1) */
     o[0*count + k] = tube_qd_1;
@@ -7200,7 +7233,8 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
     real s[9] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
     real o_tube[5*LEGS(LEGS_OF_tube)] = {0};
-    joint_rates_before(m, 1, 0, X, s, t);
+    values v;
+    joint_rates_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         joint_rates_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, V, o_ups);
     }
@@ -7222,7 +7256,8 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real o_ups[5*LANES];
     real o_tube[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_rates_before(m, LANES, k, X, s, t);
+        values v;
+        joint_rates_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -7243,21 +7278,20 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
+    values *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t
@@ -7277,7 +7311,7 @@ INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t i, 
     /* (ups-rel) acceleration of the connection point left to the joint accelerations */
     const real ups_rel_in_axes2_x = v.axis_x_ups_axes2_x*v.ups_S_ddot_x +
         v.axis_x_ups_axes2_y*v.ups_S_ddot_y + v.axis_x_ups_axes2_z*v.ups_S_ddot_z -
-        v.ups_q_3*(-ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y - v.ups_qd_2*v.ups_qd_2);
+        v.ups_q_3*(-v.ups_qd_2*v.ups_qd_2 - ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y);
     const real ups_rel_in_axes2_z = v.axis_z_ups_axes2_x*v.ups_S_ddot_x +
         v.axis_z_ups_axes2_y*v.ups_S_ddot_y + v.axis_z_ups_axes2_z*v.ups_S_ddot_z -
         ups_bias_in_axes2_z;
@@ -7320,8 +7354,9 @@ INLINE void joint_accelerations_legs_tube(const prepared *m, size_t w, size_t i,
     stage_tube_Z_joint_accelerations(&v);
     /* (tube-bias) acceleration of the connection point at zero joint accelerations */
     const real tube_bias_t = 2*v.tube_S_dot_in_axes2_x;
-    const real tube_bias_in_axes2_y = tube_bias_t*v.tube_qd_2 +
-        v.tube_omega_1_in_axes2_x*v.tube_omega_1_in_axes2_y*v.tube_q_3;
+    const real tube_bias_in_axes2_y =
+        v.tube_omega_1_in_axes2_x*v.tube_omega_1_in_axes2_y*v.tube_q_3 +
+        tube_bias_t*v.tube_qd_2;
     const real tube_bias_in_axes2_z = 2*v.tube_W_2_in_axes2_xz*v.tube_q_3 -
         tube_bias_t*v.tube_omega_1_in_axes2_y;
     /* (tube-rel) acceleration of the connection point left to the joint accelerations */
@@ -7346,24 +7381,25 @@ INLINE void joint_accelerations_legs_tube(const prepared *m, size_t w, size_t i,
     const real tube_qdd_1_t_2 = R(1.35)*tube_etad_2;
     const real tube_qdd_1_t_3 = R(1.35)*tube_etad_3;
     const real tube_qdd_1 = v.inv_tube_w_1_t_75*(v.tube_qd_1_t*tube_rel_in_axes2_y +
-        v.tube_qd_1_t_2*tube_rel_in_axes2_z + v.tube_qd_1_t_3*tube_qdd_1_t +
-        v.tube_qd_1_t_5*tube_qdd_1_t_3 - v.tube_qd_1_t_4*tube_qdd_1_t_2);
+        v.tube_qd_1_t_2*tube_rel_in_axes2_z - v.tube_qd_1_t_4*tube_qdd_1_t_2 +
+        v.tube_qd_1_t_3*tube_qdd_1_t + v.tube_qd_1_t_5*tube_qdd_1_t_3);
     /* (tube-qdd_2) acceleration of joint 2 */
-    const real tube_qdd_2_t = v.inv_tube_w_1_t_63*(tube_qdd_1_t*v.tube_w_1_t_66 +
-        tube_qdd_1_t_2*v.tube_w_1_t_67 + tube_qdd_1_t_3*v.tube_w_1_t_68 +
-        tube_rel_in_axes2_y*v.tube_w_1_t_64 + tube_rel_in_axes2_z*v.tube_w_1_t_65 -
+    const real tube_qdd_2_t = v.inv_tube_w_1_t_63*(tube_rel_in_axes2_y*v.tube_w_1_t_64 +
+        tube_rel_in_axes2_z*v.tube_w_1_t_65 + tube_qdd_1_t_2*v.tube_w_1_t_67 +
+        tube_qdd_1_t*v.tube_w_1_t_66 + tube_qdd_1_t_3*v.tube_w_1_t_68 -
         tube_qdd_1*v.tube_w_1_t_69);
-    const real tube_qdd_2_t_2 = v.inv_tube_w_1_t_49*(v.inv_tube_w_1_t_49*tube_rel_in_axes2_z +
-        tube_qdd_1*v.tube_w_1_t_58 + tube_qdd_1_t*v.tube_w_1_t_51 +
-        tube_qdd_1_t_3*v.tube_w_1_t_52 + tube_qdd_2_t*v.tube_w_1_t_53 +
-        tube_rel_in_axes2_y*v.tube_w_1_t_50);
-    const real tube_qdd_2_t_3 = tube_qdd_1_t*v.tube_w_1_t_15 + tube_qdd_1_t_3*v.tube_w_1_t_16
-        + tube_qdd_2_t_2*v.tube_w_1_t_21 + tube_rel_in_axes2_y*v.tube_w_1_t_14 +
-        v.inv_tube_w_1_t_33*v.tube_w_1_t_17*(tube_qdd_1*v.tube_w_1_t_45 +
+    const real tube_qdd_2_t_2 = v.inv_tube_w_1_t_49*(tube_rel_in_axes2_y*v.tube_w_1_t_50 +
+        v.inv_tube_w_1_t_49*tube_rel_in_axes2_z + tube_qdd_1_t*v.tube_w_1_t_51 +
+        tube_qdd_1_t_3*v.tube_w_1_t_52 + tube_qdd_1*v.tube_w_1_t_58 +
+        tube_qdd_2_t*v.tube_w_1_t_53);
+    const real tube_qdd_2_t_3 = tube_rel_in_axes2_y*v.tube_w_1_t_14 +
+        tube_qdd_1_t*v.tube_w_1_t_15 + tube_qdd_1_t_3*v.tube_w_1_t_16 -
+        tube_qdd_1*v.tube_w_1_t_29 - tube_qdd_2_t*v.tube_w_1_t_25 +
+        tube_qdd_2_t_2*v.tube_w_1_t_21 +
+        v.inv_tube_w_1_t_33*v.tube_w_1_t_17*(tube_rel_in_axes2_y*v.tube_w_1_t_34 +
         tube_qdd_1_t*v.tube_w_1_t_35 + tube_qdd_1_t_3*v.tube_w_1_t_36 +
-        tube_qdd_2_t*v.tube_w_1_t_41 + tube_rel_in_axes2_y*v.tube_w_1_t_34 -
-        tube_qdd_2_t_2*v.tube_w_1_t_37) - tube_qdd_1*v.tube_w_1_t_29 -
-        tube_qdd_2_t*v.tube_w_1_t_25;
+        tube_qdd_1*v.tube_w_1_t_45 + tube_qdd_2_t*v.tube_w_1_t_41 -
+        tube_qdd_2_t_2*v.tube_w_1_t_37);
     const real tube_qdd_2 = v.inv_tube_w_1_t_13*tube_qdd_2_t_3;
     /* (tube-qdd_1) */
     o[0*count + k] = tube_qdd_1;
@@ -7396,7 +7432,8 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
     real s[9] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
     real o_tube[5*LEGS(LEGS_OF_tube)] = {0};
-    joint_accelerations_before(m, 1, 0, X, s, t);
+    values v;
+    joint_accelerations_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         joint_accelerations_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, V, A, o_ups);
     }
@@ -7418,7 +7455,8 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real o_ups[5*LANES];
     real o_tube[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_accelerations_before(m, LANES, k, X, s, t);
+        values v;
+        joint_accelerations_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -7439,21 +7477,20 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- constraints ---- */
-INLINE void constraints_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void constraints_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void constraints_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t k,
@@ -7466,23 +7503,20 @@ INLINE void constraints_legs_tube(const prepared *m, size_t w, size_t i, size_t 
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
     const real t_x = X[0*w + j];
-    const real tube_S_x = t_x + R_xx*m->tube_platform_point_x[i] +
-        R_xy*m->tube_platform_point_y[i] + R_xz*m->tube_platform_point_z[i] -
-        m->tube_base_point_x[i];
+    const real tube_S_x = t_x - m->tube_base_point_x[i] + R_xy*m->tube_platform_point_y[i] +
+        R_xz*m->tube_platform_point_z[i] + R_xx*m->tube_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real t_y = X[1*w + j];
-    const real tube_S_y = t_y + R_yx*m->tube_platform_point_x[i] +
-        R_yy*m->tube_platform_point_y[i] + R_yz*m->tube_platform_point_z[i] -
-        m->tube_base_point_y[i];
+    const real tube_S_y = t_y - m->tube_base_point_y[i] + R_yx*m->tube_platform_point_x[i] +
+        R_yz*m->tube_platform_point_z[i] + R_yy*m->tube_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real t_z = X[2*w + j];
-    const real tube_S_z = t_z + R_zx*m->tube_platform_point_x[i] +
-        R_zy*m->tube_platform_point_y[i] + R_zz*m->tube_platform_point_z[i] -
-        m->tube_base_point_z[i];
+    const real tube_S_z = t_z - m->tube_base_point_z[i] + R_zx*m->tube_platform_point_x[i] +
+        R_zy*m->tube_platform_point_y[i] + R_zz*m->tube_platform_point_z[i];
     const real tube_S_in_turn1_x = tube_S_x*m->tube_base_frame_xx[i] +
         tube_S_y*m->tube_base_frame_yx[i] + tube_S_z*m->tube_base_frame_zx[i];
     const real tube_S_in_turn1_y = tube_S_x*m->tube_base_frame_xy[i] +
@@ -7575,7 +7609,8 @@ APART void constraints_run(const prepared *m, const real *X, real *constraints, 
 {
     real s[9] = {0};
     real o_tube[5*LEGS(LEGS_OF_tube)] = {0};
-    constraints_before(m, 1, 0, X, s, t);
+    values v;
+    constraints_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
         constraints_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), s, X, o_tube);
     }
@@ -7590,7 +7625,8 @@ INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restri
     real s[9*LANES];
     real o_tube[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        constraints_before(m, LANES, k, X, s, t);
+        values v;
+        constraints_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_tube; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -7603,20 +7639,20 @@ INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restri
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void legs_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -7631,48 +7667,48 @@ INLINE void legs_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_
     /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real ups_mu_2_t_2 = v.ups_omega_1_in_axes2_y*v.ups_omega_1_in_axes2_y;
     const real ups_mu_2_t_3 = v.ups_qd_2*v.ups_qd_2;
-    const real ups_mu_2_in_axes2_x = v.ups_B_2_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
-        v.ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] +
+    const real ups_mu_2_in_axes2_x = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] +
+        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] -
+        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_z[i] -
+        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
+        v.ups_B_2_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
         m->ups_J_group_2_in_axes2_yz[i]*(ups_mu_2_t_2 - ups_mu_2_t_3) +
         m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_x +
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] +
-        v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i] -
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_y[i] -
-        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_z[i];
-    const real ups_mu_2_in_axes2_y = v.ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] +
-        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_y +
-        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_y[i] +
-        v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
-        v.ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i] -
-        m->ups_J_group_2_in_axes2_xz[i]*(v.ups_mu_2_t - ups_mu_2_t_3) -
+        v.ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
+    const real ups_mu_2_in_axes2_y = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
+        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i] +
+        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
         v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_x[i] -
-        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i];
-    const real ups_mu_2_in_axes2_z = v.ups_B_2_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
-        m->ups_J_group_2_in_axes2_xy[i]*(v.ups_mu_2_t - ups_mu_2_t_2) +
-        m->ups_J_group_2_in_axes2_xz[i]*v.ups_alpha_1_in_axes2_x +
-        m->ups_J_group_2_in_axes2_yz[i]*v.ups_alpha_1_in_axes2_y +
-        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_z[i] +
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_x[i] -
-        v.ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] -
+        m->ups_J_group_2_in_axes2_xz[i]*(v.ups_mu_2_t - ups_mu_2_t_3) -
+        v.ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
+        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_y +
+        v.ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
+    const real ups_mu_2_in_axes2_z = v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_z[i] -
         v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] -
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i];
+        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i] +
+        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_x[i] +
+        v.ups_B_2_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
+        m->ups_J_group_2_in_axes2_xy[i]*(v.ups_mu_2_t - ups_mu_2_t_2) -
+        v.ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] +
+        m->ups_J_group_2_in_axes2_xz[i]*v.ups_alpha_1_in_axes2_x +
+        m->ups_J_group_2_in_axes2_yz[i]*v.ups_alpha_1_in_axes2_y;
     /* (ups-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real ups_c_in_axes2_y = v.ups_alpha_1_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        v.inv_ups_q_3*ups_mu_2_in_axes2_z - v.ups_B_2_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
-        m->ups_h_3_in_spec2_z[i]*(v.ups_mu_2_t + ups_mu_2_t_3);
-    const real ups_c_in_axes2_z = v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
-        v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) +
-        v.ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] +
-        m->ups_h_3_in_spec2_y[i]*(v.ups_mu_2_t + ups_mu_2_t_2) -
-        v.ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i];
+        v.ups_B_2_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
+        m->ups_h_3_in_spec2_z[i]*(v.ups_mu_2_t + ups_mu_2_t_3) -
+        v.inv_ups_q_3*ups_mu_2_in_axes2_z;
+    const real ups_c_in_axes2_z = m->ups_h_3_in_spec2_y[i]*(v.ups_mu_2_t + ups_mu_2_t_2) +
+        v.ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i] +
+        v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
+        v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x);
     /* (ups-c_true) leg force on the platform without actuation, the last link's mass included */
     const real ups_c_true_in_axes2_x = v.ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i] -
-        v.ups_acc_3_in_axes2_x*m->ups_link3_mass[i] -
-        v.ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i] -
-        m->ups_h_3_in_spec2_x[i]*(-ups_mu_2_t_2 - ups_mu_2_t_3);
+        v.ups_acc_3_in_axes2_x*m->ups_link3_mass[i] - m->ups_h_3_in_spec2_x[i]*(-ups_mu_2_t_2
+        - ups_mu_2_t_3) - v.ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i];
     const real ups_c_true_in_axes2_y = ups_c_in_axes2_y -
         v.ups_acc_3_in_axes2_y*m->ups_link3_mass[i];
     const real ups_c_true_in_axes2_z = ups_c_in_axes2_z -
@@ -7820,7 +7856,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     clear(leg_force, 6*NL);
     clear(actuator, 18);
     clear(constraint_direction, 6*NC);
-    legs_before(m, 1, 0, X, s, t);
+    values v;
+    legs_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         legs_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, V, A, o_ups);
     }
@@ -7836,32 +7873,36 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s)
+{
     /* (potential) potential energy */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
-    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x +
-        v.R_xy*m->h_star_in_platform_y + v.R_xz*m->h_star_in_platform_z + m->m_star*t_x) +
-        m->gravity_y*(v.R_yx*m->h_star_in_platform_x + v.R_yy*m->h_star_in_platform_y +
-        v.R_yz*m->h_star_in_platform_z + m->m_star*t_y) +
-        m->gravity_z*(v.R_zx*m->h_star_in_platform_x + v.R_zy*m->h_star_in_platform_y +
-        v.R_zz*m->h_star_in_platform_z + m->m_star*t_z);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+    const real potential_t = m->gravity_x*(m->m_star*t_x + v->R_xy*m->h_star_in_platform_y +
+        v->R_xz*m->h_star_in_platform_z + v->R_xx*m->h_star_in_platform_x) +
+        m->gravity_y*(m->m_star*t_y + v->R_yx*m->h_star_in_platform_x +
+        v->R_yz*m->h_star_in_platform_z + v->R_yy*m->h_star_in_platform_y) +
+        m->gravity_z*(m->m_star*t_z + v->R_zx*m->h_star_in_platform_x +
+        v->R_zy*m->h_star_in_platform_y + v->R_zz*m->h_star_in_platform_z);
     s[9*w + k] = potential_t;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void potential_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -7909,23 +7950,20 @@ INLINE void potential_legs_tube(const prepared *m, size_t w, size_t i, size_t j,
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
     const real t_x = X[0*w + j];
-    const real tube_S_x = t_x + R_xx*m->tube_platform_point_x[i] +
-        R_xy*m->tube_platform_point_y[i] + R_xz*m->tube_platform_point_z[i] -
-        m->tube_base_point_x[i];
+    const real tube_S_x = t_x - m->tube_base_point_x[i] + R_xy*m->tube_platform_point_y[i] +
+        R_xz*m->tube_platform_point_z[i] + R_xx*m->tube_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real t_y = X[1*w + j];
-    const real tube_S_y = t_y + R_yx*m->tube_platform_point_x[i] +
-        R_yy*m->tube_platform_point_y[i] + R_yz*m->tube_platform_point_z[i] -
-        m->tube_base_point_y[i];
+    const real tube_S_y = t_y - m->tube_base_point_y[i] + R_yx*m->tube_platform_point_x[i] +
+        R_yz*m->tube_platform_point_z[i] + R_yy*m->tube_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real t_z = X[2*w + j];
-    const real tube_S_z = t_z + R_zx*m->tube_platform_point_x[i] +
-        R_zy*m->tube_platform_point_y[i] + R_zz*m->tube_platform_point_z[i] -
-        m->tube_base_point_z[i];
+    const real tube_S_z = t_z - m->tube_base_point_z[i] + R_zx*m->tube_platform_point_x[i] +
+        R_zy*m->tube_platform_point_y[i] + R_zz*m->tube_platform_point_z[i];
     const real tube_S_in_turn1_x = tube_S_x*m->tube_base_frame_xx[i] +
         tube_S_y*m->tube_base_frame_yx[i] + tube_S_z*m->tube_base_frame_zx[i];
     const real tube_S_in_turn1_y = tube_S_x*m->tube_base_frame_xy[i] +
@@ -7967,8 +8005,8 @@ INLINE void potential_legs_tube(const prepared *m, size_t w, size_t i, size_t j,
         tube_b_in_spec2_y*m->tube_link2_mass[i] + tube_b_in_spec2_y*m->tube_link3_mass[i]) -
         (m->tube_acc_3_t_3[i]*tube_e_1_in_axes2_x +
         tube_c_2*tube_potential_t_4)*(m->tube_h_2_in_spec2_x[i] + m->tube_h_3_in_spec2_x[i] +
-        tube_b_in_spec2_x*m->tube_link2_mass[i] + m->tube_link3_mass[i]*(tube_b_in_spec2_x +
-        tube_q_3));
+        tube_b_in_spec2_x*m->tube_link2_mass[i] + m->tube_link3_mass[i]*(tube_q_3 +
+        tube_b_in_spec2_x));
     /* (potential) */
     gather(&terms[0*count + k], add, tube_potential_t_6);  /* potential_of_legs */
     o[0*count + k] = UNLESS(magnitude(tube_root_1_t) > LEAST_3) + UNLESS(magnitude(tube_q_3_t)
@@ -7995,7 +8033,8 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
     real s[10] = {0}, sums[1] = {0};
     real terms_ups[LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
     real terms_tube[LEGS(LEGS_OF_tube)] = {0}, o_tube[LEGS(LEGS_OF_tube)] = {0};
-    potential_before(m, 1, 0, X, s, t);
+    values v;
+    potential_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         potential_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, terms_ups, o_ups);
     }
@@ -8016,28 +8055,28 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
             sums[n] += terms_tube[n*LEGS(LEGS_OF_tube) + leg];
         }
     }
+    potential_between(m, 1, 0, X, &v, s);
     potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
-    *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, real *lengths, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     lengths[1*w + k] = R(1.374771449614444);
     t->total[k] += 0;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void condition_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -8252,8 +8291,8 @@ INLINE void condition_legs_tube(const prepared *m, size_t w, size_t i, size_t j,
     const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
     const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
     const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
-    const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 -
-        inv_tube_w_1_t_49*v.tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
+    const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 - inv_tube_w_1_t_49*v.tube_root_1 +
+        tube_w_1_t_48*tube_w_1_t_52 - tube_w_1_t_47*tube_w_1_t_51;
     const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
     const real tube_w_1_t_60 = v.tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
     const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
@@ -8294,25 +8333,25 @@ INLINE void condition_legs_tube(const prepared *m, size_t w, size_t i, size_t j,
         tube_pivot_size_7), R(0.7407407407407407)*tube_pivot_size_8),
         R(0.7407407407407407)*tube_pivot_size_9);
     /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
-    const real tube_Hk_a_1_x = axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x +
-        tube_mu_c1_in_axes2_y*v.tube_n_c1_x + tube_mu_c1_in_axes2_z*v.tube_n_c2_x +
-        v.tube_n_c1_z*v.tube_q_y - v.tube_n_c1_y*v.tube_q_z;
-    const real tube_Hk_a_1_y = axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x +
-        tube_mu_c1_in_axes2_y*v.tube_n_c1_y + tube_mu_c1_in_axes2_z*v.tube_n_c2_y +
-        v.tube_n_c1_x*v.tube_q_z - v.tube_n_c1_z*v.tube_q_x;
-    const real tube_Hk_a_1_z = axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x +
-        tube_mu_c1_in_axes2_y*v.tube_n_c1_z + tube_mu_c1_in_axes2_z*v.tube_n_c2_z +
-        v.tube_n_c1_y*v.tube_q_x - v.tube_n_c1_x*v.tube_q_y;
+    const real tube_Hk_a_1_x = v.tube_n_c1_z*v.tube_q_y - v.tube_n_c1_y*v.tube_q_z +
+        axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x + tube_mu_c1_in_axes2_y*v.tube_n_c1_x +
+        tube_mu_c1_in_axes2_z*v.tube_n_c2_x;
+    const real tube_Hk_a_1_y = v.tube_n_c1_x*v.tube_q_z - v.tube_n_c1_z*v.tube_q_x +
+        axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x + tube_mu_c1_in_axes2_y*v.tube_n_c1_y +
+        tube_mu_c1_in_axes2_z*v.tube_n_c2_y;
+    const real tube_Hk_a_1_z = v.tube_n_c1_y*v.tube_q_x - v.tube_n_c1_x*v.tube_q_y +
+        axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x + tube_mu_c1_in_axes2_y*v.tube_n_c1_z +
+        tube_mu_c1_in_axes2_z*v.tube_n_c2_z;
     /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
-    const real tube_Hk_a_2_x = tube_mu_c2_in_axes2_y*v.tube_n_c1_x +
-        tube_mu_c2_in_axes2_z*v.tube_n_c2_x + v.tube_n_c2_z*v.tube_q_y -
-        axis_x_tube_axes2_x*tube_mu_c2_t - v.tube_n_c2_y*v.tube_q_z;
-    const real tube_Hk_a_2_y = tube_mu_c2_in_axes2_y*v.tube_n_c1_y +
-        tube_mu_c2_in_axes2_z*v.tube_n_c2_y + v.tube_n_c2_x*v.tube_q_z -
-        axis_x_tube_axes2_y*tube_mu_c2_t - v.tube_n_c2_z*v.tube_q_x;
-    const real tube_Hk_a_2_z = tube_mu_c2_in_axes2_y*v.tube_n_c1_z +
-        tube_mu_c2_in_axes2_z*v.tube_n_c2_z + v.tube_n_c2_y*v.tube_q_x -
-        axis_x_tube_axes2_z*tube_mu_c2_t - v.tube_n_c2_x*v.tube_q_y;
+    const real tube_Hk_a_2_x = v.tube_n_c2_z*v.tube_q_y - v.tube_n_c2_y*v.tube_q_z +
+        tube_mu_c2_in_axes2_y*v.tube_n_c1_x + tube_mu_c2_in_axes2_z*v.tube_n_c2_x -
+        axis_x_tube_axes2_x*tube_mu_c2_t;
+    const real tube_Hk_a_2_y = v.tube_n_c2_x*v.tube_q_z - v.tube_n_c2_z*v.tube_q_x +
+        tube_mu_c2_in_axes2_y*v.tube_n_c1_y + tube_mu_c2_in_axes2_z*v.tube_n_c2_y -
+        axis_x_tube_axes2_y*tube_mu_c2_t;
+    const real tube_Hk_a_2_z = v.tube_n_c2_y*v.tube_q_x - v.tube_n_c2_x*v.tube_q_y +
+        tube_mu_c2_in_axes2_y*v.tube_n_c1_z + tube_mu_c2_in_axes2_z*v.tube_n_c2_z -
+        axis_x_tube_axes2_z*tube_mu_c2_t;
     /* (spread) */
     const real tube_spread_t = m->b_c_in_platform_x - m->tube_platform_point_x[i];
     const real tube_spread_t_2 = m->b_c_in_platform_y - m->tube_platform_point_y[i];
@@ -8397,7 +8436,8 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, re
     real terms_tube[2*LEGS(LEGS_OF_tube)] = {0}, o_tube[18*LEGS(LEGS_OF_tube)] = {0};
     clear(Hk, NV*NC);
     clear(reach, NL);
-    condition_before(m, 1, 0, X, s, lengths, t);
+    values v;
+    condition_before(m, 1, 0, X, &v, s, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         condition_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, terms_ups, o_ups);
     }
@@ -8432,11 +8472,7 @@ int tricept_M(const prepared *m, const real *X, real *M_out)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-    }
-    return code;
+    return settled(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -8463,11 +8499,7 @@ int tricept_Z(const prepared *m, const real *X, const real *V, real *Z_out)
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, Z_out);
-    }
-    return code;
+    return settled(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -8491,11 +8523,7 @@ int tricept_H(const prepared *m, const real *X, real *H_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -8518,11 +8546,7 @@ int tricept_Hk(const prepared *m, const real *X, real *Hk_out)
     if (!is_finite(why.total[0])) {
         check(NV*NC, 1, Hk_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NC, Hk_out);
-    }
-    return code;
+    return settled(&why, NV*NC, Hk_out);
 }
 
 INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
@@ -8545,11 +8569,7 @@ int tricept_constraints(const prepared *m, const real *X, real *constraints_out)
     if (!is_finite(why.total[0])) {
         check(3, 1, constraints_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(3, constraints_out);
-    }
-    return code;
+    return settled(&why, 3, constraints_out);
 }
 
 INLINE void constraints_lanes(const prepared *m, const real *X, real *constraints_out, int *code)
@@ -8577,11 +8597,7 @@ int tricept_constraint_bias(const prepared *m, const real *X, const real *V, rea
     if (!is_finite(why.total[0])) {
         check(3, 1, constraint_bias_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(3, constraint_bias_out);
-    }
-    return code;
+    return settled(&why, 3, constraint_bias_out);
 }
 
 INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *V, real
@@ -8606,11 +8622,7 @@ int tricept_inverse_kinematics(const prepared *m, const real *X, real *q_out)
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, q_out);
-    }
-    return code;
+    return settled(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -8637,11 +8649,7 @@ int tricept_joint_rates(const prepared *m, const real *X, const real *V, real *q
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qd_out);
-    }
-    return code;
+    return settled(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -8672,11 +8680,7 @@ int tricept_joint_accelerations(const prepared *m, const real *X, const real *V,
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qdd_out);
-    }
-    return code;
+    return settled(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -8712,13 +8716,9 @@ int tricept_dynamics(const prepared *m, const real *X, const real *V, real *M_ou
     }
     check(NV*NC, 1, Hk, why.overflow);
     check(3, 1, constraint_bias, why.overflow);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-        refuse(NV, Z_out);
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    settled(&why, NV*NV, M_out);
+    settled(&why, NV, Z_out);
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -8915,8 +8915,9 @@ static const real sizes_solve_1[] = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
 int tricept_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A, const
     real *wrench, real *tau_out, real *lambda_out)
 {
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0},
-        beside_1[NV*NV] = {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, work[NV*PADDED(NV)];
+    static const real no_wrench[NW] = {0};
+    real required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0}, beside_1[NV*NV] =
+        {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
@@ -8925,7 +8926,7 @@ int tricept_inverse_dynamics(const prepared *m, const real *X, const real *V, co
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, Hk, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -8943,12 +8944,8 @@ int tricept_inverse_dynamics(const prepared *m, const real *X, const real *V, co
     check(NC, 1, lambda_, why.overflow);
     copy(NU, tau, tau_out);
     copy(NC, lambda_, lambda_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, tau_out);
-        refuse(NC, lambda_out);
-    }
-    return code;
+    settled(&why, NU, tau_out);
+    return settled(&why, NC, lambda_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -8981,10 +8978,10 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 int tricept_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau,
     const real *wrench, real *A_out, real *lambda_out)
 {
-    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0},
-        constraint_bias[3] = {0}, times_1[NV] = {0}, add_1[NV] = {0}, subtract_1[NV] = {0},
-        negative_1[3] = {0}, join_1[9] = {0}, solve_1[(NV + NC)] = {0}, work[(NV + NC)*(PADDED(NV +
-        NC))];
+    static const real no_wrench[NW] = {0};
+    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, constraint_bias[3] = {0},
+        times_1[NV] = {0}, add_1[NV] = {0}, subtract_1[NV] = {0}, negative_1[3] = {0}, join_1[9] =
+        {0}, solve_1[(NV + NC)] = {0}, work[(NV + NC)*(PADDED(NV + NC))];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
@@ -8993,7 +8990,7 @@ int tricept_forward_dynamics(const prepared *m, const real *X, const real *V, co
         check(NV, 1, V, why.invalid);
         check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, Hk, constraint_bias, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     for (size_t i = 0; i < NV; ++i) {
@@ -9014,12 +9011,8 @@ int tricept_forward_dynamics(const prepared *m, const real *X, const real *V, co
     check(NC, 1, lambda_, why.overflow);
     copy(NV, A, A_out);
     copy(NC, lambda_, lambda_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, A_out);
-        refuse(NC, lambda_out);
-    }
-    return code;
+    settled(&why, NV, A_out);
+    return settled(&why, NC, lambda_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -9071,22 +9064,19 @@ int tricept_complete_acceleration(const prepared *m, const real *X, const real *
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, completed_out);
-    }
-    return code;
+    return settled(&why, NV, completed_out);
 }
 
 int tricept_leg_reactions(const prepared *m, const real *X, const real *V, const real *A, const
     real *wrench, real *forces_out)
 {
+    static const real no_wrench[NW] = {0};
     static const size_t places_add_forces_1[] = {0, 1, 2};
     static const size_t places_forces[] = {3, 3, 3};
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0},
-        beside_1[NV*NV] = {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, leg_force[6*NL] = {0},
-        actuator[18] = {0}, constraint_direction[6*NC] = {0}, add_forces_1[6*NL] = {0}, forces[6*NL] =
-        {0}, work[NV*PADDED(NV)];
+    real required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0}, beside_1[NV*NV] =
+        {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, leg_force[6*NL] = {0}, actuator[18] = {0},
+        constraint_direction[6*NC] = {0}, add_forces_1[6*NL] = {0}, forces[6*NL] = {0},
+        work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
@@ -9095,7 +9085,7 @@ int tricept_leg_reactions(const prepared *m, const real *X, const real *V, const
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, Hk, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -9120,11 +9110,7 @@ int tricept_leg_reactions(const prepared *m, const real *X, const real *V, const
     add_forces(NC, 6, 1, places_forces, split_2, constraint_direction, forces);
     check(6*NL, 1, forces, why.overflow);
     copy(6*NL, forces, forces_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(6*NL, forces_out);
-    }
-    return code;
+    return settled(&why, 6*NL, forces_out);
 }
 
 int tricept_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
@@ -9146,25 +9132,22 @@ int tricept_energy(const prepared *m, const real *X, const real *V, real *kineti
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, kinetic_out);
-        refuse(1, potential_out);
-    }
-    return code;
+    settled(&why, 1, kinetic_out);
+    return settled(&why, 1, potential_out);
 }
 
 int tricept_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
     const real *length = NULL;
+    static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real length_in[1], H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] =
-        {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NU] = {0};
+    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
+        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NU] = {0};
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, length, 0, length_in, why.invalid);
+    length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, Hk, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
@@ -9183,27 +9166,23 @@ int tricept_condition(const prepared *m, const real *X, real *sigma_out, real *l
     check(NL, 1, reach, why.overflow);
     copy(NU, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, sigma_out);
-        refuse(NL, legs_out);
-    }
-    return code;
+    settled(&why, NU, sigma_out);
+    return settled(&why, NL, legs_out);
 }
 
 int tricept_condition_constrained(const prepared *m, const real *X, real *sigma_out, real
     *legs_out)
 {
     const real *length = NULL;
+    static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real length_in[1], H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] =
-        {0}, beside_1[NV*NV] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] = {0}, sigma[NV] =
-        {0};
+    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
+        beside_1[NV*NV] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] = {0}, sigma[NV] = {0};
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, length, 0, length_in, why.invalid);
+    length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, Hk, lengths, legs, reach, &why);
     beside(NV, NU, NC, H, Hk, beside_1);
     for (size_t i = 0; i < 1; ++i) {
@@ -9222,12 +9201,8 @@ int tricept_condition_constrained(const prepared *m, const real *X, real *sigma_
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, sigma_out);
-        refuse(NL, legs_out);
-    }
-    return code;
+    settled(&why, NV, sigma_out);
+    return settled(&why, NL, legs_out);
 }
 
 int tricept_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -9280,12 +9255,8 @@ int tricept_manipulability(const prepared *m, const real *X, real *measure_out, 
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, measure_out);
-        refuse(1, isotropy_out);
-    }
-    return code;
+    settled(&why, 1, measure_out);
+    return settled(&why, 1, isotropy_out);
 }
 
 int tricept_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
@@ -9320,12 +9291,8 @@ int tricept_singularity_distance(const prepared *m, const real *X, real *actuato
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, actuators_out);
-        refuse(1, legs_out);
-    }
-    return code;
+    settled(&why, 1, actuators_out);
+    return settled(&why, 1, legs_out);
 }
 
 static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
@@ -9351,11 +9318,7 @@ static int mismatch_one(const prepared *m, const real *X, const real *q_actuated
     beside(1, NU, 3, subtract_1, negative_1, gap);
     check(6, 1, gap, why.overflow);
     copy(6, gap, gap_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(6, gap_out);
-    }
-    return code;
+    return settled(&why, 6, gap_out);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
@@ -9369,11 +9332,7 @@ static int slope_one(const prepared *m, const real *X, real *slope_out)
     beside(NV, NU, NC, H, Hk, slope);
     check(NV*NV, 1, slope, why.overflow);
     copy(NV*NV, slope, slope_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, slope_out);
-    }
-    return code;
+    return settled(&why, NV*NV, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -9435,11 +9394,7 @@ int tricept_forward_kinematics(const prepared *m, const real *q_actuated, const 
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 static int constraint_gap_one(const prepared *m, const real *X, real *gap_out)
@@ -9454,11 +9409,7 @@ static int constraint_gap_one(const prepared *m, const real *X, real *gap_out)
     }
     check(NC, 1, gap, why.overflow);
     copy(NC, gap, gap_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NC, gap_out);
-    }
-    return code;
+    return settled(&why, NC, gap_out);
 }
 
 static int constraint_slope_one(const prepared *m, const real *X, real *slope_out)
@@ -9470,11 +9421,7 @@ static int constraint_slope_one(const prepared *m, const real *X, real *slope_ou
     if (!is_finite(why.total[0])) {
         check(NV*NC, 1, slope_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NC, slope_out);
-    }
-    return code;
+    return settled(&why, NV*NC, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -9531,11 +9478,7 @@ int tricept_project(const prepared *m, const real *X, real *projected_out)
     blame(search_constraint_gap(m, X, projected), &why);
     check(NQ, 1, projected, why.overflow);
     copy(NQ, projected, projected_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, projected_out);
-    }
-    return code;
+    return settled(&why, NQ, projected_out);
 }
 
 int tricept_dissipation(const prepared *m, const real *X, const real *V, real *dissipation_out)
@@ -9552,11 +9495,7 @@ int tricept_dissipation(const prepared *m, const real *X, const real *V, real *d
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, dissipation_out);
-    }
-    return code;
+    return settled(&why, 1, dissipation_out);
 }
 
 int tricept_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
@@ -9573,11 +9512,7 @@ int tricept_momentum(const prepared *m, const real *X, const real *V, real *mome
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, momentum_out);
-    }
-    return code;
+    return settled(&why, NV, momentum_out);
 }
 
 int tricept_joint_margins(const prepared *m, const real *X, real *margins_out)
@@ -9593,11 +9528,7 @@ int tricept_joint_margins(const prepared *m, const real *X, real *margins_out)
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, margins_out);
-    }
-    return code;
+    return settled(&why, NJ, margins_out);
 }
 
 int tricept_within_limits(const prepared *m, const real *X, real *within_out)
@@ -9613,11 +9544,7 @@ int tricept_within_limits(const prepared *m, const real *X, real *within_out)
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, within_out);
-    }
-    return code;
+    return settled(&why, 1, within_out);
 }
 
 int tricept_actuator_positions(const prepared *m, const real *X, real *q_out)
@@ -9630,11 +9557,7 @@ int tricept_actuator_positions(const prepared *m, const real *X, real *q_out)
     take(NU, 1, tricept_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, q_out);
-    }
-    return code;
+    return settled(&why, NU, q_out);
 }
 
 int tricept_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
@@ -9651,11 +9574,7 @@ int tricept_actuator_rates(const prepared *m, const real *X, const real *V, real
     take(NU, 1, tricept_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qd_out);
-    }
-    return code;
+    return settled(&why, NU, qd_out);
 }
 
 int tricept_actuator_accelerations(const prepared *m, const real *X, const real *V, const real *A,
@@ -9674,11 +9593,7 @@ int tricept_actuator_accelerations(const prepared *m, const real *X, const real 
     take(NU, 1, tricept_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qdd_out);
-    }
-    return code;
+    return settled(&why, NU, qdd_out);
 }
 
 int tricept_power(const prepared *m, const real *X, const real *V, const real *tau, real
@@ -9698,11 +9613,7 @@ int tricept_power(const prepared *m, const real *X, const real *V, const real *t
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, power_out);
-    }
-    return code;
+    return settled(&why, 1, power_out);
 }
 
 int tricept_rotation(const real *X, real *R_out)
@@ -9715,11 +9626,7 @@ int tricept_rotation(const real *X, real *R_out)
     rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     copy(9, R, R_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(9, R_out);
-    }
-    return code;
+    return settled(&why, 9, R_out);
 }
 
 int tricept_pose(const real *t, const real *R, real *X_out)
@@ -9737,11 +9644,7 @@ int tricept_pose(const real *t, const real *R, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int tricept_X_dot(const real *X, const real *V, real *X_dot_out)
@@ -9761,11 +9664,7 @@ int tricept_X_dot(const real *X, const real *V, real *X_dot_out)
     beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_dot_out);
-    }
-    return code;
+    return settled(&why, NQ, X_dot_out);
 }
 
 int tricept_pose_from_rpy(const real *t, const real *rpy, real *X_out)
@@ -9783,11 +9682,7 @@ int tricept_pose_from_rpy(const real *t, const real *rpy, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int tricept_retract(const real *X, const real *step, real *X_moved_out)
@@ -9811,11 +9706,7 @@ int tricept_retract(const real *X, const real *step, real *X_moved_out)
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_moved_out);
-    }
-    return code;
+    return settled(&why, NQ, X_moved_out);
 }
 
 int tricept_difference(const real *X0, const real *X1, real *step_out)
@@ -9839,11 +9730,7 @@ int tricept_difference(const real *X0, const real *X1, real *step_out)
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, step_out);
-    }
-    return code;
+    return settled(&why, NV, step_out);
 }
 
 int tricept_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
@@ -9881,11 +9768,7 @@ int tricept_interpolate(const real *X0, const real *X1, const real *s, real *X_o
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 /* ---- one state, and batches ---- */

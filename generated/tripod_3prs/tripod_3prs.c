@@ -231,15 +231,12 @@ INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *t
 }
 
 /* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
-INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+INLINE const real *optional(size_t size, const real *x, const real *none, real *flags)
 {
-    for (size_t e = 0; e < size && !x; ++e) {
-        own[e] = none;
-    }
     if (x) {
         check(size, 1, x, flags);
     }
-    return x ? x : own;
+    return x ? x : none;
 }
 
 INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
@@ -296,6 +293,16 @@ APART void refuse(size_t size, real *out)
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
     }
+}
+
+/* The status of a state; an output is refused where it is impossible. */
+INLINE int settled(const verdict *t, size_t size, real *out)
+{
+    const int code = judge(t);
+    if (code != OK) {
+        refuse(size, out);
+    }
+    return code;
 }
 
 /* Outputs of a state where the user wants them, and of states side by side, state by state. */
@@ -425,19 +432,19 @@ INLINE int all_rotations(const real *x, size_t n)
 /* ---- parameters ---- */
 
 const tripod_3prs_params tripod_3prs_default_params = {
-    {R(0.0), R(0.0), R(-9.81)},  /* gravity */
+    {0, 0, R(-9.81)},  /* gravity */
     R(12.0),  /* platform_mass */
-    {R(0.0), R(0.0), R(0.04)},  /* platform_centre_of_mass */
-    {{R(0.35), R(0.0), R(0.0)}, {R(0.0), R(0.35), R(0.0)}, {R(0.0), R(0.0), R(0.6)}},  /* platform_inertia */
+    {0, 0, R(0.04)},  /* platform_centre_of_mass */
+    {{R(0.35), 0, 0}, {0, R(0.35), 0}, {0, 0, R(0.6)}},  /* platform_inertia */
     {  /* prs_base_point */
         {R(0.0382428638552037), R(0.007752212290041666), R(-0.010268261411606083)},
         {R(-0.025835044706307875), R(0.02924318546705526), R(-0.010268261411606083)},
         {R(-0.01240781914889584), R(-0.03699539775709698), R(-0.010268261411606083)},
     },
     {  /* prs_base_frame */
-        {{R(0.0), R(0.9800665778412416), R(-0.19866933079506122)}, {R(0.0), R(0.19866933079506122), R(0.9800665778412416)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.6620859763419978), R(-0.7494278884130636)}, {R(0.0), R(0.7494278884130636), R(-0.6620859763419978)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.317980601499244), R(0.9480972192081247)}, {R(0.0), R(-0.9480972192081247), R(-0.317980601499244)}, {R(1.0), R(0.0), R(0.0)}},
+        {{0, R(0.9800665778412416), R(-0.19866933079506122)}, {0, R(0.19866933079506122), R(0.9800665778412416)}, {1, 0, 0}},
+        {{0, R(-0.6620859763419978), R(-0.7494278884130636)}, {0, R(0.7494278884130636), R(-0.6620859763419978)}, {1, 0, 0}},
+        {{0, R(-0.317980601499244), R(0.9480972192081247)}, {0, R(-0.9480972192081247), R(-0.317980601499244)}, {1, 0, 0}},
     },
     {  /* prs_platform_point */
         {R(0.29401997335237245), R(0.05960079923851836), R(-0.02)},
@@ -445,9 +452,9 @@ const tripod_3prs_params tripod_3prs_default_params = {
         {R(-0.0953941804497732), R(-0.28442916576243743), R(-0.02)},
     },
     {  /* prs_platform_joint_offset */
-        {R(0.6), R(0.0), R(0.0)},
-        {R(0.6), R(0.0), R(0.0)},
-        {R(0.6), R(0.0), R(0.0)},
+        {R(0.6), 0, 0},
+        {R(0.6), 0, 0},
+        {R(0.6), 0, 0},
     },
     {  /* prs_link1_mass */
         R(2.0),
@@ -455,14 +462,14 @@ const tripod_3prs_params tripod_3prs_default_params = {
         R(2.0),
     },
     {  /* prs_link1_centre_of_mass */
-        {R(0.0), R(0.0), R(0.0)},
-        {R(0.0), R(0.0), R(0.0)},
-        {R(0.0), R(0.0), R(0.0)},
+        {0, 0, 0},
+        {0, 0, 0},
+        {0, 0, 0},
     },
     {  /* prs_link1_inertia */
-        {{R(0.004), R(0.0), R(0.0)}, {R(0.0), R(0.004), R(0.0)}, {R(0.0), R(0.0), R(0.004)}},
-        {{R(0.004), R(0.0), R(0.0)}, {R(0.0), R(0.004), R(0.0)}, {R(0.0), R(0.0), R(0.004)}},
-        {{R(0.004), R(0.0), R(0.0)}, {R(0.0), R(0.004), R(0.0)}, {R(0.0), R(0.0), R(0.004)}},
+        {{R(0.004), 0, 0}, {0, R(0.004), 0}, {0, 0, R(0.004)}},
+        {{R(0.004), 0, 0}, {0, R(0.004), 0}, {0, 0, R(0.004)}},
+        {{R(0.004), 0, 0}, {0, R(0.004), 0}, {0, 0, R(0.004)}},
     },
     {  /* prs_link2_mass */
         R(1.2),
@@ -470,18 +477,18 @@ const tripod_3prs_params tripod_3prs_default_params = {
         R(1.2),
     },
     {  /* prs_link2_centre_of_mass */
-        {R(0.3), R(0.0), R(0.0)},
-        {R(0.3), R(0.0), R(0.0)},
-        {R(0.3), R(0.0), R(0.0)},
+        {R(0.3), 0, 0},
+        {R(0.3), 0, 0},
+        {R(0.3), 0, 0},
     },
     {  /* prs_link2_inertia */
-        {{R(0.00024), R(0.0), R(0.0)}, {R(0.0), R(0.03611999999999999), R(0.0)}, {R(0.0), R(0.0), R(0.03611999999999999)}},
-        {{R(0.00024), R(0.0), R(0.0)}, {R(0.0), R(0.03611999999999999), R(0.0)}, {R(0.0), R(0.0), R(0.03611999999999999)}},
-        {{R(0.00024), R(0.0), R(0.0)}, {R(0.0), R(0.03611999999999999), R(0.0)}, {R(0.0), R(0.0), R(0.03611999999999999)}},
+        {{R(0.00024), 0, 0}, {0, R(0.03611999999999999), 0}, {0, 0, R(0.03611999999999999)}},
+        {{R(0.00024), 0, 0}, {0, R(0.03611999999999999), 0}, {0, 0, R(0.03611999999999999)}},
+        {{R(0.00024), 0, 0}, {0, R(0.03611999999999999), 0}, {0, 0, R(0.03611999999999999)}},
     },
 };
 
-const tripod_3prs_real tripod_3prs_HOME_X[TRIPOD_3PRS_NQ] = {R(0.0), R(0.0), R(0.75), R(0.0), R(0.0), R(0.0), R(1.0)};
+const tripod_3prs_real tripod_3prs_HOME_X[TRIPOD_3PRS_NQ] = {0, 0, R(0.75), 0, 0, 0, 1};
 const tripod_3prs_real tripod_3prs_HOME_Q[TRIPOD_3PRS_NJ] = {R(0.2), R(0.45), R(0.2), R(0.45), R(0.2), R(0.45)};
 const size_t tripod_3prs_ACTUATED[TRIPOD_3PRS_NU] = {0, 2, 4};
 const char *const tripod_3prs_ACTUATOR_NAMES[TRIPOD_3PRS_NU] = {
@@ -518,6 +525,9 @@ static int acceptable(const tripod_3prs_params *p)
     ok &= all_inertias(&p->prs_link2_inertia[0][0][0], LEGS_OF_prs);
     return ok;
 }
+
+#define KEEP(name) model->name = name
+#define KEEP_OF_LEG(name) model->name[leg] = name
 
 int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *model)
 {
@@ -573,25 +583,25 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
     const real Z_p_t_3 = gravity_z*platform_mass;
     /* (spread) rms distance of the platform points from their centroid */
     const real spread_t = R(0.3333333333333333)*root(3);
-    model->J_star_in_platform_xx = J_star_in_platform_xx;
-    model->J_star_in_platform_xy = J_star_in_platform_xy;
-    model->J_star_in_platform_xz = J_star_in_platform_xz;
-    model->J_star_in_platform_yy = J_star_in_platform_yy;
-    model->J_star_in_platform_yz = J_star_in_platform_yz;
-    model->J_star_in_platform_zz = J_star_in_platform_zz;
-    model->J_star_t_6 = J_star_t_6;
-    model->J_star_t_8 = J_star_t_8;
-    model->Z_p_t = Z_p_t;
-    model->Z_p_t_2 = Z_p_t_2;
-    model->Z_p_t_3 = Z_p_t_3;
-    model->gravity_x = gravity_x;
-    model->gravity_y = gravity_y;
-    model->gravity_z = gravity_z;
-    model->h_star_in_platform_x = h_star_in_platform_x;
-    model->h_star_in_platform_y = h_star_in_platform_y;
-    model->h_star_in_platform_z = h_star_in_platform_z;
-    model->platform_mass = platform_mass;
-    model->spread_t = spread_t;
+    KEEP(J_star_in_platform_xx);
+    KEEP(J_star_in_platform_xy);
+    KEEP(J_star_in_platform_xz);
+    KEEP(J_star_in_platform_yy);
+    KEEP(J_star_in_platform_yz);
+    KEEP(J_star_in_platform_zz);
+    KEEP(J_star_t_6);
+    KEEP(J_star_t_8);
+    KEEP(Z_p_t);
+    KEEP(Z_p_t_2);
+    KEEP(Z_p_t_3);
+    KEEP(gravity_x);
+    KEEP(gravity_y);
+    KEEP(gravity_z);
+    KEEP(h_star_in_platform_x);
+    KEEP(h_star_in_platform_y);
+    KEEP(h_star_in_platform_z);
+    KEEP(platform_mass);
+    KEEP(spread_t);
     for (size_t leg = 0; leg < FILLED(LEGS_OF_prs); ++leg) {
         const size_t own = leg < LEGS_OF_prs ? leg : 0;
         const real prs_base_point_x = params->prs_base_point[own][0];
@@ -664,42 +674,42 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
             + gravity_z*prs_base_frame_zz)*(prs_b_in_axes0_z*prs_link1_mass +
             prs_b_in_axes0_z*prs_link2_mass + prs_link1_centre_of_mass_z*prs_link1_mass +
             prs_link2_centre_of_mass_z*prs_link2_mass);
-        model->inv_prs_root_2_t[leg] = inv_prs_root_2_t;
-        model->inv_prs_size[leg] = inv_prs_size;
-        model->prs_J_2_in_spec2_zz[leg] = prs_J_2_in_spec2_zz;
-        model->prs_P_c_1_in_axes0_x[leg] = prs_P_c_1_in_axes0_x;
-        model->prs_b_in_axes0_x[leg] = prs_b_in_axes0_x;
-        model->prs_base_frame_xx[leg] = prs_base_frame_xx;
-        model->prs_base_frame_xy[leg] = prs_base_frame_xy;
-        model->prs_base_frame_xz[leg] = prs_base_frame_xz;
-        model->prs_base_frame_yx[leg] = prs_base_frame_yx;
-        model->prs_base_frame_yy[leg] = prs_base_frame_yy;
-        model->prs_base_frame_yz[leg] = prs_base_frame_yz;
-        model->prs_base_frame_zx[leg] = prs_base_frame_zx;
-        model->prs_base_frame_zy[leg] = prs_base_frame_zy;
-        model->prs_base_frame_zz[leg] = prs_base_frame_zz;
-        model->prs_base_point_x[leg] = prs_base_point_x;
-        model->prs_base_point_y[leg] = prs_base_point_y;
-        model->prs_base_point_z[leg] = prs_base_point_z;
-        model->prs_branch_1[leg] = prs_branch_1;
-        model->prs_g_in_axes0_x[leg] = prs_g_in_axes0_x;
-        model->prs_g_in_axes0_y[leg] = prs_g_in_axes0_y;
-        model->prs_h_1_in_spec0_x[leg] = prs_h_1_in_spec0_x;
-        model->prs_h_1_in_spec0_y[leg] = prs_h_1_in_spec0_y;
-        model->prs_h_2_in_spec2_x[leg] = prs_h_2_in_spec2_x;
-        model->prs_h_2_in_spec2_y[leg] = prs_h_2_in_spec2_y;
-        model->prs_link1_mass[leg] = prs_link1_mass;
-        model->prs_link2_mass[leg] = prs_link2_mass;
-        model->prs_platform_joint_offset_x[leg] = prs_platform_joint_offset_x;
-        model->prs_platform_point_x[leg] = prs_platform_point_x;
-        model->prs_platform_point_y[leg] = prs_platform_point_y;
-        model->prs_platform_point_z[leg] = prs_platform_point_z;
-        model->prs_potential_t[leg] = prs_potential_t;
-        model->prs_potential_t_2[leg] = prs_potential_t_2;
-        model->prs_potential_t_3[leg] = prs_potential_t_3;
-        model->prs_root_2_t[leg] = prs_root_2_t;
-        model->prs_size[leg] = prs_size;
-        model->prs_size_t[leg] = prs_size_t;
+        KEEP_OF_LEG(inv_prs_root_2_t);
+        KEEP_OF_LEG(inv_prs_size);
+        KEEP_OF_LEG(prs_J_2_in_spec2_zz);
+        KEEP_OF_LEG(prs_P_c_1_in_axes0_x);
+        KEEP_OF_LEG(prs_b_in_axes0_x);
+        KEEP_OF_LEG(prs_base_frame_xx);
+        KEEP_OF_LEG(prs_base_frame_xy);
+        KEEP_OF_LEG(prs_base_frame_xz);
+        KEEP_OF_LEG(prs_base_frame_yx);
+        KEEP_OF_LEG(prs_base_frame_yy);
+        KEEP_OF_LEG(prs_base_frame_yz);
+        KEEP_OF_LEG(prs_base_frame_zx);
+        KEEP_OF_LEG(prs_base_frame_zy);
+        KEEP_OF_LEG(prs_base_frame_zz);
+        KEEP_OF_LEG(prs_base_point_x);
+        KEEP_OF_LEG(prs_base_point_y);
+        KEEP_OF_LEG(prs_base_point_z);
+        KEEP_OF_LEG(prs_branch_1);
+        KEEP_OF_LEG(prs_g_in_axes0_x);
+        KEEP_OF_LEG(prs_g_in_axes0_y);
+        KEEP_OF_LEG(prs_h_1_in_spec0_x);
+        KEEP_OF_LEG(prs_h_1_in_spec0_y);
+        KEEP_OF_LEG(prs_h_2_in_spec2_x);
+        KEEP_OF_LEG(prs_h_2_in_spec2_y);
+        KEEP_OF_LEG(prs_link1_mass);
+        KEEP_OF_LEG(prs_link2_mass);
+        KEEP_OF_LEG(prs_platform_joint_offset_x);
+        KEEP_OF_LEG(prs_platform_point_x);
+        KEEP_OF_LEG(prs_platform_point_y);
+        KEEP_OF_LEG(prs_platform_point_z);
+        KEEP_OF_LEG(prs_potential_t);
+        KEEP_OF_LEG(prs_potential_t_2);
+        KEEP_OF_LEG(prs_potential_t_3);
+        KEEP_OF_LEG(prs_root_2_t);
+        KEEP_OF_LEG(prs_size);
+        KEEP_OF_LEG(prs_size_t);
         b_c_prs_in_platform_x += leg < LEGS_OF_prs ? prs_platform_point_x : 0;
         b_c_prs_in_platform_y += leg < LEGS_OF_prs ? prs_platform_point_y : 0;
         b_c_prs_in_platform_z += leg < LEGS_OF_prs ? prs_platform_point_z : 0;
@@ -711,10 +721,10 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
     const real b_c_in_platform_z = R(0.3333333333333333)*b_c_prs_in_platform_z;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = root(legs_size_prs)*spread_t;
-    model->b_c_in_platform_x = b_c_in_platform_x;
-    model->b_c_in_platform_y = b_c_in_platform_y;
-    model->b_c_in_platform_z = b_c_in_platform_z;
-    model->legs_size = legs_size;
+    KEEP(b_c_in_platform_x);
+    KEEP(b_c_in_platform_y);
+    KEEP(b_c_in_platform_z);
+    KEEP(legs_size);
     return OK;
 }
 
@@ -1481,10 +1491,10 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real R_zy = quaternion_wx + quaternion_yz;
     const real R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = R_xx*m->h_star_in_platform_x + R_xy*m->h_star_in_platform_y +
-        R_xz*m->h_star_in_platform_z;
-    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yy*m->h_star_in_platform_y +
-        R_yz*m->h_star_in_platform_z;
+    const real h_star_x = R_xy*m->h_star_in_platform_y + R_xz*m->h_star_in_platform_z +
+        R_xx*m->h_star_in_platform_x;
+    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yz*m->h_star_in_platform_z +
+        R_yy*m->h_star_in_platform_y;
     const real h_star_z = R_zx*m->h_star_in_platform_x + R_zy*m->h_star_in_platform_y +
         R_zz*m->h_star_in_platform_z;
     v->quaternion_scale = quaternion_scale;
@@ -1508,8 +1518,8 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
     const real omega_x = V[3*w + k];
     const real omega_y = V[4*w + k];
     const real omega_z = V[5*w + k];
-    const real omega_in_platform_x = v->R_xx*omega_x + v->R_yx*omega_y + v->R_zx*omega_z;
-    const real omega_in_platform_y = v->R_xy*omega_x + v->R_yy*omega_y + v->R_zy*omega_z;
+    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
     const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
     v->omega_in_platform_x = omega_in_platform_x;
     v->omega_in_platform_y = omega_in_platform_y;
@@ -1519,24 +1529,24 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
 INLINE void stage_M_dynamics(const prepared *m, values *v)
 {
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_t = m->J_star_in_platform_xy*v->R_xx + m->J_star_in_platform_yz*v->R_xz
-        - m->J_star_t_6*v->R_xy;
+    const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_6*v->R_xy +
+        m->J_star_in_platform_xy*v->R_xx;
     const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
         m->J_star_in_platform_yz*v->R_yz - m->J_star_t_6*v->R_yy;
-    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx +
-        m->J_star_in_platform_yz*v->R_zz - m->J_star_t_6*v->R_zy;
+    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx - m->J_star_t_6*v->R_zy +
+        m->J_star_in_platform_yz*v->R_zz;
     const real J_star_t_4 = m->J_star_t_8*v->R_xz - m->J_star_in_platform_xz*v->R_xx;
     const real J_star_t_5 = m->J_star_t_8*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
     const real J_star_t_7 = m->J_star_t_8*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_9 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
     const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_9;
-    const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
-        J_star_t_5*v->R_xz;
+    const real J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
+        J_star_t_4*v->R_yz;
     const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_7*v->R_xz;
     const real J_star_t_10 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
     const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_10;
-    const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
+    const real J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_7*v->R_yz;
     const real J_star_t_11 = J_star_t_3*v->R_zy - J_star_t_7*v->R_zz;
     const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_11;
@@ -1561,10 +1571,10 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
     const real Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real g_in_platform_x = v->R_xx*m->gravity_x + v->R_yx*m->gravity_y +
-        v->R_zx*m->gravity_z;
-    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_yy*m->gravity_y +
-        v->R_zy*m->gravity_z;
+    const real g_in_platform_x = v->R_yx*m->gravity_y + v->R_zx*m->gravity_z +
+        v->R_xx*m->gravity_x;
+    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_zy*m->gravity_z +
+        v->R_yy*m->gravity_y;
     const real g_in_platform_z = v->R_xz*m->gravity_x + v->R_yz*m->gravity_y +
         v->R_zz*m->gravity_z;
     const real Z_q_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
@@ -1576,15 +1586,15 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
         m->J_star_in_platform_yz*v->omega_in_platform_y +
         m->J_star_in_platform_zz*v->omega_in_platform_z;
-    const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
-        g_in_platform_y*m->h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
-        g_in_platform_z*m->h_star_in_platform_y;
-    const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
-        g_in_platform_z*m->h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
-        g_in_platform_x*m->h_star_in_platform_z;
-    const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
-        g_in_platform_x*m->h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
-        g_in_platform_y*m->h_star_in_platform_x;
+    const real Z_q_in_platform_x = g_in_platform_y*m->h_star_in_platform_z -
+        g_in_platform_z*m->h_star_in_platform_y + Z_q_t_3*v->omega_in_platform_y -
+        Z_q_t_2*v->omega_in_platform_z;
+    const real Z_q_in_platform_y = g_in_platform_z*m->h_star_in_platform_x -
+        g_in_platform_x*m->h_star_in_platform_z + Z_q_t*v->omega_in_platform_z -
+        Z_q_t_3*v->omega_in_platform_x;
+    const real Z_q_in_platform_z = g_in_platform_x*m->h_star_in_platform_y -
+        g_in_platform_y*m->h_star_in_platform_x + Z_q_t_2*v->omega_in_platform_x -
+        Z_q_t*v->omega_in_platform_y;
     const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
         v->R_xz*Z_q_in_platform_z;
     const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
@@ -1620,24 +1630,24 @@ INLINE void stage_prs_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real prs_q_x = R_xx*m->prs_platform_point_x[i] + R_xy*m->prs_platform_point_y[i] +
-        R_xz*m->prs_platform_point_z[i];
+    const real prs_q_x = R_xy*m->prs_platform_point_y[i] + R_xz*m->prs_platform_point_z[i] +
+        R_xx*m->prs_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real prs_q_y = R_yx*m->prs_platform_point_x[i] + R_yy*m->prs_platform_point_y[i] +
-        R_yz*m->prs_platform_point_z[i];
+    const real prs_q_y = R_yx*m->prs_platform_point_x[i] + R_yz*m->prs_platform_point_z[i] +
+        R_yy*m->prs_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real prs_q_z = R_zx*m->prs_platform_point_x[i] + R_zy*m->prs_platform_point_y[i] +
         R_zz*m->prs_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real prs_S_x = prs_q_x + t_x - m->prs_base_point_x[i];
+    const real prs_S_x = t_x - m->prs_base_point_x[i] + prs_q_x;
     const real t_y = X[1*w + j];
-    const real prs_S_y = prs_q_y + t_y - m->prs_base_point_y[i];
+    const real prs_S_y = t_y - m->prs_base_point_y[i] + prs_q_y;
     const real t_z = X[2*w + j];
-    const real prs_S_z = prs_q_z + t_z - m->prs_base_point_z[i];
+    const real prs_S_z = t_z - m->prs_base_point_z[i] + prs_q_z;
     const real prs_S_in_axes0_x = prs_S_x*m->prs_base_frame_xx[i] +
         prs_S_y*m->prs_base_frame_yx[i] + prs_S_z*m->prs_base_frame_zx[i];
     const real prs_S_in_axes0_y = prs_S_x*m->prs_base_frame_xy[i] +
@@ -1646,8 +1656,8 @@ INLINE void stage_prs_X(const prepared *m, size_t w, size_t i, size_t j, const r
         prs_S_y*m->prs_base_frame_yz[i] + prs_S_z*m->prs_base_frame_zz[i];
     /* (prs-disc_1) discriminant of the distance equation */
     const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
-    const real prs_disc_1 = prs_S_in_axes0_x*prs_S_in_axes0_x +
-        prs_S_in_axes0_z*prs_S_in_axes0_z + m->prs_size_t[i] - prs_disc_1_t;
+    const real prs_disc_1 = m->prs_size_t[i] + prs_S_in_axes0_x*prs_S_in_axes0_x +
+        prs_S_in_axes0_z*prs_S_in_axes0_z - prs_disc_1_t;
     /* (prs-rho2_2) squared amplitude */
     const real prs_rho2_2 = m->prs_size_t[i]*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1);
     /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
@@ -1666,12 +1676,12 @@ INLINE void stage_prs_X(const prepared *m, size_t w, size_t i, size_t j, const r
         m->prs_base_frame_yx[i]*prs_s_2;
     const real axis_y_prs_axes2_z = m->prs_base_frame_zy[i]*prs_c_2 -
         m->prs_base_frame_zx[i]*prs_s_2;
-    const real axis_x_prs_axes2_x = m->prs_base_frame_xx[i]*prs_c_2 +
-        m->prs_base_frame_xy[i]*prs_s_2;
-    const real axis_x_prs_axes2_y = m->prs_base_frame_yx[i]*prs_c_2 +
-        m->prs_base_frame_yy[i]*prs_s_2;
-    const real axis_x_prs_axes2_z = m->prs_base_frame_zx[i]*prs_c_2 +
-        m->prs_base_frame_zy[i]*prs_s_2;
+    const real axis_x_prs_axes2_x = m->prs_base_frame_xy[i]*prs_s_2 +
+        m->prs_base_frame_xx[i]*prs_c_2;
+    const real axis_x_prs_axes2_y = m->prs_base_frame_yy[i]*prs_s_2 +
+        m->prs_base_frame_yx[i]*prs_c_2;
+    const real axis_x_prs_axes2_z = m->prs_base_frame_zy[i]*prs_s_2 +
+        m->prs_base_frame_zx[i]*prs_c_2;
     const real prs_w_1_t = -1/prs_v_2_in_axes0_y;
     const real prs_w_1_t_2 = prs_v_2_in_axes0_x*prs_w_1_t;
     const real prs_w_1_in_axes2_x = prs_c_2 + prs_s_2*prs_w_1_t_2;
@@ -1735,11 +1745,11 @@ INLINE void stage_prs_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real prs_S_dot_t_2 = omega_z*v->prs_q_x - omega_x*v->prs_q_z;
     const real prs_S_dot_t_3 = omega_x*v->prs_q_y - omega_y*v->prs_q_x;
     const real t_dot_x = V[0*w + j];
-    const real prs_S_dot_x = prs_S_dot_t + t_dot_x;
+    const real prs_S_dot_x = t_dot_x + prs_S_dot_t;
     const real t_dot_y = V[1*w + j];
-    const real prs_S_dot_y = prs_S_dot_t_2 + t_dot_y;
+    const real prs_S_dot_y = t_dot_y + prs_S_dot_t_2;
     const real t_dot_z = V[2*w + j];
-    const real prs_S_dot_z = prs_S_dot_t_3 + t_dot_z;
+    const real prs_S_dot_z = t_dot_z + prs_S_dot_t_3;
     /* (prs-qd_2) rate of joint 2 */
     const real prs_qd_2_t = v->prs_w_1_t*(prs_S_dot_x*m->prs_base_frame_xy[i] +
         prs_S_dot_y*m->prs_base_frame_yy[i] + prs_S_dot_z*m->prs_base_frame_zy[i]);
@@ -1761,13 +1771,13 @@ INLINE void stage_prs_A_V_X(const prepared *m, size_t w, size_t i, size_t j, con
     /* (prs-S_ddot) acceleration of the connection point */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
-    const real prs_S_ddot_x = v->prs_a_p_x + omega_y*v->prs_S_dot_t_3 -
-        omega_z*v->prs_S_dot_t_2;
+    const real prs_S_ddot_x = omega_y*v->prs_S_dot_t_3 - omega_z*v->prs_S_dot_t_2 +
+        v->prs_a_p_x;
     const real omega_x = V[3*w + j];
-    const real prs_S_ddot_y = v->prs_a_p_y + omega_z*v->prs_S_dot_t -
-        omega_x*v->prs_S_dot_t_3;
-    const real prs_S_ddot_z = v->prs_a_p_z + omega_x*v->prs_S_dot_t_2 -
-        omega_y*v->prs_S_dot_t;
+    const real prs_S_ddot_y = omega_z*v->prs_S_dot_t - omega_x*v->prs_S_dot_t_3 +
+        v->prs_a_p_y;
+    const real prs_S_ddot_z = omega_x*v->prs_S_dot_t_2 - omega_y*v->prs_S_dot_t +
+        v->prs_a_p_z;
     const real prs_S_ddot_t = prs_S_ddot_x*m->prs_base_frame_xx[i] +
         prs_S_ddot_y*m->prs_base_frame_yx[i] + prs_S_ddot_z*m->prs_base_frame_zx[i];
     const real prs_S_ddot_t_2 = prs_S_ddot_x*m->prs_base_frame_xy[i] +
@@ -1784,16 +1794,16 @@ INLINE void stage_prs_H_condition(const prepared *m, size_t i, values_prs *v)
     const real prs_w_1_t = m->prs_platform_joint_offset_x[i]*v->prs_s_2/v->prs_v_2_in_axes0_y;
     const real prs_w_1_in_axes2_x = v->prs_c_2 + v->prs_s_2*prs_w_1_t;
     const real prs_w_1_in_axes2_y = v->prs_c_2*prs_w_1_t - v->prs_s_2;
-    const real prs_w_1_x = prs_w_1_in_axes2_x*(m->prs_base_frame_xx[i]*v->prs_c_2 +
-        m->prs_base_frame_xy[i]*v->prs_s_2) +
+    const real prs_w_1_x = prs_w_1_in_axes2_x*(m->prs_base_frame_xy[i]*v->prs_s_2 +
+        m->prs_base_frame_xx[i]*v->prs_c_2) +
         prs_w_1_in_axes2_y*(m->prs_base_frame_xy[i]*v->prs_c_2 -
         m->prs_base_frame_xx[i]*v->prs_s_2);
-    const real prs_w_1_y = prs_w_1_in_axes2_x*(m->prs_base_frame_yx[i]*v->prs_c_2 +
-        m->prs_base_frame_yy[i]*v->prs_s_2) +
+    const real prs_w_1_y = prs_w_1_in_axes2_x*(m->prs_base_frame_yy[i]*v->prs_s_2 +
+        m->prs_base_frame_yx[i]*v->prs_c_2) +
         prs_w_1_in_axes2_y*(m->prs_base_frame_yy[i]*v->prs_c_2 -
         m->prs_base_frame_yx[i]*v->prs_s_2);
-    const real prs_w_1_z = prs_w_1_in_axes2_x*(m->prs_base_frame_zx[i]*v->prs_c_2 +
-        m->prs_base_frame_zy[i]*v->prs_s_2) +
+    const real prs_w_1_z = prs_w_1_in_axes2_x*(m->prs_base_frame_zy[i]*v->prs_s_2 +
+        m->prs_base_frame_zx[i]*v->prs_c_2) +
         prs_w_1_in_axes2_y*(m->prs_base_frame_zy[i]*v->prs_c_2 -
         m->prs_base_frame_zx[i]*v->prs_s_2);
     /* (prs-H_a_1) moment of the column's unit force about the platform origin */
@@ -1814,8 +1824,8 @@ INLINE void stage_prs_M_dynamics(const prepared *m, size_t i, values_prs *v)
     const real prs_w_2_t = v->prs_s_2*v->prs_w_1_t;
     const real prs_w_2_in_axes2_y = -v->prs_c_2*v->prs_w_1_t;
     /* (prs-P_c_2) force that accelerates joint 2, per unit */
-    const real prs_P_c_2_in_axes0_x = -v->prs_c_2*m->prs_h_2_in_spec2_y[i] -
-        m->prs_h_2_in_spec2_x[i]*v->prs_s_2;
+    const real prs_P_c_2_in_axes0_x = -m->prs_h_2_in_spec2_x[i]*v->prs_s_2 -
+        v->prs_c_2*m->prs_h_2_in_spec2_y[i];
     /* (prs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
        inertia and weight */
     const real prs_d_Gamma_2_t = v->prs_w_1_t*(m->prs_J_2_in_spec2_zz[i] -
@@ -1940,23 +1950,23 @@ INLINE void stage_prs_legs_required(const prepared *m, size_t i, values_prs *v)
     const real prs_w_1_z = m->prs_base_frame_zx[i]*prs_w_1_t_3 +
         m->prs_base_frame_zy[i]*prs_w_1_t_4;
     /* (prs-rel) acceleration of the connection point left to the joint accelerations */
-    const real prs_rel_in_axes2_x = v->prs_S_ddot_t*v->prs_c_2 + v->prs_S_ddot_t_2*v->prs_s_2
+    const real prs_rel_in_axes2_x = v->prs_S_ddot_t_2*v->prs_s_2 + v->prs_S_ddot_t*v->prs_c_2
         + m->prs_platform_joint_offset_x[i]*v->prs_qd_2_t*v->prs_qd_2_t;
     /* (prs-qdd_1) acceleration of joint 1 */
     const real prs_qdd_1_t = v->prs_w_1_t*(v->prs_S_ddot_in_axes2_y*v->prs_c_2 +
         prs_rel_in_axes2_x*v->prs_s_2);
-    const real prs_qdd_1 = v->prs_c_2*prs_rel_in_axes2_x + prs_qdd_1_t*v->prs_v_2_in_axes0_x -
-        v->prs_S_ddot_in_axes2_y*v->prs_s_2;
+    const real prs_qdd_1 = v->prs_c_2*prs_rel_in_axes2_x - v->prs_S_ddot_in_axes2_y*v->prs_s_2
+        + prs_qdd_1_t*v->prs_v_2_in_axes0_x;
     /* (prs-acc_1) acceleration of the reference point of link 1, less gravity */
     const real prs_acc_1_in_axes0_x = prs_qdd_1 - m->prs_g_in_axes0_x[i];
     /* (prs-acc_2) acceleration of the reference point of link 2, less gravity */
-    const real prs_acc_2_in_axes2_x = v->prs_c_2*prs_qdd_1 - v->prs_c_2*m->prs_g_in_axes0_x[i]
-        - m->prs_g_in_axes0_y[i]*v->prs_s_2;
+    const real prs_acc_2_in_axes2_x = v->prs_c_2*prs_qdd_1 - m->prs_g_in_axes0_y[i]*v->prs_s_2
+        - v->prs_c_2*m->prs_g_in_axes0_x[i];
     const real prs_acc_2_in_axes2_y = m->prs_g_in_axes0_x[i]*v->prs_s_2 -
         v->prs_c_2*m->prs_g_in_axes0_y[i] - prs_qdd_1*v->prs_s_2;
     /* (prs-f_2) inertia force of link 2 less its weight */
-    const real prs_f_2_in_axes2_x = prs_acc_2_in_axes2_x*m->prs_link2_mass[i] +
-        m->prs_h_2_in_spec2_y[i]*prs_qdd_1_t - v->prs_W_2_t*m->prs_h_2_in_spec2_x[i];
+    const real prs_f_2_in_axes2_x = m->prs_h_2_in_spec2_y[i]*prs_qdd_1_t -
+        v->prs_W_2_t*m->prs_h_2_in_spec2_x[i] + prs_acc_2_in_axes2_x*m->prs_link2_mass[i];
     const real prs_f_2_in_axes2_y = prs_acc_2_in_axes2_y*m->prs_link2_mass[i] -
         v->prs_W_2_t*m->prs_h_2_in_spec2_y[i] - m->prs_h_2_in_spec2_x[i]*prs_qdd_1_t;
     /* (prs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
@@ -1970,7 +1980,7 @@ INLINE void stage_prs_legs_required(const prepared *m, size_t i, values_prs *v)
     const real prs_G_t = v->prs_w_1_t*(prs_mu_2_in_axes2_z -
         prs_T_1_in_axes0_x*v->prs_v_2_in_axes0_x);
     const real prs_G_in_axes2_x = prs_T_1_in_axes0_x*v->prs_c_2 - prs_G_t*v->prs_s_2;
-    const real prs_G_in_axes2_y = -prs_G_t*v->prs_c_2 - prs_T_1_in_axes0_x*v->prs_s_2;
+    const real prs_G_in_axes2_y = -prs_T_1_in_axes0_x*v->prs_s_2 - prs_G_t*v->prs_c_2;
     /* (prs-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real prs_c_t = prs_G_in_axes2_y*v->prs_s_2 - prs_G_in_axes2_x*v->prs_c_2;
@@ -1989,39 +1999,43 @@ INLINE void stage_prs_legs_required(const prepared *m, size_t i, values_prs *v)
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    real *s, verdict *t)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_M_dynamics(m, &v);
-    stage_Z_dynamics(m, w, k, V, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.h_star_x;
-    s[10*w + k] = v.h_star_y;
-    s[11*w + k] = v.h_star_z;
-    s[12*w + k] = v.J_star_xx;
-    s[13*w + k] = v.J_star_xy;
-    s[14*w + k] = v.J_star_xz;
-    s[15*w + k] = v.J_star_yy;
-    s[16*w + k] = v.J_star_yz;
-    s[17*w + k] = v.J_star_zz;
-    s[18*w + k] = v.Z_p_x;
-    s[19*w + k] = v.Z_p_y;
-    s[20*w + k] = v.Z_p_z;
-    s[21*w + k] = v.Z_q_x;
-    s[22*w + k] = v.Z_q_y;
-    s[23*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->h_star_x;
+    s[10*w + k] = v->h_star_y;
+    s[11*w + k] = v->h_star_z;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
+    *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_M_dynamics(m, v);
+    stage_Z_dynamics(m, w, k, V, v);
+    s[12*w + k] = v->J_star_xx;
+    s[13*w + k] = v->J_star_xy;
+    s[14*w + k] = v->J_star_xz;
+    s[15*w + k] = v->J_star_yy;
+    s[16*w + k] = v->J_star_yz;
+    s[17*w + k] = v->J_star_zz;
+    s[18*w + k] = v->Z_p_x;
+    s[19*w + k] = v->Z_p_y;
+    s[20*w + k] = v->Z_p_z;
+    s[21*w + k] = v->Z_q_x;
+    s[22*w + k] = v->Z_q_y;
+    s[23*w + k] = v->Z_q_z;
 }
 
 INLINE void dynamics_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2050,18 +2064,18 @@ INLINE void dynamics_legs_prs(const prepared *m, size_t w, size_t i, size_t j, s
     /* (prs-qdd_1_o) remainder of: acceleration of joint 1 */
     const real prs_qdd_1_o_t = v.prs_w_1_t*(v.prs_c_2*v.prs_u_1_in_axes2_y +
         prs_rel_o_in_axes2_x*v.prs_s_2);
-    const real prs_qdd_1_o = v.prs_c_2*prs_rel_o_in_axes2_x +
-        prs_qdd_1_o_t*v.prs_v_2_in_axes0_x - v.prs_s_2*v.prs_u_1_in_axes2_y;
+    const real prs_qdd_1_o = v.prs_c_2*prs_rel_o_in_axes2_x - v.prs_s_2*v.prs_u_1_in_axes2_y +
+        prs_qdd_1_o_t*v.prs_v_2_in_axes0_x;
     /* (prs-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
     const real prs_acc_1_o_in_axes0_x = prs_qdd_1_o - m->prs_g_in_axes0_x[i];
     /* (prs-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
     const real prs_acc_2_o_in_axes2_x = v.prs_c_2*prs_qdd_1_o -
-        v.prs_c_2*m->prs_g_in_axes0_x[i] - m->prs_g_in_axes0_y[i]*v.prs_s_2;
+        m->prs_g_in_axes0_y[i]*v.prs_s_2 - v.prs_c_2*m->prs_g_in_axes0_x[i];
     const real prs_acc_2_o_in_axes2_y = m->prs_g_in_axes0_x[i]*v.prs_s_2 -
         v.prs_c_2*m->prs_g_in_axes0_y[i] - prs_qdd_1_o*v.prs_s_2;
     /* (prs-f_2_o) remainder of: inertia force of link 2 less its weight */
-    const real prs_f_2_o_in_axes2_x = prs_acc_2_o_in_axes2_x*m->prs_link2_mass[i] +
-        m->prs_h_2_in_spec2_y[i]*prs_qdd_1_o_t - v.prs_W_2_t*m->prs_h_2_in_spec2_x[i];
+    const real prs_f_2_o_in_axes2_x = m->prs_h_2_in_spec2_y[i]*prs_qdd_1_o_t -
+        v.prs_W_2_t*m->prs_h_2_in_spec2_x[i] + prs_acc_2_o_in_axes2_x*m->prs_link2_mass[i];
     const real prs_f_2_o_in_axes2_y = prs_acc_2_o_in_axes2_y*m->prs_link2_mass[i] -
         v.prs_W_2_t*m->prs_h_2_in_spec2_y[i] - m->prs_h_2_in_spec2_x[i]*prs_qdd_1_o_t;
     /* (prs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
@@ -2077,7 +2091,7 @@ INLINE void dynamics_legs_prs(const prepared *m, size_t w, size_t i, size_t j, s
     const real prs_G_o_t = v.prs_w_1_t*(prs_mu_2_o_in_axes2_z -
         prs_T_1_o_in_axes0_x*v.prs_v_2_in_axes0_x);
     const real prs_G_o_in_axes2_x = prs_T_1_o_in_axes0_x*v.prs_c_2 - prs_G_o_t*v.prs_s_2;
-    const real prs_G_o_in_axes2_y = -prs_G_o_t*v.prs_c_2 - prs_T_1_o_in_axes0_x*v.prs_s_2;
+    const real prs_G_o_in_axes2_y = -prs_T_1_o_in_axes0_x*v.prs_s_2 - prs_G_o_t*v.prs_c_2;
     /* (prs-U) velocity and gravity terms of the leg force */
     const real prs_U_x = v.axis_x_prs_axes2_x*prs_G_o_in_axes2_x +
         v.axis_y_prs_axes2_x*prs_G_o_in_axes2_y;
@@ -2187,7 +2201,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[11*w + k];
-    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
     const real h_star_y = s[10*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -2195,9 +2209,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[9*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
@@ -2232,13 +2246,13 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[24*w + k];
     const real Z_q_x = s[21*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[25*w + k];
     const real Z_q_y = s[22*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[26*w + k];
     const real Z_q_z = s[23*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
     const real M_tt_t_2 = sums[1*w + k];
@@ -2303,7 +2317,8 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 {
     real s[24] = {0}, sums[27] = {0};
     real terms_prs[27*LEGS(LEGS_OF_prs)] = {0}, o_prs[16*LEGS(LEGS_OF_prs)] = {0};
-    dynamics_before(m, 1, 0, X, V, s, t);
+    values v;
+    dynamics_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         dynamics_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), 0, s, X, V, terms_prs, o_prs);
     }
@@ -2313,6 +2328,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t n = 0; n < 27; ++n) {
         sums[n] = total(terms_prs + n*LEGS(LEGS_OF_prs), LEGS_OF_prs);
     }
+    dynamics_between(m, 1, 0, V, &v, s);
     dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
@@ -2323,7 +2339,9 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real s[24*LANES], sums[27*LANES];
     real o_prs[16*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        dynamics_before(m, LANES, k, X, V, s, t);
+        values v;
+        dynamics_before(m, LANES, k, X, &v, s, t);
+        dynamics_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 27*LANES);
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
@@ -2340,30 +2358,34 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_M_dynamics(m, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.h_star_x;
-    s[10*w + k] = v.h_star_y;
-    s[11*w + k] = v.h_star_z;
-    s[12*w + k] = v.J_star_xx;
-    s[13*w + k] = v.J_star_xy;
-    s[14*w + k] = v.J_star_xz;
-    s[15*w + k] = v.J_star_yy;
-    s[16*w + k] = v.J_star_yz;
-    s[17*w + k] = v.J_star_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->h_star_x;
+    s[10*w + k] = v->h_star_y;
+    s[11*w + k] = v->h_star_z;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void M_between(const prepared *m, size_t w, size_t k, values *v, real *s)
+{
+    stage_M_dynamics(m, v);
+    s[12*w + k] = v->J_star_xx;
+    s[13*w + k] = v->J_star_xy;
+    s[14*w + k] = v->J_star_xz;
+    s[15*w + k] = v->J_star_yy;
+    s[16*w + k] = v->J_star_yz;
+    s[17*w + k] = v->J_star_zz;
 }
 
 INLINE void M_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2420,7 +2442,7 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[11*w + k];
-    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
     const real h_star_y = s[10*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -2428,9 +2450,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[9*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
@@ -2507,7 +2529,8 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
     real s[18] = {0}, sums[21] = {0};
     real terms_prs[21*LEGS(LEGS_OF_prs)] = {0}, o_prs[2*LEGS(LEGS_OF_prs)] = {0};
-    M_before(m, 1, 0, X, s, t);
+    values v;
+    M_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         M_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), 0, s, X, terms_prs, o_prs);
     }
@@ -2517,6 +2540,7 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     for (size_t n = 0; n < 21; ++n) {
         sums[n] = total(terms_prs + n*LEGS(LEGS_OF_prs), LEGS_OF_prs);
     }
+    M_between(m, 1, 0, &v, s);
     M_after(m, 1, 0, s, sums, M, t);
 }
 
@@ -2525,7 +2549,9 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
     real s[18*LANES], sums[21*LANES];
     real o_prs[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        M_before(m, LANES, k, X, s, t);
+        values v;
+        M_before(m, LANES, k, X, &v, s, t);
+        M_between(m, LANES, k, &v, s);
     }
     clear(sums, 21*LANES);
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
@@ -2542,29 +2568,32 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s,
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
     verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_Z_dynamics(m, w, k, V, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.Z_p_x;
-    s[10*w + k] = v.Z_p_y;
-    s[11*w + k] = v.Z_p_z;
-    s[12*w + k] = v.Z_q_x;
-    s[13*w + k] = v.Z_q_y;
-    s[14*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_Z_dynamics(m, w, k, V, v);
+    s[9*w + k] = v->Z_p_x;
+    s[10*w + k] = v->Z_p_y;
+    s[11*w + k] = v->Z_p_z;
+    s[12*w + k] = v->Z_q_x;
+    s[13*w + k] = v->Z_q_y;
+    s[14*w + k] = v->Z_q_z;
 }
 
 INLINE void Z_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2588,18 +2617,18 @@ INLINE void Z_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k
     /* (prs-qdd_1_o) remainder of: acceleration of joint 1 */
     const real prs_qdd_1_o_t = prs_qd_2_t*(v.prs_c_2*v.prs_u_1_in_axes2_y +
         prs_rel_o_in_axes2_x*v.prs_s_2);
-    const real prs_qdd_1_o = v.prs_c_2*prs_rel_o_in_axes2_x +
-        prs_qdd_1_o_t*v.prs_v_2_in_axes0_x - v.prs_s_2*v.prs_u_1_in_axes2_y;
+    const real prs_qdd_1_o = v.prs_c_2*prs_rel_o_in_axes2_x - v.prs_s_2*v.prs_u_1_in_axes2_y +
+        prs_qdd_1_o_t*v.prs_v_2_in_axes0_x;
     /* (prs-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
     const real prs_acc_1_o_in_axes0_x = prs_qdd_1_o - m->prs_g_in_axes0_x[i];
     /* (prs-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
     const real prs_acc_2_o_in_axes2_x = v.prs_c_2*prs_qdd_1_o -
-        v.prs_c_2*m->prs_g_in_axes0_x[i] - m->prs_g_in_axes0_y[i]*v.prs_s_2;
+        m->prs_g_in_axes0_y[i]*v.prs_s_2 - v.prs_c_2*m->prs_g_in_axes0_x[i];
     const real prs_acc_2_o_in_axes2_y = m->prs_g_in_axes0_x[i]*v.prs_s_2 -
         v.prs_c_2*m->prs_g_in_axes0_y[i] - prs_qdd_1_o*v.prs_s_2;
     /* (prs-f_2_o) remainder of: inertia force of link 2 less its weight */
-    const real prs_f_2_o_in_axes2_x = prs_acc_2_o_in_axes2_x*m->prs_link2_mass[i] +
-        m->prs_h_2_in_spec2_y[i]*prs_qdd_1_o_t - prs_W_2_t*m->prs_h_2_in_spec2_x[i];
+    const real prs_f_2_o_in_axes2_x = m->prs_h_2_in_spec2_y[i]*prs_qdd_1_o_t -
+        prs_W_2_t*m->prs_h_2_in_spec2_x[i] + prs_acc_2_o_in_axes2_x*m->prs_link2_mass[i];
     const real prs_f_2_o_in_axes2_y = prs_acc_2_o_in_axes2_y*m->prs_link2_mass[i] -
         prs_W_2_t*m->prs_h_2_in_spec2_y[i] - m->prs_h_2_in_spec2_x[i]*prs_qdd_1_o_t;
     /* (prs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
@@ -2615,7 +2644,7 @@ INLINE void Z_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real prs_G_o_t = prs_qd_2_t*(prs_mu_2_o_in_axes2_z -
         prs_T_1_o_in_axes0_x*v.prs_v_2_in_axes0_x);
     const real prs_G_o_in_axes2_x = prs_T_1_o_in_axes0_x*v.prs_c_2 - prs_G_o_t*v.prs_s_2;
-    const real prs_G_o_in_axes2_y = -prs_G_o_t*v.prs_c_2 - prs_T_1_o_in_axes0_x*v.prs_s_2;
+    const real prs_G_o_in_axes2_y = -prs_T_1_o_in_axes0_x*v.prs_s_2 - prs_G_o_t*v.prs_c_2;
     /* (prs-U) velocity and gravity terms of the leg force */
     const real prs_U_x = v.axis_x_prs_axes2_x*prs_G_o_in_axes2_x +
         v.axis_y_prs_axes2_x*prs_G_o_in_axes2_y;
@@ -2661,13 +2690,13 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[3*w + k];
     const real Z_q_x = s[12*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[4*w + k];
     const real Z_q_y = s[13*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[5*w + k];
     const real Z_q_z = s[14*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
     Z[1*w + k] = Z_t_y;
@@ -2683,7 +2712,8 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_prs[6*LEGS(LEGS_OF_prs)] = {0}, o_prs[2*LEGS(LEGS_OF_prs)] = {0};
-    Z_before(m, 1, 0, X, V, s, t);
+    values v;
+    Z_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         Z_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), 0, s, X, V, terms_prs, o_prs);
     }
@@ -2693,6 +2723,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_prs + n*LEGS(LEGS_OF_prs), LEGS_OF_prs);
     }
+    Z_between(m, 1, 0, V, &v, s);
     Z_after(1, 0, s, sums, Z, t);
 }
 
@@ -2702,7 +2733,9 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real s[15*LANES], sums[6*LANES];
     real o_prs[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        Z_before(m, LANES, k, X, V, s, t);
+        values v;
+        Z_before(m, LANES, k, X, &v, s, t);
+        Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
@@ -2719,20 +2752,20 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void H_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2774,7 +2807,8 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
     real s[9] = {0};
     real o_prs[9*LEGS(LEGS_OF_prs)] = {0};
-    H_before(m, 1, 0, X, s, t);
+    values v;
+    H_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         H_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, o_prs);
     }
@@ -2788,7 +2822,8 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
     real s[9*LANES];
     real o_prs[9*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        H_before(m, LANES, k, X, s, t);
+        values v;
+        H_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2801,20 +2836,20 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 }
 
 /* ---- Hk ---- */
-INLINE void Hk_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void Hk_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void Hk_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2850,7 +2885,8 @@ APART void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
 {
     real s[9] = {0};
     real o_prs[7*LEGS(LEGS_OF_prs)] = {0};
-    Hk_before(m, 1, 0, X, s, t);
+    values v;
+    Hk_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         Hk_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, o_prs);
     }
@@ -2864,7 +2900,8 @@ INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, ve
     real s[9*LANES];
     real o_prs[7*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        Hk_before(m, LANES, k, X, s, t);
+        values v;
+        Hk_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2877,21 +2914,20 @@ INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, ve
 }
 
 /* ---- constraint_bias ---- */
-INLINE void constraint_bias_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void constraint_bias_before(const prepared *m, size_t w, size_t k, const real *X, values
+    *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void constraint_bias_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k,
@@ -2928,7 +2964,8 @@ INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V,
 {
     real s[9] = {0};
     real o_prs[2*LEGS(LEGS_OF_prs)] = {0};
-    constraint_bias_before(m, 1, 0, X, s, t);
+    values v;
+    constraint_bias_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         constraint_bias_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, V, o_prs);
     }
@@ -2943,7 +2980,8 @@ INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const re
     real s[9*LANES];
     real o_prs[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        constraint_bias_before(m, LANES, k, X, s, t);
+        values v;
+        constraint_bias_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2956,12 +2994,26 @@ INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const re
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, real *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
+    values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
     /* (W_p) centripetal tensor of the platform */
     const real omega_x = V[3*w + k];
     const real omega_y = V[4*w + k];
@@ -2976,72 +3028,62 @@ INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X
     const real a_t_y = t_ddot_y - m->gravity_y;
     const real t_ddot_z = A[2*w + k];
     const real a_t_z = t_ddot_z - m->gravity_z;
-    const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
-    const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
-    const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
+    const real a_t_in_platform_x = v->R_yx*a_t_y + v->R_zx*a_t_z + v->R_xx*a_t_x;
+    const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
+    const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
     const real f_p_t = omega_x*omega_x;
     const real f_p_t_2 = omega_y*omega_y;
     const real f_p_t_3 = omega_z*omega_z;
     const real alpha_y = A[4*w + k];
     const real alpha_z = A[5*w + k];
-    const real f_p_x = a_t_x*m->platform_mass + v.h_star_y*(W_p_xy - alpha_z) +
-        v.h_star_z*(W_p_xz + alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+    const real f_p_x = a_t_x*m->platform_mass + v->h_star_y*(W_p_xy - alpha_z) +
+        v->h_star_z*(alpha_y + W_p_xz) - v->h_star_x*(f_p_t_2 + f_p_t_3);
     const real alpha_x = A[3*w + k];
-    const real f_p_y = a_t_y*m->platform_mass + v.h_star_x*(W_p_xy + alpha_z) +
-        v.h_star_z*(W_p_yz - alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
-    const real f_p_z = a_t_z*m->platform_mass + v.h_star_x*(W_p_xz - alpha_y) +
-        v.h_star_y*(W_p_yz + alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
+    const real f_p_y = a_t_y*m->platform_mass + v->h_star_x*(alpha_z + W_p_xy) +
+        v->h_star_z*(W_p_yz - alpha_x) - v->h_star_y*(f_p_t + f_p_t_3);
+    const real f_p_z = a_t_z*m->platform_mass + v->h_star_x*(W_p_xz - alpha_y) +
+        v->h_star_y*(alpha_x + W_p_yz) - v->h_star_z*(f_p_t + f_p_t_2);
     /* (mu_p) inertia moment of the platform less that of its weight */
-    const real mu_p_t = m->J_star_in_platform_xx*v.omega_in_platform_x +
-        m->J_star_in_platform_xy*v.omega_in_platform_y +
-        m->J_star_in_platform_xz*v.omega_in_platform_z;
-    const real mu_p_t_2 = m->J_star_in_platform_xy*v.omega_in_platform_x +
-        m->J_star_in_platform_yy*v.omega_in_platform_y +
-        m->J_star_in_platform_yz*v.omega_in_platform_z;
-    const real mu_p_t_3 = m->J_star_in_platform_xz*v.omega_in_platform_x +
-        m->J_star_in_platform_yz*v.omega_in_platform_y +
-        m->J_star_in_platform_zz*v.omega_in_platform_z;
-    const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
-    const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
-    const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+    const real mu_p_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
+        m->J_star_in_platform_xy*v->omega_in_platform_y +
+        m->J_star_in_platform_xz*v->omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
+        m->J_star_in_platform_yy*v->omega_in_platform_y +
+        m->J_star_in_platform_yz*v->omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
+        m->J_star_in_platform_yz*v->omega_in_platform_y +
+        m->J_star_in_platform_zz*v->omega_in_platform_z;
+    const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
+    const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
+    const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
     const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
         m->J_star_in_platform_xy*alpha_in_platform_y +
         m->J_star_in_platform_xz*alpha_in_platform_z +
-        a_t_in_platform_z*m->h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
-        a_t_in_platform_y*m->h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+        a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
+        + mu_p_t_3*v->omega_in_platform_y - mu_p_t_2*v->omega_in_platform_z;
     const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
         m->J_star_in_platform_yz*alpha_in_platform_z +
-        a_t_in_platform_x*m->h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
-        a_t_in_platform_z*m->h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
+        a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
+        + mu_p_t*v->omega_in_platform_z - mu_p_t_3*v->omega_in_platform_x;
     const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
         m->J_star_in_platform_zz*alpha_in_platform_z +
-        a_t_in_platform_y*m->h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
-        a_t_in_platform_x*m->h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
-    const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
-        v.R_xz*mu_p_in_platform_z;
-    const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
-        v.R_yz*mu_p_in_platform_z;
-    const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
-        v.R_zz*mu_p_in_platform_z;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+        a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
+        + mu_p_t_2*v->omega_in_platform_x - mu_p_t*v->omega_in_platform_y;
+    const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
+        v->R_xz*mu_p_in_platform_z;
+    const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
+        v->R_yz*mu_p_in_platform_z;
+    const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
+        v->R_zz*mu_p_in_platform_z;
     s[9*w + k] = f_p_x;
     s[10*w + k] = f_p_y;
     s[11*w + k] = f_p_z;
     s[12*w + k] = mu_p_x;
     s[13*w + k] = mu_p_y;
     s[14*w + k] = mu_p_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void required_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3125,13 +3167,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[12*w + k];
-    const real R_a_x = R_a_x_of_legs + mu_p_x;
+    const real R_a_x = mu_p_x + R_a_x_of_legs;
     const real R_a_y_of_legs = sums[4*w + k];
     const real mu_p_y = s[13*w + k];
-    const real R_a_y = R_a_y_of_legs + mu_p_y;
+    const real R_a_y = mu_p_y + R_a_y_of_legs;
     const real R_a_z_of_legs = sums[5*w + k];
     const real mu_p_z = s[14*w + k];
-    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
     required[1*w + k] = R_t_y;
@@ -3142,12 +3184,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[5*w + k] = R_a_z;
 }
 
-APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, real *Hk, verdict *t)
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_prs[6*LEGS(LEGS_OF_prs)] = {0}, o_prs[14*LEGS(LEGS_OF_prs)] = {0};
-    required_before(m, 1, 0, X, V, A, s, t);
+    values v;
+    required_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         required_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), 0, s, X, V, A, terms_prs, o_prs);
     }
@@ -3157,6 +3200,7 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_prs + n*LEGS(LEGS_OF_prs), LEGS_OF_prs);
     }
+    required_between(m, 1, 0, V, A, &v, s);
     required_after(1, 0, s, sums, required);
 }
 
@@ -3166,7 +3210,9 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real s[15*LANES], sums[6*LANES];
     real o_prs[14*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        required_before(m, LANES, k, X, V, A, s, t);
+        values v;
+        required_before(m, LANES, k, X, &v, s, t);
+        required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
@@ -3183,21 +3229,20 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s, verdict *t)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
+    *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void inverse_kinematics_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k,
@@ -3208,23 +3253,20 @@ INLINE void inverse_kinematics_legs_prs(const prepared *m, size_t w, size_t i, s
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
     const real t_x = X[0*w + j];
-    const real prs_S_x = t_x + R_xx*m->prs_platform_point_x[i] +
-        R_xy*m->prs_platform_point_y[i] + R_xz*m->prs_platform_point_z[i] -
-        m->prs_base_point_x[i];
+    const real prs_S_x = t_x - m->prs_base_point_x[i] + R_xy*m->prs_platform_point_y[i] +
+        R_xz*m->prs_platform_point_z[i] + R_xx*m->prs_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real t_y = X[1*w + j];
-    const real prs_S_y = t_y + R_yx*m->prs_platform_point_x[i] +
-        R_yy*m->prs_platform_point_y[i] + R_yz*m->prs_platform_point_z[i] -
-        m->prs_base_point_y[i];
+    const real prs_S_y = t_y - m->prs_base_point_y[i] + R_yx*m->prs_platform_point_x[i] +
+        R_yz*m->prs_platform_point_z[i] + R_yy*m->prs_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real t_z = X[2*w + j];
-    const real prs_S_z = t_z + R_zx*m->prs_platform_point_x[i] +
-        R_zy*m->prs_platform_point_y[i] + R_zz*m->prs_platform_point_z[i] -
-        m->prs_base_point_z[i];
+    const real prs_S_z = t_z - m->prs_base_point_z[i] + R_zx*m->prs_platform_point_x[i] +
+        R_zy*m->prs_platform_point_y[i] + R_zz*m->prs_platform_point_z[i];
     const real prs_S_in_axes0_x = prs_S_x*m->prs_base_frame_xx[i] +
         prs_S_y*m->prs_base_frame_yx[i] + prs_S_z*m->prs_base_frame_zx[i];
     const real prs_S_in_axes0_y = prs_S_x*m->prs_base_frame_xy[i] +
@@ -3233,8 +3275,8 @@ INLINE void inverse_kinematics_legs_prs(const prepared *m, size_t w, size_t i, s
         prs_S_y*m->prs_base_frame_yz[i] + prs_S_z*m->prs_base_frame_zz[i];
     /* (prs-disc_1) discriminant of the distance equation */
     const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
-    const real prs_disc_1 = prs_S_in_axes0_x*prs_S_in_axes0_x +
-        prs_S_in_axes0_z*prs_S_in_axes0_z + m->prs_size_t[i] - prs_disc_1_t;
+    const real prs_disc_1 = m->prs_size_t[i] + prs_S_in_axes0_x*prs_S_in_axes0_x +
+        prs_S_in_axes0_z*prs_S_in_axes0_z - prs_disc_1_t;
     /* (prs-q_1) displacement of joint 1 */
     const real prs_q_1_t = -m->prs_branch_1[i]*root(prs_disc_1);
     const real prs_q_1 = prs_S_in_axes0_x - prs_q_1_t;
@@ -3267,7 +3309,8 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 {
     real s[9] = {0};
     real o_prs[5*LEGS(LEGS_OF_prs)] = {0};
-    inverse_kinematics_before(m, 1, 0, X, s, t);
+    values v;
+    inverse_kinematics_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         inverse_kinematics_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, o_prs);
     }
@@ -3282,7 +3325,8 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real s[9*LANES];
     real o_prs[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        inverse_kinematics_before(m, LANES, k, X, s, t);
+        values v;
+        inverse_kinematics_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3295,21 +3339,20 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_rates_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3362,7 +3405,8 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 {
     real s[9] = {0};
     real o_prs[5*LEGS(LEGS_OF_prs)] = {0};
-    joint_rates_before(m, 1, 0, X, s, t);
+    values v;
+    joint_rates_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         joint_rates_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, V, o_prs);
     }
@@ -3377,7 +3421,8 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real s[9*LANES];
     real o_prs[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_rates_before(m, LANES, k, X, s, t);
+        values v;
+        joint_rates_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3390,21 +3435,20 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
+    values *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_accelerations_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t
@@ -3420,7 +3464,7 @@ INLINE void joint_accelerations_legs_prs(const prepared *m, size_t w, size_t i, 
     const real prs_qd_2_t_2 = prs_qd_2_t*(v.prs_S_dot_x*m->prs_base_frame_xy[i] +
         v.prs_S_dot_y*m->prs_base_frame_yy[i] + v.prs_S_dot_z*m->prs_base_frame_zy[i]);
     /* (prs-rel) acceleration of the connection point left to the joint accelerations */
-    const real prs_rel_in_axes2_x = v.prs_S_ddot_t*v.prs_c_2 + v.prs_S_ddot_t_2*v.prs_s_2 +
+    const real prs_rel_in_axes2_x = v.prs_S_ddot_t_2*v.prs_s_2 + v.prs_S_ddot_t*v.prs_c_2 +
         m->prs_platform_joint_offset_x[i]*prs_qd_2_t_2*prs_qd_2_t_2;
     /* (prs-qdd_1) acceleration of joint 1 */
     const real prs_qdd_1_t = prs_qd_2_t*(v.prs_S_ddot_in_axes2_y*v.prs_c_2 +
@@ -3452,7 +3496,8 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 {
     real s[9] = {0};
     real o_prs[5*LEGS(LEGS_OF_prs)] = {0};
-    joint_accelerations_before(m, 1, 0, X, s, t);
+    values v;
+    joint_accelerations_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         joint_accelerations_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, V, A, o_prs);
     }
@@ -3467,7 +3512,8 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real s[9*LANES];
     real o_prs[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_accelerations_before(m, LANES, k, X, s, t);
+        values v;
+        joint_accelerations_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3480,21 +3526,20 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- constraints ---- */
-INLINE void constraints_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void constraints_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void constraints_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3505,23 +3550,20 @@ INLINE void constraints_legs_prs(const prepared *m, size_t w, size_t i, size_t j
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
     const real t_x = X[0*w + j];
-    const real prs_S_x = t_x + R_xx*m->prs_platform_point_x[i] +
-        R_xy*m->prs_platform_point_y[i] + R_xz*m->prs_platform_point_z[i] -
-        m->prs_base_point_x[i];
+    const real prs_S_x = t_x - m->prs_base_point_x[i] + R_xy*m->prs_platform_point_y[i] +
+        R_xz*m->prs_platform_point_z[i] + R_xx*m->prs_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real t_y = X[1*w + j];
-    const real prs_S_y = t_y + R_yx*m->prs_platform_point_x[i] +
-        R_yy*m->prs_platform_point_y[i] + R_yz*m->prs_platform_point_z[i] -
-        m->prs_base_point_y[i];
+    const real prs_S_y = t_y - m->prs_base_point_y[i] + R_yx*m->prs_platform_point_x[i] +
+        R_yz*m->prs_platform_point_z[i] + R_yy*m->prs_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real t_z = X[2*w + j];
-    const real prs_S_z = t_z + R_zx*m->prs_platform_point_x[i] +
-        R_zy*m->prs_platform_point_y[i] + R_zz*m->prs_platform_point_z[i] -
-        m->prs_base_point_z[i];
+    const real prs_S_z = t_z - m->prs_base_point_z[i] + R_zx*m->prs_platform_point_x[i] +
+        R_zy*m->prs_platform_point_y[i] + R_zz*m->prs_platform_point_z[i];
     const real prs_S_in_axes0_z = prs_S_x*m->prs_base_frame_xz[i] +
         prs_S_y*m->prs_base_frame_yz[i] + prs_S_z*m->prs_base_frame_zz[i];
     /* (prs-phi_c1) loop-closure residual along the constraint force */
@@ -3540,7 +3582,8 @@ APART void constraints_run(const prepared *m, const real *X, real *constraints, 
 {
     real s[9] = {0};
     real o_prs[2*LEGS(LEGS_OF_prs)] = {0};
-    constraints_before(m, 1, 0, X, s, t);
+    values v;
+    constraints_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         constraints_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, o_prs);
     }
@@ -3555,7 +3598,8 @@ INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restri
     real s[9*LANES];
     real o_prs[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        constraints_before(m, LANES, k, X, s, t);
+        values v;
+        constraints_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3568,20 +3612,20 @@ INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restri
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void legs_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3632,7 +3676,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 {
     real s[9] = {0};
     real o_prs[11*LEGS(LEGS_OF_prs)] = {0};
-    legs_before(m, 1, 0, X, s, t);
+    values v;
+    legs_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         legs_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, V, A, o_prs);
     }
@@ -3642,33 +3687,37 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s)
+{
     /* (potential) potential energy */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
-    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x +
-        v.R_xy*m->h_star_in_platform_y + v.R_xz*m->h_star_in_platform_z +
-        m->platform_mass*t_x) + m->gravity_y*(v.R_yx*m->h_star_in_platform_x +
-        v.R_yy*m->h_star_in_platform_y + v.R_yz*m->h_star_in_platform_z +
-        m->platform_mass*t_y) + m->gravity_z*(v.R_zx*m->h_star_in_platform_x +
-        v.R_zy*m->h_star_in_platform_y + v.R_zz*m->h_star_in_platform_z +
-        m->platform_mass*t_z);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+    const real potential_t = m->gravity_x*(m->platform_mass*t_x +
+        v->R_xy*m->h_star_in_platform_y + v->R_xz*m->h_star_in_platform_z +
+        v->R_xx*m->h_star_in_platform_x) + m->gravity_y*(m->platform_mass*t_y +
+        v->R_yx*m->h_star_in_platform_x + v->R_yz*m->h_star_in_platform_z +
+        v->R_yy*m->h_star_in_platform_y) + m->gravity_z*(m->platform_mass*t_z +
+        v->R_zx*m->h_star_in_platform_x + v->R_zy*m->h_star_in_platform_y +
+        v->R_zz*m->h_star_in_platform_z);
     s[9*w + k] = potential_t;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void potential_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3679,23 +3728,20 @@ INLINE void potential_legs_prs(const prepared *m, size_t w, size_t i, size_t j, 
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
     const real t_x = X[0*w + j];
-    const real prs_S_x = t_x + R_xx*m->prs_platform_point_x[i] +
-        R_xy*m->prs_platform_point_y[i] + R_xz*m->prs_platform_point_z[i] -
-        m->prs_base_point_x[i];
+    const real prs_S_x = t_x - m->prs_base_point_x[i] + R_xy*m->prs_platform_point_y[i] +
+        R_xz*m->prs_platform_point_z[i] + R_xx*m->prs_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real t_y = X[1*w + j];
-    const real prs_S_y = t_y + R_yx*m->prs_platform_point_x[i] +
-        R_yy*m->prs_platform_point_y[i] + R_yz*m->prs_platform_point_z[i] -
-        m->prs_base_point_y[i];
+    const real prs_S_y = t_y - m->prs_base_point_y[i] + R_yx*m->prs_platform_point_x[i] +
+        R_yz*m->prs_platform_point_z[i] + R_yy*m->prs_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real t_z = X[2*w + j];
-    const real prs_S_z = t_z + R_zx*m->prs_platform_point_x[i] +
-        R_zy*m->prs_platform_point_y[i] + R_zz*m->prs_platform_point_z[i] -
-        m->prs_base_point_z[i];
+    const real prs_S_z = t_z - m->prs_base_point_z[i] + R_zx*m->prs_platform_point_x[i] +
+        R_zy*m->prs_platform_point_y[i] + R_zz*m->prs_platform_point_z[i];
     const real prs_S_in_axes0_x = prs_S_x*m->prs_base_frame_xx[i] +
         prs_S_y*m->prs_base_frame_yx[i] + prs_S_z*m->prs_base_frame_zx[i];
     const real prs_S_in_axes0_y = prs_S_x*m->prs_base_frame_xy[i] +
@@ -3704,8 +3750,8 @@ INLINE void potential_legs_prs(const prepared *m, size_t w, size_t i, size_t j, 
         prs_S_y*m->prs_base_frame_yz[i] + prs_S_z*m->prs_base_frame_zz[i];
     /* (prs-disc_1) discriminant of the distance equation */
     const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
-    const real prs_disc_1 = prs_S_in_axes0_x*prs_S_in_axes0_x +
-        prs_S_in_axes0_z*prs_S_in_axes0_z + m->prs_size_t[i] - prs_disc_1_t;
+    const real prs_disc_1 = m->prs_size_t[i] + prs_S_in_axes0_x*prs_S_in_axes0_x +
+        prs_S_in_axes0_z*prs_S_in_axes0_z - prs_disc_1_t;
     /* (prs-q_1) displacement of joint 1 */
     const real prs_q_1_t = -m->prs_branch_1[i]*root(prs_disc_1);
     const real prs_q_1 = prs_S_in_axes0_x - prs_q_1_t;
@@ -3719,10 +3765,11 @@ INLINE void potential_legs_prs(const prepared *m, size_t w, size_t i, size_t j, 
     /* (potential) */
     const real prs_potential_t_4 = m->prs_b_in_axes0_x[i] + prs_q_1;
     const real prs_potential_t_5 = m->prs_potential_t_3[i] +
-        m->prs_g_in_axes0_x[i]*(m->prs_h_1_in_spec0_x[i] + prs_c_2*m->prs_h_2_in_spec2_x[i] +
-        m->prs_link1_mass[i]*prs_potential_t_4 + m->prs_link2_mass[i]*prs_potential_t_4 -
-        m->prs_h_2_in_spec2_y[i]*prs_s_2) + m->prs_g_in_axes0_y[i]*(m->prs_h_1_in_spec0_y[i] +
-        m->prs_potential_t[i] + m->prs_potential_t_2[i] + prs_c_2*m->prs_h_2_in_spec2_y[i] +
+        m->prs_g_in_axes0_x[i]*(m->prs_h_1_in_spec0_x[i] +
+        m->prs_link1_mass[i]*prs_potential_t_4 + m->prs_link2_mass[i]*prs_potential_t_4 +
+        prs_c_2*m->prs_h_2_in_spec2_x[i] - m->prs_h_2_in_spec2_y[i]*prs_s_2) +
+        m->prs_g_in_axes0_y[i]*(m->prs_h_1_in_spec0_y[i] + m->prs_potential_t[i] +
+        m->prs_potential_t_2[i] + prs_c_2*m->prs_h_2_in_spec2_y[i] +
         m->prs_h_2_in_spec2_x[i]*prs_s_2);
     /* (potential) */
     gather(&terms[0*count + k], add, prs_potential_t_5);  /* potential_of_legs */
@@ -3741,7 +3788,7 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     /* (potential) */
     const real potential_of_legs = sums[0*w + k];
     const real potential_t = s[9*w + k];
-    const real potential_ = -potential_of_legs - potential_t;
+    const real potential_ = -potential_t - potential_of_legs;
     /* (potential) */
     potential[0*w + k] = potential_;
 }
@@ -3750,7 +3797,8 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 {
     real s[10] = {0}, sums[1] = {0};
     real terms_prs[LEGS(LEGS_OF_prs)] = {0}, o_prs[2*LEGS(LEGS_OF_prs)] = {0};
-    potential_before(m, 1, 0, X, s, t);
+    values v;
+    potential_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         potential_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), 0, s, X, terms_prs, o_prs);
     }
@@ -3760,28 +3808,28 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_prs + n*LEGS(LEGS_OF_prs), LEGS_OF_prs);
     }
+    potential_between(m, 1, 0, X, &v, s);
     potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
-    *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, real *lengths, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void condition_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3870,7 +3918,8 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, re
 {
     real s[9] = {0}, sums[1] = {0};
     real terms_prs[LEGS(LEGS_OF_prs)] = {0}, o_prs[17*LEGS(LEGS_OF_prs)] = {0};
-    condition_before(m, 1, 0, X, s, lengths, t);
+    values v;
+    condition_before(m, 1, 0, X, &v, s, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         condition_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), 0, s, X, terms_prs, o_prs);
     }
@@ -3894,11 +3943,7 @@ int tripod_3prs_M(const prepared *m, const real *X, real *M_out)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-    }
-    return code;
+    return settled(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -3925,11 +3970,7 @@ int tripod_3prs_Z(const prepared *m, const real *X, const real *V, real *Z_out)
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, Z_out);
-    }
-    return code;
+    return settled(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -3953,11 +3994,7 @@ int tripod_3prs_H(const prepared *m, const real *X, real *H_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -3980,11 +4017,7 @@ int tripod_3prs_Hk(const prepared *m, const real *X, real *Hk_out)
     if (!is_finite(why.total[0])) {
         check(NV*NC, 1, Hk_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NC, Hk_out);
-    }
-    return code;
+    return settled(&why, NV*NC, Hk_out);
 }
 
 INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
@@ -4007,11 +4040,7 @@ int tripod_3prs_constraints(const prepared *m, const real *X, real *constraints_
     if (!is_finite(why.total[0])) {
         check(3, 1, constraints_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(3, constraints_out);
-    }
-    return code;
+    return settled(&why, 3, constraints_out);
 }
 
 INLINE void constraints_lanes(const prepared *m, const real *X, real *constraints_out, int *code)
@@ -4039,11 +4068,7 @@ int tripod_3prs_constraint_bias(const prepared *m, const real *X, const real *V,
     if (!is_finite(why.total[0])) {
         check(3, 1, constraint_bias_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(3, constraint_bias_out);
-    }
-    return code;
+    return settled(&why, 3, constraint_bias_out);
 }
 
 INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *V, real
@@ -4068,11 +4093,7 @@ int tripod_3prs_inverse_kinematics(const prepared *m, const real *X, real *q_out
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, q_out);
-    }
-    return code;
+    return settled(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -4099,11 +4120,7 @@ int tripod_3prs_joint_rates(const prepared *m, const real *X, const real *V, rea
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qd_out);
-    }
-    return code;
+    return settled(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -4134,11 +4151,7 @@ int tripod_3prs_joint_accelerations(const prepared *m, const real *X, const real
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qdd_out);
-    }
-    return code;
+    return settled(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4174,13 +4187,9 @@ int tripod_3prs_dynamics(const prepared *m, const real *X, const real *V, real *
     }
     check(NV*NC, 1, Hk, why.overflow);
     check(3, 1, constraint_bias, why.overflow);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-        refuse(NV, Z_out);
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    settled(&why, NV*NV, M_out);
+    settled(&why, NV, Z_out);
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -4377,8 +4386,9 @@ static const real sizes_solve_1[] = {1.0, 0.25, 0.25, 0.25, 1.0, 1.0};
 int tripod_3prs_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, real *lambda_out)
 {
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0},
-        beside_1[NV*NV] = {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, work[NV*PADDED(NV)];
+    static const real no_wrench[NW] = {0};
+    real required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0}, beside_1[NV*NV] =
+        {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
@@ -4387,7 +4397,7 @@ int tripod_3prs_inverse_dynamics(const prepared *m, const real *X, const real *V
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, Hk, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -4405,12 +4415,8 @@ int tripod_3prs_inverse_dynamics(const prepared *m, const real *X, const real *V
     check(NC, 1, lambda_, why.overflow);
     copy(NU, tau, tau_out);
     copy(NC, lambda_, lambda_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, tau_out);
-        refuse(NC, lambda_out);
-    }
-    return code;
+    settled(&why, NU, tau_out);
+    return settled(&why, NC, lambda_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -4443,10 +4449,10 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 int tripod_3prs_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau,
     const real *wrench, real *A_out, real *lambda_out)
 {
-    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0},
-        constraint_bias[3] = {0}, times_1[NV] = {0}, add_1[NV] = {0}, subtract_1[NV] = {0},
-        negative_1[3] = {0}, join_1[9] = {0}, solve_1[(NV + NC)] = {0}, work[(NV + NC)*(PADDED(NV +
-        NC))];
+    static const real no_wrench[NW] = {0};
+    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, constraint_bias[3] = {0},
+        times_1[NV] = {0}, add_1[NV] = {0}, subtract_1[NV] = {0}, negative_1[3] = {0}, join_1[9] =
+        {0}, solve_1[(NV + NC)] = {0}, work[(NV + NC)*(PADDED(NV + NC))];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
@@ -4455,7 +4461,7 @@ int tripod_3prs_forward_dynamics(const prepared *m, const real *X, const real *V
         check(NV, 1, V, why.invalid);
         check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, Hk, constraint_bias, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     for (size_t i = 0; i < NV; ++i) {
@@ -4476,12 +4482,8 @@ int tripod_3prs_forward_dynamics(const prepared *m, const real *X, const real *V
     check(NC, 1, lambda_, why.overflow);
     copy(NV, A, A_out);
     copy(NC, lambda_, lambda_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, A_out);
-        refuse(NC, lambda_out);
-    }
-    return code;
+    settled(&why, NV, A_out);
+    return settled(&why, NC, lambda_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4533,22 +4535,19 @@ int tripod_3prs_complete_acceleration(const prepared *m, const real *X, const re
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, completed_out);
-    }
-    return code;
+    return settled(&why, NV, completed_out);
 }
 
 int tripod_3prs_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out)
 {
+    static const real no_wrench[NW] = {0};
     static const size_t places_add_forces_1[] = {0, 1, 2};
     static const size_t places_forces[] = {0, 1, 2};
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0},
-        beside_1[NV*NV] = {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, leg_force[3*NL] = {0},
-        actuator[9] = {0}, constraint_direction[3*NC] = {0}, add_forces_1[NL*NL] = {0}, forces[NL*NL]
-        = {0}, work[NV*PADDED(NV)];
+    real required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0}, beside_1[NV*NV] =
+        {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[9] = {0},
+        constraint_direction[3*NC] = {0}, add_forces_1[NL*NL] = {0}, forces[NL*NL] = {0},
+        work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
@@ -4557,7 +4556,7 @@ int tripod_3prs_leg_reactions(const prepared *m, const real *X, const real *V, c
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, Hk, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -4582,11 +4581,7 @@ int tripod_3prs_leg_reactions(const prepared *m, const real *X, const real *V, c
     add_forces(NL, NL, 1, places_forces, split_2, constraint_direction, forces);
     check(NL*NL, 1, forces, why.overflow);
     copy(NL*NL, forces, forces_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NL*NL, forces_out);
-    }
-    return code;
+    return settled(&why, NL*NL, forces_out);
 }
 
 int tripod_3prs_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
@@ -4608,25 +4603,22 @@ int tripod_3prs_energy(const prepared *m, const real *X, const real *V, real *ki
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, kinetic_out);
-        refuse(1, potential_out);
-    }
-    return code;
+    settled(&why, 1, kinetic_out);
+    return settled(&why, 1, potential_out);
 }
 
 int tripod_3prs_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
     const real *length = NULL;
+    static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real length_in[1], H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] =
-        {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NU] = {0};
+    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
+        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NU] = {0};
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, length, 0, length_in, why.invalid);
+    length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, Hk, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
@@ -4645,27 +4637,23 @@ int tripod_3prs_condition(const prepared *m, const real *X, real *sigma_out, rea
     check(NL, 1, reach, why.overflow);
     copy(NU, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, sigma_out);
-        refuse(NL, legs_out);
-    }
-    return code;
+    settled(&why, NU, sigma_out);
+    return settled(&why, NL, legs_out);
 }
 
 int tripod_3prs_condition_constrained(const prepared *m, const real *X, real *sigma_out, real
     *legs_out)
 {
     const real *length = NULL;
+    static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real length_in[1], H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] =
-        {0}, beside_1[NV*NV] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] = {0}, sigma[NV] =
-        {0};
+    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
+        beside_1[NV*NV] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] = {0}, sigma[NV] = {0};
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, length, 0, length_in, why.invalid);
+    length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, Hk, lengths, legs, reach, &why);
     beside(NV, NU, NC, H, Hk, beside_1);
     for (size_t i = 0; i < 1; ++i) {
@@ -4684,12 +4672,8 @@ int tripod_3prs_condition_constrained(const prepared *m, const real *X, real *si
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, sigma_out);
-        refuse(NL, legs_out);
-    }
-    return code;
+    settled(&why, NV, sigma_out);
+    return settled(&why, NL, legs_out);
 }
 
 int tripod_3prs_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -4742,12 +4726,8 @@ int tripod_3prs_manipulability(const prepared *m, const real *X, real *measure_o
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, measure_out);
-        refuse(1, isotropy_out);
-    }
-    return code;
+    settled(&why, 1, measure_out);
+    return settled(&why, 1, isotropy_out);
 }
 
 int tripod_3prs_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
@@ -4782,12 +4762,8 @@ int tripod_3prs_singularity_distance(const prepared *m, const real *X, real *act
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, actuators_out);
-        refuse(1, legs_out);
-    }
-    return code;
+    settled(&why, 1, actuators_out);
+    return settled(&why, 1, legs_out);
 }
 
 static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
@@ -4813,11 +4789,7 @@ static int mismatch_one(const prepared *m, const real *X, const real *q_actuated
     beside(1, NU, 3, subtract_1, negative_1, gap);
     check(6, 1, gap, why.overflow);
     copy(6, gap, gap_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(6, gap_out);
-    }
-    return code;
+    return settled(&why, 6, gap_out);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
@@ -4831,11 +4803,7 @@ static int slope_one(const prepared *m, const real *X, real *slope_out)
     beside(NV, NU, NC, H, Hk, slope);
     check(NV*NV, 1, slope, why.overflow);
     copy(NV*NV, slope, slope_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, slope_out);
-    }
-    return code;
+    return settled(&why, NV*NV, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -4897,11 +4865,7 @@ int tripod_3prs_forward_kinematics(const prepared *m, const real *q_actuated, co
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 static int constraint_gap_one(const prepared *m, const real *X, real *gap_out)
@@ -4916,11 +4880,7 @@ static int constraint_gap_one(const prepared *m, const real *X, real *gap_out)
     }
     check(NC, 1, gap, why.overflow);
     copy(NC, gap, gap_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NC, gap_out);
-    }
-    return code;
+    return settled(&why, NC, gap_out);
 }
 
 static int constraint_slope_one(const prepared *m, const real *X, real *slope_out)
@@ -4932,11 +4892,7 @@ static int constraint_slope_one(const prepared *m, const real *X, real *slope_ou
     if (!is_finite(why.total[0])) {
         check(NV*NC, 1, slope_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NC, slope_out);
-    }
-    return code;
+    return settled(&why, NV*NC, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -4993,11 +4949,7 @@ int tripod_3prs_project(const prepared *m, const real *X, real *projected_out)
     blame(search_constraint_gap(m, X, projected), &why);
     check(NQ, 1, projected, why.overflow);
     copy(NQ, projected, projected_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, projected_out);
-    }
-    return code;
+    return settled(&why, NQ, projected_out);
 }
 
 int tripod_3prs_dissipation(const prepared *m, const real *X, const real *V, real
@@ -5015,11 +4967,7 @@ int tripod_3prs_dissipation(const prepared *m, const real *X, const real *V, rea
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, dissipation_out);
-    }
-    return code;
+    return settled(&why, 1, dissipation_out);
 }
 
 int tripod_3prs_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
@@ -5036,11 +4984,7 @@ int tripod_3prs_momentum(const prepared *m, const real *X, const real *V, real *
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, momentum_out);
-    }
-    return code;
+    return settled(&why, NV, momentum_out);
 }
 
 int tripod_3prs_joint_margins(const prepared *m, const real *X, real *margins_out)
@@ -5056,11 +5000,7 @@ int tripod_3prs_joint_margins(const prepared *m, const real *X, real *margins_ou
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, margins_out);
-    }
-    return code;
+    return settled(&why, NJ, margins_out);
 }
 
 int tripod_3prs_within_limits(const prepared *m, const real *X, real *within_out)
@@ -5076,11 +5016,7 @@ int tripod_3prs_within_limits(const prepared *m, const real *X, real *within_out
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, within_out);
-    }
-    return code;
+    return settled(&why, 1, within_out);
 }
 
 int tripod_3prs_actuator_positions(const prepared *m, const real *X, real *q_out)
@@ -5093,11 +5029,7 @@ int tripod_3prs_actuator_positions(const prepared *m, const real *X, real *q_out
     take(NU, 1, tripod_3prs_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, q_out);
-    }
-    return code;
+    return settled(&why, NU, q_out);
 }
 
 int tripod_3prs_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
@@ -5114,11 +5046,7 @@ int tripod_3prs_actuator_rates(const prepared *m, const real *X, const real *V, 
     take(NU, 1, tripod_3prs_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qd_out);
-    }
-    return code;
+    return settled(&why, NU, qd_out);
 }
 
 int tripod_3prs_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
@@ -5137,11 +5065,7 @@ int tripod_3prs_actuator_accelerations(const prepared *m, const real *X, const r
     take(NU, 1, tripod_3prs_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qdd_out);
-    }
-    return code;
+    return settled(&why, NU, qdd_out);
 }
 
 int tripod_3prs_power(const prepared *m, const real *X, const real *V, const real *tau, real
@@ -5161,11 +5085,7 @@ int tripod_3prs_power(const prepared *m, const real *X, const real *V, const rea
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, power_out);
-    }
-    return code;
+    return settled(&why, 1, power_out);
 }
 
 int tripod_3prs_rotation(const real *X, real *R_out)
@@ -5178,11 +5098,7 @@ int tripod_3prs_rotation(const real *X, real *R_out)
     rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     copy(9, R, R_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(9, R_out);
-    }
-    return code;
+    return settled(&why, 9, R_out);
 }
 
 int tripod_3prs_pose(const real *t, const real *R, real *X_out)
@@ -5200,11 +5116,7 @@ int tripod_3prs_pose(const real *t, const real *R, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int tripod_3prs_X_dot(const real *X, const real *V, real *X_dot_out)
@@ -5224,11 +5136,7 @@ int tripod_3prs_X_dot(const real *X, const real *V, real *X_dot_out)
     beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_dot_out);
-    }
-    return code;
+    return settled(&why, NQ, X_dot_out);
 }
 
 int tripod_3prs_pose_from_rpy(const real *t, const real *rpy, real *X_out)
@@ -5246,11 +5154,7 @@ int tripod_3prs_pose_from_rpy(const real *t, const real *rpy, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int tripod_3prs_retract(const real *X, const real *step, real *X_moved_out)
@@ -5274,11 +5178,7 @@ int tripod_3prs_retract(const real *X, const real *step, real *X_moved_out)
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_moved_out);
-    }
-    return code;
+    return settled(&why, NQ, X_moved_out);
 }
 
 int tripod_3prs_difference(const real *X0, const real *X1, real *step_out)
@@ -5302,11 +5202,7 @@ int tripod_3prs_difference(const real *X0, const real *X1, real *step_out)
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, step_out);
-    }
-    return code;
+    return settled(&why, NV, step_out);
 }
 
 int tripod_3prs_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
@@ -5344,11 +5240,7 @@ int tripod_3prs_interpolate(const real *X0, const real *X1, const real *s, real 
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 /* ---- one state, and batches ---- */

@@ -234,15 +234,12 @@ INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *t
 }
 
 /* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
-INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+INLINE const real *optional(size_t size, const real *x, const real *none, real *flags)
 {
-    for (size_t e = 0; e < size && !x; ++e) {
-        own[e] = none;
-    }
     if (x) {
         check(size, 1, x, flags);
     }
-    return x ? x : own;
+    return x ? x : none;
 }
 
 INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
@@ -299,6 +296,16 @@ APART void refuse(size_t size, real *out)
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
     }
+}
+
+/* The status of a state; an output is refused where it is impossible. */
+INLINE int settled(const verdict *t, size_t size, real *out)
+{
+    const int code = judge(t);
+    if (code != OK) {
+        refuse(size, out);
+    }
+    return code;
 }
 
 /* Outputs of a state where the user wants them, and of states side by side, state by state. */
@@ -419,24 +426,24 @@ INLINE int all_rotations(const real *x, size_t n)
 /* ---- parameters ---- */
 
 const tripod_3ups_params tripod_3ups_default_params = {
-    {R(0.0), R(0.0), R(-9.81)},  /* gravity */
+    {0, 0, R(-9.81)},  /* gravity */
     R(1.3),  /* platform_mass */
-    {R(0.0), R(0.0), R(0.0)},  /* platform_centre_of_mass */
-    {{R(0.0), R(0.0), R(0.0)}, {R(0.0), R(0.0), R(0.0)}, {R(0.0), R(0.0), R(0.0)}},  /* platform_inertia */
+    {0, 0, 0},  /* platform_centre_of_mass */
+    {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}},  /* platform_inertia */
     {  /* ups_base_point */
         {R(0.40174442535798405), R(0.13756659268624802), R(0.00144135643497445)},
         {R(-0.2576878685816606), R(0.2831568197321383), R(0.00144135643497445)},
         {R(-0.05405655677632375), R(-0.3607234124183862), R(0.00144135643497445)},
     },
     {  /* ups_base_frame */
-        {{R(0.0), R(0.9950041652780258), R(-0.09983341664682815)}, {R(0.0), R(0.09983341664682815), R(0.9950041652780258)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.5839603576017622), R(-0.8117821756786866)}, {R(0.0), R(0.8117821756786866), R(-0.5839603576017622)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.4110438076762642), R(0.9116155923255144)}, {R(0.0), R(-0.9116155923255144), R(-0.4110438076762642)}, {R(1.0), R(0.0), R(0.0)}},
+        {{0, R(0.9950041652780258), R(-0.09983341664682815)}, {0, R(0.09983341664682815), R(0.9950041652780258)}, {1, 0, 0}},
+        {{0, R(-0.5839603576017622), R(-0.8117821756786866)}, {0, R(0.8117821756786866), R(-0.5839603576017622)}, {1, 0, 0}},
+        {{0, R(-0.4110438076762642), R(0.9116155923255144)}, {0, R(-0.9116155923255144), R(-0.4110438076762642)}, {1, 0, 0}},
     },
     {  /* ups_platform_point */
-        {R(0.0), R(0.0), R(0.0)},
-        {R(0.0), R(0.0), R(0.0)},
-        {R(0.0), R(0.0), R(0.0)},
+        {0, 0, 0},
+        {0, 0, 0},
+        {0, 0, 0},
     },
     {  /* ups_link2_mass */
         R(2.4),
@@ -444,14 +451,14 @@ const tripod_3ups_params tripod_3ups_default_params = {
         R(2.4),
     },
     {  /* ups_link2_centre_of_mass */
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
     },
     {  /* ups_link2_inertia */
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
     },
     {  /* ups_link3_mass */
         R(1.1),
@@ -459,14 +466,14 @@ const tripod_3ups_params tripod_3ups_default_params = {
         R(1.1),
     },
     {  /* ups_link3_centre_of_mass */
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
     },
     {  /* ups_link3_inertia */
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
     },
 };
 
@@ -505,6 +512,9 @@ static int acceptable(const tripod_3ups_params *p)
     return ok;
 }
 
+#define KEEP(name) model->name = name
+#define KEEP_OF_LEG(name) model->name[leg] = name
+
 int tripod_3ups_prepare(const tripod_3ups_params *params, tripod_3ups_model *model)
 {
     if (!acceptable(params)) {
@@ -533,11 +543,11 @@ int tripod_3ups_prepare(const tripod_3ups_params *params, tripod_3ups_model *mod
     const real spread_t = R(0.3333333333333333)*root(3);
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = R(1.385640646055102)*spread_t;
-    model->gravity_x = gravity_x;
-    model->gravity_y = gravity_y;
-    model->gravity_z = gravity_z;
-    model->legs_size = legs_size;
-    model->spread_t = spread_t;
+    KEEP(gravity_x);
+    KEEP(gravity_y);
+    KEEP(gravity_z);
+    KEEP(legs_size);
+    KEEP(spread_t);
     for (size_t leg = 0; leg < FILLED(LEGS_OF_ups); ++leg) {
         const size_t own = leg < LEGS_OF_ups ? leg : 0;
         const real ups_base_point_x = params->ups_base_point[own][0];
@@ -645,49 +655,49 @@ int tripod_3ups_prepare(const tripod_3ups_params *params, tripod_3ups_model *mod
             ups_base_frame_yy*ups_base_point_y + ups_base_frame_zy*ups_base_point_z;
         const real ups_potential_t_3 = ups_base_frame_xz*ups_base_point_x +
             ups_base_frame_yz*ups_base_point_y + ups_base_frame_zz*ups_base_point_z;
-        model->ups_J_group_2_in_axes2_xx[leg] = ups_J_group_2_in_axes2_xx;
-        model->ups_J_group_2_in_axes2_xy[leg] = ups_J_group_2_in_axes2_xy;
-        model->ups_J_group_2_in_axes2_xz[leg] = ups_J_group_2_in_axes2_xz;
-        model->ups_J_group_2_in_axes2_yy[leg] = ups_J_group_2_in_axes2_yy;
-        model->ups_J_group_2_in_axes2_yz[leg] = ups_J_group_2_in_axes2_yz;
-        model->ups_J_group_2_in_axes2_zz[leg] = ups_J_group_2_in_axes2_zz;
-        model->ups_Sigma_2_in_axes2_xx[leg] = ups_Sigma_2_in_axes2_xx;
-        model->ups_Sigma_2_in_axes2_yy[leg] = ups_Sigma_2_in_axes2_yy;
-        model->ups_Sigma_2_in_axes2_zz[leg] = ups_Sigma_2_in_axes2_zz;
-        model->ups_acc_3_t[leg] = ups_acc_3_t;
-        model->ups_acc_3_t_2[leg] = ups_acc_3_t_2;
-        model->ups_acc_3_t_3[leg] = ups_acc_3_t_3;
-        model->ups_base_frame_xx[leg] = ups_base_frame_xx;
-        model->ups_base_frame_xy[leg] = ups_base_frame_xy;
-        model->ups_base_frame_xz[leg] = ups_base_frame_xz;
-        model->ups_base_frame_yx[leg] = ups_base_frame_yx;
-        model->ups_base_frame_yy[leg] = ups_base_frame_yy;
-        model->ups_base_frame_yz[leg] = ups_base_frame_yz;
-        model->ups_base_frame_zx[leg] = ups_base_frame_zx;
-        model->ups_base_frame_zy[leg] = ups_base_frame_zy;
-        model->ups_base_frame_zz[leg] = ups_base_frame_zz;
-        model->ups_base_point_x[leg] = ups_base_point_x;
-        model->ups_base_point_y[leg] = ups_base_point_y;
-        model->ups_base_point_z[leg] = ups_base_point_z;
-        model->ups_branch_1[leg] = ups_branch_1;
-        model->ups_branch_2[leg] = ups_branch_2;
-        model->ups_h_2_in_spec2_x[leg] = ups_h_2_in_spec2_x;
-        model->ups_h_2_in_spec2_y[leg] = ups_h_2_in_spec2_y;
-        model->ups_h_2_in_spec2_z[leg] = ups_h_2_in_spec2_z;
-        model->ups_h_3_in_spec2_x[leg] = ups_h_3_in_spec2_x;
-        model->ups_h_3_in_spec2_y[leg] = ups_h_3_in_spec2_y;
-        model->ups_h_3_in_spec2_z[leg] = ups_h_3_in_spec2_z;
-        model->ups_h_group_2_in_axes2_x[leg] = ups_h_group_2_in_axes2_x;
-        model->ups_h_group_2_in_axes2_y[leg] = ups_h_group_2_in_axes2_y;
-        model->ups_h_group_2_in_axes2_z[leg] = ups_h_group_2_in_axes2_z;
-        model->ups_link2_mass[leg] = ups_link2_mass;
-        model->ups_link3_mass[leg] = ups_link3_mass;
-        model->ups_platform_point_x[leg] = ups_platform_point_x;
-        model->ups_platform_point_y[leg] = ups_platform_point_y;
-        model->ups_platform_point_z[leg] = ups_platform_point_z;
-        model->ups_potential_t[leg] = ups_potential_t;
-        model->ups_potential_t_2[leg] = ups_potential_t_2;
-        model->ups_potential_t_3[leg] = ups_potential_t_3;
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_xx);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_xy);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_xz);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_yy);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_yz);
+        KEEP_OF_LEG(ups_J_group_2_in_axes2_zz);
+        KEEP_OF_LEG(ups_Sigma_2_in_axes2_xx);
+        KEEP_OF_LEG(ups_Sigma_2_in_axes2_yy);
+        KEEP_OF_LEG(ups_Sigma_2_in_axes2_zz);
+        KEEP_OF_LEG(ups_acc_3_t);
+        KEEP_OF_LEG(ups_acc_3_t_2);
+        KEEP_OF_LEG(ups_acc_3_t_3);
+        KEEP_OF_LEG(ups_base_frame_xx);
+        KEEP_OF_LEG(ups_base_frame_xy);
+        KEEP_OF_LEG(ups_base_frame_xz);
+        KEEP_OF_LEG(ups_base_frame_yx);
+        KEEP_OF_LEG(ups_base_frame_yy);
+        KEEP_OF_LEG(ups_base_frame_yz);
+        KEEP_OF_LEG(ups_base_frame_zx);
+        KEEP_OF_LEG(ups_base_frame_zy);
+        KEEP_OF_LEG(ups_base_frame_zz);
+        KEEP_OF_LEG(ups_base_point_x);
+        KEEP_OF_LEG(ups_base_point_y);
+        KEEP_OF_LEG(ups_base_point_z);
+        KEEP_OF_LEG(ups_branch_1);
+        KEEP_OF_LEG(ups_branch_2);
+        KEEP_OF_LEG(ups_h_2_in_spec2_x);
+        KEEP_OF_LEG(ups_h_2_in_spec2_y);
+        KEEP_OF_LEG(ups_h_2_in_spec2_z);
+        KEEP_OF_LEG(ups_h_3_in_spec2_x);
+        KEEP_OF_LEG(ups_h_3_in_spec2_y);
+        KEEP_OF_LEG(ups_h_3_in_spec2_z);
+        KEEP_OF_LEG(ups_h_group_2_in_axes2_x);
+        KEEP_OF_LEG(ups_h_group_2_in_axes2_y);
+        KEEP_OF_LEG(ups_h_group_2_in_axes2_z);
+        KEEP_OF_LEG(ups_link2_mass);
+        KEEP_OF_LEG(ups_link3_mass);
+        KEEP_OF_LEG(ups_platform_point_x);
+        KEEP_OF_LEG(ups_platform_point_y);
+        KEEP_OF_LEG(ups_platform_point_z);
+        KEEP_OF_LEG(ups_potential_t);
+        KEEP_OF_LEG(ups_potential_t_2);
+        KEEP_OF_LEG(ups_potential_t_3);
         m_star_of_legs += leg < LEGS_OF_ups ? ups_link3_mass : 0;
         h_star_x_of_legs += leg < LEGS_OF_ups ? ups_h_star_t : 0;
         h_star_y_of_legs += leg < LEGS_OF_ups ? ups_h_star_t_2 : 0;
@@ -710,16 +720,16 @@ int tripod_3ups_prepare(const tripod_3ups_params *params, tripod_3ups_model *mod
     const real b_c_in_platform_x = R(0.3333333333333333)*b_c_ups_in_platform_x;
     const real b_c_in_platform_y = R(0.3333333333333333)*b_c_ups_in_platform_y;
     const real b_c_in_platform_z = R(0.3333333333333333)*b_c_ups_in_platform_z;
-    model->Z_p_x = Z_p_x;
-    model->Z_p_y = Z_p_y;
-    model->Z_p_z = Z_p_z;
-    model->b_c_in_platform_x = b_c_in_platform_x;
-    model->b_c_in_platform_y = b_c_in_platform_y;
-    model->b_c_in_platform_z = b_c_in_platform_z;
-    model->h_star_x = h_star_x;
-    model->h_star_y = h_star_y;
-    model->h_star_z = h_star_z;
-    model->m_star = m_star;
+    KEEP(Z_p_x);
+    KEEP(Z_p_y);
+    KEEP(Z_p_z);
+    KEEP(b_c_in_platform_x);
+    KEEP(b_c_in_platform_y);
+    KEEP(b_c_in_platform_z);
+    KEEP(h_star_x);
+    KEEP(h_star_y);
+    KEEP(h_star_z);
+    KEEP(m_star);
     return OK;
 }
 
@@ -1270,16 +1280,16 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t i, values_ups *v)
     const real ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - v->ups_W_2_in_axes2_xz;
     /* (ups-B_2_o) remainder of the acceleration tensor of link 2 */
     const real ups_B_2_o_t = v->inv_ups_q_3*v->ups_bias_t*v->ups_qd_2;
-    const real ups_B_2_o_in_axes2_xy = ups_B_2_o_t + 2*v->ups_W_2_in_axes2_xy;
+    const real ups_B_2_o_in_axes2_xy = 2*v->ups_W_2_in_axes2_xy + ups_B_2_o_t;
     const real ups_B_2_o_in_axes2_zx = v->ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y;
     const real ups_B_2_o_in_axes2_zy = v->ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x;
     /* (ups-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
        */
     const real ups_phi_3_o_t = v->ups_omega_1_in_axes2_y*v->ups_omega_1_in_axes2_y;
     const real ups_phi_3_o_t_2 = v->ups_qd_2*v->ups_qd_2;
-    const real ups_phi_3_o_in_axes2_x = ups_alpha_1_o_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
-        m->ups_h_3_in_spec2_x[i]*(-ups_phi_3_o_t - ups_phi_3_o_t_2) -
-        ups_B_2_o_in_axes2_xy*m->ups_h_3_in_spec2_z[i];
+    const real ups_phi_3_o_in_axes2_x = m->ups_h_3_in_spec2_x[i]*(-ups_phi_3_o_t -
+        ups_phi_3_o_t_2) - ups_B_2_o_in_axes2_xy*m->ups_h_3_in_spec2_z[i] +
+        ups_alpha_1_o_in_axes2_y*m->ups_h_3_in_spec2_y[i];
     /* (ups-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real ups_mu_2_o_t = v->ups_omega_1_in_axes2_x*v->ups_omega_1_in_axes2_x;
@@ -1288,37 +1298,37 @@ INLINE void stage_ups_Z_dynamics(const prepared *m, size_t i, values_ups *v)
         v->ups_c_2*ups_mu_2_o_t_2;
     const real ups_g_in_axes2_y = v->ups_e_1_in_axes2_x*ups_mu_2_o_t_2 -
         m->ups_acc_3_t_3[i]*v->ups_c_2;
-    const real ups_mu_2_o_in_axes2_x = ups_B_2_o_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] +
-        m->ups_J_group_2_in_axes2_yz[i]*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
-        ups_g_in_axes2_y*m->ups_h_group_2_in_axes2_z[i] -
-        ups_B_2_o_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i] -
+    const real ups_mu_2_o_in_axes2_x = ups_g_in_axes2_y*m->ups_h_group_2_in_axes2_z[i] -
+        v->ups_g_in_axes2_z*m->ups_h_group_2_in_axes2_y[i] +
+        m->ups_J_group_2_in_axes2_yz[i]*(ups_phi_3_o_t - ups_phi_3_o_t_2) -
         ups_B_2_o_t*m->ups_J_group_2_in_axes2_xz[i] -
-        m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_t -
-        v->ups_g_in_axes2_z*m->ups_h_group_2_in_axes2_y[i];
-    const real ups_mu_2_o_in_axes2_y = ups_B_2_o_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] +
-        m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_in_axes2_y +
-        v->ups_g_in_axes2_z*m->ups_h_group_2_in_axes2_x[i] -
-        ups_B_2_o_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] -
-        ups_B_2_o_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i] -
+        m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_t +
+        ups_B_2_o_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
+        ups_B_2_o_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
+    const real ups_mu_2_o_in_axes2_y = v->ups_g_in_axes2_z*m->ups_h_group_2_in_axes2_x[i] -
+        ups_g_in_axes2_x*m->ups_h_group_2_in_axes2_z[i] -
         m->ups_J_group_2_in_axes2_xz[i]*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
-        ups_g_in_axes2_x*m->ups_h_group_2_in_axes2_z[i];
-    const real ups_mu_2_o_in_axes2_z = m->ups_J_group_2_in_axes2_xy[i]*(ups_mu_2_o_t -
-        ups_phi_3_o_t) + m->ups_J_group_2_in_axes2_yz[i]*ups_alpha_1_o_in_axes2_y +
-        ups_g_in_axes2_x*m->ups_h_group_2_in_axes2_y[i] -
-        ups_B_2_o_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] -
+        ups_B_2_o_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
+        m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_in_axes2_y +
+        ups_B_2_o_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
+        ups_B_2_o_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
+    const real ups_mu_2_o_in_axes2_z = ups_g_in_axes2_x*m->ups_h_group_2_in_axes2_y[i] -
+        ups_g_in_axes2_y*m->ups_h_group_2_in_axes2_x[i] +
+        m->ups_J_group_2_in_axes2_xy[i]*(ups_mu_2_o_t - ups_phi_3_o_t) -
         ups_B_2_o_t*m->ups_Sigma_2_in_axes2_xx[i] -
-        m->ups_J_group_2_in_axes2_xz[i]*ups_alpha_1_o_t -
-        ups_g_in_axes2_y*m->ups_h_group_2_in_axes2_x[i];
+        ups_B_2_o_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] +
+        m->ups_J_group_2_in_axes2_yz[i]*ups_alpha_1_o_in_axes2_y -
+        m->ups_J_group_2_in_axes2_xz[i]*ups_alpha_1_o_t;
     /* (ups-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
     const real ups_c_o_in_axes2_y = ups_B_2_o_t*m->ups_h_3_in_spec2_x[i] -
-        v->inv_ups_q_3*ups_mu_2_o_in_axes2_z - ups_alpha_1_o_t*m->ups_h_3_in_spec2_y[i] -
-        m->ups_h_3_in_spec2_z[i]*(ups_mu_2_o_t + ups_phi_3_o_t_2);
-    const real ups_c_o_in_axes2_z = v->inv_ups_root_1*(v->ups_c_2*ups_mu_2_o_in_axes2_y -
-        v->ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x) +
-        ups_B_2_o_in_axes2_zy*m->ups_h_3_in_spec2_z[i] +
-        m->ups_h_3_in_spec2_y[i]*(ups_mu_2_o_t + ups_phi_3_o_t) -
-        ups_B_2_o_in_axes2_zx*m->ups_h_3_in_spec2_x[i];
+        m->ups_h_3_in_spec2_z[i]*(ups_mu_2_o_t + ups_phi_3_o_t_2) -
+        ups_alpha_1_o_t*m->ups_h_3_in_spec2_y[i] - v->inv_ups_q_3*ups_mu_2_o_in_axes2_z;
+    const real ups_c_o_in_axes2_z = m->ups_h_3_in_spec2_y[i]*(ups_mu_2_o_t + ups_phi_3_o_t) +
+        ups_B_2_o_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
+        ups_B_2_o_in_axes2_zx*m->ups_h_3_in_spec2_x[i] +
+        v->inv_ups_root_1*(v->ups_c_2*ups_mu_2_o_in_axes2_y -
+        v->ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x);
     /* (ups-U) velocity and gravity terms of the leg force */
     const real ups_U_x = v->axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x -
         v->axis_y_ups_axes2_x*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_x*ups_c_o_in_axes2_z;
@@ -1367,8 +1377,8 @@ INLINE void stage_ups_legs_required(const prepared *m, size_t w, size_t i, size_
         m->ups_acc_3_t_3[i]*v->ups_c_2;
     const real ups_acc_3_in_axes2_x = v->axis_x_ups_axes2_x*t_ddot_x +
         v->axis_x_ups_axes2_y*t_ddot_y + v->axis_x_ups_axes2_z*t_ddot_z - ups_g_in_axes2_x;
-    const real ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
-        ups_g_in_axes2_y;
+    const real ups_acc_3_in_axes2_y = ups_B_2_t - ups_g_in_axes2_y + ups_B_2_t_2 +
+        ups_B_2_t_3;
     const real ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - v->ups_g_in_axes2_z;
     /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real ups_mu_2_t = v->ups_omega_1_in_axes2_x*v->ups_omega_1_in_axes2_x;
@@ -1389,10 +1399,6 @@ INLINE void stage_ups_legs_required(const prepared *m, size_t w, size_t i, size_
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before()
-{
-}
-
 INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, int add, const real *X, const real *V, real *terms, real *o)
 {
@@ -1428,9 +1434,9 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
         v.axis_y_ups_axes2_x*ups_Q_t - v.axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
     const real ups_Q_t_4 = v.axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy -
         v.axis_y_ups_axes2_y*ups_Q_t - v.axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_5 = v.axis_y_ups_axes2_z*ups_Q_t +
-        v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz -
-        v.axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy;
+    const real ups_Q_t_5 = v.axis_y_ups_axes2_z*ups_Q_t -
+        v.axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy +
+        v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz;
     const real ups_Q_t_6 = v.axis_x_ups_axes2_x*ups_d_c_in_axes2_xz +
         v.axis_z_ups_axes2_x*ups_Q_t_2;
     const real ups_Q_t_7 = v.axis_x_ups_axes2_y*ups_d_c_in_axes2_xz +
@@ -1485,11 +1491,11 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *su
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (Z_t) */
     const real Z_t_x_of_legs = sums[6*w + k];
     const real Z_t_x = m->Z_p_x + Z_t_x_of_legs;
@@ -1555,10 +1561,6 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before()
-{
-}
-
 INLINE void M_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *X, real *terms, real *o)
 {
@@ -1599,11 +1601,11 @@ INLINE void M_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
         v.axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
     const real ups_Q_t_4 = ups_d_phi_3_in_axes2_xy*v.ups_w_3_y - axis_y_ups_axes2_y*ups_Q_t -
         v.axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t +
-        v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz - ups_d_phi_3_in_axes2_xy*v.ups_w_3_z;
-    const real ups_Q_t_6 = v.axis_z_ups_axes2_x*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_x;
-    const real ups_Q_t_7 = v.axis_z_ups_axes2_y*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_y;
-    const real ups_Q_t_8 = v.axis_z_ups_axes2_z*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_z;
+    const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t - ups_d_phi_3_in_axes2_xy*v.ups_w_3_z +
+        v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_6 = ups_d_c_in_axes2_xz*v.ups_w_3_x + v.axis_z_ups_axes2_x*ups_Q_t_2;
+    const real ups_Q_t_7 = ups_d_c_in_axes2_xz*v.ups_w_3_y + v.axis_z_ups_axes2_y*ups_Q_t_2;
+    const real ups_Q_t_8 = ups_d_c_in_axes2_xz*v.ups_w_3_z + v.axis_z_ups_axes2_z*ups_Q_t_2;
     const real ups_Q_t_9 = v.axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3;
     const real ups_Q_xx = -2*ups_Q_t_9;
     const real ups_Q_xy = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 -
@@ -1637,11 +1639,11 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, rea
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->m_star;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->m_star;
+    const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->m_star;
+    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
     const real M_tt_xy = sums[1*w + k];
@@ -1693,10 +1695,6 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 }
 
 /* ---- Z ---- */
-INLINE void Z_before()
-{
-}
-
 INLINE void Z_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *X, const real *V, real *terms, real *o)
 {
@@ -1770,10 +1768,6 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before()
-{
-}
-
 INLINE void H_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *X, real *o)
 {
@@ -1823,7 +1817,7 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *A, real *s)
+INLINE void required_between(const prepared *m, size_t w, size_t k, const real *A, real *s)
 {
     /* (a_t) acceleration of the platform origin, less gravity */
     const real t_ddot_x = A[0*w + k];
@@ -1851,53 +1845,54 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
     /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
     const real ups_phi_3_t = v.ups_omega_1_in_axes2_y*v.ups_omega_1_in_axes2_y;
     const real ups_phi_3_t_2 = v.ups_qd_2*v.ups_qd_2;
-    const real ups_phi_3_in_axes2_x = v.ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
-        m->ups_h_3_in_spec2_x[i]*(-ups_phi_3_t - ups_phi_3_t_2) -
-        v.ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i];
+    const real ups_phi_3_in_axes2_x = m->ups_h_3_in_spec2_x[i]*(-ups_phi_3_t - ups_phi_3_t_2)
+        - v.ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i] +
+        v.ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i];
     /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real ups_mu_2_in_axes2_x = v.ups_B_2_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
-        v.ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] +
+    const real ups_mu_2_in_axes2_x = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] +
+        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] -
+        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_z[i] -
+        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
+        v.ups_B_2_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
         m->ups_J_group_2_in_axes2_yz[i]*(ups_phi_3_t - ups_phi_3_t_2) +
         m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_x +
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] +
-        v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i] -
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_y[i] -
-        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_z[i];
-    const real ups_mu_2_in_axes2_y = v.ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] +
-        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_y +
-        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_y[i] +
-        v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
-        v.ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i] -
-        m->ups_J_group_2_in_axes2_xz[i]*(v.ups_mu_2_t - ups_phi_3_t_2) -
+        v.ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
+    const real ups_mu_2_in_axes2_y = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
+        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i] +
+        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
         v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_x[i] -
-        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i];
-    const real ups_mu_2_in_axes2_z = v.ups_B_2_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
-        m->ups_J_group_2_in_axes2_xy[i]*(v.ups_mu_2_t - ups_phi_3_t) +
-        m->ups_J_group_2_in_axes2_xz[i]*v.ups_alpha_1_in_axes2_x +
-        m->ups_J_group_2_in_axes2_yz[i]*v.ups_alpha_1_in_axes2_y +
-        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_z[i] +
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_x[i] -
-        v.ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] -
+        m->ups_J_group_2_in_axes2_xz[i]*(v.ups_mu_2_t - ups_phi_3_t_2) -
+        v.ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
+        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_y +
+        v.ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
+    const real ups_mu_2_in_axes2_z = v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_z[i] -
         v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] -
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i];
+        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i] +
+        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_x[i] +
+        v.ups_B_2_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
+        m->ups_J_group_2_in_axes2_xy[i]*(v.ups_mu_2_t - ups_phi_3_t) -
+        v.ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] +
+        m->ups_J_group_2_in_axes2_xz[i]*v.ups_alpha_1_in_axes2_x +
+        m->ups_J_group_2_in_axes2_yz[i]*v.ups_alpha_1_in_axes2_y;
     /* (ups-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real ups_c_in_axes2_y = v.ups_alpha_1_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        v.inv_ups_q_3*ups_mu_2_in_axes2_z - v.ups_B_2_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
-        m->ups_h_3_in_spec2_z[i]*(v.ups_mu_2_t + ups_phi_3_t_2);
-    const real ups_c_in_axes2_z = v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
-        v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) +
-        v.ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] +
-        m->ups_h_3_in_spec2_y[i]*(v.ups_mu_2_t + ups_phi_3_t) -
-        v.ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i];
-    const real ups_c_x = v.axis_y_ups_axes2_x*ups_c_in_axes2_y +
-        v.axis_z_ups_axes2_x*ups_c_in_axes2_z - v.axis_x_ups_axes2_x*ups_phi_3_in_axes2_x;
-    const real ups_c_y = v.axis_y_ups_axes2_y*ups_c_in_axes2_y +
-        v.axis_z_ups_axes2_y*ups_c_in_axes2_z - v.axis_x_ups_axes2_y*ups_phi_3_in_axes2_x;
-    const real ups_c_z = v.axis_y_ups_axes2_z*ups_c_in_axes2_y +
-        v.axis_z_ups_axes2_z*ups_c_in_axes2_z - v.axis_x_ups_axes2_z*ups_phi_3_in_axes2_x;
+        v.ups_B_2_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
+        m->ups_h_3_in_spec2_z[i]*(v.ups_mu_2_t + ups_phi_3_t_2) -
+        v.inv_ups_q_3*ups_mu_2_in_axes2_z;
+    const real ups_c_in_axes2_z = m->ups_h_3_in_spec2_y[i]*(v.ups_mu_2_t + ups_phi_3_t) +
+        v.ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i] +
+        v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
+        v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x);
+    const real ups_c_x = v.axis_y_ups_axes2_x*ups_c_in_axes2_y -
+        v.axis_x_ups_axes2_x*ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_x*ups_c_in_axes2_z;
+    const real ups_c_y = v.axis_y_ups_axes2_y*ups_c_in_axes2_y -
+        v.axis_x_ups_axes2_y*ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_y*ups_c_in_axes2_z;
+    const real ups_c_z = v.axis_y_ups_axes2_z*ups_c_in_axes2_y -
+        v.axis_x_ups_axes2_z*ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_z*ups_c_in_axes2_z;
     /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, ups_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, ups_c_y);  /* R_t_y_of_legs */
@@ -1938,12 +1933,11 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[2*w + k] = R_t_z;
 }
 
-APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
     real s[3] = {0}, sums[3] = {0};
     real terms_ups[3*LEGS(LEGS_OF_ups)] = {0}, o_ups[4*LEGS(LEGS_OF_ups)] = {0};
-    required_before(m, 1, 0, A, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         required_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, X, V, A, terms_ups, o_ups);
     }
@@ -1953,6 +1947,7 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
+    required_between(m, 1, 0, A, s);
     required_after(1, 0, s, sums, required);
 }
 
@@ -1962,7 +1957,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real s[3*LANES], sums[3*LANES];
     real o_ups[4*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        required_before(m, LANES, k, A, s);
+        required_between(m, LANES, k, A, s);
     }
     clear(sums, 3*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
@@ -1979,10 +1974,6 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before()
-{
-}
-
 INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *X, real *o)
 {
@@ -2040,10 +2031,6 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before()
-{
-}
-
 INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *X, const real *V, real *o)
 {
@@ -2108,10 +2095,6 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before()
-{
-}
-
 INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *X, const real *V, const real *A, real *o)
 {
@@ -2130,7 +2113,7 @@ INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t i, 
     const real t_ddot_z = A[2*w + j];
     const real ups_rel_in_axes2_x = v.axis_x_ups_axes2_x*t_ddot_x +
         v.axis_x_ups_axes2_y*t_ddot_y + v.axis_x_ups_axes2_z*t_ddot_z -
-        v.ups_q_3*(-ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y - v.ups_qd_2*v.ups_qd_2);
+        v.ups_q_3*(-v.ups_qd_2*v.ups_qd_2 - ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y);
     const real ups_rel_in_axes2_z = v.axis_z_ups_axes2_x*t_ddot_x +
         v.axis_z_ups_axes2_y*t_ddot_y + v.axis_z_ups_axes2_z*t_ddot_z - ups_bias_in_axes2_z;
     /* (ups-qdd_1) acceleration of joint 1 */
@@ -2188,10 +2171,6 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before()
-{
-}
-
 INLINE void legs_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *X, const real *V, const real *A, real *o)
 {
@@ -2202,48 +2181,48 @@ INLINE void legs_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_
     /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real ups_mu_2_t_2 = v.ups_omega_1_in_axes2_y*v.ups_omega_1_in_axes2_y;
     const real ups_mu_2_t_3 = v.ups_qd_2*v.ups_qd_2;
-    const real ups_mu_2_in_axes2_x = v.ups_B_2_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
-        v.ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] +
+    const real ups_mu_2_in_axes2_x = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] +
+        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] -
+        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_z[i] -
+        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
+        v.ups_B_2_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
         m->ups_J_group_2_in_axes2_yz[i]*(ups_mu_2_t_2 - ups_mu_2_t_3) +
         m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_x +
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_y[i] +
-        v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_z[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i] -
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_y[i] -
-        v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_z[i];
-    const real ups_mu_2_in_axes2_y = v.ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] +
-        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_y +
-        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_y[i] +
-        v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
-        v.ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] -
-        v.ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i] -
-        m->ups_J_group_2_in_axes2_xz[i]*(v.ups_mu_2_t - ups_mu_2_t_3) -
+        v.ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
+    const real ups_mu_2_in_axes2_y = v.ups_g_in_axes2_z*m->ups_h_2_in_spec2_x[i] -
+        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i] +
+        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
         v.ups_acc_3_in_axes2_z*m->ups_h_3_in_spec2_x[i] -
-        v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_y[i];
-    const real ups_mu_2_in_axes2_z = v.ups_B_2_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
-        m->ups_J_group_2_in_axes2_xy[i]*(v.ups_mu_2_t - ups_mu_2_t_2) +
-        m->ups_J_group_2_in_axes2_xz[i]*v.ups_alpha_1_in_axes2_x +
-        m->ups_J_group_2_in_axes2_yz[i]*v.ups_alpha_1_in_axes2_y +
-        v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_z[i] +
-        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_x[i] -
-        v.ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] -
+        m->ups_J_group_2_in_axes2_xz[i]*(v.ups_mu_2_t - ups_mu_2_t_3) -
+        v.ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
+        m->ups_Sigma_2_in_axes2_zz[i]*v.ups_alpha_1_in_axes2_y +
+        v.ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
+    const real ups_mu_2_in_axes2_z = v.ups_acc_3_in_axes2_x*m->ups_h_3_in_spec2_z[i] -
         v.ups_g_in_axes2_x*m->ups_h_2_in_spec2_z[i] -
-        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i];
+        v.ups_g_in_axes2_y*m->ups_h_2_in_spec2_x[i] +
+        v.ups_acc_3_in_axes2_y*m->ups_h_3_in_spec2_x[i] +
+        v.ups_B_2_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] +
+        m->ups_J_group_2_in_axes2_xy[i]*(v.ups_mu_2_t - ups_mu_2_t_2) -
+        v.ups_B_2_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] +
+        m->ups_J_group_2_in_axes2_xz[i]*v.ups_alpha_1_in_axes2_x +
+        m->ups_J_group_2_in_axes2_yz[i]*v.ups_alpha_1_in_axes2_y;
     /* (ups-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real ups_c_in_axes2_y = v.ups_alpha_1_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        v.inv_ups_q_3*ups_mu_2_in_axes2_z - v.ups_B_2_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
-        m->ups_h_3_in_spec2_z[i]*(v.ups_mu_2_t + ups_mu_2_t_3);
-    const real ups_c_in_axes2_z = v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
-        v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) +
-        v.ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] +
-        m->ups_h_3_in_spec2_y[i]*(v.ups_mu_2_t + ups_mu_2_t_2) -
-        v.ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i];
+        v.ups_B_2_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
+        m->ups_h_3_in_spec2_z[i]*(v.ups_mu_2_t + ups_mu_2_t_3) -
+        v.inv_ups_q_3*ups_mu_2_in_axes2_z;
+    const real ups_c_in_axes2_z = m->ups_h_3_in_spec2_y[i]*(v.ups_mu_2_t + ups_mu_2_t_2) +
+        v.ups_B_2_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
+        v.ups_B_2_in_axes2_zx*m->ups_h_3_in_spec2_x[i] +
+        v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
+        v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x);
     /* (ups-c_true) leg force on the platform without actuation, the last link's mass included */
     const real ups_c_true_in_axes2_x = v.ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i] -
-        v.ups_acc_3_in_axes2_x*m->ups_link3_mass[i] -
-        v.ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i] -
-        m->ups_h_3_in_spec2_x[i]*(-ups_mu_2_t_2 - ups_mu_2_t_3);
+        v.ups_acc_3_in_axes2_x*m->ups_link3_mass[i] - m->ups_h_3_in_spec2_x[i]*(-ups_mu_2_t_2
+        - ups_mu_2_t_3) - v.ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i];
     const real ups_c_true_in_axes2_y = ups_c_in_axes2_y -
         v.ups_acc_3_in_axes2_y*m->ups_link3_mass[i];
     const real ups_c_true_in_axes2_z = ups_c_in_axes2_z -
@@ -2295,7 +2274,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s)
+INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, real *s)
 {
     /* (potential) potential energy */
     const real t_x = X[0*w + k];
@@ -2352,7 +2331,6 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 {
     real s[1] = {0}, sums[1] = {0};
     real terms_ups[LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
-    potential_before(m, 1, 0, X, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         potential_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, X, terms_ups, o_ups);
     }
@@ -2362,6 +2340,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
+    potential_between(m, 1, 0, X, s);
     potential_after(1, 0, s, sums, potential);
 }
 
@@ -2458,11 +2437,7 @@ int tripod_3ups_M(const prepared *m, const real *X, real *M_out)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-    }
-    return code;
+    return settled(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -2489,11 +2464,7 @@ int tripod_3ups_Z(const prepared *m, const real *X, const real *V, real *Z_out)
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, Z_out);
-    }
-    return code;
+    return settled(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -2517,11 +2488,7 @@ int tripod_3ups_H(const prepared *m, const real *X, real *H_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -2544,11 +2511,7 @@ int tripod_3ups_inverse_kinematics(const prepared *m, const real *X, real *q_out
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, q_out);
-    }
-    return code;
+    return settled(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -2575,11 +2538,7 @@ int tripod_3ups_joint_rates(const prepared *m, const real *X, const real *V, rea
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qd_out);
-    }
-    return code;
+    return settled(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -2610,11 +2569,7 @@ int tripod_3ups_joint_accelerations(const prepared *m, const real *X, const real
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qdd_out);
-    }
-    return code;
+    return settled(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -2647,13 +2602,9 @@ int tripod_3ups_dynamics(const prepared *m, const real *X, const real *V, real *
         check(NV, 1, Z_out, why.overflow);
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-        refuse(NV, Z_out);
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    settled(&why, NV*NV, M_out);
+    settled(&why, NV, Z_out);
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -2724,7 +2675,8 @@ static const real sizes_tau[] = {0.25, 0.25, 1.0};
 int tripod_3ups_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out)
 {
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    static const real no_wrench[NW] = {0};
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
@@ -2734,7 +2686,7 @@ int tripod_3ups_inverse_dynamics(const prepared *m, const real *X, const real *V
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -2748,11 +2700,7 @@ int tripod_3ups_inverse_dynamics(const prepared *m, const real *X, const real *V
     if (!is_finite(why.total[0])) {
         check(NU, 1, tau_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, tau_out);
-    }
-    return code;
+    return settled(&why, NU, tau_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -2781,8 +2729,9 @@ static const real sizes_A[] = {4.0, 4.0, 4.0};
 int tripod_3ups_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau,
     const real *wrench, real *A_out)
 {
-    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] =
-        {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    static const real no_wrench[NW] = {0};
+    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
+        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
@@ -2791,7 +2740,7 @@ int tripod_3ups_forward_dynamics(const prepared *m, const real *X, const real *V
         check(NV, 1, V, why.invalid);
         check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     for (size_t i = 0; i < NV; ++i) {
@@ -2809,11 +2758,7 @@ int tripod_3ups_forward_dynamics(const prepared *m, const real *X, const real *V
     if (!is_finite(why.total[0])) {
         check(NV, 1, A_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, A_out);
-    }
-    return code;
+    return settled(&why, NV, A_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -2854,18 +2799,15 @@ int tripod_3ups_complete_acceleration(const prepared *m, const real *X, const re
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, completed_out);
-    }
-    return code;
+    return settled(&why, NV, completed_out);
 }
 
 int tripod_3ups_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out)
 {
+    static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2};
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
+    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
         unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[9] = {0}, forces[NL*NL] = {0},
         work[NV*PADDED(NV)];
     verdict why;
@@ -2876,7 +2818,7 @@ int tripod_3ups_leg_reactions(const prepared *m, const real *X, const real *V, c
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -2894,11 +2836,7 @@ int tripod_3ups_leg_reactions(const prepared *m, const real *X, const real *V, c
     add_forces(NL, 3, 1, places_forces, solve_1, actuator, forces);
     check(NL*NL, 1, forces, why.overflow);
     copy(NL*NL, forces, forces_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NL*NL, forces_out);
-    }
-    return code;
+    return settled(&why, NL*NL, forces_out);
 }
 
 int tripod_3ups_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
@@ -2920,12 +2858,8 @@ int tripod_3ups_energy(const prepared *m, const real *X, const real *V, real *ki
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, kinetic_out);
-        refuse(1, potential_out);
-    }
-    return code;
+    settled(&why, 1, kinetic_out);
+    return settled(&why, 1, potential_out);
 }
 
 int tripod_3ups_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
@@ -2943,12 +2877,8 @@ int tripod_3ups_condition(const prepared *m, const real *X, real *sigma_out, rea
     check(2, 1, lengths, why.overflow);
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, sigma_out);
-        refuse(NL, legs_out);
-    }
-    return code;
+    settled(&why, NV, sigma_out);
+    return settled(&why, NL, legs_out);
 }
 
 int tripod_3ups_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -2969,12 +2899,8 @@ int tripod_3ups_manipulability(const prepared *m, const real *X, real *measure_o
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, measure_out);
-        refuse(1, isotropy_out);
-    }
-    return code;
+    settled(&why, 1, measure_out);
+    return settled(&why, 1, isotropy_out);
 }
 
 int tripod_3ups_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
@@ -2995,12 +2921,8 @@ int tripod_3ups_singularity_distance(const prepared *m, const real *X, real *act
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, actuators_out);
-        refuse(1, legs_out);
-    }
-    return code;
+    settled(&why, 1, actuators_out);
+    return settled(&why, 1, legs_out);
 }
 
 static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
@@ -3020,11 +2942,7 @@ static int mismatch_one(const prepared *m, const real *X, const real *q_actuated
     }
     check(NU, 1, gap, why.overflow);
     copy(NU, gap, gap_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, gap_out);
-    }
-    return code;
+    return settled(&why, NU, gap_out);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
@@ -3036,11 +2954,7 @@ static int slope_one(const prepared *m, const real *X, real *slope_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, slope_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, slope_out);
-    }
-    return code;
+    return settled(&why, NV*NU, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -3102,11 +3016,7 @@ int tripod_3ups_forward_kinematics(const prepared *m, const real *q_actuated, co
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int tripod_3ups_dissipation(const prepared *m, const real *X, const real *V, real
@@ -3124,11 +3034,7 @@ int tripod_3ups_dissipation(const prepared *m, const real *X, const real *V, rea
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, dissipation_out);
-    }
-    return code;
+    return settled(&why, 1, dissipation_out);
 }
 
 int tripod_3ups_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
@@ -3145,11 +3051,7 @@ int tripod_3ups_momentum(const prepared *m, const real *X, const real *V, real *
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, momentum_out);
-    }
-    return code;
+    return settled(&why, NV, momentum_out);
 }
 
 int tripod_3ups_joint_margins(const prepared *m, const real *X, real *margins_out)
@@ -3165,11 +3067,7 @@ int tripod_3ups_joint_margins(const prepared *m, const real *X, real *margins_ou
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, margins_out);
-    }
-    return code;
+    return settled(&why, NJ, margins_out);
 }
 
 int tripod_3ups_within_limits(const prepared *m, const real *X, real *within_out)
@@ -3185,11 +3083,7 @@ int tripod_3ups_within_limits(const prepared *m, const real *X, real *within_out
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, within_out);
-    }
-    return code;
+    return settled(&why, 1, within_out);
 }
 
 int tripod_3ups_actuator_positions(const prepared *m, const real *X, real *q_out)
@@ -3202,11 +3096,7 @@ int tripod_3ups_actuator_positions(const prepared *m, const real *X, real *q_out
     take(NU, 1, tripod_3ups_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, q_out);
-    }
-    return code;
+    return settled(&why, NU, q_out);
 }
 
 int tripod_3ups_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
@@ -3223,11 +3113,7 @@ int tripod_3ups_actuator_rates(const prepared *m, const real *X, const real *V, 
     take(NU, 1, tripod_3ups_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qd_out);
-    }
-    return code;
+    return settled(&why, NU, qd_out);
 }
 
 int tripod_3ups_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
@@ -3246,11 +3132,7 @@ int tripod_3ups_actuator_accelerations(const prepared *m, const real *X, const r
     take(NU, 1, tripod_3ups_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qdd_out);
-    }
-    return code;
+    return settled(&why, NU, qdd_out);
 }
 
 int tripod_3ups_power(const prepared *m, const real *X, const real *V, const real *tau, real
@@ -3270,11 +3152,7 @@ int tripod_3ups_power(const prepared *m, const real *X, const real *V, const rea
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, power_out);
-    }
-    return code;
+    return settled(&why, 1, power_out);
 }
 
 int tripod_3ups_retract(const real *X, const real *step, real *X_moved_out)
@@ -3292,11 +3170,7 @@ int tripod_3ups_retract(const real *X, const real *step, real *X_moved_out)
     }
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_moved_out);
-    }
-    return code;
+    return settled(&why, NQ, X_moved_out);
 }
 
 int tripod_3ups_difference(const real *X0, const real *X1, real *step_out)
@@ -3314,11 +3188,7 @@ int tripod_3ups_difference(const real *X0, const real *X1, real *step_out)
     }
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, step_out);
-    }
-    return code;
+    return settled(&why, NV, step_out);
 }
 
 int tripod_3ups_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
@@ -3343,11 +3213,7 @@ int tripod_3ups_interpolate(const real *X0, const real *X1, const real *s, real 
     }
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 /* ---- one state, and batches ---- */

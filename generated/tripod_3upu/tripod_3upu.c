@@ -235,15 +235,12 @@ INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *t
 }
 
 /* Input that may be NULL, of a state and of states side by side: then all its entries are `none`. */
-INLINE const real *optional(size_t size, const real *x, real none, real *own, real *flags)
+INLINE const real *optional(size_t size, const real *x, const real *none, real *flags)
 {
-    for (size_t e = 0; e < size && !x; ++e) {
-        own[e] = none;
-    }
     if (x) {
         check(size, 1, x, flags);
     }
-    return x ? x : own;
+    return x ? x : none;
 }
 
 INLINE const real *optional_side_by_side(size_t size, const real *x, real none, real *lanes,
@@ -300,6 +297,16 @@ APART void refuse(size_t size, real *out)
     for (size_t e = 0; e < size; ++e) {
         out[e] = R(NAN);
     }
+}
+
+/* The status of a state; an output is refused where it is impossible. */
+INLINE int settled(const verdict *t, size_t size, real *out)
+{
+    const int code = judge(t);
+    if (code != OK) {
+        refuse(size, out);
+    }
+    return code;
 }
 
 /* Outputs of a state where the user wants them, and of states side by side, state by state. */
@@ -429,19 +436,19 @@ INLINE int all_rotations(const real *x, size_t n)
 /* ---- parameters ---- */
 
 const tripod_3upu_params tripod_3upu_default_params = {
-    {R(0.0), R(0.0), R(-9.81)},  /* gravity */
+    {0, 0, R(-9.81)},  /* gravity */
     R(12.0),  /* platform_mass */
-    {R(0.0), R(0.0), R(0.04)},  /* platform_centre_of_mass */
-    {{R(0.35), R(0.0), R(0.0)}, {R(0.0), R(0.35), R(0.0)}, {R(0.0), R(0.0), R(0.6)}},  /* platform_inertia */
+    {0, 0, R(0.04)},  /* platform_centre_of_mass */
+    {{R(0.35), 0, 0}, {0, R(0.35), 0}, {0, 0, R(0.6)}},  /* platform_inertia */
     {  /* upu_base_point */
         {R(-0.10595790974301705), R(0.1406892967605063), R(0.04192852943596215)},
         {R(-0.06886155016365766), R(-0.16210688994960454), R(0.04192852943596215)},
         {R(0.1748194599066747), R(0.021417593189098194), R(0.04192852943596215)},
     },
     {  /* upu_base_frame */
-        {{R(0.0), R(0.9800665778412416), R(-0.19866933079506122)}, {R(0.0), R(0.19866933079506122), R(0.9800665778412416)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.6620859763419978), R(-0.7494278884130636)}, {R(0.0), R(0.7494278884130636), R(-0.6620859763419978)}, {R(1.0), R(0.0), R(0.0)}},
-        {{R(0.0), R(-0.317980601499244), R(0.9480972192081247)}, {R(0.0), R(-0.9480972192081247), R(-0.317980601499244)}, {R(1.0), R(0.0), R(0.0)}},
+        {{0, R(0.9800665778412416), R(-0.19866933079506122)}, {0, R(0.19866933079506122), R(0.9800665778412416)}, {1, 0, 0}},
+        {{0, R(-0.6620859763419978), R(-0.7494278884130636)}, {0, R(0.7494278884130636), R(-0.6620859763419978)}, {1, 0, 0}},
+        {{0, R(-0.317980601499244), R(0.9480972192081247)}, {0, R(-0.9480972192081247), R(-0.317980601499244)}, {1, 0, 0}},
     },
     {  /* upu_platform_point */
         {R(0.29401997335237245), R(0.05960079923851836), R(-0.02)},
@@ -449,9 +456,9 @@ const tripod_3upu_params tripod_3upu_default_params = {
         {R(-0.0953941804497732), R(-0.28442916576243743), R(-0.02)},
     },
     {  /* upu_platform_joint_axis_platform */
-        {R(-0.1986693307950612), R(0.9800665778412416), R(0.0)},
-        {R(-0.7494278884130637), R(-0.662085976341998), R(0.0)},
-        {R(0.9480972192081248), R(-0.31798060149924406), R(0.0)},
+        {R(-0.1986693307950612), R(0.9800665778412416), 0},
+        {R(-0.7494278884130637), R(-0.662085976341998), 0},
+        {R(0.9480972192081248), R(-0.31798060149924406), 0},
     },
     {  /* upu_link2_mass */
         R(2.4),
@@ -459,14 +466,14 @@ const tripod_3upu_params tripod_3upu_default_params = {
         R(2.4),
     },
     {  /* upu_link2_centre_of_mass */
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
-        {R(0.18), R(0.0), R(0.0)},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
+        {R(0.18), 0, 0},
     },
     {  /* upu_link2_inertia */
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
-        {{R(0.0010799999999999998), R(0.0), R(0.0)}, {R(0.0), R(0.026459999999999997), R(0.0)}, {R(0.0), R(0.0), R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
+        {{R(0.0010799999999999998), 0, 0}, {0, R(0.026459999999999997), 0}, {0, 0, R(0.026459999999999997)}},
     },
     {  /* upu_link3_mass */
         R(1.1),
@@ -474,18 +481,18 @@ const tripod_3upu_params tripod_3upu_default_params = {
         R(1.1),
     },
     {  /* upu_link3_centre_of_mass */
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
-        {R(-0.22), R(0.0), R(0.0)},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
+        {R(-0.22), 0, 0},
     },
     {  /* upu_link3_inertia */
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
-        {{R(0.00022000000000000003), R(0.0), R(0.0)}, {R(0.0), R(0.01785666666666667), R(0.0)}, {R(0.0), R(0.0), R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
+        {{R(0.00022000000000000003), 0, 0}, {0, R(0.01785666666666667), 0}, {0, 0, R(0.01785666666666667)}},
     },
 };
 
-const tripod_3upu_real tripod_3upu_HOME_X[TRIPOD_3UPU_NQ] = {R(-3.691591319482669e-18), R(-2.3397411650985803e-18), R(0.75), R(0.0), R(0.0), R(0.0), R(1.0)};
+const tripod_3upu_real tripod_3upu_HOME_X[TRIPOD_3UPU_NQ] = {R(-3.691591319482669e-18), R(-2.3397411650985803e-18), R(0.75), 0, 0, 0, 1};
 const tripod_3upu_real tripod_3upu_HOME_Q[TRIPOD_3UPU_NJ] = {R(0.5), R(0.19999999999999998), R(0.8), R(0.5), R(0.2), R(0.8), R(0.5), R(0.19999999999999998), R(0.8)};
 const size_t tripod_3upu_ACTUATED[TRIPOD_3UPU_NU] = {2, 5, 8};
 const char *const tripod_3upu_ACTUATOR_NAMES[TRIPOD_3UPU_NU] = {
@@ -521,6 +528,9 @@ static int acceptable(const tripod_3upu_params *p)
     ok &= all_inertias(&p->upu_link3_inertia[0][0][0], LEGS_OF_upu);
     return ok;
 }
+
+#define KEEP(name) model->name = name
+#define KEEP_OF_LEG(name) model->name[leg] = name
 
 int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *model)
 {
@@ -577,26 +587,26 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
     const real spread_t = R(0.3333333333333333)*root(3);
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = R(1.385640646055102)*spread_t;
-    model->J_star_in_platform_xx = J_star_in_platform_xx;
-    model->J_star_in_platform_xy = J_star_in_platform_xy;
-    model->J_star_in_platform_xz = J_star_in_platform_xz;
-    model->J_star_in_platform_yy = J_star_in_platform_yy;
-    model->J_star_in_platform_yz = J_star_in_platform_yz;
-    model->J_star_in_platform_zz = J_star_in_platform_zz;
-    model->J_star_t_6 = J_star_t_6;
-    model->J_star_t_8 = J_star_t_8;
-    model->Z_p_t = Z_p_t;
-    model->Z_p_t_2 = Z_p_t_2;
-    model->Z_p_t_3 = Z_p_t_3;
-    model->gravity_x = gravity_x;
-    model->gravity_y = gravity_y;
-    model->gravity_z = gravity_z;
-    model->h_star_in_platform_x = h_star_in_platform_x;
-    model->h_star_in_platform_y = h_star_in_platform_y;
-    model->h_star_in_platform_z = h_star_in_platform_z;
-    model->legs_size = legs_size;
-    model->platform_mass = platform_mass;
-    model->spread_t = spread_t;
+    KEEP(J_star_in_platform_xx);
+    KEEP(J_star_in_platform_xy);
+    KEEP(J_star_in_platform_xz);
+    KEEP(J_star_in_platform_yy);
+    KEEP(J_star_in_platform_yz);
+    KEEP(J_star_in_platform_zz);
+    KEEP(J_star_t_6);
+    KEEP(J_star_t_8);
+    KEEP(Z_p_t);
+    KEEP(Z_p_t_2);
+    KEEP(Z_p_t_3);
+    KEEP(gravity_x);
+    KEEP(gravity_y);
+    KEEP(gravity_z);
+    KEEP(h_star_in_platform_x);
+    KEEP(h_star_in_platform_y);
+    KEEP(h_star_in_platform_z);
+    KEEP(legs_size);
+    KEEP(platform_mass);
+    KEEP(spread_t);
     for (size_t leg = 0; leg < FILLED(LEGS_OF_upu); ++leg) {
         const size_t own = leg < LEGS_OF_upu ? leg : 0;
         const real upu_base_point_x = params->upu_base_point[own][0];
@@ -699,49 +709,49 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
             upu_base_frame_yy*upu_base_point_y + upu_base_frame_zy*upu_base_point_z;
         const real upu_potential_t_3 = upu_base_frame_xz*upu_base_point_x +
             upu_base_frame_yz*upu_base_point_y + upu_base_frame_zz*upu_base_point_z;
-        model->upu_J_group_2_in_axes2_xx[leg] = upu_J_group_2_in_axes2_xx;
-        model->upu_J_group_2_in_axes2_xy[leg] = upu_J_group_2_in_axes2_xy;
-        model->upu_J_group_2_in_axes2_xz[leg] = upu_J_group_2_in_axes2_xz;
-        model->upu_J_group_2_in_axes2_yy[leg] = upu_J_group_2_in_axes2_yy;
-        model->upu_J_group_2_in_axes2_yz[leg] = upu_J_group_2_in_axes2_yz;
-        model->upu_J_group_2_in_axes2_zz[leg] = upu_J_group_2_in_axes2_zz;
-        model->upu_Sigma_2_in_axes2_xx[leg] = upu_Sigma_2_in_axes2_xx;
-        model->upu_Sigma_2_in_axes2_yy[leg] = upu_Sigma_2_in_axes2_yy;
-        model->upu_Sigma_2_in_axes2_zz[leg] = upu_Sigma_2_in_axes2_zz;
-        model->upu_acc_3_t[leg] = upu_acc_3_t;
-        model->upu_acc_3_t_2[leg] = upu_acc_3_t_2;
-        model->upu_acc_3_t_3[leg] = upu_acc_3_t_3;
-        model->upu_base_frame_xx[leg] = upu_base_frame_xx;
-        model->upu_base_frame_xy[leg] = upu_base_frame_xy;
-        model->upu_base_frame_xz[leg] = upu_base_frame_xz;
-        model->upu_base_frame_yx[leg] = upu_base_frame_yx;
-        model->upu_base_frame_yy[leg] = upu_base_frame_yy;
-        model->upu_base_frame_yz[leg] = upu_base_frame_yz;
-        model->upu_base_frame_zx[leg] = upu_base_frame_zx;
-        model->upu_base_frame_zy[leg] = upu_base_frame_zy;
-        model->upu_base_frame_zz[leg] = upu_base_frame_zz;
-        model->upu_base_point_x[leg] = upu_base_point_x;
-        model->upu_base_point_y[leg] = upu_base_point_y;
-        model->upu_base_point_z[leg] = upu_base_point_z;
-        model->upu_branch_1[leg] = upu_branch_1;
-        model->upu_branch_2[leg] = upu_branch_2;
-        model->upu_h_2_in_spec2_x[leg] = upu_h_2_in_spec2_x;
-        model->upu_h_2_in_spec2_y[leg] = upu_h_2_in_spec2_y;
-        model->upu_h_2_in_spec2_z[leg] = upu_h_2_in_spec2_z;
-        model->upu_h_3_in_spec2_x[leg] = upu_h_3_in_spec2_x;
-        model->upu_h_3_in_spec2_y[leg] = upu_h_3_in_spec2_y;
-        model->upu_h_3_in_spec2_z[leg] = upu_h_3_in_spec2_z;
-        model->upu_link2_mass[leg] = upu_link2_mass;
-        model->upu_link3_mass[leg] = upu_link3_mass;
-        model->upu_platform_joint_axis_platform_x[leg] = upu_platform_joint_axis_platform_x;
-        model->upu_platform_joint_axis_platform_y[leg] = upu_platform_joint_axis_platform_y;
-        model->upu_platform_joint_axis_platform_z[leg] = upu_platform_joint_axis_platform_z;
-        model->upu_platform_point_x[leg] = upu_platform_point_x;
-        model->upu_platform_point_y[leg] = upu_platform_point_y;
-        model->upu_platform_point_z[leg] = upu_platform_point_z;
-        model->upu_potential_t[leg] = upu_potential_t;
-        model->upu_potential_t_2[leg] = upu_potential_t_2;
-        model->upu_potential_t_3[leg] = upu_potential_t_3;
+        KEEP_OF_LEG(upu_J_group_2_in_axes2_xx);
+        KEEP_OF_LEG(upu_J_group_2_in_axes2_xy);
+        KEEP_OF_LEG(upu_J_group_2_in_axes2_xz);
+        KEEP_OF_LEG(upu_J_group_2_in_axes2_yy);
+        KEEP_OF_LEG(upu_J_group_2_in_axes2_yz);
+        KEEP_OF_LEG(upu_J_group_2_in_axes2_zz);
+        KEEP_OF_LEG(upu_Sigma_2_in_axes2_xx);
+        KEEP_OF_LEG(upu_Sigma_2_in_axes2_yy);
+        KEEP_OF_LEG(upu_Sigma_2_in_axes2_zz);
+        KEEP_OF_LEG(upu_acc_3_t);
+        KEEP_OF_LEG(upu_acc_3_t_2);
+        KEEP_OF_LEG(upu_acc_3_t_3);
+        KEEP_OF_LEG(upu_base_frame_xx);
+        KEEP_OF_LEG(upu_base_frame_xy);
+        KEEP_OF_LEG(upu_base_frame_xz);
+        KEEP_OF_LEG(upu_base_frame_yx);
+        KEEP_OF_LEG(upu_base_frame_yy);
+        KEEP_OF_LEG(upu_base_frame_yz);
+        KEEP_OF_LEG(upu_base_frame_zx);
+        KEEP_OF_LEG(upu_base_frame_zy);
+        KEEP_OF_LEG(upu_base_frame_zz);
+        KEEP_OF_LEG(upu_base_point_x);
+        KEEP_OF_LEG(upu_base_point_y);
+        KEEP_OF_LEG(upu_base_point_z);
+        KEEP_OF_LEG(upu_branch_1);
+        KEEP_OF_LEG(upu_branch_2);
+        KEEP_OF_LEG(upu_h_2_in_spec2_x);
+        KEEP_OF_LEG(upu_h_2_in_spec2_y);
+        KEEP_OF_LEG(upu_h_2_in_spec2_z);
+        KEEP_OF_LEG(upu_h_3_in_spec2_x);
+        KEEP_OF_LEG(upu_h_3_in_spec2_y);
+        KEEP_OF_LEG(upu_h_3_in_spec2_z);
+        KEEP_OF_LEG(upu_link2_mass);
+        KEEP_OF_LEG(upu_link3_mass);
+        KEEP_OF_LEG(upu_platform_joint_axis_platform_x);
+        KEEP_OF_LEG(upu_platform_joint_axis_platform_y);
+        KEEP_OF_LEG(upu_platform_joint_axis_platform_z);
+        KEEP_OF_LEG(upu_platform_point_x);
+        KEEP_OF_LEG(upu_platform_point_y);
+        KEEP_OF_LEG(upu_platform_point_z);
+        KEEP_OF_LEG(upu_potential_t);
+        KEEP_OF_LEG(upu_potential_t_2);
+        KEEP_OF_LEG(upu_potential_t_3);
         b_c_upu_in_platform_x += leg < LEGS_OF_upu ? upu_platform_point_x : 0;
         b_c_upu_in_platform_y += leg < LEGS_OF_upu ? upu_platform_point_y : 0;
         b_c_upu_in_platform_z += leg < LEGS_OF_upu ? upu_platform_point_z : 0;
@@ -750,9 +760,9 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
     const real b_c_in_platform_x = R(0.3333333333333333)*b_c_upu_in_platform_x;
     const real b_c_in_platform_y = R(0.3333333333333333)*b_c_upu_in_platform_y;
     const real b_c_in_platform_z = R(0.3333333333333333)*b_c_upu_in_platform_z;
-    model->b_c_in_platform_x = b_c_in_platform_x;
-    model->b_c_in_platform_y = b_c_in_platform_y;
-    model->b_c_in_platform_z = b_c_in_platform_z;
+    KEEP(b_c_in_platform_x);
+    KEEP(b_c_in_platform_y);
+    KEEP(b_c_in_platform_z);
     return OK;
 }
 
@@ -1519,10 +1529,10 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real R_zy = quaternion_wx + quaternion_yz;
     const real R_zz = 1 - quaternion_xx - quaternion_yy;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = R_xx*m->h_star_in_platform_x + R_xy*m->h_star_in_platform_y +
-        R_xz*m->h_star_in_platform_z;
-    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yy*m->h_star_in_platform_y +
-        R_yz*m->h_star_in_platform_z;
+    const real h_star_x = R_xy*m->h_star_in_platform_y + R_xz*m->h_star_in_platform_z +
+        R_xx*m->h_star_in_platform_x;
+    const real h_star_y = R_yx*m->h_star_in_platform_x + R_yz*m->h_star_in_platform_z +
+        R_yy*m->h_star_in_platform_y;
     const real h_star_z = R_zx*m->h_star_in_platform_x + R_zy*m->h_star_in_platform_y +
         R_zz*m->h_star_in_platform_z;
     v->quaternion_scale = quaternion_scale;
@@ -1546,8 +1556,8 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
     const real omega_x = V[3*w + k];
     const real omega_y = V[4*w + k];
     const real omega_z = V[5*w + k];
-    const real omega_in_platform_x = v->R_xx*omega_x + v->R_yx*omega_y + v->R_zx*omega_z;
-    const real omega_in_platform_y = v->R_xy*omega_x + v->R_yy*omega_y + v->R_zy*omega_z;
+    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
     const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
     v->omega_in_platform_x = omega_in_platform_x;
     v->omega_in_platform_y = omega_in_platform_y;
@@ -1557,24 +1567,24 @@ INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
 INLINE void stage_M_dynamics(const prepared *m, values *v)
 {
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_t = m->J_star_in_platform_xy*v->R_xx + m->J_star_in_platform_yz*v->R_xz
-        - m->J_star_t_6*v->R_xy;
+    const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_6*v->R_xy +
+        m->J_star_in_platform_xy*v->R_xx;
     const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
         m->J_star_in_platform_yz*v->R_yz - m->J_star_t_6*v->R_yy;
-    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx +
-        m->J_star_in_platform_yz*v->R_zz - m->J_star_t_6*v->R_zy;
+    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx - m->J_star_t_6*v->R_zy +
+        m->J_star_in_platform_yz*v->R_zz;
     const real J_star_t_4 = m->J_star_t_8*v->R_xz - m->J_star_in_platform_xz*v->R_xx;
     const real J_star_t_5 = m->J_star_t_8*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
     const real J_star_t_7 = m->J_star_t_8*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_9 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
     const real J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_9;
-    const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
-        J_star_t_5*v->R_xz;
+    const real J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
+        J_star_t_4*v->R_yz;
     const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_7*v->R_xz;
     const real J_star_t_10 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
     const real J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_10;
-    const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
+    const real J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_7*v->R_yz;
     const real J_star_t_11 = J_star_t_3*v->R_zy - J_star_t_7*v->R_zz;
     const real J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_11;
@@ -1599,10 +1609,10 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real Z_p_y = Z_p_t_4*omega_z - m->Z_p_t_2 - Z_p_t_6*omega_x;
     const real Z_p_z = Z_p_t_5*omega_x - m->Z_p_t_3 - Z_p_t_4*omega_y;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real g_in_platform_x = v->R_xx*m->gravity_x + v->R_yx*m->gravity_y +
-        v->R_zx*m->gravity_z;
-    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_yy*m->gravity_y +
-        v->R_zy*m->gravity_z;
+    const real g_in_platform_x = v->R_yx*m->gravity_y + v->R_zx*m->gravity_z +
+        v->R_xx*m->gravity_x;
+    const real g_in_platform_y = v->R_xy*m->gravity_x + v->R_zy*m->gravity_z +
+        v->R_yy*m->gravity_y;
     const real g_in_platform_z = v->R_xz*m->gravity_x + v->R_yz*m->gravity_y +
         v->R_zz*m->gravity_z;
     const real Z_q_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
@@ -1614,15 +1624,15 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     const real Z_q_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
         m->J_star_in_platform_yz*v->omega_in_platform_y +
         m->J_star_in_platform_zz*v->omega_in_platform_z;
-    const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
-        g_in_platform_y*m->h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
-        g_in_platform_z*m->h_star_in_platform_y;
-    const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
-        g_in_platform_z*m->h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
-        g_in_platform_x*m->h_star_in_platform_z;
-    const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
-        g_in_platform_x*m->h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
-        g_in_platform_y*m->h_star_in_platform_x;
+    const real Z_q_in_platform_x = g_in_platform_y*m->h_star_in_platform_z -
+        g_in_platform_z*m->h_star_in_platform_y + Z_q_t_3*v->omega_in_platform_y -
+        Z_q_t_2*v->omega_in_platform_z;
+    const real Z_q_in_platform_y = g_in_platform_z*m->h_star_in_platform_x -
+        g_in_platform_x*m->h_star_in_platform_z + Z_q_t*v->omega_in_platform_z -
+        Z_q_t_3*v->omega_in_platform_x;
+    const real Z_q_in_platform_z = g_in_platform_x*m->h_star_in_platform_y -
+        g_in_platform_y*m->h_star_in_platform_x + Z_q_t_2*v->omega_in_platform_x -
+        Z_q_t*v->omega_in_platform_y;
     const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
         v->R_xz*Z_q_in_platform_z;
     const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
@@ -1665,24 +1675,24 @@ INLINE void stage_upu_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
-    const real upu_q_x = R_xx*m->upu_platform_point_x[i] + R_xy*m->upu_platform_point_y[i] +
-        R_xz*m->upu_platform_point_z[i];
+    const real upu_q_x = R_xy*m->upu_platform_point_y[i] + R_xz*m->upu_platform_point_z[i] +
+        R_xx*m->upu_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
-    const real upu_q_y = R_yx*m->upu_platform_point_x[i] + R_yy*m->upu_platform_point_y[i] +
-        R_yz*m->upu_platform_point_z[i];
+    const real upu_q_y = R_yx*m->upu_platform_point_x[i] + R_yz*m->upu_platform_point_z[i] +
+        R_yy*m->upu_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real upu_q_z = R_zx*m->upu_platform_point_x[i] + R_zy*m->upu_platform_point_y[i] +
         R_zz*m->upu_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real upu_S_x = t_x + upu_q_x - m->upu_base_point_x[i];
+    const real upu_S_x = t_x - m->upu_base_point_x[i] + upu_q_x;
     const real t_y = X[1*w + j];
-    const real upu_S_y = t_y + upu_q_y - m->upu_base_point_y[i];
+    const real upu_S_y = t_y - m->upu_base_point_y[i] + upu_q_y;
     const real t_z = X[2*w + j];
-    const real upu_S_z = t_z + upu_q_z - m->upu_base_point_z[i];
+    const real upu_S_z = t_z - m->upu_base_point_z[i] + upu_q_z;
     const real upu_S_in_turn1_x = upu_S_x*m->upu_base_frame_xx[i] +
         upu_S_y*m->upu_base_frame_yx[i] + upu_S_z*m->upu_base_frame_zx[i];
     const real upu_S_in_turn1_y = upu_S_x*m->upu_base_frame_xy[i] +
@@ -1714,12 +1724,12 @@ INLINE void stage_upu_X(const prepared *m, size_t w, size_t i, size_t j, const r
         m->upu_base_frame_zx[i]*upu_s_1;
     const real upu_S_dot_t = upu_c_1*upu_e_1_in_axes2_x;
     const real upu_S_dot_t_2 = upu_e_1_in_axes2_x*upu_s_1;
-    const real axis_y_upu_axes2_x = upu_S_dot_t*m->upu_base_frame_xx[i] +
-        upu_S_dot_t_2*m->upu_base_frame_xy[i] - m->upu_base_frame_xz[i]*upu_c_2;
-    const real axis_y_upu_axes2_y = upu_S_dot_t*m->upu_base_frame_yx[i] +
-        upu_S_dot_t_2*m->upu_base_frame_yy[i] - m->upu_base_frame_yz[i]*upu_c_2;
-    const real axis_y_upu_axes2_z = upu_S_dot_t*m->upu_base_frame_zx[i] +
-        upu_S_dot_t_2*m->upu_base_frame_zy[i] - m->upu_base_frame_zz[i]*upu_c_2;
+    const real axis_y_upu_axes2_x = upu_S_dot_t*m->upu_base_frame_xx[i] -
+        m->upu_base_frame_xz[i]*upu_c_2 + upu_S_dot_t_2*m->upu_base_frame_xy[i];
+    const real axis_y_upu_axes2_y = upu_S_dot_t*m->upu_base_frame_yx[i] -
+        m->upu_base_frame_yz[i]*upu_c_2 + upu_S_dot_t_2*m->upu_base_frame_yy[i];
+    const real axis_y_upu_axes2_z = upu_S_dot_t*m->upu_base_frame_zx[i] -
+        m->upu_base_frame_zz[i]*upu_c_2 + upu_S_dot_t_2*m->upu_base_frame_zy[i];
     const real axis_x_upu_axes2_x = axis_y_upu_axes2_y*axis_z_upu_axes2_z -
         axis_y_upu_axes2_z*axis_z_upu_axes2_y;
     const real axis_x_upu_axes2_y = axis_y_upu_axes2_z*axis_z_upu_axes2_x -
@@ -1728,24 +1738,24 @@ INLINE void stage_upu_X(const prepared *m, size_t w, size_t i, size_t j, const r
         axis_y_upu_axes2_y*axis_z_upu_axes2_x;
     /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
     const real upu_n_m1_t =
-        m->upu_platform_joint_axis_platform_x[i]*(R_xx*m->upu_base_frame_xx[i] +
-        R_yx*m->upu_base_frame_yx[i] + R_zx*m->upu_base_frame_zx[i]) +
+        m->upu_platform_joint_axis_platform_x[i]*(R_yx*m->upu_base_frame_yx[i] +
+        R_zx*m->upu_base_frame_zx[i] + R_xx*m->upu_base_frame_xx[i]) +
         m->upu_platform_joint_axis_platform_y[i]*(R_xy*m->upu_base_frame_xx[i] +
-        R_yy*m->upu_base_frame_yx[i] + R_zy*m->upu_base_frame_zx[i]) +
+        R_zy*m->upu_base_frame_zx[i] + R_yy*m->upu_base_frame_yx[i]) +
         m->upu_platform_joint_axis_platform_z[i]*(R_xz*m->upu_base_frame_xx[i] +
         R_yz*m->upu_base_frame_yx[i] + R_zz*m->upu_base_frame_zx[i]);
     const real upu_n_m1_t_2 =
-        m->upu_platform_joint_axis_platform_x[i]*(R_xx*m->upu_base_frame_xy[i] +
-        R_yx*m->upu_base_frame_yy[i] + R_zx*m->upu_base_frame_zy[i]) +
+        m->upu_platform_joint_axis_platform_x[i]*(R_yx*m->upu_base_frame_yy[i] +
+        R_zx*m->upu_base_frame_zy[i] + R_xx*m->upu_base_frame_xy[i]) +
         m->upu_platform_joint_axis_platform_y[i]*(R_xy*m->upu_base_frame_xy[i] +
-        R_yy*m->upu_base_frame_yy[i] + R_zy*m->upu_base_frame_zy[i]) +
+        R_zy*m->upu_base_frame_zy[i] + R_yy*m->upu_base_frame_yy[i]) +
         m->upu_platform_joint_axis_platform_z[i]*(R_xz*m->upu_base_frame_xy[i] +
         R_yz*m->upu_base_frame_yy[i] + R_zz*m->upu_base_frame_zy[i]);
     const real upu_n_m1_t_3 =
-        m->upu_platform_joint_axis_platform_x[i]*(R_xx*m->upu_base_frame_xz[i] +
-        R_yx*m->upu_base_frame_yz[i] + R_zx*m->upu_base_frame_zz[i]) +
+        m->upu_platform_joint_axis_platform_x[i]*(R_yx*m->upu_base_frame_yz[i] +
+        R_zx*m->upu_base_frame_zz[i] + R_xx*m->upu_base_frame_xz[i]) +
         m->upu_platform_joint_axis_platform_y[i]*(R_xy*m->upu_base_frame_xz[i] +
-        R_yy*m->upu_base_frame_yz[i] + R_zy*m->upu_base_frame_zz[i]) +
+        R_zy*m->upu_base_frame_zz[i] + R_yy*m->upu_base_frame_yz[i]) +
         m->upu_platform_joint_axis_platform_z[i]*(R_xz*m->upu_base_frame_xz[i] +
         R_yz*m->upu_base_frame_yz[i] + R_zz*m->upu_base_frame_zz[i]);
     const real upu_n_m1_t_4 = upu_c_1*upu_n_m1_t + upu_n_m1_t_2*upu_s_1;
@@ -1864,8 +1874,8 @@ INLINE void stage_upu_V_X(size_t w, size_t j, const real *V, values_upu *v)
     const real upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2;
     /* (upu-nd_m1) */
     const real upu_nd_m1_in_axes2_x = v->upu_end_p1_in_axes2_z*upu_omega_in_axes2_x -
-        v->upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x -
-        v->upu_n_m1_in_axes2_y*upu_omega_in_axes2_z;
+        v->upu_n_m1_in_axes2_y*upu_omega_in_axes2_z -
+        v->upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x;
     const real upu_nd_m1_in_axes2_y = v->upu_end_p1_in_axes2_z*upu_omega_in_axes2_y -
         v->upu_end_p1_in_axes2_y*upu_omega_in_axes2_z -
         v->upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y;
@@ -1898,13 +1908,13 @@ INLINE void stage_upu_A_V_X(size_t w, size_t j, const real *V, values_upu *v)
     /* (upu-S_ddot) acceleration of the connection point */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
-    const real upu_S_ddot_x = v->upu_a_p_x + omega_y*v->upu_S_dot_t_5 -
-        omega_z*v->upu_S_dot_t_4;
+    const real upu_S_ddot_x = omega_y*v->upu_S_dot_t_5 - omega_z*v->upu_S_dot_t_4 +
+        v->upu_a_p_x;
     const real omega_x = V[3*w + j];
-    const real upu_S_ddot_y = v->upu_a_p_y + omega_z*v->upu_S_dot_t_3 -
-        omega_x*v->upu_S_dot_t_5;
-    const real upu_S_ddot_z = v->upu_a_p_z + omega_x*v->upu_S_dot_t_4 -
-        omega_y*v->upu_S_dot_t_3;
+    const real upu_S_ddot_y = omega_z*v->upu_S_dot_t_3 - omega_x*v->upu_S_dot_t_5 +
+        v->upu_a_p_y;
+    const real upu_S_ddot_z = omega_x*v->upu_S_dot_t_4 - omega_y*v->upu_S_dot_t_3 +
+        v->upu_a_p_z;
     v->upu_S_ddot_x = upu_S_ddot_x;
     v->upu_S_ddot_y = upu_S_ddot_y;
     v->upu_S_ddot_z = upu_S_ddot_z;
@@ -1915,12 +1925,12 @@ INLINE void stage_upu_H_condition(const prepared *m, size_t i, values_upu *v)
     /* (upu-w_3) force part of reciprocal wrench 3 */
     const real upu_w_3_t = v->upu_c_1*v->upu_e_1_in_axes2_x;
     const real upu_w_3_t_2 = v->upu_e_1_in_axes2_x*v->upu_s_1;
-    const real axis_y_upu_axes2_x = m->upu_base_frame_xx[i]*upu_w_3_t +
-        m->upu_base_frame_xy[i]*upu_w_3_t_2 - m->upu_base_frame_xz[i]*v->upu_c_2;
-    const real axis_y_upu_axes2_y = m->upu_base_frame_yx[i]*upu_w_3_t +
-        m->upu_base_frame_yy[i]*upu_w_3_t_2 - m->upu_base_frame_yz[i]*v->upu_c_2;
-    const real axis_y_upu_axes2_z = m->upu_base_frame_zx[i]*upu_w_3_t +
-        m->upu_base_frame_zy[i]*upu_w_3_t_2 - m->upu_base_frame_zz[i]*v->upu_c_2;
+    const real axis_y_upu_axes2_x = m->upu_base_frame_xx[i]*upu_w_3_t -
+        m->upu_base_frame_xz[i]*v->upu_c_2 + m->upu_base_frame_xy[i]*upu_w_3_t_2;
+    const real axis_y_upu_axes2_y = m->upu_base_frame_yx[i]*upu_w_3_t -
+        m->upu_base_frame_yz[i]*v->upu_c_2 + m->upu_base_frame_yy[i]*upu_w_3_t_2;
+    const real axis_y_upu_axes2_z = m->upu_base_frame_zx[i]*upu_w_3_t -
+        m->upu_base_frame_zz[i]*v->upu_c_2 + m->upu_base_frame_zy[i]*upu_w_3_t_2;
     const real upu_w_3_x = axis_y_upu_axes2_y*v->axis_z_upu_axes2_z -
         axis_y_upu_axes2_z*v->axis_z_upu_axes2_y;
     const real upu_w_3_y = axis_y_upu_axes2_z*v->axis_z_upu_axes2_x -
@@ -1980,19 +1990,19 @@ INLINE void stage_upu_M_dynamics(const prepared *m, size_t i, values_upu *v)
         v->upu_c_2*(m->upu_J_group_2_in_axes2_xy[i]*upu_dalpha_alpha_1_in_axes2_xx -
         m->upu_J_group_2_in_axes2_yy[i]*upu_dalpha_alpha_1_t_2 -
         upu_dalpha_acc_3_in_axes2_zx*m->upu_h_3_in_spec2_x[i] -
-        v->upu_q_3*(upu_dalpha_acc_3_in_axes2_zx*m->upu_link3_mass[i] +
-        upu_dalpha_alpha_1_t_2*m->upu_h_3_in_spec2_x[i] -
-        upu_dalpha_alpha_1_in_axes2_xx*m->upu_h_3_in_spec2_z[i]));
+        v->upu_q_3*(upu_dalpha_alpha_1_t_2*m->upu_h_3_in_spec2_x[i] -
+        upu_dalpha_alpha_1_in_axes2_xx*m->upu_h_3_in_spec2_z[i] +
+        upu_dalpha_acc_3_in_axes2_zx*m->upu_link3_mass[i]));
     const real upu_dalpha_Gamma_1_in_axes2_y =
         v->upu_e_1_in_axes2_x*(m->upu_J_group_2_in_axes2_xy[i]*upu_dalpha_alpha_1_in_axes2_yy
-        + upu_dalpha_acc_3_t*m->upu_h_3_in_spec2_z[i] -
-        m->upu_J_group_2_in_axes2_xx[i]*upu_dalpha_alpha_1_t) -
-        v->upu_c_2*(m->upu_J_group_2_in_axes2_yy[i]*upu_dalpha_alpha_1_in_axes2_yy +
+        - m->upu_J_group_2_in_axes2_xx[i]*upu_dalpha_alpha_1_t +
+        upu_dalpha_acc_3_t*m->upu_h_3_in_spec2_z[i]) -
+        v->upu_c_2*(m->upu_J_group_2_in_axes2_yy[i]*upu_dalpha_alpha_1_in_axes2_yy -
+        m->upu_J_group_2_in_axes2_xy[i]*upu_dalpha_alpha_1_t +
         upu_dalpha_acc_3_t*m->upu_h_3_in_spec2_x[i] -
-        m->upu_J_group_2_in_axes2_xy[i]*upu_dalpha_alpha_1_t -
         v->upu_q_3*(upu_dalpha_alpha_1_t*m->upu_h_3_in_spec2_z[i] -
-        upu_dalpha_acc_3_t*m->upu_link3_mass[i] -
-        upu_dalpha_alpha_1_in_axes2_yy*m->upu_h_3_in_spec2_x[i]));
+        upu_dalpha_alpha_1_in_axes2_yy*m->upu_h_3_in_spec2_x[i] -
+        upu_dalpha_acc_3_t*m->upu_link3_mass[i]));
     /* (upu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
     const real upu_d_Gamma_1_in_axes2_z =
@@ -2002,9 +2012,9 @@ INLINE void stage_upu_M_dynamics(const prepared *m, size_t i, values_upu *v)
         v->upu_c_2*(m->upu_J_group_2_in_axes2_xy[i]*upu_d_alpha_1_in_axes2_xz -
         m->upu_J_group_2_in_axes2_yy[i]*upu_d_alpha_1_t -
         upu_d_acc_3_in_axes2_zz*m->upu_h_3_in_spec2_x[i] -
-        v->upu_q_3*(upu_d_acc_3_in_axes2_zz*m->upu_link3_mass[i] +
-        upu_d_alpha_1_t*m->upu_h_3_in_spec2_x[i] -
-        upu_d_alpha_1_in_axes2_xz*m->upu_h_3_in_spec2_z[i]));
+        v->upu_q_3*(upu_d_alpha_1_t*m->upu_h_3_in_spec2_x[i] -
+        upu_d_alpha_1_in_axes2_xz*m->upu_h_3_in_spec2_z[i] +
+        upu_d_acc_3_in_axes2_zz*m->upu_link3_mass[i]));
     /* (upu-dalpha_G) coefficient of the acceleration in: force at the connection point that balances
        the leg's inertia and weight along all degrees of freedom */
     const real upu_dalpha_G_in_axes2_zx = upu_dalpha_Gamma_1_in_axes2_x*v->upu_w_1_in_axes2_z;
@@ -2014,9 +2024,9 @@ INLINE void stage_upu_M_dynamics(const prepared *m, size_t i, values_upu *v)
         m->upu_J_group_2_in_axes2_yz[i]*upu_dalpha_alpha_1_t_2 -
         upu_dalpha_alpha_1_in_axes2_xx*m->upu_h_3_in_spec2_y[i]*v->upu_q_3);
     const real upu_dalpha_G_in_axes2_yy =
-        v->inv_upu_q_3*(m->upu_J_group_2_in_axes2_yz[i]*upu_dalpha_alpha_1_in_axes2_yy +
-        upu_dalpha_alpha_1_t*m->upu_h_3_in_spec2_y[i]*v->upu_q_3 -
-        m->upu_J_group_2_in_axes2_xz[i]*upu_dalpha_alpha_1_t);
+        v->inv_upu_q_3*(m->upu_J_group_2_in_axes2_yz[i]*upu_dalpha_alpha_1_in_axes2_yy -
+        m->upu_J_group_2_in_axes2_xz[i]*upu_dalpha_alpha_1_t +
+        upu_dalpha_alpha_1_t*m->upu_h_3_in_spec2_y[i]*v->upu_q_3);
     /* (upu-d_G) coefficient of the acceleration in: force at the connection point that balances the
        leg's inertia and weight along all degrees of freedom */
     const real upu_d_G_in_axes2_yz =
@@ -2088,9 +2098,9 @@ INLINE void stage_upu_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
         m->upu_acc_3_t_3[i]*v->upu_e_1_in_axes2_x;
     const real upu_g_in_axes2_y = upu_acc_3_o_t*v->upu_e_1_in_axes2_x -
         m->upu_acc_3_t_3[i]*v->upu_c_2;
-    const real upu_acc_3_o_in_axes2_x = v->axis_x_upu_axes2_x*upu_u_1_x +
-        v->axis_x_upu_axes2_y*upu_u_1_y + v->axis_x_upu_axes2_z*upu_u_1_z - upu_g_in_axes2_x;
-    const real upu_acc_3_o_in_axes2_y = upu_B_2_o_t + upu_B_2_o_t_2 - upu_g_in_axes2_y;
+    const real upu_acc_3_o_in_axes2_x = v->axis_x_upu_axes2_x*upu_u_1_x - upu_g_in_axes2_x +
+        v->axis_x_upu_axes2_y*upu_u_1_y + v->axis_x_upu_axes2_z*upu_u_1_z;
+    const real upu_acc_3_o_in_axes2_y = upu_B_2_o_t - upu_g_in_axes2_y + upu_B_2_o_t_2;
     /* (upu-f_3_o) remainder of: inertia force of link 3 less its weight */
     const real upu_f_3_o_t_3 = v->upu_qd_2*v->upu_qd_2;
     v->upu_u_1_x = upu_u_1_x;
@@ -2146,54 +2156,52 @@ INLINE void stage_upu_legs_required(const prepared *m, size_t i, values_upu *v)
         upu_acc_3_t_4*v->upu_c_2;
     const real upu_g_in_axes2_y = upu_acc_3_t_4*v->upu_e_1_in_axes2_x -
         m->upu_acc_3_t_3[i]*v->upu_c_2;
-    const real upu_acc_3_in_axes2_x = v->axis_x_upu_axes2_x*v->upu_S_ddot_x +
-        v->axis_x_upu_axes2_y*v->upu_S_ddot_y + v->axis_x_upu_axes2_z*v->upu_S_ddot_z -
-        upu_g_in_axes2_x;
-    const real upu_acc_3_in_axes2_y = upu_B_2_t + upu_B_2_t_2 - upu_g_in_axes2_y;
-    const real upu_acc_3_in_axes2_z = upu_B_2_in_axes2_zx*v->upu_q_3 - upu_bias_t_2 -
-        v->upu_g_in_axes2_z;
+    const real upu_acc_3_in_axes2_x = v->axis_x_upu_axes2_x*v->upu_S_ddot_x - upu_g_in_axes2_x
+        + v->axis_x_upu_axes2_y*v->upu_S_ddot_y + v->axis_x_upu_axes2_z*v->upu_S_ddot_z;
+    const real upu_acc_3_in_axes2_y = upu_B_2_t - upu_g_in_axes2_y + upu_B_2_t_2;
+    const real upu_acc_3_in_axes2_z = upu_B_2_in_axes2_zx*v->upu_q_3 - v->upu_g_in_axes2_z -
+        upu_bias_t_2;
     /* (upu-f_3) inertia force of link 3 less its weight */
     const real upu_f_3_t = v->upu_qd_2*v->upu_qd_2;
     const real upu_f_3_t_2 = v->upu_omega_1_in_axes2_x*v->upu_omega_1_in_axes2_x;
     const real upu_f_3_t_3 = v->upu_omega_1_in_axes2_y*v->upu_omega_1_in_axes2_y;
-    const real upu_f_3_in_axes2_x = upu_acc_3_in_axes2_x*m->upu_link3_mass[i] +
-        upu_alpha_1_in_axes2_y*m->upu_h_3_in_spec2_y[i] -
+    const real upu_f_3_in_axes2_x = upu_acc_3_in_axes2_x*m->upu_link3_mass[i] -
         upu_B_2_in_axes2_xy*m->upu_h_3_in_spec2_z[i] - m->upu_h_3_in_spec2_x[i]*(upu_f_3_t +
-        upu_f_3_t_3);
+        upu_f_3_t_3) + upu_alpha_1_in_axes2_y*m->upu_h_3_in_spec2_y[i];
     const real upu_f_3_in_axes2_y = upu_B_2_in_axes2_yx*m->upu_h_3_in_spec2_x[i] +
-        upu_acc_3_in_axes2_y*m->upu_link3_mass[i] + upu_alpha_1_t*m->upu_h_3_in_spec2_y[i] +
-        m->upu_h_3_in_spec2_z[i]*(upu_f_3_t + upu_f_3_t_2);
-    const real upu_f_3_in_axes2_z = upu_B_2_in_axes2_zx*m->upu_h_3_in_spec2_x[i] +
-        upu_acc_3_in_axes2_z*m->upu_link3_mass[i] -
-        upu_B_2_in_axes2_zy*m->upu_h_3_in_spec2_z[i] - m->upu_h_3_in_spec2_y[i]*(upu_f_3_t_2 +
-        upu_f_3_t_3);
+        upu_acc_3_in_axes2_y*m->upu_link3_mass[i] + m->upu_h_3_in_spec2_z[i]*(upu_f_3_t +
+        upu_f_3_t_2) + upu_alpha_1_t*m->upu_h_3_in_spec2_y[i];
+    const real upu_f_3_in_axes2_z = upu_B_2_in_axes2_zx*m->upu_h_3_in_spec2_x[i] -
+        m->upu_h_3_in_spec2_y[i]*(upu_f_3_t_2 + upu_f_3_t_3) -
+        upu_B_2_in_axes2_zy*m->upu_h_3_in_spec2_z[i] +
+        upu_acc_3_in_axes2_z*m->upu_link3_mass[i];
     /* (upu-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real upu_mu_2_in_axes2_x = upu_B_2_in_axes2_yx*m->upu_J_group_2_in_axes2_xz[i] +
-        upu_B_2_in_axes2_zy*m->upu_Sigma_2_in_axes2_yy[i] +
+    const real upu_mu_2_in_axes2_x = v->upu_g_in_axes2_z*m->upu_h_2_in_spec2_z[i] +
         upu_g_in_axes2_y*m->upu_h_2_in_spec2_y[i] +
-        v->upu_g_in_axes2_z*m->upu_h_2_in_spec2_z[i] -
-        upu_B_2_in_axes2_zx*m->upu_J_group_2_in_axes2_xy[i] -
-        m->upu_J_group_2_in_axes2_yz[i]*(upu_f_3_t - upu_f_3_t_3) -
-        m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_t -
+        upu_B_2_in_axes2_yx*m->upu_J_group_2_in_axes2_xz[i] -
         upu_acc_3_in_axes2_y*m->upu_h_3_in_spec2_y[i] -
+        m->upu_J_group_2_in_axes2_yz[i]*(upu_f_3_t - upu_f_3_t_3) -
+        m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_t +
+        upu_B_2_in_axes2_zy*m->upu_Sigma_2_in_axes2_yy[i] -
+        upu_B_2_in_axes2_zx*m->upu_J_group_2_in_axes2_xy[i] -
         upu_acc_3_in_axes2_z*m->upu_h_3_in_spec2_z[i];
-    const real upu_mu_2_in_axes2_y = upu_B_2_in_axes2_zy*m->upu_J_group_2_in_axes2_xy[i] +
-        m->upu_J_group_2_in_axes2_xz[i]*(upu_f_3_t - upu_f_3_t_2) +
-        m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_in_axes2_y +
+    const real upu_mu_2_in_axes2_y = v->upu_g_in_axes2_z*m->upu_h_2_in_spec2_x[i] -
+        upu_g_in_axes2_x*m->upu_h_2_in_spec2_y[i] +
         upu_acc_3_in_axes2_x*m->upu_h_3_in_spec2_y[i] +
-        v->upu_g_in_axes2_z*m->upu_h_2_in_spec2_x[i] -
-        upu_B_2_in_axes2_xy*m->upu_J_group_2_in_axes2_yz[i] -
+        m->upu_J_group_2_in_axes2_xz[i]*(upu_f_3_t - upu_f_3_t_2) -
+        upu_B_2_in_axes2_xy*m->upu_J_group_2_in_axes2_yz[i] +
+        m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_in_axes2_y +
+        upu_B_2_in_axes2_zy*m->upu_J_group_2_in_axes2_xy[i] -
         upu_B_2_in_axes2_zx*m->upu_Sigma_2_in_axes2_xx[i] -
-        upu_acc_3_in_axes2_z*m->upu_h_3_in_spec2_x[i] -
-        upu_g_in_axes2_x*m->upu_h_2_in_spec2_y[i];
-    const real upu_mu_2_in_axes2_z = upu_B_2_in_axes2_yx*m->upu_Sigma_2_in_axes2_xx[i] +
-        m->upu_J_group_2_in_axes2_xy[i]*(upu_f_3_t_2 - upu_f_3_t_3) +
-        m->upu_J_group_2_in_axes2_yz[i]*upu_alpha_1_in_axes2_y +
-        upu_acc_3_in_axes2_x*m->upu_h_3_in_spec2_z[i] +
-        upu_acc_3_in_axes2_y*m->upu_h_3_in_spec2_x[i] -
-        upu_B_2_in_axes2_xy*m->upu_Sigma_2_in_axes2_yy[i] -
-        m->upu_J_group_2_in_axes2_xz[i]*upu_alpha_1_t -
-        upu_g_in_axes2_x*m->upu_h_2_in_spec2_z[i] - upu_g_in_axes2_y*m->upu_h_2_in_spec2_x[i];
+        upu_acc_3_in_axes2_z*m->upu_h_3_in_spec2_x[i];
+    const real upu_mu_2_in_axes2_z = upu_acc_3_in_axes2_x*m->upu_h_3_in_spec2_z[i] -
+        upu_g_in_axes2_x*m->upu_h_2_in_spec2_z[i] - upu_g_in_axes2_y*m->upu_h_2_in_spec2_x[i]
+        + upu_B_2_in_axes2_yx*m->upu_Sigma_2_in_axes2_xx[i] +
+        upu_acc_3_in_axes2_y*m->upu_h_3_in_spec2_x[i] +
+        m->upu_J_group_2_in_axes2_xy[i]*(upu_f_3_t_2 - upu_f_3_t_3) -
+        upu_B_2_in_axes2_xy*m->upu_Sigma_2_in_axes2_yy[i] +
+        m->upu_J_group_2_in_axes2_yz[i]*upu_alpha_1_in_axes2_y -
+        m->upu_J_group_2_in_axes2_xz[i]*upu_alpha_1_t;
     /* (upu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
        left out */
     const real upu_N_2_in_axes2_y = upu_mu_2_in_axes2_y - upu_f_3_in_axes2_z*v->upu_q_3;
@@ -2229,39 +2237,43 @@ INLINE void stage_upu_legs_required(const prepared *m, size_t i, values_upu *v)
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    real *s, verdict *t)
+INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_M_dynamics(m, &v);
-    stage_Z_dynamics(m, w, k, V, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.h_star_x;
-    s[10*w + k] = v.h_star_y;
-    s[11*w + k] = v.h_star_z;
-    s[12*w + k] = v.J_star_xx;
-    s[13*w + k] = v.J_star_xy;
-    s[14*w + k] = v.J_star_xz;
-    s[15*w + k] = v.J_star_yy;
-    s[16*w + k] = v.J_star_yz;
-    s[17*w + k] = v.J_star_zz;
-    s[18*w + k] = v.Z_p_x;
-    s[19*w + k] = v.Z_p_y;
-    s[20*w + k] = v.Z_p_z;
-    s[21*w + k] = v.Z_q_x;
-    s[22*w + k] = v.Z_q_y;
-    s[23*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->h_star_x;
+    s[10*w + k] = v->h_star_y;
+    s[11*w + k] = v->h_star_z;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
+    *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_M_dynamics(m, v);
+    stage_Z_dynamics(m, w, k, V, v);
+    s[12*w + k] = v->J_star_xx;
+    s[13*w + k] = v->J_star_xy;
+    s[14*w + k] = v->J_star_xz;
+    s[15*w + k] = v->J_star_yy;
+    s[16*w + k] = v->J_star_yz;
+    s[17*w + k] = v->J_star_zz;
+    s[18*w + k] = v->Z_p_x;
+    s[19*w + k] = v->Z_p_y;
+    s[20*w + k] = v->Z_p_z;
+    s[21*w + k] = v->Z_q_x;
+    s[22*w + k] = v->Z_q_y;
+    s[23*w + k] = v->Z_q_z;
 }
 
 INLINE void dynamics_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2305,8 +2317,8 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t w, size_t i, size_t j, s
         upu_bias_in_axes2_z;
     /* (upu-nd_m1) rate of moment direction 1 */
     const real upu_nd_m1_in_axes2_x = v.upu_end_p1_in_axes2_z*v.upu_omega_in_axes2_x -
-        v.upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x -
-        v.upu_n_m1_in_axes2_y*v.upu_omega_in_axes2_z;
+        v.upu_n_m1_in_axes2_y*v.upu_omega_in_axes2_z -
+        v.upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x;
     const real upu_nd_m1_in_axes2_y = v.upu_end_p1_in_axes2_z*v.upu_omega_in_axes2_y -
         v.upu_end_p1_in_axes2_y*v.upu_omega_in_axes2_z -
         v.upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y;
@@ -2333,52 +2345,52 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t w, size_t i, size_t j, s
     const real upu_B_2_o_in_axes2_zx = upu_W_2_in_axes2_xz - upu_alpha_2_o_in_axes2_y;
     const real upu_B_2_o_in_axes2_zy = upu_W_2_in_axes2_yz + upu_alpha_2_o_in_axes2_x;
     /* (upu-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real upu_acc_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*v.upu_q_3 - upu_bias_t_2 -
-        v.upu_g_in_axes2_z;
+    const real upu_acc_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*v.upu_q_3 - v.upu_g_in_axes2_z -
+        upu_bias_t_2;
     /* (upu-f_3_o) remainder of: inertia force of link 3 less its weight */
     const real upu_f_3_o_t = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x;
     const real upu_f_3_o_t_2 = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y;
-    const real upu_f_3_o_in_axes2_x = v.upu_acc_3_o_in_axes2_x*m->upu_link3_mass[i] +
-        upu_alpha_1_o_in_axes2_y*m->upu_h_3_in_spec2_y[i] -
+    const real upu_f_3_o_in_axes2_x = v.upu_acc_3_o_in_axes2_x*m->upu_link3_mass[i] -
         upu_B_2_o_in_axes2_xy*m->upu_h_3_in_spec2_z[i] -
-        m->upu_h_3_in_spec2_x[i]*(upu_f_3_o_t_2 + v.upu_f_3_o_t_3);
+        m->upu_h_3_in_spec2_x[i]*(v.upu_f_3_o_t_3 + upu_f_3_o_t_2) +
+        upu_alpha_1_o_in_axes2_y*m->upu_h_3_in_spec2_y[i];
     const real upu_f_3_o_in_axes2_y = v.upu_B_2_o_in_axes2_yx*m->upu_h_3_in_spec2_x[i] +
         v.upu_acc_3_o_in_axes2_y*m->upu_link3_mass[i] +
-        upu_alpha_1_o_t*m->upu_h_3_in_spec2_y[i] + m->upu_h_3_in_spec2_z[i]*(upu_f_3_o_t +
-        v.upu_f_3_o_t_3);
-    const real upu_f_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*m->upu_h_3_in_spec2_x[i] +
-        upu_acc_3_o_in_axes2_z*m->upu_link3_mass[i] -
-        upu_B_2_o_in_axes2_zy*m->upu_h_3_in_spec2_z[i] - m->upu_h_3_in_spec2_y[i]*(upu_f_3_o_t
-        + upu_f_3_o_t_2);
+        m->upu_h_3_in_spec2_z[i]*(v.upu_f_3_o_t_3 + upu_f_3_o_t) +
+        upu_alpha_1_o_t*m->upu_h_3_in_spec2_y[i];
+    const real upu_f_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*m->upu_h_3_in_spec2_x[i] -
+        m->upu_h_3_in_spec2_y[i]*(upu_f_3_o_t + upu_f_3_o_t_2) -
+        upu_B_2_o_in_axes2_zy*m->upu_h_3_in_spec2_z[i] +
+        upu_acc_3_o_in_axes2_z*m->upu_link3_mass[i];
     /* (upu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
-    const real upu_mu_2_o_in_axes2_x = v.upu_B_2_o_in_axes2_yx*m->upu_J_group_2_in_axes2_xz[i]
-        + upu_B_2_o_in_axes2_zy*m->upu_Sigma_2_in_axes2_yy[i] +
-        m->upu_J_group_2_in_axes2_yz[i]*(upu_f_3_o_t_2 - v.upu_f_3_o_t_3) +
+    const real upu_mu_2_o_in_axes2_x = v.upu_g_in_axes2_z*m->upu_h_2_in_spec2_z[i] +
         v.upu_g_in_axes2_y*m->upu_h_2_in_spec2_y[i] +
-        v.upu_g_in_axes2_z*m->upu_h_2_in_spec2_z[i] -
+        v.upu_B_2_o_in_axes2_yx*m->upu_J_group_2_in_axes2_xz[i] -
+        v.upu_acc_3_o_in_axes2_y*m->upu_h_3_in_spec2_y[i] +
+        m->upu_J_group_2_in_axes2_yz[i]*(upu_f_3_o_t_2 - v.upu_f_3_o_t_3) -
+        m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_o_t +
+        upu_B_2_o_in_axes2_zy*m->upu_Sigma_2_in_axes2_yy[i] -
         upu_B_2_o_in_axes2_zx*m->upu_J_group_2_in_axes2_xy[i] -
-        m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_o_t -
-        v.upu_acc_3_o_in_axes2_y*m->upu_h_3_in_spec2_y[i] -
         upu_acc_3_o_in_axes2_z*m->upu_h_3_in_spec2_z[i];
-    const real upu_mu_2_o_in_axes2_y = upu_B_2_o_in_axes2_zy*m->upu_J_group_2_in_axes2_xy[i] +
-        m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_o_in_axes2_y +
-        v.upu_acc_3_o_in_axes2_x*m->upu_h_3_in_spec2_y[i] +
-        v.upu_g_in_axes2_z*m->upu_h_2_in_spec2_x[i] -
+    const real upu_mu_2_o_in_axes2_y = v.upu_g_in_axes2_z*m->upu_h_2_in_spec2_x[i] -
+        v.upu_g_in_axes2_x*m->upu_h_2_in_spec2_y[i] +
+        v.upu_acc_3_o_in_axes2_x*m->upu_h_3_in_spec2_y[i] -
         upu_B_2_o_in_axes2_xy*m->upu_J_group_2_in_axes2_yz[i] -
+        m->upu_J_group_2_in_axes2_xz[i]*(upu_f_3_o_t - v.upu_f_3_o_t_3) +
+        m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_o_in_axes2_y +
+        upu_B_2_o_in_axes2_zy*m->upu_J_group_2_in_axes2_xy[i] -
         upu_B_2_o_in_axes2_zx*m->upu_Sigma_2_in_axes2_xx[i] -
-        m->upu_J_group_2_in_axes2_xz[i]*(upu_f_3_o_t - v.upu_f_3_o_t_3) -
-        upu_acc_3_o_in_axes2_z*m->upu_h_3_in_spec2_x[i] -
-        v.upu_g_in_axes2_x*m->upu_h_2_in_spec2_y[i];
-    const real upu_mu_2_o_in_axes2_z = v.upu_B_2_o_in_axes2_yx*m->upu_Sigma_2_in_axes2_xx[i] +
-        m->upu_J_group_2_in_axes2_xy[i]*(upu_f_3_o_t - upu_f_3_o_t_2) +
-        m->upu_J_group_2_in_axes2_yz[i]*upu_alpha_1_o_in_axes2_y +
-        v.upu_acc_3_o_in_axes2_x*m->upu_h_3_in_spec2_z[i] +
-        v.upu_acc_3_o_in_axes2_y*m->upu_h_3_in_spec2_x[i] -
-        upu_B_2_o_in_axes2_xy*m->upu_Sigma_2_in_axes2_yy[i] -
-        m->upu_J_group_2_in_axes2_xz[i]*upu_alpha_1_o_t -
+        upu_acc_3_o_in_axes2_z*m->upu_h_3_in_spec2_x[i];
+    const real upu_mu_2_o_in_axes2_z = v.upu_acc_3_o_in_axes2_x*m->upu_h_3_in_spec2_z[i] -
         v.upu_g_in_axes2_x*m->upu_h_2_in_spec2_z[i] -
-        v.upu_g_in_axes2_y*m->upu_h_2_in_spec2_x[i];
+        v.upu_g_in_axes2_y*m->upu_h_2_in_spec2_x[i] +
+        v.upu_B_2_o_in_axes2_yx*m->upu_Sigma_2_in_axes2_xx[i] +
+        v.upu_acc_3_o_in_axes2_y*m->upu_h_3_in_spec2_x[i] +
+        m->upu_J_group_2_in_axes2_xy[i]*(upu_f_3_o_t - upu_f_3_o_t_2) -
+        upu_B_2_o_in_axes2_xy*m->upu_Sigma_2_in_axes2_yy[i] +
+        m->upu_J_group_2_in_axes2_yz[i]*upu_alpha_1_o_in_axes2_y -
+        m->upu_J_group_2_in_axes2_xz[i]*upu_alpha_1_o_t;
     /* (upu-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
        connection point left out */
     const real upu_N_2_o_in_axes2_y = upu_mu_2_o_in_axes2_y - upu_f_3_o_in_axes2_z*v.upu_q_3;
@@ -2418,12 +2430,15 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t w, size_t i, size_t j, s
        connection point */
     const real upu_c_o_in_axes2_z = upu_N_2_o_t*v.upu_w_1_in_axes2_z;
     /* (upu-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real upu_Q_t_5 = v.axis_x_upu_axes2_x*v.upu_d_phi_3_in_axes2_xy +
-        v.axis_y_upu_axes2_x*v.upu_Q_t_2 + v.axis_z_upu_axes2_x*v.upu_d_G_in_axes2_yz;
-    const real upu_Q_t_6 = v.axis_x_upu_axes2_y*v.upu_d_phi_3_in_axes2_xy +
-        v.axis_y_upu_axes2_y*v.upu_Q_t_2 + v.axis_z_upu_axes2_y*v.upu_d_G_in_axes2_yz;
-    const real upu_Q_t_7 = v.axis_x_upu_axes2_z*v.upu_d_phi_3_in_axes2_xy +
-        v.axis_y_upu_axes2_z*v.upu_Q_t_2 + v.axis_z_upu_axes2_z*v.upu_d_G_in_axes2_yz;
+    const real upu_Q_t_5 = v.axis_y_upu_axes2_x*v.upu_Q_t_2 +
+        v.axis_x_upu_axes2_x*v.upu_d_phi_3_in_axes2_xy +
+        v.axis_z_upu_axes2_x*v.upu_d_G_in_axes2_yz;
+    const real upu_Q_t_6 = v.axis_y_upu_axes2_y*v.upu_Q_t_2 +
+        v.axis_x_upu_axes2_y*v.upu_d_phi_3_in_axes2_xy +
+        v.axis_z_upu_axes2_y*v.upu_d_G_in_axes2_yz;
+    const real upu_Q_t_7 = v.axis_y_upu_axes2_z*v.upu_Q_t_2 +
+        v.axis_x_upu_axes2_z*v.upu_d_phi_3_in_axes2_xy +
+        v.axis_z_upu_axes2_z*v.upu_d_G_in_axes2_yz;
     const real upu_Q_t_8 = v.axis_z_upu_axes2_x*v.upu_Q_t_4 -
         v.axis_x_upu_axes2_x*v.upu_d_c_in_axes2_xz;
     const real upu_Q_t_9 = v.axis_z_upu_axes2_y*v.upu_Q_t_4 -
@@ -2431,17 +2446,17 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t w, size_t i, size_t j, s
     const real upu_Q_t_10 = v.axis_z_upu_axes2_z*v.upu_Q_t_4 -
         v.axis_x_upu_axes2_z*v.upu_d_c_in_axes2_xz;
     const real upu_Q_t_11 = v.axis_y_upu_axes2_x*upu_Q_t_5 + v.axis_z_upu_axes2_x*upu_Q_t_8;
-    const real upu_Q_xx = 2*upu_Q_t_11 + m->upu_link3_mass[i];
+    const real upu_Q_xx = m->upu_link3_mass[i] + 2*upu_Q_t_11;
     const real upu_Q_xy = v.axis_y_upu_axes2_x*upu_Q_t_6 + v.axis_y_upu_axes2_y*upu_Q_t_5 +
         v.axis_z_upu_axes2_x*upu_Q_t_9 + v.axis_z_upu_axes2_y*upu_Q_t_8;
     const real upu_Q_xz = v.axis_y_upu_axes2_x*upu_Q_t_7 + v.axis_y_upu_axes2_z*upu_Q_t_5 +
         v.axis_z_upu_axes2_x*upu_Q_t_10 + v.axis_z_upu_axes2_z*upu_Q_t_8;
     const real upu_Q_t_12 = v.axis_y_upu_axes2_y*upu_Q_t_6 + v.axis_z_upu_axes2_y*upu_Q_t_9;
-    const real upu_Q_yy = 2*upu_Q_t_12 + m->upu_link3_mass[i];
+    const real upu_Q_yy = m->upu_link3_mass[i] + 2*upu_Q_t_12;
     const real upu_Q_yz = v.axis_y_upu_axes2_y*upu_Q_t_7 + v.axis_y_upu_axes2_z*upu_Q_t_6 +
         v.axis_z_upu_axes2_y*upu_Q_t_10 + v.axis_z_upu_axes2_z*upu_Q_t_9;
     const real upu_Q_t_13 = v.axis_y_upu_axes2_z*upu_Q_t_7 + v.axis_z_upu_axes2_z*upu_Q_t_10;
-    const real upu_Q_zz = 2*upu_Q_t_13 + m->upu_link3_mass[i];
+    const real upu_Q_zz = m->upu_link3_mass[i] + 2*upu_Q_t_13;
     /* (upu-c_m_o) remainder of: moment of the leg on the platform without actuation */
     const real upu_c_m_o_in_axes2_x = upu_G_m1_o*v.upu_end_p1_in_axes2_y;
     /* (upu-U) velocity and gravity terms of the leg force */
@@ -2473,48 +2488,47 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t w, size_t i, size_t j, s
     const real upu_M_ta_t_7 = upu_Q_xy*v.upu_q_z;
     const real upu_M_ta_t_8 = upu_Q_xz*v.upu_q_y;
     const real upu_M_ta_t_9 = upu_Q_yz*v.upu_q_x;
-    const real upu_M_ta_t_10 = upu_M_ta_t_8 - upu_M_ta_t_7 - v.axis_x_upu_axes2_x*upu_M_ta_t -
-        v.axis_y_upu_axes2_x*upu_M_ta_t_4;
+    const real upu_M_ta_t_10 = upu_M_ta_t_8 - v.axis_x_upu_axes2_x*upu_M_ta_t -
+        v.axis_y_upu_axes2_x*upu_M_ta_t_4 - upu_M_ta_t_7;
     const real upu_M_ta_t_11 = upu_Q_xx*v.upu_q_z - v.axis_x_upu_axes2_y*upu_M_ta_t -
         v.axis_y_upu_axes2_y*upu_M_ta_t_4 - upu_Q_xz*v.upu_q_x;
     const real upu_M_ta_t_12 = upu_Q_xy*v.upu_q_x - v.axis_x_upu_axes2_z*upu_M_ta_t -
         v.axis_y_upu_axes2_z*upu_M_ta_t_4 - upu_Q_xx*v.upu_q_y;
     const real upu_M_ta_t_13 = upu_Q_yz*v.upu_q_y - v.axis_x_upu_axes2_x*upu_M_ta_t_2 -
         v.axis_y_upu_axes2_x*upu_M_ta_t_5 - upu_Q_yy*v.upu_q_z;
-    const real upu_M_ta_t_14 = upu_M_ta_t_7 - upu_M_ta_t_9 - v.axis_x_upu_axes2_y*upu_M_ta_t_2
-        - v.axis_y_upu_axes2_y*upu_M_ta_t_5;
+    const real upu_M_ta_t_14 = upu_M_ta_t_7 - v.axis_x_upu_axes2_y*upu_M_ta_t_2 -
+        v.axis_y_upu_axes2_y*upu_M_ta_t_5 - upu_M_ta_t_9;
     const real upu_M_ta_t_15 = upu_Q_yy*v.upu_q_x - v.axis_x_upu_axes2_z*upu_M_ta_t_2 -
         v.axis_y_upu_axes2_z*upu_M_ta_t_5 - upu_Q_xy*v.upu_q_y;
     const real upu_M_ta_t_16 = upu_Q_zz*v.upu_q_y - v.axis_x_upu_axes2_x*upu_M_ta_t_3 -
         v.axis_y_upu_axes2_x*upu_M_ta_t_6 - upu_Q_yz*v.upu_q_z;
     const real upu_M_ta_t_17 = upu_Q_xz*v.upu_q_z - v.axis_x_upu_axes2_y*upu_M_ta_t_3 -
         v.axis_y_upu_axes2_y*upu_M_ta_t_6 - upu_Q_zz*v.upu_q_x;
-    const real upu_M_ta_t_18 = upu_M_ta_t_9 - upu_M_ta_t_8 - v.axis_x_upu_axes2_z*upu_M_ta_t_3
-        - v.axis_y_upu_axes2_z*upu_M_ta_t_6;
+    const real upu_M_ta_t_18 = upu_M_ta_t_9 - v.axis_x_upu_axes2_z*upu_M_ta_t_3 -
+        v.axis_y_upu_axes2_z*upu_M_ta_t_6 - upu_M_ta_t_8;
     /* (M_aa) rotational block of M */
-    const real upu_M_aa_t = upu_M_ta_t_16*v.upu_q_y + upu_d_G_m_xz*v.upu_q_y +
+    const real upu_M_aa_t = upu_d_G_m_xz*v.upu_q_y - upu_d_G_m_xy*v.upu_q_z +
         upu_n_m1_x*(v.axis_x_upu_axes2_x*v.upu_dalpha_G_m1_in_axes2_x +
-        v.axis_y_upu_axes2_x*v.upu_dalpha_G_m1_in_axes2_y) - upu_M_ta_t_13*v.upu_q_z -
-        upu_d_G_m_xy*v.upu_q_z;
-    const real upu_M_aa_t_2 = upu_M_ta_t_17*v.upu_q_y + upu_d_G_m_xx*v.upu_q_z +
-        upu_dalpha_G_m1_y*upu_n_m1_x - upu_M_ta_t_14*v.upu_q_z - upu_d_G_m_xz*v.upu_q_x;
-    const real upu_M_aa_t_3 = upu_M_ta_t_18*v.upu_q_y + upu_d_G_m_xy*v.upu_q_x +
-        upu_dalpha_G_m1_z*upu_n_m1_x - upu_M_ta_t_15*v.upu_q_z - upu_d_G_m_xx*v.upu_q_y;
-    const real upu_M_aa_t_4 = upu_M_ta_t_11*v.upu_q_z + upu_d_G_m_yx*v.upu_q_z +
-        upu_dalpha_G_m1_y*upu_n_m1_y - upu_M_ta_t_17*v.upu_q_x -
-        upu_d_G_m1_z*upu_n_m1_y*v.upu_q_x;
-    const real upu_M_aa_t_5 = upu_M_ta_t_12*v.upu_q_z + upu_dalpha_G_m1_z*upu_n_m1_y +
-        upu_d_G_m1_y*upu_n_m1_y*v.upu_q_x - upu_M_ta_t_18*v.upu_q_x - upu_d_G_m_yx*v.upu_q_y;
-    const real upu_M_aa_t_6 = upu_M_ta_t_15*v.upu_q_x + upu_dalpha_G_m1_z*upu_n_m1_z +
-        upu_d_G_m1_y*upu_n_m1_z*v.upu_q_x - upu_M_ta_t_12*v.upu_q_y -
-        upu_d_G_m1_x*upu_n_m1_z*v.upu_q_y;
+        v.axis_y_upu_axes2_x*v.upu_dalpha_G_m1_in_axes2_y) + upu_M_ta_t_16*v.upu_q_y -
+        upu_M_ta_t_13*v.upu_q_z;
+    const real upu_M_aa_t_2 = upu_d_G_m_xx*v.upu_q_z - upu_d_G_m_xz*v.upu_q_x +
+        upu_dalpha_G_m1_y*upu_n_m1_x + upu_M_ta_t_17*v.upu_q_y - upu_M_ta_t_14*v.upu_q_z;
+    const real upu_M_aa_t_3 = upu_d_G_m_xy*v.upu_q_x - upu_d_G_m_xx*v.upu_q_y +
+        upu_dalpha_G_m1_z*upu_n_m1_x + upu_M_ta_t_18*v.upu_q_y - upu_M_ta_t_15*v.upu_q_z;
+    const real upu_M_aa_t_4 = upu_d_G_m_yx*v.upu_q_z - upu_d_G_m1_z*upu_n_m1_y*v.upu_q_x +
+        upu_dalpha_G_m1_y*upu_n_m1_y + upu_M_ta_t_11*v.upu_q_z - upu_M_ta_t_17*v.upu_q_x;
+    const real upu_M_aa_t_5 = upu_d_G_m1_y*upu_n_m1_y*v.upu_q_x - upu_d_G_m_yx*v.upu_q_y +
+        upu_dalpha_G_m1_z*upu_n_m1_y + upu_M_ta_t_12*v.upu_q_z - upu_M_ta_t_18*v.upu_q_x;
+    const real upu_M_aa_t_6 = upu_d_G_m1_y*upu_n_m1_z*v.upu_q_x -
+        upu_d_G_m1_x*upu_n_m1_z*v.upu_q_y + upu_dalpha_G_m1_z*upu_n_m1_z +
+        upu_M_ta_t_15*v.upu_q_x - upu_M_ta_t_12*v.upu_q_y;
     /* (Z_a) rotational part of Z */
-    const real upu_Z_a_t = v.axis_y_upu_axes2_x*upu_G_m_o_in_axes2_y + upu_U_z*v.upu_q_y -
-        v.axis_x_upu_axes2_x*upu_c_m_o_in_axes2_x - upu_U_y*v.upu_q_z;
-    const real upu_Z_a_t_2 = v.axis_y_upu_axes2_y*upu_G_m_o_in_axes2_y + upu_U_x*v.upu_q_z -
-        v.axis_x_upu_axes2_y*upu_c_m_o_in_axes2_x - upu_U_z*v.upu_q_x;
-    const real upu_Z_a_t_3 = v.axis_y_upu_axes2_z*upu_G_m_o_in_axes2_y + upu_U_y*v.upu_q_x -
-        v.axis_x_upu_axes2_z*upu_c_m_o_in_axes2_x - upu_U_x*v.upu_q_y;
+    const real upu_Z_a_t = upu_U_z*v.upu_q_y - upu_U_y*v.upu_q_z +
+        v.axis_y_upu_axes2_x*upu_G_m_o_in_axes2_y - v.axis_x_upu_axes2_x*upu_c_m_o_in_axes2_x;
+    const real upu_Z_a_t_2 = upu_U_x*v.upu_q_z - upu_U_z*v.upu_q_x +
+        v.axis_y_upu_axes2_y*upu_G_m_o_in_axes2_y - v.axis_x_upu_axes2_y*upu_c_m_o_in_axes2_x;
+    const real upu_Z_a_t_3 = upu_U_y*v.upu_q_x - upu_U_x*v.upu_q_y +
+        v.axis_y_upu_axes2_z*upu_G_m_o_in_axes2_y - v.axis_x_upu_axes2_z*upu_c_m_o_in_axes2_x;
     /* (upu-H_a_3) moment of the column's unit force about the platform origin */
     const real upu_H_a_3_x = v.axis_x_upu_axes2_z*v.upu_q_y - v.axis_x_upu_axes2_y*v.upu_q_z;
     const real upu_H_a_3_y = v.axis_x_upu_axes2_x*v.upu_q_z - v.axis_x_upu_axes2_z*v.upu_q_x;
@@ -2525,7 +2539,7 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t w, size_t i, size_t j, s
     const real upu_Hk_a_1_z = upu_n_m1_z + v.upu_n_c_y*v.upu_q_x - v.upu_n_c_x*v.upu_q_y;
     /* (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
        */
-    const real upu_gamma_c1 = upu_nu_1 + v.upu_n_c_in_axes2_z*upu_rel_o_in_axes2_z;
+    const real upu_gamma_c1 = v.upu_n_c_in_axes2_z*upu_rel_o_in_axes2_z + upu_nu_1;
     /* (M_tt) translational block of M */
     gather(&terms[0*count + k], add, upu_Q_xx);  /* M_tt_xx_of_legs */
     gather(&terms[1*count + k], add, upu_Q_xy);  /* M_tt_xy */
@@ -2610,15 +2624,15 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->platform_mass;
+    const real M_tt_xx = m->platform_mass + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->platform_mass;
+    const real M_tt_yy = m->platform_mass + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->platform_mass;
+    const real M_tt_zz = m->platform_mass + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[11*w + k];
-    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
     const real h_star_y = s[10*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -2626,9 +2640,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[9*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
@@ -2663,13 +2677,13 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[24*w + k];
     const real Z_q_x = s[21*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[25*w + k];
     const real Z_q_y = s[22*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[26*w + k];
     const real Z_q_z = s[23*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
     const real M_tt_xy = sums[1*w + k];
@@ -2734,7 +2748,8 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 {
     real s[24] = {0}, sums[27] = {0};
     real terms_upu[27*LEGS(LEGS_OF_upu)] = {0}, o_upu[15*LEGS(LEGS_OF_upu)] = {0};
-    dynamics_before(m, 1, 0, X, V, s, t);
+    values v;
+    dynamics_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         dynamics_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), 0, s, X, V, terms_upu, o_upu);
     }
@@ -2744,6 +2759,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t n = 0; n < 27; ++n) {
         sums[n] = total(terms_upu + n*LEGS(LEGS_OF_upu), LEGS_OF_upu);
     }
+    dynamics_between(m, 1, 0, V, &v, s);
     dynamics_after(m, 1, 0, s, sums, M, Z, t);
 }
 
@@ -2754,7 +2770,9 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real s[24*LANES], sums[27*LANES];
     real o_upu[15*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        dynamics_before(m, LANES, k, X, V, s, t);
+        values v;
+        dynamics_before(m, LANES, k, X, &v, s, t);
+        dynamics_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 27*LANES);
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
@@ -2771,30 +2789,34 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_M_dynamics(m, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.h_star_x;
-    s[10*w + k] = v.h_star_y;
-    s[11*w + k] = v.h_star_z;
-    s[12*w + k] = v.J_star_xx;
-    s[13*w + k] = v.J_star_xy;
-    s[14*w + k] = v.J_star_xz;
-    s[15*w + k] = v.J_star_yy;
-    s[16*w + k] = v.J_star_yz;
-    s[17*w + k] = v.J_star_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->h_star_x;
+    s[10*w + k] = v->h_star_y;
+    s[11*w + k] = v->h_star_z;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void M_between(const prepared *m, size_t w, size_t k, values *v, real *s)
+{
+    stage_M_dynamics(m, v);
+    s[12*w + k] = v->J_star_xx;
+    s[13*w + k] = v->J_star_xy;
+    s[14*w + k] = v->J_star_xz;
+    s[15*w + k] = v->J_star_yy;
+    s[16*w + k] = v->J_star_yz;
+    s[17*w + k] = v->J_star_zz;
 }
 
 INLINE void M_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2806,12 +2828,12 @@ INLINE void M_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k
     /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
     const real upu_n_m1_t_6 = v.upu_c_1*v.upu_e_1_in_axes2_x;
     const real upu_n_m1_t_7 = v.upu_e_1_in_axes2_x*v.upu_s_1;
-    const real axis_y_upu_axes2_x = m->upu_base_frame_xx[i]*upu_n_m1_t_6 +
-        m->upu_base_frame_xy[i]*upu_n_m1_t_7 - m->upu_base_frame_xz[i]*v.upu_c_2;
-    const real axis_y_upu_axes2_y = m->upu_base_frame_yx[i]*upu_n_m1_t_6 +
-        m->upu_base_frame_yy[i]*upu_n_m1_t_7 - m->upu_base_frame_yz[i]*v.upu_c_2;
-    const real axis_y_upu_axes2_z = m->upu_base_frame_zx[i]*upu_n_m1_t_6 +
-        m->upu_base_frame_zy[i]*upu_n_m1_t_7 - m->upu_base_frame_zz[i]*v.upu_c_2;
+    const real axis_y_upu_axes2_x = m->upu_base_frame_xx[i]*upu_n_m1_t_6 -
+        m->upu_base_frame_xz[i]*v.upu_c_2 + m->upu_base_frame_xy[i]*upu_n_m1_t_7;
+    const real axis_y_upu_axes2_y = m->upu_base_frame_yx[i]*upu_n_m1_t_6 -
+        m->upu_base_frame_yz[i]*v.upu_c_2 + m->upu_base_frame_yy[i]*upu_n_m1_t_7;
+    const real axis_y_upu_axes2_z = m->upu_base_frame_zx[i]*upu_n_m1_t_6 -
+        m->upu_base_frame_zz[i]*v.upu_c_2 + m->upu_base_frame_zy[i]*upu_n_m1_t_7;
     const real axis_x_upu_axes2_x = axis_y_upu_axes2_y*v.axis_z_upu_axes2_z -
         axis_y_upu_axes2_z*v.axis_z_upu_axes2_y;
     const real axis_x_upu_axes2_y = axis_y_upu_axes2_z*v.axis_z_upu_axes2_x -
@@ -2845,12 +2867,15 @@ INLINE void M_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real upu_d_G_m_xz = upu_d_G_m1_z*upu_n_m1_x;
     const real upu_d_G_m_yx = upu_d_G_m1_x*upu_n_m1_y;
     /* (upu-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real upu_Q_t_5 = axis_x_upu_axes2_x*v.upu_d_phi_3_in_axes2_xy +
-        axis_y_upu_axes2_x*v.upu_Q_t_2 + v.axis_z_upu_axes2_x*v.upu_d_G_in_axes2_yz;
-    const real upu_Q_t_6 = axis_x_upu_axes2_y*v.upu_d_phi_3_in_axes2_xy +
-        axis_y_upu_axes2_y*v.upu_Q_t_2 + v.axis_z_upu_axes2_y*v.upu_d_G_in_axes2_yz;
-    const real upu_Q_t_7 = axis_x_upu_axes2_z*v.upu_d_phi_3_in_axes2_xy +
-        axis_y_upu_axes2_z*v.upu_Q_t_2 + v.axis_z_upu_axes2_z*v.upu_d_G_in_axes2_yz;
+    const real upu_Q_t_5 = axis_y_upu_axes2_x*v.upu_Q_t_2 +
+        axis_x_upu_axes2_x*v.upu_d_phi_3_in_axes2_xy +
+        v.axis_z_upu_axes2_x*v.upu_d_G_in_axes2_yz;
+    const real upu_Q_t_6 = axis_y_upu_axes2_y*v.upu_Q_t_2 +
+        axis_x_upu_axes2_y*v.upu_d_phi_3_in_axes2_xy +
+        v.axis_z_upu_axes2_y*v.upu_d_G_in_axes2_yz;
+    const real upu_Q_t_7 = axis_y_upu_axes2_z*v.upu_Q_t_2 +
+        axis_x_upu_axes2_z*v.upu_d_phi_3_in_axes2_xy +
+        v.axis_z_upu_axes2_z*v.upu_d_G_in_axes2_yz;
     const real upu_Q_t_8 = v.axis_z_upu_axes2_x*v.upu_Q_t_4 -
         axis_x_upu_axes2_x*v.upu_d_c_in_axes2_xz;
     const real upu_Q_t_9 = v.axis_z_upu_axes2_y*v.upu_Q_t_4 -
@@ -2858,17 +2883,17 @@ INLINE void M_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real upu_Q_t_10 = v.axis_z_upu_axes2_z*v.upu_Q_t_4 -
         axis_x_upu_axes2_z*v.upu_d_c_in_axes2_xz;
     const real upu_Q_t_11 = axis_y_upu_axes2_x*upu_Q_t_5 + v.axis_z_upu_axes2_x*upu_Q_t_8;
-    const real upu_Q_xx = 2*upu_Q_t_11 + m->upu_link3_mass[i];
+    const real upu_Q_xx = m->upu_link3_mass[i] + 2*upu_Q_t_11;
     const real upu_Q_xy = axis_y_upu_axes2_x*upu_Q_t_6 + axis_y_upu_axes2_y*upu_Q_t_5 +
         v.axis_z_upu_axes2_x*upu_Q_t_9 + v.axis_z_upu_axes2_y*upu_Q_t_8;
     const real upu_Q_xz = axis_y_upu_axes2_x*upu_Q_t_7 + axis_y_upu_axes2_z*upu_Q_t_5 +
         v.axis_z_upu_axes2_x*upu_Q_t_10 + v.axis_z_upu_axes2_z*upu_Q_t_8;
     const real upu_Q_t_12 = axis_y_upu_axes2_y*upu_Q_t_6 + v.axis_z_upu_axes2_y*upu_Q_t_9;
-    const real upu_Q_yy = 2*upu_Q_t_12 + m->upu_link3_mass[i];
+    const real upu_Q_yy = m->upu_link3_mass[i] + 2*upu_Q_t_12;
     const real upu_Q_yz = axis_y_upu_axes2_y*upu_Q_t_7 + axis_y_upu_axes2_z*upu_Q_t_6 +
         v.axis_z_upu_axes2_y*upu_Q_t_10 + v.axis_z_upu_axes2_z*upu_Q_t_9;
     const real upu_Q_t_13 = axis_y_upu_axes2_z*upu_Q_t_7 + v.axis_z_upu_axes2_z*upu_Q_t_10;
-    const real upu_Q_zz = 2*upu_Q_t_13 + m->upu_link3_mass[i];
+    const real upu_Q_zz = m->upu_link3_mass[i] + 2*upu_Q_t_13;
     /* (M_ta) coupling block of M */
     const real upu_M_ta_t = axis_x_upu_axes2_x*v.upu_dalpha_c_in_axes2_xx -
         axis_y_upu_axes2_x*v.upu_dalpha_G_in_axes2_yx -
@@ -2891,41 +2916,40 @@ INLINE void M_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real upu_M_ta_t_7 = upu_Q_xy*v.upu_q_z;
     const real upu_M_ta_t_8 = upu_Q_xz*v.upu_q_y;
     const real upu_M_ta_t_9 = upu_Q_yz*v.upu_q_x;
-    const real upu_M_ta_t_10 = upu_M_ta_t_8 - upu_M_ta_t_7 - axis_x_upu_axes2_x*upu_M_ta_t -
-        axis_y_upu_axes2_x*upu_M_ta_t_4;
+    const real upu_M_ta_t_10 = upu_M_ta_t_8 - axis_x_upu_axes2_x*upu_M_ta_t -
+        axis_y_upu_axes2_x*upu_M_ta_t_4 - upu_M_ta_t_7;
     const real upu_M_ta_t_11 = upu_Q_xx*v.upu_q_z - axis_x_upu_axes2_y*upu_M_ta_t -
         axis_y_upu_axes2_y*upu_M_ta_t_4 - upu_Q_xz*v.upu_q_x;
     const real upu_M_ta_t_12 = upu_Q_xy*v.upu_q_x - axis_x_upu_axes2_z*upu_M_ta_t -
         axis_y_upu_axes2_z*upu_M_ta_t_4 - upu_Q_xx*v.upu_q_y;
     const real upu_M_ta_t_13 = upu_Q_yz*v.upu_q_y - axis_x_upu_axes2_x*upu_M_ta_t_2 -
         axis_y_upu_axes2_x*upu_M_ta_t_5 - upu_Q_yy*v.upu_q_z;
-    const real upu_M_ta_t_14 = upu_M_ta_t_7 - upu_M_ta_t_9 - axis_x_upu_axes2_y*upu_M_ta_t_2 -
-        axis_y_upu_axes2_y*upu_M_ta_t_5;
+    const real upu_M_ta_t_14 = upu_M_ta_t_7 - axis_x_upu_axes2_y*upu_M_ta_t_2 -
+        axis_y_upu_axes2_y*upu_M_ta_t_5 - upu_M_ta_t_9;
     const real upu_M_ta_t_15 = upu_Q_yy*v.upu_q_x - axis_x_upu_axes2_z*upu_M_ta_t_2 -
         axis_y_upu_axes2_z*upu_M_ta_t_5 - upu_Q_xy*v.upu_q_y;
     const real upu_M_ta_t_16 = upu_Q_zz*v.upu_q_y - axis_x_upu_axes2_x*upu_M_ta_t_3 -
         axis_y_upu_axes2_x*upu_M_ta_t_6 - upu_Q_yz*v.upu_q_z;
     const real upu_M_ta_t_17 = upu_Q_xz*v.upu_q_z - axis_x_upu_axes2_y*upu_M_ta_t_3 -
         axis_y_upu_axes2_y*upu_M_ta_t_6 - upu_Q_zz*v.upu_q_x;
-    const real upu_M_ta_t_18 = upu_M_ta_t_9 - upu_M_ta_t_8 - axis_x_upu_axes2_z*upu_M_ta_t_3 -
-        axis_y_upu_axes2_z*upu_M_ta_t_6;
+    const real upu_M_ta_t_18 = upu_M_ta_t_9 - axis_x_upu_axes2_z*upu_M_ta_t_3 -
+        axis_y_upu_axes2_z*upu_M_ta_t_6 - upu_M_ta_t_8;
     /* (M_aa) rotational block of M */
-    const real upu_M_aa_t = upu_M_ta_t_16*v.upu_q_y + upu_d_G_m_xz*v.upu_q_y +
+    const real upu_M_aa_t = upu_d_G_m_xz*v.upu_q_y - upu_d_G_m_xy*v.upu_q_z +
         upu_n_m1_x*(axis_x_upu_axes2_x*v.upu_dalpha_G_m1_in_axes2_x +
-        axis_y_upu_axes2_x*v.upu_dalpha_G_m1_in_axes2_y) - upu_M_ta_t_13*v.upu_q_z -
-        upu_d_G_m_xy*v.upu_q_z;
-    const real upu_M_aa_t_2 = upu_M_ta_t_17*v.upu_q_y + upu_d_G_m_xx*v.upu_q_z +
-        upu_dalpha_G_m1_y*upu_n_m1_x - upu_M_ta_t_14*v.upu_q_z - upu_d_G_m_xz*v.upu_q_x;
-    const real upu_M_aa_t_3 = upu_M_ta_t_18*v.upu_q_y + upu_d_G_m_xy*v.upu_q_x +
-        upu_dalpha_G_m1_z*upu_n_m1_x - upu_M_ta_t_15*v.upu_q_z - upu_d_G_m_xx*v.upu_q_y;
-    const real upu_M_aa_t_4 = upu_M_ta_t_11*v.upu_q_z + upu_d_G_m_yx*v.upu_q_z +
-        upu_dalpha_G_m1_y*upu_n_m1_y - upu_M_ta_t_17*v.upu_q_x -
-        upu_d_G_m1_z*upu_n_m1_y*v.upu_q_x;
-    const real upu_M_aa_t_5 = upu_M_ta_t_12*v.upu_q_z + upu_dalpha_G_m1_z*upu_n_m1_y +
-        upu_d_G_m1_y*upu_n_m1_y*v.upu_q_x - upu_M_ta_t_18*v.upu_q_x - upu_d_G_m_yx*v.upu_q_y;
-    const real upu_M_aa_t_6 = upu_M_ta_t_15*v.upu_q_x + upu_dalpha_G_m1_z*upu_n_m1_z +
-        upu_d_G_m1_y*upu_n_m1_z*v.upu_q_x - upu_M_ta_t_12*v.upu_q_y -
-        upu_d_G_m1_x*upu_n_m1_z*v.upu_q_y;
+        axis_y_upu_axes2_x*v.upu_dalpha_G_m1_in_axes2_y) + upu_M_ta_t_16*v.upu_q_y -
+        upu_M_ta_t_13*v.upu_q_z;
+    const real upu_M_aa_t_2 = upu_d_G_m_xx*v.upu_q_z - upu_d_G_m_xz*v.upu_q_x +
+        upu_dalpha_G_m1_y*upu_n_m1_x + upu_M_ta_t_17*v.upu_q_y - upu_M_ta_t_14*v.upu_q_z;
+    const real upu_M_aa_t_3 = upu_d_G_m_xy*v.upu_q_x - upu_d_G_m_xx*v.upu_q_y +
+        upu_dalpha_G_m1_z*upu_n_m1_x + upu_M_ta_t_18*v.upu_q_y - upu_M_ta_t_15*v.upu_q_z;
+    const real upu_M_aa_t_4 = upu_d_G_m_yx*v.upu_q_z - upu_d_G_m1_z*upu_n_m1_y*v.upu_q_x +
+        upu_dalpha_G_m1_y*upu_n_m1_y + upu_M_ta_t_11*v.upu_q_z - upu_M_ta_t_17*v.upu_q_x;
+    const real upu_M_aa_t_5 = upu_d_G_m1_y*upu_n_m1_y*v.upu_q_x - upu_d_G_m_yx*v.upu_q_y +
+        upu_dalpha_G_m1_z*upu_n_m1_y + upu_M_ta_t_12*v.upu_q_z - upu_M_ta_t_18*v.upu_q_x;
+    const real upu_M_aa_t_6 = upu_d_G_m1_y*upu_n_m1_z*v.upu_q_x -
+        upu_d_G_m1_x*upu_n_m1_z*v.upu_q_y + upu_dalpha_G_m1_z*upu_n_m1_z +
+        upu_M_ta_t_15*v.upu_q_x - upu_M_ta_t_12*v.upu_q_y;
     /* (M_tt) translational block of M */
     gather(&terms[0*count + k], add, upu_Q_xx);  /* M_tt_xx_of_legs */
     gather(&terms[1*count + k], add, upu_Q_xy);  /* M_tt_xy */
@@ -2966,15 +2990,15 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = M_tt_xx_of_legs + m->platform_mass;
+    const real M_tt_xx = m->platform_mass + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
-    const real M_tt_yy = M_tt_yy_of_legs + m->platform_mass;
+    const real M_tt_yy = m->platform_mass + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = M_tt_zz_of_legs + m->platform_mass;
+    const real M_tt_zz = m->platform_mass + M_tt_zz_of_legs;
     /* (M_ta) */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[11*w + k];
-    const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[8*w + k];
     const real h_star_y = s[10*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -2982,9 +3006,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[9*w + k];
-    const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+    const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
@@ -3061,7 +3085,8 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
     real s[18] = {0}, sums[21] = {0};
     real terms_upu[21*LEGS(LEGS_OF_upu)] = {0}, o_upu[LEGS(LEGS_OF_upu)] = {0};
-    M_before(m, 1, 0, X, s, t);
+    values v;
+    M_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         M_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), 0, s, X, terms_upu, o_upu);
     }
@@ -3071,6 +3096,7 @@ APART void M_run(const prepared *m, const real *X, real *M, verdict *t)
     for (size_t n = 0; n < 21; ++n) {
         sums[n] = total(terms_upu + n*LEGS(LEGS_OF_upu), LEGS_OF_upu);
     }
+    M_between(m, 1, 0, &v, s);
     M_after(m, 1, 0, s, sums, M, t);
 }
 
@@ -3079,7 +3105,9 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
     real s[18*LANES], sums[21*LANES];
     real o_upu[LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        M_before(m, LANES, k, X, s, t);
+        values v;
+        M_before(m, LANES, k, X, &v, s, t);
+        M_between(m, LANES, k, &v, s);
     }
     clear(sums, 21*LANES);
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
@@ -3096,29 +3124,32 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, verd
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, real *s,
+INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
     verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
-    stage_Z_dynamics(m, w, k, V, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    s[9*w + k] = v.Z_p_x;
-    s[10*w + k] = v.Z_p_y;
-    s[11*w + k] = v.Z_p_z;
-    s[12*w + k] = v.Z_q_x;
-    s[13*w + k] = v.Z_q_y;
-    s[14*w + k] = v.Z_q_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
+    stage_Z_dynamics(m, w, k, V, v);
+    s[9*w + k] = v->Z_p_x;
+    s[10*w + k] = v->Z_p_y;
+    s[11*w + k] = v->Z_p_z;
+    s[12*w + k] = v->Z_q_x;
+    s[13*w + k] = v->Z_q_y;
+    s[14*w + k] = v->Z_q_z;
 }
 
 INLINE void Z_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3159,8 +3190,8 @@ INLINE void Z_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k
         upu_bias_in_axes2_z;
     /* (upu-nd_m1) rate of moment direction 1 */
     const real upu_nd_m1_in_axes2_x = v.upu_end_p1_in_axes2_z*v.upu_omega_in_axes2_x -
-        v.upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x -
-        v.upu_n_m1_in_axes2_y*v.upu_omega_in_axes2_z;
+        v.upu_n_m1_in_axes2_y*v.upu_omega_in_axes2_z -
+        v.upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x;
     const real upu_nd_m1_in_axes2_y = v.upu_end_p1_in_axes2_z*v.upu_omega_in_axes2_y -
         v.upu_end_p1_in_axes2_y*v.upu_omega_in_axes2_z -
         v.upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y;
@@ -3187,52 +3218,52 @@ INLINE void Z_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real upu_B_2_o_in_axes2_zx = upu_W_2_in_axes2_xz - upu_alpha_2_o_in_axes2_y;
     const real upu_B_2_o_in_axes2_zy = upu_W_2_in_axes2_yz + upu_alpha_2_o_in_axes2_x;
     /* (upu-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real upu_acc_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*v.upu_q_3 - upu_bias_t_2 -
-        v.upu_g_in_axes2_z;
+    const real upu_acc_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*v.upu_q_3 - v.upu_g_in_axes2_z -
+        upu_bias_t_2;
     /* (upu-f_3_o) remainder of: inertia force of link 3 less its weight */
     const real upu_f_3_o_t = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x;
     const real upu_f_3_o_t_2 = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y;
-    const real upu_f_3_o_in_axes2_x = v.upu_acc_3_o_in_axes2_x*m->upu_link3_mass[i] +
-        upu_alpha_1_o_in_axes2_y*m->upu_h_3_in_spec2_y[i] -
+    const real upu_f_3_o_in_axes2_x = v.upu_acc_3_o_in_axes2_x*m->upu_link3_mass[i] -
         upu_B_2_o_in_axes2_xy*m->upu_h_3_in_spec2_z[i] -
-        m->upu_h_3_in_spec2_x[i]*(upu_f_3_o_t_2 + v.upu_f_3_o_t_3);
+        m->upu_h_3_in_spec2_x[i]*(v.upu_f_3_o_t_3 + upu_f_3_o_t_2) +
+        upu_alpha_1_o_in_axes2_y*m->upu_h_3_in_spec2_y[i];
     const real upu_f_3_o_in_axes2_y = v.upu_B_2_o_in_axes2_yx*m->upu_h_3_in_spec2_x[i] +
         v.upu_acc_3_o_in_axes2_y*m->upu_link3_mass[i] +
-        upu_alpha_1_o_t*m->upu_h_3_in_spec2_y[i] + m->upu_h_3_in_spec2_z[i]*(upu_f_3_o_t +
-        v.upu_f_3_o_t_3);
-    const real upu_f_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*m->upu_h_3_in_spec2_x[i] +
-        upu_acc_3_o_in_axes2_z*m->upu_link3_mass[i] -
-        upu_B_2_o_in_axes2_zy*m->upu_h_3_in_spec2_z[i] - m->upu_h_3_in_spec2_y[i]*(upu_f_3_o_t
-        + upu_f_3_o_t_2);
+        m->upu_h_3_in_spec2_z[i]*(v.upu_f_3_o_t_3 + upu_f_3_o_t) +
+        upu_alpha_1_o_t*m->upu_h_3_in_spec2_y[i];
+    const real upu_f_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*m->upu_h_3_in_spec2_x[i] -
+        m->upu_h_3_in_spec2_y[i]*(upu_f_3_o_t + upu_f_3_o_t_2) -
+        upu_B_2_o_in_axes2_zy*m->upu_h_3_in_spec2_z[i] +
+        upu_acc_3_o_in_axes2_z*m->upu_link3_mass[i];
     /* (upu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
-    const real upu_mu_2_o_in_axes2_x = v.upu_B_2_o_in_axes2_yx*m->upu_J_group_2_in_axes2_xz[i]
-        + upu_B_2_o_in_axes2_zy*m->upu_Sigma_2_in_axes2_yy[i] +
-        m->upu_J_group_2_in_axes2_yz[i]*(upu_f_3_o_t_2 - v.upu_f_3_o_t_3) +
+    const real upu_mu_2_o_in_axes2_x = v.upu_g_in_axes2_z*m->upu_h_2_in_spec2_z[i] +
         v.upu_g_in_axes2_y*m->upu_h_2_in_spec2_y[i] +
-        v.upu_g_in_axes2_z*m->upu_h_2_in_spec2_z[i] -
+        v.upu_B_2_o_in_axes2_yx*m->upu_J_group_2_in_axes2_xz[i] -
+        v.upu_acc_3_o_in_axes2_y*m->upu_h_3_in_spec2_y[i] +
+        m->upu_J_group_2_in_axes2_yz[i]*(upu_f_3_o_t_2 - v.upu_f_3_o_t_3) -
+        m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_o_t +
+        upu_B_2_o_in_axes2_zy*m->upu_Sigma_2_in_axes2_yy[i] -
         upu_B_2_o_in_axes2_zx*m->upu_J_group_2_in_axes2_xy[i] -
-        m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_o_t -
-        v.upu_acc_3_o_in_axes2_y*m->upu_h_3_in_spec2_y[i] -
         upu_acc_3_o_in_axes2_z*m->upu_h_3_in_spec2_z[i];
-    const real upu_mu_2_o_in_axes2_y = upu_B_2_o_in_axes2_zy*m->upu_J_group_2_in_axes2_xy[i] +
-        m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_o_in_axes2_y +
-        v.upu_acc_3_o_in_axes2_x*m->upu_h_3_in_spec2_y[i] +
-        v.upu_g_in_axes2_z*m->upu_h_2_in_spec2_x[i] -
+    const real upu_mu_2_o_in_axes2_y = v.upu_g_in_axes2_z*m->upu_h_2_in_spec2_x[i] -
+        v.upu_g_in_axes2_x*m->upu_h_2_in_spec2_y[i] +
+        v.upu_acc_3_o_in_axes2_x*m->upu_h_3_in_spec2_y[i] -
         upu_B_2_o_in_axes2_xy*m->upu_J_group_2_in_axes2_yz[i] -
+        m->upu_J_group_2_in_axes2_xz[i]*(upu_f_3_o_t - v.upu_f_3_o_t_3) +
+        m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_o_in_axes2_y +
+        upu_B_2_o_in_axes2_zy*m->upu_J_group_2_in_axes2_xy[i] -
         upu_B_2_o_in_axes2_zx*m->upu_Sigma_2_in_axes2_xx[i] -
-        m->upu_J_group_2_in_axes2_xz[i]*(upu_f_3_o_t - v.upu_f_3_o_t_3) -
-        upu_acc_3_o_in_axes2_z*m->upu_h_3_in_spec2_x[i] -
-        v.upu_g_in_axes2_x*m->upu_h_2_in_spec2_y[i];
-    const real upu_mu_2_o_in_axes2_z = v.upu_B_2_o_in_axes2_yx*m->upu_Sigma_2_in_axes2_xx[i] +
-        m->upu_J_group_2_in_axes2_xy[i]*(upu_f_3_o_t - upu_f_3_o_t_2) +
-        m->upu_J_group_2_in_axes2_yz[i]*upu_alpha_1_o_in_axes2_y +
-        v.upu_acc_3_o_in_axes2_x*m->upu_h_3_in_spec2_z[i] +
-        v.upu_acc_3_o_in_axes2_y*m->upu_h_3_in_spec2_x[i] -
-        upu_B_2_o_in_axes2_xy*m->upu_Sigma_2_in_axes2_yy[i] -
-        m->upu_J_group_2_in_axes2_xz[i]*upu_alpha_1_o_t -
+        upu_acc_3_o_in_axes2_z*m->upu_h_3_in_spec2_x[i];
+    const real upu_mu_2_o_in_axes2_z = v.upu_acc_3_o_in_axes2_x*m->upu_h_3_in_spec2_z[i] -
         v.upu_g_in_axes2_x*m->upu_h_2_in_spec2_z[i] -
-        v.upu_g_in_axes2_y*m->upu_h_2_in_spec2_x[i];
+        v.upu_g_in_axes2_y*m->upu_h_2_in_spec2_x[i] +
+        v.upu_B_2_o_in_axes2_yx*m->upu_Sigma_2_in_axes2_xx[i] +
+        v.upu_acc_3_o_in_axes2_y*m->upu_h_3_in_spec2_x[i] +
+        m->upu_J_group_2_in_axes2_xy[i]*(upu_f_3_o_t - upu_f_3_o_t_2) -
+        upu_B_2_o_in_axes2_xy*m->upu_Sigma_2_in_axes2_yy[i] +
+        m->upu_J_group_2_in_axes2_yz[i]*upu_alpha_1_o_in_axes2_y -
+        m->upu_J_group_2_in_axes2_xz[i]*upu_alpha_1_o_t;
     /* (upu-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
        connection point left out */
     const real upu_N_2_o_in_axes2_y = upu_mu_2_o_in_axes2_y - upu_f_3_o_in_axes2_z*v.upu_q_3;
@@ -3261,12 +3292,12 @@ INLINE void Z_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k
     const real upu_U_z = v.axis_x_upu_axes2_z*upu_f_3_o_in_axes2_x +
         v.axis_y_upu_axes2_z*upu_G_o_in_axes2_y - v.axis_z_upu_axes2_z*upu_c_o_in_axes2_z;
     /* (Z_a) rotational part of Z */
-    const real upu_Z_a_t = v.axis_y_upu_axes2_x*upu_G_m_o_in_axes2_y + upu_U_z*v.upu_q_y -
-        v.axis_x_upu_axes2_x*upu_c_m_o_in_axes2_x - upu_U_y*v.upu_q_z;
-    const real upu_Z_a_t_2 = v.axis_y_upu_axes2_y*upu_G_m_o_in_axes2_y + upu_U_x*v.upu_q_z -
-        v.axis_x_upu_axes2_y*upu_c_m_o_in_axes2_x - upu_U_z*v.upu_q_x;
-    const real upu_Z_a_t_3 = v.axis_y_upu_axes2_z*upu_G_m_o_in_axes2_y + upu_U_y*v.upu_q_x -
-        v.axis_x_upu_axes2_z*upu_c_m_o_in_axes2_x - upu_U_x*v.upu_q_y;
+    const real upu_Z_a_t = upu_U_z*v.upu_q_y - upu_U_y*v.upu_q_z +
+        v.axis_y_upu_axes2_x*upu_G_m_o_in_axes2_y - v.axis_x_upu_axes2_x*upu_c_m_o_in_axes2_x;
+    const real upu_Z_a_t_2 = upu_U_x*v.upu_q_z - upu_U_z*v.upu_q_x +
+        v.axis_y_upu_axes2_y*upu_G_m_o_in_axes2_y - v.axis_x_upu_axes2_y*upu_c_m_o_in_axes2_x;
+    const real upu_Z_a_t_3 = upu_U_y*v.upu_q_x - upu_U_x*v.upu_q_y +
+        v.axis_y_upu_axes2_z*upu_G_m_o_in_axes2_y - v.axis_x_upu_axes2_z*upu_c_m_o_in_axes2_x;
     /* (Z_t) translational part of Z */
     gather(&terms[0*count + k], add, upu_U_x);  /* Z_t_x_of_legs */
     gather(&terms[1*count + k], add, upu_U_y);  /* Z_t_y_of_legs */
@@ -3301,13 +3332,13 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     /* (Z_a) */
     const real Z_a_x_of_legs = sums[3*w + k];
     const real Z_q_x = s[12*w + k];
-    const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+    const real Z_a_x = Z_q_x + Z_a_x_of_legs;
     const real Z_a_y_of_legs = sums[4*w + k];
     const real Z_q_y = s[13*w + k];
-    const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+    const real Z_a_y = Z_q_y + Z_a_y_of_legs;
     const real Z_a_z_of_legs = sums[5*w + k];
     const real Z_q_z = s[14*w + k];
-    const real Z_a_z = Z_a_z_of_legs + Z_q_z;
+    const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (Z_t) */
     Z[0*w + k] = Z_t_x;
     Z[1*w + k] = Z_t_y;
@@ -3323,7 +3354,8 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_upu[6*LEGS(LEGS_OF_upu)] = {0}, o_upu[LEGS(LEGS_OF_upu)] = {0};
-    Z_before(m, 1, 0, X, V, s, t);
+    values v;
+    Z_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         Z_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), 0, s, X, V, terms_upu, o_upu);
     }
@@ -3333,6 +3365,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_upu + n*LEGS(LEGS_OF_upu), LEGS_OF_upu);
     }
+    Z_between(m, 1, 0, V, &v, s);
     Z_after(1, 0, s, sums, Z, t);
 }
 
@@ -3342,7 +3375,9 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real s[15*LANES], sums[6*LANES];
     real o_upu[LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        Z_before(m, LANES, k, X, V, s, t);
+        values v;
+        Z_before(m, LANES, k, X, &v, s, t);
+        Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
@@ -3359,20 +3394,20 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void H_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3412,7 +3447,8 @@ APART void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
     real s[9] = {0};
     real o_upu[8*LEGS(LEGS_OF_upu)] = {0};
-    H_before(m, 1, 0, X, s, t);
+    values v;
+    H_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         H_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, o_upu);
     }
@@ -3426,7 +3462,8 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
     real s[9*LANES];
     real o_upu[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        H_before(m, LANES, k, X, s, t);
+        values v;
+        H_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3439,20 +3476,20 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, verd
 }
 
 /* ---- Hk ---- */
-INLINE void Hk_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void Hk_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void Hk_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3469,21 +3506,21 @@ INLINE void Hk_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t 
     /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
     const real upu_Hk_a_1_t = v.upu_c_1*v.upu_e_1_in_axes2_x;
     const real upu_Hk_a_1_t_2 = v.upu_e_1_in_axes2_x*v.upu_s_1;
-    const real axis_y_upu_axes2_x = upu_Hk_a_1_t*m->upu_base_frame_xx[i] +
-        upu_Hk_a_1_t_2*m->upu_base_frame_xy[i] - m->upu_base_frame_xz[i]*v.upu_c_2;
-    const real axis_y_upu_axes2_y = upu_Hk_a_1_t*m->upu_base_frame_yx[i] +
-        upu_Hk_a_1_t_2*m->upu_base_frame_yy[i] - m->upu_base_frame_yz[i]*v.upu_c_2;
-    const real axis_y_upu_axes2_z = upu_Hk_a_1_t*m->upu_base_frame_zx[i] +
-        upu_Hk_a_1_t_2*m->upu_base_frame_zy[i] - m->upu_base_frame_zz[i]*v.upu_c_2;
-    const real upu_Hk_a_1_x = axis_y_upu_axes2_x*v.upu_n_m1_in_axes2_y + upu_n_c_z*v.upu_q_y -
+    const real axis_y_upu_axes2_x = upu_Hk_a_1_t*m->upu_base_frame_xx[i] -
+        m->upu_base_frame_xz[i]*v.upu_c_2 + upu_Hk_a_1_t_2*m->upu_base_frame_xy[i];
+    const real axis_y_upu_axes2_y = upu_Hk_a_1_t*m->upu_base_frame_yx[i] -
+        m->upu_base_frame_yz[i]*v.upu_c_2 + upu_Hk_a_1_t_2*m->upu_base_frame_yy[i];
+    const real axis_y_upu_axes2_z = upu_Hk_a_1_t*m->upu_base_frame_zx[i] -
+        m->upu_base_frame_zz[i]*v.upu_c_2 + upu_Hk_a_1_t_2*m->upu_base_frame_zy[i];
+    const real upu_Hk_a_1_x = axis_y_upu_axes2_x*v.upu_n_m1_in_axes2_y -
         v.upu_end_p1_in_axes2_y*(axis_y_upu_axes2_y*v.axis_z_upu_axes2_z -
-        axis_y_upu_axes2_z*v.axis_z_upu_axes2_y) - upu_n_c_y*v.upu_q_z;
-    const real upu_Hk_a_1_y = axis_y_upu_axes2_y*v.upu_n_m1_in_axes2_y + upu_n_c_x*v.upu_q_z -
+        axis_y_upu_axes2_z*v.axis_z_upu_axes2_y) + upu_n_c_z*v.upu_q_y - upu_n_c_y*v.upu_q_z;
+    const real upu_Hk_a_1_y = axis_y_upu_axes2_y*v.upu_n_m1_in_axes2_y -
         v.upu_end_p1_in_axes2_y*(axis_y_upu_axes2_z*v.axis_z_upu_axes2_x -
-        axis_y_upu_axes2_x*v.axis_z_upu_axes2_z) - upu_n_c_z*v.upu_q_x;
-    const real upu_Hk_a_1_z = axis_y_upu_axes2_z*v.upu_n_m1_in_axes2_y + upu_n_c_y*v.upu_q_x -
+        axis_y_upu_axes2_x*v.axis_z_upu_axes2_z) + upu_n_c_x*v.upu_q_z - upu_n_c_z*v.upu_q_x;
+    const real upu_Hk_a_1_z = axis_y_upu_axes2_z*v.upu_n_m1_in_axes2_y -
         v.upu_end_p1_in_axes2_y*(axis_y_upu_axes2_x*v.axis_z_upu_axes2_y -
-        axis_y_upu_axes2_y*v.axis_z_upu_axes2_x) - upu_n_c_x*v.upu_q_y;
+        axis_y_upu_axes2_y*v.axis_z_upu_axes2_x) + upu_n_c_y*v.upu_q_x - upu_n_c_x*v.upu_q_y;
     /* (upu-n_c) */
     o[0*count + k] = upu_n_c_x;
     o[1*count + k] = upu_n_c_y;
@@ -3516,7 +3553,8 @@ APART void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
 {
     real s[9] = {0};
     real o_upu[8*LEGS(LEGS_OF_upu)] = {0};
-    Hk_before(m, 1, 0, X, s, t);
+    values v;
+    Hk_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         Hk_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, o_upu);
     }
@@ -3530,7 +3568,8 @@ INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, ve
     real s[9*LANES];
     real o_upu[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        Hk_before(m, LANES, k, X, s, t);
+        values v;
+        Hk_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3543,21 +3582,20 @@ INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, ve
 }
 
 /* ---- constraint_bias ---- */
-INLINE void constraint_bias_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void constraint_bias_before(const prepared *m, size_t w, size_t k, const real *X, values
+    *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void constraint_bias_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k,
@@ -3596,8 +3634,8 @@ INLINE void constraint_bias_legs_upu(const prepared *m, size_t w, size_t i, size
         omega_y*v.upu_S_dot_t_3) - upu_bias_in_axes2_z;
     /* (upu-nd_m1) rate of moment direction 1 */
     const real upu_nd_m1_in_axes2_x = v.upu_end_p1_in_axes2_z*v.upu_omega_in_axes2_x -
-        v.upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x -
-        v.upu_n_m1_in_axes2_y*v.upu_omega_in_axes2_z;
+        v.upu_n_m1_in_axes2_y*v.upu_omega_in_axes2_z -
+        v.upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x;
     const real upu_nd_m1_in_axes2_y = v.upu_end_p1_in_axes2_z*v.upu_omega_in_axes2_y -
         v.upu_end_p1_in_axes2_y*v.upu_omega_in_axes2_z -
         v.upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y;
@@ -3612,7 +3650,7 @@ INLINE void constraint_bias_legs_upu(const prepared *m, size_t w, size_t i, size
     const real upu_nu_1 = upu_nu_1_t + upu_nu_1_t_2;
     /* (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
        */
-    const real upu_gamma_c1 = upu_nu_1 + v.upu_n_c_in_axes2_z*upu_rel_o_in_axes2_z;
+    const real upu_gamma_c1 = v.upu_n_c_in_axes2_z*upu_rel_o_in_axes2_z + upu_nu_1;
     /* (upu-gamma_c1) */
     o[0*count + k] = upu_gamma_c1;
     o[2*count + k] = upu_gamma_c1;
@@ -3635,7 +3673,8 @@ INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V,
 {
     real s[9] = {0};
     real o_upu[3*LEGS(LEGS_OF_upu)] = {0};
-    constraint_bias_before(m, 1, 0, X, s, t);
+    values v;
+    constraint_bias_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         constraint_bias_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, V, o_upu);
     }
@@ -3650,7 +3689,8 @@ INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const re
     real s[9*LANES];
     real o_upu[3*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        constraint_bias_before(m, LANES, k, X, s, t);
+        values v;
+        constraint_bias_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3663,12 +3703,26 @@ INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const re
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, real *s, verdict *t)
+INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    stage_V_X(w, k, V, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
+    values *v, real *s)
+{
+    stage_V_X(w, k, V, v);
     /* (W_p) centripetal tensor of the platform */
     const real omega_x = V[3*w + k];
     const real omega_y = V[4*w + k];
@@ -3683,72 +3737,62 @@ INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X
     const real a_t_y = t_ddot_y - m->gravity_y;
     const real t_ddot_z = A[2*w + k];
     const real a_t_z = t_ddot_z - m->gravity_z;
-    const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
-    const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
-    const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
+    const real a_t_in_platform_x = v->R_yx*a_t_y + v->R_zx*a_t_z + v->R_xx*a_t_x;
+    const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
+    const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
     const real f_p_t = omega_x*omega_x;
     const real f_p_t_2 = omega_y*omega_y;
     const real f_p_t_3 = omega_z*omega_z;
     const real alpha_y = A[4*w + k];
     const real alpha_z = A[5*w + k];
-    const real f_p_x = a_t_x*m->platform_mass + v.h_star_y*(W_p_xy - alpha_z) +
-        v.h_star_z*(W_p_xz + alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+    const real f_p_x = a_t_x*m->platform_mass + v->h_star_y*(W_p_xy - alpha_z) +
+        v->h_star_z*(alpha_y + W_p_xz) - v->h_star_x*(f_p_t_2 + f_p_t_3);
     const real alpha_x = A[3*w + k];
-    const real f_p_y = a_t_y*m->platform_mass + v.h_star_x*(W_p_xy + alpha_z) +
-        v.h_star_z*(W_p_yz - alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
-    const real f_p_z = a_t_z*m->platform_mass + v.h_star_x*(W_p_xz - alpha_y) +
-        v.h_star_y*(W_p_yz + alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
+    const real f_p_y = a_t_y*m->platform_mass + v->h_star_x*(alpha_z + W_p_xy) +
+        v->h_star_z*(W_p_yz - alpha_x) - v->h_star_y*(f_p_t + f_p_t_3);
+    const real f_p_z = a_t_z*m->platform_mass + v->h_star_x*(W_p_xz - alpha_y) +
+        v->h_star_y*(alpha_x + W_p_yz) - v->h_star_z*(f_p_t + f_p_t_2);
     /* (mu_p) inertia moment of the platform less that of its weight */
-    const real mu_p_t = m->J_star_in_platform_xx*v.omega_in_platform_x +
-        m->J_star_in_platform_xy*v.omega_in_platform_y +
-        m->J_star_in_platform_xz*v.omega_in_platform_z;
-    const real mu_p_t_2 = m->J_star_in_platform_xy*v.omega_in_platform_x +
-        m->J_star_in_platform_yy*v.omega_in_platform_y +
-        m->J_star_in_platform_yz*v.omega_in_platform_z;
-    const real mu_p_t_3 = m->J_star_in_platform_xz*v.omega_in_platform_x +
-        m->J_star_in_platform_yz*v.omega_in_platform_y +
-        m->J_star_in_platform_zz*v.omega_in_platform_z;
-    const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
-    const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
-    const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+    const real mu_p_t = m->J_star_in_platform_xx*v->omega_in_platform_x +
+        m->J_star_in_platform_xy*v->omega_in_platform_y +
+        m->J_star_in_platform_xz*v->omega_in_platform_z;
+    const real mu_p_t_2 = m->J_star_in_platform_xy*v->omega_in_platform_x +
+        m->J_star_in_platform_yy*v->omega_in_platform_y +
+        m->J_star_in_platform_yz*v->omega_in_platform_z;
+    const real mu_p_t_3 = m->J_star_in_platform_xz*v->omega_in_platform_x +
+        m->J_star_in_platform_yz*v->omega_in_platform_y +
+        m->J_star_in_platform_zz*v->omega_in_platform_z;
+    const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
+    const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
+    const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
     const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
         m->J_star_in_platform_xy*alpha_in_platform_y +
         m->J_star_in_platform_xz*alpha_in_platform_z +
-        a_t_in_platform_z*m->h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
-        a_t_in_platform_y*m->h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+        a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
+        + mu_p_t_3*v->omega_in_platform_y - mu_p_t_2*v->omega_in_platform_z;
     const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
         m->J_star_in_platform_yz*alpha_in_platform_z +
-        a_t_in_platform_x*m->h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
-        a_t_in_platform_z*m->h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
+        a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
+        + mu_p_t*v->omega_in_platform_z - mu_p_t_3*v->omega_in_platform_x;
     const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
         m->J_star_in_platform_zz*alpha_in_platform_z +
-        a_t_in_platform_y*m->h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
-        a_t_in_platform_x*m->h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
-    const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
-        v.R_xz*mu_p_in_platform_z;
-    const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
-        v.R_yz*mu_p_in_platform_z;
-    const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
-        v.R_zz*mu_p_in_platform_z;
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+        a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
+        + mu_p_t_2*v->omega_in_platform_x - mu_p_t*v->omega_in_platform_y;
+    const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
+        v->R_xz*mu_p_in_platform_z;
+    const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
+        v->R_yz*mu_p_in_platform_z;
+    const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
+        v->R_zz*mu_p_in_platform_z;
     s[9*w + k] = f_p_x;
     s[10*w + k] = f_p_y;
     s[11*w + k] = f_p_z;
     s[12*w + k] = mu_p_x;
     s[13*w + k] = mu_p_y;
     s[14*w + k] = mu_p_z;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void required_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3762,25 +3806,25 @@ INLINE void required_legs_upu(const prepared *m, size_t w, size_t i, size_t j, s
     stage_upu_A_V_X(w, j, V, &v);
     stage_upu_legs_required(m, i, &v);
     /* (R_a) moment that actuators and external wrench must give */
-    const real upu_R_a_t = v.axis_y_upu_axes2_x*v.upu_G_m_in_axes2_y + v.upu_c_y*v.upu_q_z -
-        v.axis_x_upu_axes2_x*v.upu_c_m_in_axes2_x - v.upu_c_z*v.upu_q_y;
-    const real upu_R_a_t_2 = v.axis_y_upu_axes2_y*v.upu_G_m_in_axes2_y + v.upu_c_z*v.upu_q_x -
-        v.axis_x_upu_axes2_y*v.upu_c_m_in_axes2_x - v.upu_c_x*v.upu_q_z;
-    const real upu_R_a_t_3 = v.axis_y_upu_axes2_z*v.upu_G_m_in_axes2_y + v.upu_c_x*v.upu_q_y -
-        v.axis_x_upu_axes2_z*v.upu_c_m_in_axes2_x - v.upu_c_y*v.upu_q_x;
+    const real upu_R_a_t = v.upu_c_y*v.upu_q_z - v.upu_c_z*v.upu_q_y +
+        v.axis_y_upu_axes2_x*v.upu_G_m_in_axes2_y - v.axis_x_upu_axes2_x*v.upu_c_m_in_axes2_x;
+    const real upu_R_a_t_2 = v.upu_c_z*v.upu_q_x - v.upu_c_x*v.upu_q_z +
+        v.axis_y_upu_axes2_y*v.upu_G_m_in_axes2_y - v.axis_x_upu_axes2_y*v.upu_c_m_in_axes2_x;
+    const real upu_R_a_t_3 = v.upu_c_x*v.upu_q_y - v.upu_c_y*v.upu_q_x +
+        v.axis_y_upu_axes2_z*v.upu_G_m_in_axes2_y - v.axis_x_upu_axes2_z*v.upu_c_m_in_axes2_x;
     /* (upu-H_a_3) moment of the column's unit force about the platform origin */
     const real upu_H_a_3_x = v.axis_x_upu_axes2_z*v.upu_q_y - v.axis_x_upu_axes2_y*v.upu_q_z;
     const real upu_H_a_3_y = v.axis_x_upu_axes2_x*v.upu_q_z - v.axis_x_upu_axes2_z*v.upu_q_x;
     const real upu_H_a_3_z = v.axis_x_upu_axes2_y*v.upu_q_x - v.axis_x_upu_axes2_x*v.upu_q_y;
     /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
-    const real upu_Hk_a_1_x = v.axis_y_upu_axes2_x*v.upu_n_m1_in_axes2_y +
-        v.upu_n_c_z*v.upu_q_y - v.axis_x_upu_axes2_x*v.upu_end_p1_in_axes2_y -
+    const real upu_Hk_a_1_x = v.axis_y_upu_axes2_x*v.upu_n_m1_in_axes2_y -
+        v.axis_x_upu_axes2_x*v.upu_end_p1_in_axes2_y + v.upu_n_c_z*v.upu_q_y -
         v.upu_n_c_y*v.upu_q_z;
-    const real upu_Hk_a_1_y = v.axis_y_upu_axes2_y*v.upu_n_m1_in_axes2_y +
-        v.upu_n_c_x*v.upu_q_z - v.axis_x_upu_axes2_y*v.upu_end_p1_in_axes2_y -
+    const real upu_Hk_a_1_y = v.axis_y_upu_axes2_y*v.upu_n_m1_in_axes2_y -
+        v.axis_x_upu_axes2_y*v.upu_end_p1_in_axes2_y + v.upu_n_c_x*v.upu_q_z -
         v.upu_n_c_z*v.upu_q_x;
-    const real upu_Hk_a_1_z = v.axis_y_upu_axes2_z*v.upu_n_m1_in_axes2_y +
-        v.upu_n_c_y*v.upu_q_x - v.axis_x_upu_axes2_z*v.upu_end_p1_in_axes2_y -
+    const real upu_Hk_a_1_z = v.axis_y_upu_axes2_z*v.upu_n_m1_in_axes2_y -
+        v.axis_x_upu_axes2_z*v.upu_end_p1_in_axes2_y + v.upu_n_c_y*v.upu_q_x -
         v.upu_n_c_x*v.upu_q_y;
     /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, v.upu_c_x);  /* R_t_x_of_legs */
@@ -3845,13 +3889,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[12*w + k];
-    const real R_a_x = R_a_x_of_legs + mu_p_x;
+    const real R_a_x = mu_p_x + R_a_x_of_legs;
     const real R_a_y_of_legs = sums[4*w + k];
     const real mu_p_y = s[13*w + k];
-    const real R_a_y = R_a_y_of_legs + mu_p_y;
+    const real R_a_y = mu_p_y + R_a_y_of_legs;
     const real R_a_z_of_legs = sums[5*w + k];
     const real mu_p_z = s[14*w + k];
-    const real R_a_z = R_a_z_of_legs + mu_p_z;
+    const real R_a_z = mu_p_z + R_a_z_of_legs;
     /* (R_t) */
     required[0*w + k] = R_t_x;
     required[1*w + k] = R_t_y;
@@ -3862,12 +3906,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[5*w + k] = R_a_z;
 }
 
-APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
+INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, real *Hk, verdict *t)
 {
     real s[15] = {0}, sums[6] = {0};
     real terms_upu[6*LEGS(LEGS_OF_upu)] = {0}, o_upu[13*LEGS(LEGS_OF_upu)] = {0};
-    required_before(m, 1, 0, X, V, A, s, t);
+    values v;
+    required_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         required_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), 0, s, X, V, A, terms_upu, o_upu);
     }
@@ -3877,6 +3922,7 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_upu + n*LEGS(LEGS_OF_upu), LEGS_OF_upu);
     }
+    required_between(m, 1, 0, V, A, &v, s);
     required_after(1, 0, s, sums, required);
 }
 
@@ -3886,7 +3932,9 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real s[15*LANES], sums[6*LANES];
     real o_upu[13*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        required_before(m, LANES, k, X, V, A, s, t);
+        values v;
+        required_before(m, LANES, k, X, &v, s, t);
+        required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
@@ -3903,21 +3951,20 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s, verdict *t)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
+    *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void inverse_kinematics_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k,
@@ -3928,23 +3975,20 @@ INLINE void inverse_kinematics_legs_upu(const prepared *m, size_t w, size_t i, s
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
     const real t_x = X[0*w + j];
-    const real upu_S_x = t_x + R_xx*m->upu_platform_point_x[i] +
-        R_xy*m->upu_platform_point_y[i] + R_xz*m->upu_platform_point_z[i] -
-        m->upu_base_point_x[i];
+    const real upu_S_x = t_x - m->upu_base_point_x[i] + R_xy*m->upu_platform_point_y[i] +
+        R_xz*m->upu_platform_point_z[i] + R_xx*m->upu_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real t_y = X[1*w + j];
-    const real upu_S_y = t_y + R_yx*m->upu_platform_point_x[i] +
-        R_yy*m->upu_platform_point_y[i] + R_yz*m->upu_platform_point_z[i] -
-        m->upu_base_point_y[i];
+    const real upu_S_y = t_y - m->upu_base_point_y[i] + R_yx*m->upu_platform_point_x[i] +
+        R_yz*m->upu_platform_point_z[i] + R_yy*m->upu_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real t_z = X[2*w + j];
-    const real upu_S_z = t_z + R_zx*m->upu_platform_point_x[i] +
-        R_zy*m->upu_platform_point_y[i] + R_zz*m->upu_platform_point_z[i] -
-        m->upu_base_point_z[i];
+    const real upu_S_z = t_z - m->upu_base_point_z[i] + R_zx*m->upu_platform_point_x[i] +
+        R_zy*m->upu_platform_point_y[i] + R_zz*m->upu_platform_point_z[i];
     const real upu_S_in_turn1_x = upu_S_x*m->upu_base_frame_xx[i] +
         upu_S_y*m->upu_base_frame_yx[i] + upu_S_z*m->upu_base_frame_zx[i];
     const real upu_S_in_turn1_y = upu_S_x*m->upu_base_frame_xy[i] +
@@ -3990,7 +4034,8 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, ver
 {
     real s[9] = {0};
     real o_upu[5*LEGS(LEGS_OF_upu)] = {0};
-    inverse_kinematics_before(m, 1, 0, X, s, t);
+    values v;
+    inverse_kinematics_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         inverse_kinematics_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, o_upu);
     }
@@ -4005,7 +4050,8 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real s[9*LANES];
     real o_upu[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        inverse_kinematics_before(m, LANES, k, X, s, t);
+        values v;
+        inverse_kinematics_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -4018,21 +4064,20 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_rates_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -4090,7 +4135,8 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 {
     real s[9] = {0};
     real o_upu[5*LEGS(LEGS_OF_upu)] = {0};
-    joint_rates_before(m, 1, 0, X, s, t);
+    values v;
+    joint_rates_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         joint_rates_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, V, o_upu);
     }
@@ -4105,7 +4151,8 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real s[9*LANES];
     real o_upu[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_rates_before(m, LANES, k, X, s, t);
+        values v;
+        joint_rates_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -4118,21 +4165,20 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, real
-    *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
+    values *v, real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void joint_accelerations_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t
@@ -4149,7 +4195,7 @@ INLINE void joint_accelerations_legs_upu(const prepared *m, size_t w, size_t i, 
     /* (upu-rel) acceleration of the connection point left to the joint accelerations */
     const real upu_rel_in_axes2_x = v.axis_x_upu_axes2_x*v.upu_S_ddot_x +
         v.axis_x_upu_axes2_y*v.upu_S_ddot_y + v.axis_x_upu_axes2_z*v.upu_S_ddot_z +
-        v.upu_q_3*(v.upu_omega_1_in_axes2_y*v.upu_omega_1_in_axes2_y + v.upu_qd_2*v.upu_qd_2);
+        v.upu_q_3*(v.upu_qd_2*v.upu_qd_2 + v.upu_omega_1_in_axes2_y*v.upu_omega_1_in_axes2_y);
     const real upu_rel_in_axes2_z = v.axis_z_upu_axes2_x*v.upu_S_ddot_x +
         v.axis_z_upu_axes2_y*v.upu_S_ddot_y + v.axis_z_upu_axes2_z*v.upu_S_ddot_z -
         upu_bias_in_axes2_z;
@@ -4194,7 +4240,8 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 {
     real s[9] = {0};
     real o_upu[5*LEGS(LEGS_OF_upu)] = {0};
-    joint_accelerations_before(m, 1, 0, X, s, t);
+    values v;
+    joint_accelerations_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         joint_accelerations_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, V, A, o_upu);
     }
@@ -4209,7 +4256,8 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real s[9*LANES];
     real o_upu[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        joint_accelerations_before(m, LANES, k, X, s, t);
+        values v;
+        joint_accelerations_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -4222,21 +4270,20 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- constraints ---- */
-INLINE void constraints_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void constraints_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void constraints_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -4247,23 +4294,20 @@ INLINE void constraints_legs_upu(const prepared *m, size_t w, size_t i, size_t j
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
     const real t_x = X[0*w + j];
-    const real upu_S_x = t_x + R_xx*m->upu_platform_point_x[i] +
-        R_xy*m->upu_platform_point_y[i] + R_xz*m->upu_platform_point_z[i] -
-        m->upu_base_point_x[i];
+    const real upu_S_x = t_x - m->upu_base_point_x[i] + R_xy*m->upu_platform_point_y[i] +
+        R_xz*m->upu_platform_point_z[i] + R_xx*m->upu_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real t_y = X[1*w + j];
-    const real upu_S_y = t_y + R_yx*m->upu_platform_point_x[i] +
-        R_yy*m->upu_platform_point_y[i] + R_yz*m->upu_platform_point_z[i] -
-        m->upu_base_point_y[i];
+    const real upu_S_y = t_y - m->upu_base_point_y[i] + R_yx*m->upu_platform_point_x[i] +
+        R_yz*m->upu_platform_point_z[i] + R_yy*m->upu_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real t_z = X[2*w + j];
-    const real upu_S_z = t_z + R_zx*m->upu_platform_point_x[i] +
-        R_zy*m->upu_platform_point_y[i] + R_zz*m->upu_platform_point_z[i] -
-        m->upu_base_point_z[i];
+    const real upu_S_z = t_z - m->upu_base_point_z[i] + R_zx*m->upu_platform_point_x[i] +
+        R_zy*m->upu_platform_point_y[i] + R_zz*m->upu_platform_point_z[i];
     const real upu_S_in_turn1_x = upu_S_x*m->upu_base_frame_xx[i] +
         upu_S_y*m->upu_base_frame_yx[i] + upu_S_z*m->upu_base_frame_zx[i];
     const real upu_S_in_turn1_y = upu_S_x*m->upu_base_frame_xy[i] +
@@ -4275,17 +4319,17 @@ INLINE void constraints_legs_upu(const prepared *m, size_t w, size_t i, size_t j
     /* (upu-phi_c1) loop-closure residual about the constraint moment */
     const real inv_upu_root_1 = 1/upu_root_1;
     const real upu_phi_c1_t =
-        m->upu_platform_joint_axis_platform_x[i]*(R_xx*m->upu_base_frame_xx[i] +
-        R_yx*m->upu_base_frame_yx[i] + R_zx*m->upu_base_frame_zx[i]) +
+        m->upu_platform_joint_axis_platform_x[i]*(R_yx*m->upu_base_frame_yx[i] +
+        R_zx*m->upu_base_frame_zx[i] + R_xx*m->upu_base_frame_xx[i]) +
         m->upu_platform_joint_axis_platform_y[i]*(R_xy*m->upu_base_frame_xx[i] +
-        R_yy*m->upu_base_frame_yx[i] + R_zy*m->upu_base_frame_zx[i]) +
+        R_zy*m->upu_base_frame_zx[i] + R_yy*m->upu_base_frame_yx[i]) +
         m->upu_platform_joint_axis_platform_z[i]*(R_xz*m->upu_base_frame_xx[i] +
         R_yz*m->upu_base_frame_yx[i] + R_zz*m->upu_base_frame_zx[i]);
     const real upu_phi_c1_t_2 =
-        m->upu_platform_joint_axis_platform_x[i]*(R_xx*m->upu_base_frame_xy[i] +
-        R_yx*m->upu_base_frame_yy[i] + R_zx*m->upu_base_frame_zy[i]) +
+        m->upu_platform_joint_axis_platform_x[i]*(R_yx*m->upu_base_frame_yy[i] +
+        R_zx*m->upu_base_frame_zy[i] + R_xx*m->upu_base_frame_xy[i]) +
         m->upu_platform_joint_axis_platform_y[i]*(R_xy*m->upu_base_frame_xy[i] +
-        R_yy*m->upu_base_frame_yy[i] + R_zy*m->upu_base_frame_zy[i]) +
+        R_zy*m->upu_base_frame_zy[i] + R_yy*m->upu_base_frame_yy[i]) +
         m->upu_platform_joint_axis_platform_z[i]*(R_xz*m->upu_base_frame_xy[i] +
         R_yz*m->upu_base_frame_yy[i] + R_zz*m->upu_base_frame_zy[i]);
     const real upu_end_p1_in_axes2_z = inv_upu_root_1*upu_S_in_turn1_x*upu_phi_c1_t_2 -
@@ -4308,7 +4352,8 @@ APART void constraints_run(const prepared *m, const real *X, real *constraints, 
 {
     real s[9] = {0};
     real o_upu[3*LEGS(LEGS_OF_upu)] = {0};
-    constraints_before(m, 1, 0, X, s, t);
+    values v;
+    constraints_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         constraints_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, o_upu);
     }
@@ -4323,7 +4368,8 @@ INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restri
     real s[9*LANES];
     real o_upu[3*LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        constraints_before(m, LANES, k, X, s, t);
+        values v;
+        constraints_before(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -4336,20 +4382,20 @@ INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restri
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, real *s, verdict *t)
+INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void legs_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -4429,7 +4475,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     real s[9] = {0};
     real o_upu[16*LEGS(LEGS_OF_upu)] = {0};
     clear(actuator, 18);
-    legs_before(m, 1, 0, X, s, t);
+    values v;
+    legs_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         legs_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, V, A, o_upu);
     }
@@ -4439,33 +4486,37 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, real *s,
-    verdict *t)
+INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
+    real *s)
+{
     /* (potential) potential energy */
     const real t_x = X[0*w + k];
     const real t_y = X[1*w + k];
     const real t_z = X[2*w + k];
-    const real potential_t = m->gravity_x*(v.R_xx*m->h_star_in_platform_x +
-        v.R_xy*m->h_star_in_platform_y + v.R_xz*m->h_star_in_platform_z +
-        m->platform_mass*t_x) + m->gravity_y*(v.R_yx*m->h_star_in_platform_x +
-        v.R_yy*m->h_star_in_platform_y + v.R_yz*m->h_star_in_platform_z +
-        m->platform_mass*t_y) + m->gravity_z*(v.R_zx*m->h_star_in_platform_x +
-        v.R_zy*m->h_star_in_platform_y + v.R_zz*m->h_star_in_platform_z +
-        m->platform_mass*t_z);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+    const real potential_t = m->gravity_x*(m->platform_mass*t_x +
+        v->R_xy*m->h_star_in_platform_y + v->R_xz*m->h_star_in_platform_z +
+        v->R_xx*m->h_star_in_platform_x) + m->gravity_y*(m->platform_mass*t_y +
+        v->R_yx*m->h_star_in_platform_x + v->R_yz*m->h_star_in_platform_z +
+        v->R_yy*m->h_star_in_platform_y) + m->gravity_z*(m->platform_mass*t_z +
+        v->R_zx*m->h_star_in_platform_x + v->R_zy*m->h_star_in_platform_y +
+        v->R_zz*m->h_star_in_platform_z);
     s[9*w + k] = potential_t;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
 }
 
 INLINE void potential_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -4476,23 +4527,20 @@ INLINE void potential_legs_upu(const prepared *m, size_t w, size_t i, size_t j, 
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
     const real t_x = X[0*w + j];
-    const real upu_S_x = t_x + R_xx*m->upu_platform_point_x[i] +
-        R_xy*m->upu_platform_point_y[i] + R_xz*m->upu_platform_point_z[i] -
-        m->upu_base_point_x[i];
+    const real upu_S_x = t_x - m->upu_base_point_x[i] + R_xy*m->upu_platform_point_y[i] +
+        R_xz*m->upu_platform_point_z[i] + R_xx*m->upu_platform_point_x[i];
     const real R_yx = s[3*w + j];
     const real R_yy = s[4*w + j];
     const real R_yz = s[5*w + j];
     const real t_y = X[1*w + j];
-    const real upu_S_y = t_y + R_yx*m->upu_platform_point_x[i] +
-        R_yy*m->upu_platform_point_y[i] + R_yz*m->upu_platform_point_z[i] -
-        m->upu_base_point_y[i];
+    const real upu_S_y = t_y - m->upu_base_point_y[i] + R_yx*m->upu_platform_point_x[i] +
+        R_yz*m->upu_platform_point_z[i] + R_yy*m->upu_platform_point_y[i];
     const real R_zx = s[6*w + j];
     const real R_zy = s[7*w + j];
     const real R_zz = s[8*w + j];
     const real t_z = X[2*w + j];
-    const real upu_S_z = t_z + R_zx*m->upu_platform_point_x[i] +
-        R_zy*m->upu_platform_point_y[i] + R_zz*m->upu_platform_point_z[i] -
-        m->upu_base_point_z[i];
+    const real upu_S_z = t_z - m->upu_base_point_z[i] + R_zx*m->upu_platform_point_x[i] +
+        R_zy*m->upu_platform_point_y[i] + R_zz*m->upu_platform_point_z[i];
     const real upu_S_in_turn1_x = upu_S_x*m->upu_base_frame_xx[i] +
         upu_S_y*m->upu_base_frame_yx[i] + upu_S_z*m->upu_base_frame_zx[i];
     const real upu_S_in_turn1_y = upu_S_x*m->upu_base_frame_xy[i] +
@@ -4532,8 +4580,8 @@ INLINE void potential_legs_upu(const prepared *m, size_t w, size_t i, size_t j, 
         m->upu_h_3_in_spec2_y[i] + upu_b_in_spec2_y*m->upu_link2_mass[i] +
         upu_b_in_spec2_y*m->upu_link3_mass[i]) - (m->upu_acc_3_t_3[i]*upu_e_1_in_axes2_x +
         upu_c_2*upu_potential_t_4)*(m->upu_h_2_in_spec2_x[i] + m->upu_h_3_in_spec2_x[i] +
-        upu_b_in_spec2_x*m->upu_link2_mass[i] + m->upu_link3_mass[i]*(upu_b_in_spec2_x +
-        upu_q_3));
+        upu_b_in_spec2_x*m->upu_link2_mass[i] + m->upu_link3_mass[i]*(upu_q_3 +
+        upu_b_in_spec2_x));
     /* (potential) */
     gather(&terms[0*count + k], add, upu_potential_t_6);  /* potential_of_legs */
     o[0*count + k] = UNLESS(magnitude(upu_root_1_t) > LEAST_1) + UNLESS(magnitude(upu_q_3_t) >
@@ -4559,7 +4607,8 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 {
     real s[10] = {0}, sums[1] = {0};
     real terms_upu[LEGS(LEGS_OF_upu)] = {0}, o_upu[LEGS(LEGS_OF_upu)] = {0};
-    potential_before(m, 1, 0, X, s, t);
+    values v;
+    potential_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         potential_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), 0, s, X, terms_upu, o_upu);
     }
@@ -4569,28 +4618,28 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_upu + n*LEGS(LEGS_OF_upu), LEGS_OF_upu);
     }
+    potential_between(m, 1, 0, X, &v, s);
     potential_after(1, 0, s, sums, potential);
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, real *s, real
-    *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
+    *s, real *lengths, verdict *t)
 {
-    values v;
-    stage_X(m, w, k, X, &v);
-    s[0*w + k] = v.R_xx;
-    s[1*w + k] = v.R_xy;
-    s[2*w + k] = v.R_xz;
-    s[3*w + k] = v.R_yx;
-    s[4*w + k] = v.R_yy;
-    s[5*w + k] = v.R_yz;
-    s[6*w + k] = v.R_zx;
-    s[7*w + k] = v.R_zy;
-    s[8*w + k] = v.R_zz;
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     lengths[1*w + k] = m->legs_size;
     t->total[k] += m->legs_size;
-    t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
 INLINE void condition_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -4610,12 +4659,12 @@ INLINE void condition_legs_upu(const prepared *m, size_t w, size_t i, size_t j, 
         R(1.25)*root(upu_pivot_size_2)), R(1.5624999999999998)*upu_pivot_size_3),
         R(1.25)*upu_pivot_size_4), R(1.25)*upu_pivot_size_5);
     /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
-    const real upu_Hk_a_1_x = v.axis_y_upu_axes2_x*v.upu_n_m1_in_axes2_y +
-        v.upu_n_c_z*v.upu_q_y - v.upu_end_p1_in_axes2_y*v.upu_w_3_x - v.upu_n_c_y*v.upu_q_z;
-    const real upu_Hk_a_1_y = v.axis_y_upu_axes2_y*v.upu_n_m1_in_axes2_y +
-        v.upu_n_c_x*v.upu_q_z - v.upu_end_p1_in_axes2_y*v.upu_w_3_y - v.upu_n_c_z*v.upu_q_x;
-    const real upu_Hk_a_1_z = v.axis_y_upu_axes2_z*v.upu_n_m1_in_axes2_y +
-        v.upu_n_c_y*v.upu_q_x - v.upu_end_p1_in_axes2_y*v.upu_w_3_z - v.upu_n_c_x*v.upu_q_y;
+    const real upu_Hk_a_1_x = v.axis_y_upu_axes2_x*v.upu_n_m1_in_axes2_y -
+        v.upu_end_p1_in_axes2_y*v.upu_w_3_x + v.upu_n_c_z*v.upu_q_y - v.upu_n_c_y*v.upu_q_z;
+    const real upu_Hk_a_1_y = v.axis_y_upu_axes2_y*v.upu_n_m1_in_axes2_y -
+        v.upu_end_p1_in_axes2_y*v.upu_w_3_y + v.upu_n_c_x*v.upu_q_z - v.upu_n_c_z*v.upu_q_x;
+    const real upu_Hk_a_1_z = v.axis_y_upu_axes2_z*v.upu_n_m1_in_axes2_y -
+        v.upu_end_p1_in_axes2_y*v.upu_w_3_z + v.upu_n_c_y*v.upu_q_x - v.upu_n_c_x*v.upu_q_y;
     /* (spread) rms distance of the platform points from their centroid */
     const real upu_spread_t = m->b_c_in_platform_x - m->upu_platform_point_x[i];
     const real upu_spread_t_2 = m->b_c_in_platform_y - m->upu_platform_point_y[i];
@@ -4688,7 +4737,8 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, re
     real s[9] = {0}, sums[1] = {0};
     real terms_upu[LEGS(LEGS_OF_upu)] = {0}, o_upu[15*LEGS(LEGS_OF_upu)] = {0};
     clear(reach, NL);
-    condition_before(m, 1, 0, X, s, lengths, t);
+    values v;
+    condition_before(m, 1, 0, X, &v, s, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         condition_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), 0, s, X, terms_upu, o_upu);
     }
@@ -4712,11 +4762,7 @@ int tripod_3upu_M(const prepared *m, const real *X, real *M_out)
     if (!is_finite(why.total[0])) {
         check(NV*NV, 1, M_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-    }
-    return code;
+    return settled(&why, NV*NV, M_out);
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
@@ -4743,11 +4789,7 @@ int tripod_3upu_Z(const prepared *m, const real *X, const real *V, real *Z_out)
     if (!is_finite(why.total[0])) {
         check(NV, 1, Z_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, Z_out);
-    }
-    return code;
+    return settled(&why, NV, Z_out);
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
@@ -4771,11 +4813,7 @@ int tripod_3upu_H(const prepared *m, const real *X, real *H_out)
     if (!is_finite(why.total[0])) {
         check(NV*NU, 1, H_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
@@ -4798,11 +4836,7 @@ int tripod_3upu_Hk(const prepared *m, const real *X, real *Hk_out)
     if (!is_finite(why.total[0])) {
         check(NV*NC, 1, Hk_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NC, Hk_out);
-    }
-    return code;
+    return settled(&why, NV*NC, Hk_out);
 }
 
 INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
@@ -4825,11 +4859,7 @@ int tripod_3upu_constraints(const prepared *m, const real *X, real *constraints_
     if (!is_finite(why.total[0])) {
         check(3, 1, constraints_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(3, constraints_out);
-    }
-    return code;
+    return settled(&why, 3, constraints_out);
 }
 
 INLINE void constraints_lanes(const prepared *m, const real *X, real *constraints_out, int *code)
@@ -4857,11 +4887,7 @@ int tripod_3upu_constraint_bias(const prepared *m, const real *X, const real *V,
     if (!is_finite(why.total[0])) {
         check(3, 1, constraint_bias_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(3, constraint_bias_out);
-    }
-    return code;
+    return settled(&why, 3, constraint_bias_out);
 }
 
 INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *V, real
@@ -4886,11 +4912,7 @@ int tripod_3upu_inverse_kinematics(const prepared *m, const real *X, real *q_out
     if (!is_finite(why.total[0])) {
         check(NJ, 1, q_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, q_out);
-    }
-    return code;
+    return settled(&why, NJ, q_out);
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
@@ -4917,11 +4939,7 @@ int tripod_3upu_joint_rates(const prepared *m, const real *X, const real *V, rea
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qd_out);
-    }
-    return code;
+    return settled(&why, NJ, qd_out);
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -4952,11 +4970,7 @@ int tripod_3upu_joint_accelerations(const prepared *m, const real *X, const real
     if (!is_finite(why.total[0])) {
         check(NJ, 1, qdd_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, qdd_out);
-    }
-    return code;
+    return settled(&why, NJ, qdd_out);
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
@@ -4992,13 +5006,9 @@ int tripod_3upu_dynamics(const prepared *m, const real *X, const real *V, real *
     }
     check(NV*NC, 1, Hk, why.overflow);
     check(3, 1, constraint_bias, why.overflow);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, M_out);
-        refuse(NV, Z_out);
-        refuse(NV*NU, H_out);
-    }
-    return code;
+    settled(&why, NV*NV, M_out);
+    settled(&why, NV, Z_out);
+    return settled(&why, NV*NU, H_out);
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -5195,8 +5205,9 @@ static const real sizes_solve_1[] = {0.25, 0.25, 1.0, 0.25, 0.25, 1.0};
 int tripod_3upu_inverse_dynamics(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, real *lambda_out)
 {
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0},
-        beside_1[NV*NV] = {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, work[NV*PADDED(NV)];
+    static const real no_wrench[NW] = {0};
+    real required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0}, beside_1[NV*NV] =
+        {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
@@ -5205,7 +5216,7 @@ int tripod_3upu_inverse_dynamics(const prepared *m, const real *X, const real *V
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, Hk, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -5223,12 +5234,8 @@ int tripod_3upu_inverse_dynamics(const prepared *m, const real *X, const real *V
     check(NC, 1, lambda_, why.overflow);
     copy(NU, tau, tau_out);
     copy(NC, lambda_, lambda_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, tau_out);
-        refuse(NC, lambda_out);
-    }
-    return code;
+    settled(&why, NU, tau_out);
+    return settled(&why, NC, lambda_out);
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
@@ -5261,10 +5268,10 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 int tripod_3upu_forward_dynamics(const prepared *m, const real *X, const real *V, const real *tau,
     const real *wrench, real *A_out, real *lambda_out)
 {
-    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0},
-        constraint_bias[3] = {0}, times_1[NV] = {0}, add_1[NV] = {0}, subtract_1[NV] = {0},
-        negative_1[3] = {0}, join_1[9] = {0}, solve_1[(NV + NC)] = {0}, work[(NV + NC)*(PADDED(NV +
-        NC))];
+    static const real no_wrench[NW] = {0};
+    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, constraint_bias[3] = {0},
+        times_1[NV] = {0}, add_1[NV] = {0}, subtract_1[NV] = {0}, negative_1[3] = {0}, join_1[9] =
+        {0}, solve_1[(NV + NC)] = {0}, work[(NV + NC)*(PADDED(NV + NC))];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
@@ -5273,7 +5280,7 @@ int tripod_3upu_forward_dynamics(const prepared *m, const real *X, const real *V
         check(NV, 1, V, why.invalid);
         check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     dynamics_run(m, X, V, M, Z, H, Hk, constraint_bias, &why);
     product(NV, NU, 1, 1, H, tau, times_1);
     for (size_t i = 0; i < NV; ++i) {
@@ -5294,12 +5301,8 @@ int tripod_3upu_forward_dynamics(const prepared *m, const real *X, const real *V
     check(NC, 1, lambda_, why.overflow);
     copy(NV, A, A_out);
     copy(NC, lambda_, lambda_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, A_out);
-        refuse(NC, lambda_out);
-    }
-    return code;
+    settled(&why, NV, A_out);
+    return settled(&why, NC, lambda_out);
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
@@ -5351,22 +5354,19 @@ int tripod_3upu_complete_acceleration(const prepared *m, const real *X, const re
     const real *const completed = A;
     check(NV, 1, completed, why.overflow);
     copy(NV, completed, completed_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, completed_out);
-    }
-    return code;
+    return settled(&why, NV, completed_out);
 }
 
 int tripod_3upu_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out)
 {
+    static const real no_wrench[NW] = {0};
     static const size_t places_add_forces_1[] = {0, 1, 2};
     static const size_t places_forces[] = {0, 1, 2};
-    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0},
-        beside_1[NV*NV] = {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, leg_force[6*NL] = {0},
-        actuator[18] = {0}, constraint_direction[6*NC] = {0}, add_forces_1[6*NL] = {0}, forces[NL*(NL
-        + NC)] = {0}, work[NV*PADDED(NV)];
+    real required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0}, beside_1[NV*NV] =
+        {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, leg_force[6*NL] = {0}, actuator[18] = {0},
+        constraint_direction[6*NC] = {0}, add_forces_1[6*NL] = {0}, forces[NL*(NL + NC)] = {0},
+        work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
@@ -5375,7 +5375,7 @@ int tripod_3upu_leg_reactions(const prepared *m, const real *X, const real *V, c
         check(NV, 1, V, why.invalid);
         check(NV, 1, A, why.invalid);
     }
-    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, no_wrench, why.invalid);
     required_run(m, X, V, A, required, H, Hk, &why);
     for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = required[i] - wrench[i];
@@ -5400,11 +5400,7 @@ int tripod_3upu_leg_reactions(const prepared *m, const real *X, const real *V, c
     add_forces(NL, 6, 1, places_forces, split_2, constraint_direction, forces);
     check(NL*(NL + NC), 1, forces, why.overflow);
     copy(NL*(NL + NC), forces, forces_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NL*(NL + NC), forces_out);
-    }
-    return code;
+    return settled(&why, NL*(NL + NC), forces_out);
 }
 
 int tripod_3upu_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
@@ -5426,25 +5422,22 @@ int tripod_3upu_energy(const prepared *m, const real *X, const real *V, real *ki
     check(1, 1, potential, why.overflow);
     copy(1, kinetic, kinetic_out);
     copy(1, potential, potential_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, kinetic_out);
-        refuse(1, potential_out);
-    }
-    return code;
+    settled(&why, 1, kinetic_out);
+    return settled(&why, 1, potential_out);
 }
 
 int tripod_3upu_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
     const real *length = NULL;
+    static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real length_in[1], H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] =
-        {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NU] = {0};
+    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
+        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NU] = {0};
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, length, 0, length_in, why.invalid);
+    length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, Hk, lengths, legs, reach, &why);
     for (size_t i = 0; i < 1; ++i) {
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
@@ -5463,27 +5456,23 @@ int tripod_3upu_condition(const prepared *m, const real *X, real *sigma_out, rea
     check(NL, 1, reach, why.overflow);
     copy(NU, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, sigma_out);
-        refuse(NL, legs_out);
-    }
-    return code;
+    settled(&why, NU, sigma_out);
+    return settled(&why, NL, legs_out);
 }
 
 int tripod_3upu_condition_constrained(const prepared *m, const real *X, real *sigma_out, real
     *legs_out)
 {
     const real *length = NULL;
+    static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real length_in[1], H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] =
-        {0}, beside_1[NV*NV] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] = {0}, sigma[NV] =
-        {0};
+    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
+        beside_1[NV*NV] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] = {0}, sigma[NV] = {0};
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
-    length = optional(1, length, 0, length_in, why.invalid);
+    length = optional(1, length, no_length, why.invalid);
     condition_run(m, X, H, Hk, lengths, legs, reach, &why);
     beside(NV, NU, NC, H, Hk, beside_1);
     for (size_t i = 0; i < 1; ++i) {
@@ -5502,12 +5491,8 @@ int tripod_3upu_condition_constrained(const prepared *m, const real *X, real *si
     check(NL, 1, reach, why.overflow);
     copy(NV, sigma, sigma_out);
     copy(NL, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, sigma_out);
-        refuse(NL, legs_out);
-    }
-    return code;
+    settled(&why, NV, sigma_out);
+    return settled(&why, NL, legs_out);
 }
 
 int tripod_3upu_manipulability(const prepared *m, const real *X, real *measure_out, real
@@ -5560,12 +5545,8 @@ int tripod_3upu_manipulability(const prepared *m, const real *X, real *measure_o
     check(NL, 1, reach, why.overflow);
     copy(1, measure, measure_out);
     copy(1, isotropy, isotropy_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, measure_out);
-        refuse(1, isotropy_out);
-    }
-    return code;
+    settled(&why, 1, measure_out);
+    return settled(&why, 1, isotropy_out);
 }
 
 int tripod_3upu_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
@@ -5600,12 +5581,8 @@ int tripod_3upu_singularity_distance(const prepared *m, const real *X, real *act
     check(NL, 1, reach, why.overflow);
     copy(1, actuators, actuators_out);
     copy(1, legs, legs_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, actuators_out);
-        refuse(1, legs_out);
-    }
-    return code;
+    settled(&why, 1, actuators_out);
+    return settled(&why, 1, legs_out);
 }
 
 static int mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out)
@@ -5631,11 +5608,7 @@ static int mismatch_one(const prepared *m, const real *X, const real *q_actuated
     beside(1, NU, 3, subtract_1, negative_1, gap);
     check(6, 1, gap, why.overflow);
     copy(6, gap, gap_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(6, gap_out);
-    }
-    return code;
+    return settled(&why, 6, gap_out);
 }
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
@@ -5649,11 +5622,7 @@ static int slope_one(const prepared *m, const real *X, real *slope_out)
     beside(NV, NU, NC, H, Hk, slope);
     check(NV*NV, 1, slope, why.overflow);
     copy(NV*NV, slope, slope_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NV, slope_out);
-    }
-    return code;
+    return settled(&why, NV*NV, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -5715,11 +5684,7 @@ int tripod_3upu_forward_kinematics(const prepared *m, const real *q_actuated, co
     blame(search_mismatch(m, q_actuated, X0, X), &why);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 static int constraint_gap_one(const prepared *m, const real *X, real *gap_out)
@@ -5734,11 +5699,7 @@ static int constraint_gap_one(const prepared *m, const real *X, real *gap_out)
     }
     check(NC, 1, gap, why.overflow);
     copy(NC, gap, gap_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NC, gap_out);
-    }
-    return code;
+    return settled(&why, NC, gap_out);
 }
 
 static int constraint_slope_one(const prepared *m, const real *X, real *slope_out)
@@ -5750,11 +5711,7 @@ static int constraint_slope_one(const prepared *m, const real *X, real *slope_ou
     if (!is_finite(why.total[0])) {
         check(NV*NC, 1, slope_out, why.overflow);
     }
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV*NC, slope_out);
-    }
-    return code;
+    return settled(&why, NV*NC, slope_out);
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
@@ -5811,11 +5768,7 @@ int tripod_3upu_project(const prepared *m, const real *X, real *projected_out)
     blame(search_constraint_gap(m, X, projected), &why);
     check(NQ, 1, projected, why.overflow);
     copy(NQ, projected, projected_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, projected_out);
-    }
-    return code;
+    return settled(&why, NQ, projected_out);
 }
 
 int tripod_3upu_dissipation(const prepared *m, const real *X, const real *V, real
@@ -5833,11 +5786,7 @@ int tripod_3upu_dissipation(const prepared *m, const real *X, const real *V, rea
     const real *const dissipation = subtract_1;
     check(1, 1, dissipation, why.overflow);
     copy(1, dissipation, dissipation_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, dissipation_out);
-    }
-    return code;
+    return settled(&why, 1, dissipation_out);
 }
 
 int tripod_3upu_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
@@ -5854,11 +5803,7 @@ int tripod_3upu_momentum(const prepared *m, const real *X, const real *V, real *
     product(NV, NV, 1, 1, M, V, momentum);
     check(NV, 1, momentum, why.overflow);
     copy(NV, momentum, momentum_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, momentum_out);
-    }
-    return code;
+    return settled(&why, NV, momentum_out);
 }
 
 int tripod_3upu_joint_margins(const prepared *m, const real *X, real *margins_out)
@@ -5874,11 +5819,7 @@ int tripod_3upu_joint_margins(const prepared *m, const real *X, real *margins_ou
     }
     unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     copy(NJ, margins, margins_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NJ, margins_out);
-    }
-    return code;
+    return settled(&why, NJ, margins_out);
 }
 
 int tripod_3upu_within_limits(const prepared *m, const real *X, real *within_out)
@@ -5894,11 +5835,7 @@ int tripod_3upu_within_limits(const prepared *m, const real *X, real *within_out
     not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     copy(1, within, within_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, within_out);
-    }
-    return code;
+    return settled(&why, 1, within_out);
 }
 
 int tripod_3upu_actuator_positions(const prepared *m, const real *X, real *q_out)
@@ -5911,11 +5848,7 @@ int tripod_3upu_actuator_positions(const prepared *m, const real *X, real *q_out
     take(NU, 1, tripod_3upu_ACTUATED, q_of_inverse_kinematics, q);
     check(NU, 1, q, why.overflow);
     copy(NU, q, q_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, q_out);
-    }
-    return code;
+    return settled(&why, NU, q_out);
 }
 
 int tripod_3upu_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
@@ -5932,11 +5865,7 @@ int tripod_3upu_actuator_rates(const prepared *m, const real *X, const real *V, 
     take(NU, 1, tripod_3upu_ACTUATED, qd_of_joint_rates, qd);
     check(NU, 1, qd, why.overflow);
     copy(NU, qd, qd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qd_out);
-    }
-    return code;
+    return settled(&why, NU, qd_out);
 }
 
 int tripod_3upu_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
@@ -5955,11 +5884,7 @@ int tripod_3upu_actuator_accelerations(const prepared *m, const real *X, const r
     take(NU, 1, tripod_3upu_ACTUATED, qdd_of_joint_accelerations, qdd);
     check(NU, 1, qdd, why.overflow);
     copy(NU, qdd, qdd_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NU, qdd_out);
-    }
-    return code;
+    return settled(&why, NU, qdd_out);
 }
 
 int tripod_3upu_power(const prepared *m, const real *X, const real *V, const real *tau, real
@@ -5979,11 +5904,7 @@ int tripod_3upu_power(const prepared *m, const real *X, const real *V, const rea
     inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     copy(1, power, power_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(1, power_out);
-    }
-    return code;
+    return settled(&why, 1, power_out);
 }
 
 int tripod_3upu_rotation(const real *X, real *R_out)
@@ -5996,11 +5917,7 @@ int tripod_3upu_rotation(const real *X, real *R_out)
     rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     copy(9, R, R_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(9, R_out);
-    }
-    return code;
+    return settled(&why, 9, R_out);
 }
 
 int tripod_3upu_pose(const real *t, const real *R, real *X_out)
@@ -6018,11 +5935,7 @@ int tripod_3upu_pose(const real *t, const real *R, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int tripod_3upu_X_dot(const real *X, const real *V, real *X_dot_out)
@@ -6042,11 +5955,7 @@ int tripod_3upu_X_dot(const real *X, const real *V, real *X_dot_out)
     beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     copy(NQ, X_dot, X_dot_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_dot_out);
-    }
-    return code;
+    return settled(&why, NQ, X_dot_out);
 }
 
 int tripod_3upu_pose_from_rpy(const real *t, const real *rpy, real *X_out)
@@ -6064,11 +5973,7 @@ int tripod_3upu_pose_from_rpy(const real *t, const real *rpy, real *X_out)
     const real *const X = join_1;
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 int tripod_3upu_retract(const real *X, const real *step, real *X_moved_out)
@@ -6092,11 +5997,7 @@ int tripod_3upu_retract(const real *X, const real *step, real *X_moved_out)
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
     copy(NQ, X_moved, X_moved_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_moved_out);
-    }
-    return code;
+    return settled(&why, NQ, X_moved_out);
 }
 
 int tripod_3upu_difference(const real *X0, const real *X1, real *step_out)
@@ -6120,11 +6021,7 @@ int tripod_3upu_difference(const real *X0, const real *X1, real *step_out)
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
     copy(NV, step, step_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NV, step_out);
-    }
-    return code;
+    return settled(&why, NV, step_out);
 }
 
 int tripod_3upu_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
@@ -6162,11 +6059,7 @@ int tripod_3upu_interpolate(const real *X0, const real *X1, const real *s, real 
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
     copy(NQ, X, X_out);
-    const int code = judge(&why);
-    if (code != OK) {
-        refuse(NQ, X_out);
-    }
-    return code;
+    return settled(&why, NQ, X_out);
 }
 
 /* ---- one state, and batches ---- */

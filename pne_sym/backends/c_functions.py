@@ -57,7 +57,7 @@ class _FunctionWriter:
     def __init__(self, bundle: Bundle, parts: Parts) -> None:
         self.bundle, self.parts, self.f = bundle, parts, parts.f
         self.name = self.f.name
-        self.before = self.parts.before()
+        self.before, self.between = self.parts.before(), self.parts.between()
         self.legs = [(b, self.parts.over(b), self.parts.place(b)) for b in self.parts.legs]
         self.adding = [b for b in self.parts.legs if b.sums]
         self.after = self.parts.after() if self.parts.last else None
@@ -65,7 +65,8 @@ class _FunctionWriter:
     def text(self, single: int, many: int) -> FunctionText:
         """All routines, each after what it calls; several users call the same, compiled once."""
         lines = comment(f"---- {self.name} ----")
-        lines += [*self.before.definition(), ""]
+        for part in (self.before, self.between):
+            lines += [*part.definition(), ""] if part.body else []
         for _, over, place in self.legs:
             lines += [*over.definition(), "", *place.definition(), ""]
         if self.after:
@@ -95,8 +96,7 @@ class _FunctionWriter:
             for a in self.f.arrays
             if not self.parts.is_full(a)
         ]
-        body += _each(self.before, w, {"w": w})
-        body += self._side_by_side() if single else self._in_turn()
+        body += self._one_state() if single else self._states()
         if self.after:
             body += _each(self.after, w, {"w": w})
         words = "\n".join(body)
@@ -121,6 +121,20 @@ class _FunctionWriter:
         ]
         name = f"{self.name}_run{'' if single else '_lanes'}"
         return Routine.of(name, parameters, [*head, *body], kind)
+
+    def _one_state(self) -> list[str]:
+        """One state up to its sums: what only these meet comes after the legs."""
+        given = {"w": "1", "k": "0", "v": "&v"}
+        parts = (self.before, self.between)
+        first, last = ([p.call_with(given)] if p.body else [] for p in parts)
+        return [*_values([*first, *last]), *first, *self._side_by_side(), *last]
+
+    def _states(self) -> list[str]:
+        """States side by side, up to their sums."""
+        parts = [p for p in (self.before, self.between) if p.body]
+        calls = [p.call_with({"w": "LANES", "v": "&v"}) for p in parts]
+        loop = ["for (size_t k = 0; k < LANES; ++k) {", *indented([*_values(calls), *calls]), "}"]
+        return [*(loop if calls else []), *self._in_turn()]
 
     def _side_by_side(self) -> list[str]:
         """The legs of one state, side by side; results may stand where inputs stood."""
@@ -168,6 +182,11 @@ class _FunctionWriter:
         """Arrays of what the legs give; states side by side are added up in place."""
         leg = block.leg_type
         return {"terms": f"terms_{leg}" if single else "sums", "o": f"o_{leg}"}
+
+
+def _values(calls: list[str]) -> list[str]:
+    """Where the stages of a state leave what they compute, where calls want it."""
+    return ["values v;"] if any("&v" in call for call in calls) else []
 
 
 def _each(part: Routine, count: str, given: Mapping[str, str]) -> list[str]:

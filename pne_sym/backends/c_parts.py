@@ -14,6 +14,7 @@ from dataclasses import replace
 import sympy as sp
 
 from pne_sym.backends.bundle import Bundle
+from pne_sym.backends.c_halves import Half, halves
 from pne_sym.backends.c_sizes import array_names, times
 from pne_sym.backends.c_stage_texts import stage_routine
 from pne_sym.backends.c_stages import Shared, Stage, Stages
@@ -59,6 +60,8 @@ class Parts:
         self.made = self.slices.made
         self.least = least_values(bundle)
         self.known = stages.known(function.name)
+        self.first_checks = [*function.unpack_checks, *(self.first.checks if self.first else ())]
+        self.early, self.late = halves(self.slices, stages, self._read_at_once())
 
     def _place(self, store: Store, index: str, name: str, tables: list[str], legs: int = 1) -> str:
         """Where an entry stands in its array: the row by the length of rows, and the column."""
@@ -78,28 +81,40 @@ class Parts:
     # ---- before and after the legs ---------------------------------------------------------
 
     def before(self) -> Routine:
-        """Names the inputs, computes what the legs share."""
+        """Names the inputs, computes what the legs need, and what is looked at before them."""
+        return self._first_half("before", self.early)
+
+    def between(self) -> Routine:
+        """Computes what is needed only with the sums over the legs.
+
+        Apart, as what the legs of one state wait for is to be under way first.
+        """
+        return self._first_half("between", self.late)
+
+    def _first_half(self, part: str, half: Half) -> Routine:
         loads, members = entries(self.bundle, self.f, "k"), self.stages.members(self.name, "")
-        shared = Shared(members, "v.", self._prepared(self.f.shared), self.known)
-        first = self.first.assignments if self.first else ()
-        own = self.stages.own(self.name, (*self.f.unpack, *first))
-        lines = self._run(self.stages.used(self.name, ""))
-        lines += statements(own, self.titles, shared, loads)
-        checks = [*self.f.unpack_checks, *(self.first.checks if self.first else ())]
-        stored = self.stages.stored(self.name)
-        for at, n in enumerate(self.passed):
-            if n in stored:
-                lines += loaded(loads, sp.Symbol(n))
-                lines.append(f"s[{at}*w + k] = {shared.text(sp.Symbol(n))};")
-        lines += self._ends(self.first, checks, loads, shared)
-        return self._routine("before", ("real *s",), lines)
+        shared = Shared(members, "v->", self._prepared(self.f.shared), self.known)
+        lines = [stage_routine(self.bundle, self.stages, s).call() for s in half.stages]
+        lines += statements(half.own, self.titles, shared, loads)
+        for n in half.stored:
+            lines += loaded(loads, sp.Symbol(n))
+            lines.append(f"s[{self.passed.index(n)}*w + k] = {shared.text(sp.Symbol(n))};")
+        if half is self.early:
+            lines += self._ends(self.first, self.first_checks, loads, shared)
+        return self._routine(part, ("values *v", "real *s"), lines)
+
+    def _read_at_once(self) -> set[str]:
+        """Names that checks and entries before the legs read."""
+        read = [e for c in self.first_checks for e in (c.value, c.scale)]
+        read += [s.value for s in (self.first.stores if self.first else ())]
+        return {s.name for e in read for s in sp.sympify(e).free_symbols}
 
     def _run(self, stages: list[Stage]) -> list[str]:
         """Calls of stages, which leave what they compute in v."""
         if not stages:
             return []
         calls = [stage_routine(self.bundle, self.stages, s).call(v="&v") for s in stages]
-        return [f"values{'_' * bool(stages[0].part)}{stages[0].part} v;", *calls]
+        return [f"values_{stages[0].part} v;", *calls]
 
     def after(self) -> Routine:
         """Computes what needs the sums over the legs."""

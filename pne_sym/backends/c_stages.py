@@ -225,14 +225,16 @@ class Stages:
         wanted = [self.stage_of[k] for k in made.values() if k in self.stage_of]
         if not part:
             later = (s for s in [*wanted] if s.part)
-            wanted += [self.stage_of[k] for s in self._closed(later) for k in self._before(s)]
-        return self._closed(s for s in wanted if s.part == part)
+            wanted += [
+                self.stage_of[k] for s in self.with_what_they_need(later) for k in self._before(s)
+            ]
+        return self.with_what_they_need(s for s in wanted if s.part == part)
 
     def _before(self, stage: Stage) -> list[int]:
         of = [n for k in stage.numbers for _, n in self.statements[k].of]
         return [n for n in of if not self.statements[n].part and n in self.stage_of]
 
-    def _closed(self, stages: Iterable[Stage]) -> list[Stage]:
+    def with_what_they_need(self, stages: Iterable[Stage]) -> list[Stage]:
         """Stages with those that they need, of the same part."""
         found: list[Stage] = []
         waiting = list(stages)
@@ -270,9 +272,17 @@ class Stages:
 
     def stored(self, function: str) -> set[str]:
         """Those of them that the function has."""
-        own = self.parts[function]
-        used = [s for leg in own.legs for s in self.used(function, leg.leg_type)]
-        return {n for s in used for n in self.read_before(s)} | set(own.passed)
+        return self._read_by_stages(function) | set(self.parts[function].passed)
+
+    def read_by_legs(self, function: str) -> set[str]:
+        """Those of them that the legs read."""
+        legs = self.parts[function].legs
+        return self._read_by_stages(function).union(*map(symbols, legs))
+
+    def _read_by_stages(self, function: str) -> set[str]:
+        legs = self.parts[function].legs
+        used = [s for leg in legs for s in self.used(function, leg.leg_type)]
+        return {n for s in used for n in self.read_before(s)}
 
 
 _PAIR = 100

@@ -99,7 +99,7 @@ def test_one_meaning(name: str) -> None:
     ("name", "latex", "told"),
     [
         ("potential", "V", "V means"),  # joule, and the vector of velocities
-        ("rrrs_q", r"\mathbf q", "q means"),  # a vector in m, and displacements
+        ("rrrs_q", r"\mathbf F", "F means"),  # a vector in m, and actuator forces
         ("rrrs_rho_1", r"\mathbf S^x_1", "both written"),
     ],
 )
