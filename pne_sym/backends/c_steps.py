@@ -152,7 +152,7 @@ class Steps:
         if summed:
             lines[:0] = ["if (!is_finite(why.total[0])) {", *indented(summed), "}"]
         refused = [f"{self._size(o.value)}, {wanted[o.name]}" for o in outputs]
-        *rest, last = (f"settled(&why, {text});" for text in refused)
+        *rest, last = [f"settled(&why, {text});" for text in refused] or ["judge(&why);"]
         return [*lines, *rest, f"return {last}"]
 
     def _unused(self) -> list[Value]:

@@ -61,7 +61,7 @@ def test_every_argument_is_looked_at() -> None:
 def test_of_modules(target: str) -> None:
     models = [(moving(), module(moving()))] if target == "numpy" else []
     prs = catalogue("tripod_3prs")
-    models.append((prs, module(prs) if target == "numpy" else ext_module("tripod_3prs")))
+    models.append((prs, module(prs) if target == "numpy" else ext_module(prs)))
     for spec, m in models:
         for function, argument, values in cases(spec):
             for unfit in complex_forms(argument, values[argument.name]):
