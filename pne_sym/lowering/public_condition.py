@@ -60,11 +60,15 @@ def conditioning_functions(w: Writer, rows: tuple[int, ...]) -> list[PublicFunct
     if w.constrained:
         both = ["H", "Hk"]
         found.append(_condition(w, "condition_constrained", CONDITION_CONSTRAINED, both, rows))
-    found += [_manipulability(w, rows)] if w.n["NU"] else []
+    effective = w.c.actuation.force_rank
+    if w.constrained:
+        effective = w.c.actuation.rank - w.independent
+    if effective and w.n["NU"]:  # else actuators move nothing
+        found.append(_manipulability(w, rows, effective))
     return [*found, _singularity_distance(w, rows)]
 
 
-def _manipulability(w: Writer, rows: tuple[int, ...]) -> PublicFunction:
+def _manipulability(w: Writer, rows: tuple[int, ...], effective: int) -> PublicFunction:
     a = Algorithm()
     arrays = ["lengths", "H", *(["Hk"] if w.constrained else [])]
     lengths, H, *constraints = a.run("condition", w.program, *arrays)
@@ -74,7 +78,6 @@ def _manipulability(w: Writer, rows: tuple[int, ...]) -> PublicFunction:
         basis = a.apply("null_basis", held, numbers=[w.independent])
         H = a.apply("product", a.apply("transposed", basis), H)
     sigma = a.apply("singular_values", H)
-    effective = w.c.actuation.rank - w.independent if constraints else w.c.actuation.force_rank
     volume, isotropy = a.apply_all("spread", sigma, numbers=[min(effective, *H.shape)])
     return w.function(
         "manipulability",

@@ -16,6 +16,8 @@ import pytest
 from scipy.linalg import null_space
 from scipy.optimize import linprog, nnls
 
+from pne_sym.lowering.program import lower
+from pne_sym.mechanics.derive import derive
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.model.reader import checked
 from pne_sym.program.distribution import factors, nearest
@@ -25,6 +27,7 @@ from tests.models import bundle, catalogue, live_parameters, module
 from tests.octave.conformance import conforms, octave
 from tests.program.test_public import interpreter
 from tests.program.test_public import states as arguments
+from tests.random.drawing import draw
 from tests.random.effects import with_efforts
 from tests.robots.test_robots import robot
 from tests.sampling import sampled
@@ -273,6 +276,17 @@ def test_manipulability(name: str) -> None:
         sigma = np.linalg.svd(np.array(held), compute_uv=False)
     np.testing.assert_allclose(measure, sigma.prod(axis=1), rtol=1e-9)
     np.testing.assert_allclose(isotropy, sigma[:, -1] / sigma[:, 0], rtol=1e-9)
+
+
+def test_of_actuators_that_move_nothing() -> None:
+    """An actuated joint that the constraints hold: its number would be rounding, none is given."""
+    derivation = derive(draw(50))
+    c = derivation.coordinates
+    assert c.actuation.rank == len(c.constraints) == 2
+    assert c.actuators
+    names = {f.name for f in lower(derivation).public}
+    assert "singularity_distance" in names
+    assert "manipulability" not in names
 
 
 def test_at_singular_actuators() -> None:
