@@ -74,9 +74,8 @@ def _closure(
         if first.issuperset(found | met):
             break
         first |= found | met
-    of = [s for s in used if first.intersection(s.exported)]
-    ranks = {id(s) for s in stages.with_what_they_need(of)}
-    return [a for a in own if a.target.name in first], [s for s in used if id(s) in ranks]
+    read = (s for s in used if first.intersection(s.exported))
+    return [a for a in own if a.target.name in first], stages.with_what_they_need(read)
 
 
 def _names(expr: Any) -> set[str]:

@@ -1,6 +1,7 @@
 """The parts of a function of the program in C: before, over and after the legs.
 
-Every part is written once.  Before and after the legs it is for state k of `w` states that stand
+What precedes the legs is in two parts, of which the second, "between", is met by their sums alone.
+Every part is written once.  All but those over the legs are for state k of `w` states that stand
 side by side; over the legs it is for item k of `count`: of the legs of one state, or of several
 states of one leg.  Arrays have their items side by side: what passes from part to part, s[n*w + k];
 the sums over the legs, sums[n*w + k]; what a leg gives, terms[n*count + k] and o[n*count + k].
@@ -82,16 +83,16 @@ class Parts:
 
     def before(self) -> Routine:
         """Names the inputs, computes what the legs need, and what is looked at before them."""
-        return self._first_half("before", self.early)
+        return self._half("before", self.early)
 
     def between(self) -> Routine:
         """Computes what is needed only with the sums over the legs.
 
         Apart, as what the legs of one state wait for is to be under way first.
         """
-        return self._first_half("between", self.late)
+        return self._half("between", self.late)
 
-    def _first_half(self, part: str, half: Half) -> Routine:
+    def _half(self, part: str, half: Half) -> Routine:
         loads, members = entries(self.bundle, self.f, "k"), self.stages.members(self.name, "")
         shared = Shared(members, "v->", self._prepared(self.f.shared), self.known)
         lines = [stage_routine(self.bundle, self.stages, s).call() for s in half.stages]
