@@ -8,13 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
-
-import sympy as sp
 
 from pne_sym.backends.c_stages import Stage, Stages
 from pne_sym.program.ir import Assignment
-from pne_sym.program.slices import Slices
+from pne_sym.program.slices import Slices, read_by, read_in
 
 
 @dataclass(frozen=True)
@@ -69,14 +66,10 @@ def _closure(
     local = {a.target.name for a in own}
     first = set(needed)
     while True:
-        found = {n for a in own if a.target.name in first for n in _names(a.expr)}
-        met = {a.target.name for a in own if _names(a.expr) & local & first}
+        found = read_by(tuple(a for a in own if a.target.name in first))
+        met = {a.target.name for a in own if read_in(a.expr) & local & first}
         if first.issuperset(found | met):
             break
         first |= found | met
     read = (s for s in used if first.intersection(s.exported))
     return [a for a in own if a.target.name in first], stages.with_what_they_need(read)
-
-
-def _names(expr: Any) -> set[str]:
-    return {s.name for s in sp.sympify(expr).free_symbols}

@@ -37,7 +37,7 @@ from pne_sym.backends.c_text import (
 )
 from pne_sym.backends.describe import equation_titles
 from pne_sym.program.ir import Block, Check, Function, Store
-from pne_sym.program.slices import is_full, places_of, slices, symbols
+from pne_sym.program.slices import is_full, places_of, read_in, slices, symbols
 
 _TROUBLES = ("unreachable", "singular")
 
@@ -108,7 +108,7 @@ class Parts:
         """Names that checks and entries before the legs read."""
         read = [e for c in self.first_checks for e in (c.value, c.scale)]
         read += [s.value for s in (self.first.stores if self.first else ())]
-        return {s.name for e in read for s in sp.sympify(e).free_symbols}
+        return set[str]().union(*(read_in(sp.sympify(e)) for e in read))
 
     def _run(self, stages: list[Stage]) -> list[str]:
         """Calls of stages, which leave what they compute in v."""
