@@ -176,9 +176,9 @@ class _Model:
 
     def _reason(self, name: str, evaluation: Evaluation, state: int) -> str:
         """Why a function is not finite at a state: a guard, or else the first value that is not."""
-        trouble = Status(int(evaluation.status[state])).name.lower()
+        status = Status(int(evaluation.status[state])).name.lower()
         for failure in evaluation.failures:
-            if failure.check.trouble == trouble and failure.failed[..., state].any():
+            if failure.check.status == status and failure.failed[..., state].any():
                 return self._of_guard(failure, state)
         program = self.bundle.program
         parts = [(self.prepared, 0, block) for block in program.prepare]
@@ -194,9 +194,7 @@ class _Model:
     def _of_guard(self, failure: Failure, state: int) -> str:
         where = self._where(failure.leg_type, failure.failed[..., state])
         subject = where.removesuffix(": ") or "the platform"
-        return (
-            f"{subject} {_CAUSES[failure.check.trouble]} {self._equation(failure.check.equation)}"
-        )
+        return f"{subject} {_CAUSES[failure.check.status]} {self._equation(failure.check.equation)}"
 
     def _where(self, leg_type: str, failed: Flags) -> str:
         """The first leg that fails, as it is written in a specification."""

@@ -41,7 +41,7 @@ class CClosure:
     Attributes:
         of: their positions in q.
         rows: conditions of a leg.
-        call: of the function that gives its gap and Jacobian.
+        call: of the function that gives its residual and Jacobian.
     """
 
     of: Closure
@@ -107,9 +107,9 @@ def _view(bundle: Bundle) -> CView:
     closures = tuple(
         CClosure(
             closure,
-            bundle.program.shapes[f"gap_{(leg := closure.leg_type)}"][1],
+            bundle.program.shapes[f"residual_{(leg := closure.leg_type)}"][1],
             functions[closure.function].one.call_with(
-                {"joints": "q", f"gap_{leg}": "gap", f"jacobian_{leg}": "jacobian"}
+                {"joints": "q", f"residual_{leg}": "residual", f"jacobian_{leg}": "jacobian"}
             ),
         )
         for closure in bundle.program.closures

@@ -117,7 +117,7 @@ class _FunctionWriter:
             "const prepared *m",
             *(f"const real *{vector_name(v)}" for v in self.f.inputs),
             *(f"real {pointer}{a}" for a in self.f.arrays),
-            f"verdict {pointer}t",
+            f"status_flags {pointer}t",
         ]
         name = f"{self.name}_run{'' if single else '_lanes'}"
         return Routine.of(name, parameters, [*head, *body], kind)

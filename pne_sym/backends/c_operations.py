@@ -108,7 +108,7 @@ def biggest(bundle: Bundle) -> int:
     """Most rows or columns of the matrices of which norms, ranks and singular values are taken."""
     program = bundle.program
     steps = [step for f in program.public for step in f.steps]
-    shapes = [program.shapes[f"gap_{c.leg_type}"][1:] for c in program.closures]
+    shapes = [program.shapes[f"residual_{c.leg_type}"][1:] for c in program.closures]
     shapes += [s.operands[0].shape for s in steps if isinstance(s, Apply) and s.operation in _BIG]
     shapes += [f.outputs[0].value.shape for f in program.public if not f.is_exported]
     bounded = [s for s in steps if isinstance(s, Apply) and s.operation in _BOUNDED]

@@ -39,7 +39,7 @@ from pne_sym.backends.describe import equation_titles
 from pne_sym.program.ir import Block, Check, Function, Store
 from pne_sym.program.slices import is_full, places_of, read_in, slices, symbols
 
-_TROUBLES = ("unreachable", "singular")
+_STATUSES = ("unreachable", "singular")
 
 
 class Parts:
@@ -135,7 +135,7 @@ class Parts:
             *(f"const real *{vector_name(v)}" for v in self.f.inputs),
             *values,
             *(f"real *{a}" for a in self.f.arrays),
-            "verdict *t",
+            "status_flags *t",
         ]
         return Routine.of(f"{self.name}_{part}", parameters, lines)
 
@@ -226,13 +226,13 @@ class Parts:
             *(f"size_t {n}" for n in ("w", "i", "k", "at", "count")),
             "const real *o",
             *(f"real *{a}" for a in self.f.arrays),
-            "verdict *t",
+            "status_flags *t",
         ]
         return Routine.of(f"{self.name}_place_{leg}", parameters, [*tables, *lines])
 
     def flag_rows(self, block: Block) -> dict[str, int]:
         """Where the flags of a leg, and the sum of its entries, stand behind these."""
-        flags = [f for f in _TROUBLES if any(c.trouble == f for c in block.checks)]
+        flags = [f for f in _STATUSES if any(c.status == f for c in block.checks)]
         flags += ["total"] * bool(self.summed and block.stores)
         return {flag: len(block.stores) + n for n, flag in enumerate(flags)}
 
@@ -248,24 +248,24 @@ class Parts:
         lines = []
         for check in checks:
             lines += loaded(loads, check.value, check.scale)
-            for trouble, condition in self._conditions(check, shared):
-                parts.setdefault(trouble, []).append(condition)
-        for trouble, conditions in parts.items():
+            for status, condition in self._conditions(check, shared):
+                parts.setdefault(status, []).append(condition)
+        for status, conditions in parts.items():
             text = " + ".join(f"UNLESS({c})" for c in dict.fromkeys(conditions))
-            target = targets.format(trouble) if isinstance(targets, str) else targets[trouble]
+            target = targets.format(status) if isinstance(targets, str) else targets[status]
             lines += statement(f"{target} {text}")
         return lines
 
     def _conditions(self, check: Check, shared: Shared) -> list[tuple[str, str]]:
-        """What must hold, each with the trouble that it is where it does not."""
-        value, trouble = shared.text(check.value), str(check.trouble)
-        if trouble == "singular":
+        """What must hold, each with the status that it is where it does not."""
+        value, status = shared.text(check.value), str(check.status)
+        if status == "singular":
             text = _least(check, shared)
-            return [(trouble, f"magnitude({value}) > {self.least.get(text, text)}")]
-        if trouble == "invalid":
+            return [(status, f"magnitude({value}) > {self.least.get(text, text)}")]
+        if status == "invalid":
             # apart, as loops with conditions on conditions do not run in lanes
-            return [(trouble, f"is_finite({value})"), (trouble, f"{value} > 0")]
-        return [(trouble, f"{value} >= 0")]
+            return [(status, f"is_finite({value})"), (status, f"{value} > 0")]
+        return [(status, f"{value} >= 0")]
 
 
 def _least(check: Check, shared: Shared) -> str:
@@ -277,6 +277,6 @@ def _least(check: Check, shared: Shared) -> str:
 def least_values(bundle: Bundle) -> dict[str, str]:
     """What values must be larger than, where that is known: text -> name, the same everywhere."""
     checks = [c for f in bundle.program.functions.values() for b in f.blocks for c in b.checks]
-    fixed = [c for c in checks if c.trouble == "singular" and sp.sympify(c.scale).is_Number]
+    fixed = [c for c in checks if c.status == "singular" and sp.sympify(c.scale).is_Number]
     texts = dict.fromkeys(_least(check, Shared()) for check in fixed)
     return {text: f"LEAST_{k}" for k, text in enumerate(texts, 1)}

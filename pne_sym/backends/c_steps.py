@@ -96,7 +96,7 @@ class Steps:
         if self.work[0]:
             self.buffers.append(self._buffer("work", self.work[1]))
         head = [*self.tables, *(listing("real ", self.buffers, ";") if self.buffers else [])]
-        body = [*head, "verdict why;", *lines]
+        body = [*head, "status_flags why;", *lines]
         if self.lanes:
             parameters = [*self._parameters(self.f.inputs), "int *code"]
             return Routine.of(f"{self.f.name}_lanes", parameters, body)
@@ -125,14 +125,14 @@ class Steps:
         return Routine(name, tuple(parameters), (*lines, *body), "", "int")
 
     def _outputs(self) -> list[str]:
-        """The verdict, and results where the user wants them."""
+        """The status, and results where the user wants them."""
         outputs = [o for o in self.f.outputs if o.value.size]
         wanted = {o.name: f"{o.label}_out" for o in outputs}
         judged = [] if self.f.unbounded else outputs
         unused = [] if self.f.unbounded else self._unused()
         apart = [o for o in judged if o.name not in self.summed]
         moved = [o for o in outputs if self.at[o.name] != wanted[o.name]]
-        move = "deliver" if self.lanes else "copy"
+        move = "copy_side_by_side" if self.lanes else "copy"
         moves = [
             f"{move}({self._size(o.value)}, {self.at[o.name]}, {wanted[o.name]});" for o in moved
         ]
@@ -141,7 +141,7 @@ class Steps:
                 f"add_up({self._size(value)}, {self.at[value.name]}, why.total);"
                 for value in (*(o.value for o in apart), *unused)
             ]
-            return [*sums, "suspect(&why, code);", *moves]
+            return [*sums, "status_side_by_side(&why, code);", *moves]
         checks = {
             o.name: f"check({self._size(o.value)}, 1, {self.at[o.name]}, why.overflow);"
             for o in judged
@@ -152,7 +152,7 @@ class Steps:
         if summed:
             lines[:0] = ["if (!is_finite(why.total[0])) {", *indented(summed), "}"]
         refused = [f"{self._size(o.value)}, {wanted[o.name]}" for o in outputs]
-        *rest, last = [f"settled(&why, {text});" for text in refused] or ["judge(&why);"]
+        *rest, last = [f"final_status(&why, {text});" for text in refused] or ["status_of(&why);"]
         return [*lines, *rest, f"return {last}"]
 
     def _unused(self) -> list[Value]:
@@ -415,16 +415,16 @@ class Steps:
             "c/search.c.jinja",
             name=step.residual,
             parameters=", ".join(("const prepared *m", *(f"const real *{o}" for o in others))),
-            gaps=self._extent(step.residual),
+            residuals=self._extent(step.residual),
             trials=interpret.HALVINGS if step.halving else 1,
             close="CLOSED" if step.halving else "MET",
-            residual=residual.call_with(found | {"gap_out": "gap"}),
+            residual=residual.call_with(found | {"residual_out": "residual"}),
             slope=slope.call_with(found | {"slope_out": "slope"}),
-            trial=residual.call_with({"X": "trial", "gap_out": "next"}),
+            trial=residual.call_with({"X": "trial", "residual_out": "next"}),
         )  # fmt: skip
         self.before.append(text)
         arguments = ", ".join(("m", *others, step.start.name, self._made(step.target)))
-        return [f"blame(search_{step.residual}({arguments}), &why);"]
+        return [f"flag_status(search_{step.residual}({arguments}), &why);"]
 
     def _extent(self, name: str) -> str:
         """Number of entries of what a function gives."""

@@ -18,7 +18,7 @@ from pne_sym.program.ir import Block, Check, Function
 from pne_sym.program.slices import columns, flat_places, slices
 
 _MATH = ("sqrt", "sin", "cos", "atan2", "least")
-_VERDICTS = {"invalid": "valid", "unreachable": "reached", "singular": "clear"}
+_STATUSES = {"invalid": "valid", "unreachable": "reached", "singular": "clear"}
 
 
 class Places:
@@ -70,7 +70,7 @@ class FunctionText:
             body += self._loop(block, loops.index(block)) if block.leg_type else self._once(block)
         used = " ".join(body)
         math = [f"{n} = m.{n}" for n in _MATH if f"{n}(" in used]
-        body = math + body + [f"return {self._verdict()}, {self._tuple(self._outputs())}"]
+        body = math + body + [f"return {self._status()}, {self._tuple(self._outputs())}"]
         return (
             f"# {name}: {counts.mul} mul, {counts.add} add, {counts.div} div, "
             f"{counts.sqrt} sqrt, {counts.trig} trig\n"
@@ -145,16 +145,16 @@ class FunctionText:
     # ---- guards ------------------------------------------------------------------------------
 
     def _flags(self) -> list[str]:
-        return list(_VERDICTS.values()) if self.judged else ["ok"]
+        return list(_STATUSES.values()) if self.judged else ["ok"]
 
-    def _verdict(self) -> str:
+    def _status(self) -> str:
         return f"({', '.join(self._flags())})" if self.judged else "ok"
 
     def _required(self, checks: Iterable[Check]) -> list[str]:
         """What guards demand."""
         demands: dict[str, list[str]] = {}
         for check in checks:
-            flag = _VERDICTS[check.trouble] if self.judged else "ok"
+            flag = _STATUSES[check.status] if self.judged else "ok"
             demands.setdefault(flag, []).append(self._demand(check))
         lines = []
         for flag, parts in demands.items():
@@ -163,9 +163,9 @@ class FunctionText:
 
     def _demand(self, check: Check) -> str:
         value = self._of(check.value)
-        if check.trouble == "unreachable":
+        if check.status == "unreachable":
             return f"({value} >= 0.0)"
-        if check.trouble == "invalid":
+        if check.status == "invalid":
             return f"({value} > 0.0) & ({value} < np.inf)"
         tolerance = "_TOLERANCE * _TOLERANCE" if check.power == 2 else "_TOLERANCE"
         return f"(abs({value}) > {tolerance} * {self._of(check.scale)})"

@@ -59,7 +59,7 @@ def definition(function: PublicFunction, body: Sequence[str], *, plain: bool = F
     Args:
         function: what it is.
         body: its statements.
-        plain: NaN is the only verdict: there are no errors, no statuses, no `nearest`.
+        plain: NaN alone tells what failed: there are no errors, no statuses, no `nearest`.
     """
     optional = [f"{a.name}=None" for a in function.optional]
     optional += ["nearest=False"] * (takes_rotation(function) and not plain)

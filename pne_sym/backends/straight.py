@@ -37,8 +37,8 @@ class Forms:
             where it is another.
         signs: a sign per leg, {values}.
         total: the sum of {value} over {legs} legs.
-        demand: a guard against a {trouble}: {good} must hold.
-        good: what must hold, by the trouble: of {value}, its {size}, {tolerance} and {scale}.
+        demand: a guard against a {status}: {good} must hold.
+        good: what must hold, by the status: of {value}, its {size}, {tolerance} and {scale}.
         tolerance: by the guard's power.
         store: {value} at {places} of the flat {array}; leg_store: one value for each of {legs}
             legs; none where arrays are not filled block by block.
@@ -166,13 +166,13 @@ class StraightText:
         """What guards demand, each once."""
         found = []
         for c in checks:
-            good = self.forms.good[c.trouble].format(
+            good = self.forms.good[c.status].format(
                 value=self.of(c.value),
                 size=self.of(sp.Abs(c.value)),
                 tolerance=self.forms.tolerance[c.power],
                 scale=self.of(c.scale),
             )
-            found.append(self.forms.demand.format(trouble=c.trouble, good=good))
+            found.append(self.forms.demand.format(status=c.status, good=good))
         return list(dict.fromkeys(found))
 
     def _stores(self, block: Block) -> list[str]:

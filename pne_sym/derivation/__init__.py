@@ -7,9 +7,9 @@ from pne_sym.derivation.derivation import Chapter, Derivation, full_name, full_n
 from pne_sym.derivation.equation import (
     Condition,
     Equation,
+    FailureStatus,
     Law,
     ReciprocalBasis,
-    Trouble,
     leg_sums,
     names_in,
 )
@@ -35,6 +35,7 @@ __all__ = [
     "Coordinates",
     "Derivation",
     "Equation",
+    "FailureStatus",
     "Frame",
     "Given",
     "Law",
@@ -47,7 +48,6 @@ __all__ = [
     "ReciprocalBasis",
     "Role",
     "Rule",
-    "Trouble",
     "full_name",
     "full_names",
     "leg_sums",

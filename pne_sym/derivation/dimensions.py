@@ -8,7 +8,7 @@ from typing import Any
 
 import sympy as sp
 
-from pne_sym.derivation.equation import Condition, Law, Trouble
+from pne_sym.derivation.equation import Condition, FailureStatus, Law
 from pne_sym.derivation.parameters import ParameterTable
 from pne_sym.derivation.quantity import Quantity, Role
 from pne_sym.vector import Tensor
@@ -82,7 +82,7 @@ def unit_of_equation(
         found = found or other
     for c in conditions:
         value, scale = dimension(c.value, units), dimension(c.scale, units)
-        if c.trouble is Trouble.SINGULAR and value != scale:
+        if c.status is FailureStatus.SINGULAR and value != scale:
             raise DimensionError(f"{c.value} [{value}] is compared with {c.scale} [{scale}]")
     if found is None:
         return OF_ZERO

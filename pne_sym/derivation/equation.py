@@ -47,7 +47,7 @@ class Law(enum.StrEnum):
     LUMPING = "lumped parameter"
 
 
-class Trouble(enum.StrEnum):
+class FailureStatus(enum.StrEnum):
     """Why a state is impossible."""
 
     UNREACHABLE = "unreachable"
@@ -61,13 +61,13 @@ class Condition:
     UNREACHABLE: value >= 0.  SINGULAR: |value| > tolerance^power * scale.
 
     Attributes:
-        trouble: what it means when the condition fails.
+        status: what it means when the condition fails.
         value: scalar expression.
         scale: scalar made of parameters alone, of the value's unit.
         power: 1 for a value, 2 for a squared value.
     """
 
-    trouble: Trouble
+    status: FailureStatus
     value: Any
     scale: Any = sp.S.Zero
     power: int = 1

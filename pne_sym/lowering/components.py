@@ -136,7 +136,7 @@ class Lowering(Components):
         self._lower(equation)
         for condition in equation.conditions:
             self.b.guard(
-                condition.trouble.value,
+                condition.status.value,
                 self.scalar(condition.value),
                 self.scalar(condition.scale),
                 condition.power,

@@ -235,7 +235,7 @@ def _blocks(
                 stage.leg_type,
                 tuple(Assignment(s.target, s.expr, s.equation) for s in own),
                 tuple(
-                    Check(g.trouble, g.value, g.scale, g.power, g.equation)
+                    Check(g.status, g.value, g.scale, g.power, g.equation)
                     for g in guards
                     if g.stage == stage
                 ),

@@ -37,8 +37,8 @@ class Margins:
         for info in derivation.leg_types:
             stage = Stage(Kind.STATE_LEG, info.name)
             own = [replace(g, stage=stage) for g in guards if leg_type[g.equation] == info.name]
-            singular = [g for g in own if g.trouble == "singular"]
-            reached = [g for g in own if g.trouble == "unreachable"]
+            singular = [g for g in own if g.status == "singular"]
+            reached = [g for g in own if g.status == "unreachable"]
             self.guards += own
             self._put("pivots", stage, [self._pivot(g) for g in singular], info.indices)
             if reached:

@@ -108,7 +108,7 @@ def _add_margins(derivation: Derivation, builder: Builder, slices: dict[str, Sli
 def _closure_groups(derivation: Derivation) -> list[tuple[tuple[str, tuple[str, ...]], ...]]:
     """A function per leg type whose displacements are found by iteration."""
     return [
-        ((f"closure_{t.name}", (f"gap_{t.name}", f"jacobian_{t.name}")),)
+        ((f"closure_{t.name}", (f"residual_{t.name}", f"jacobian_{t.name}")),)
         for t in derivation.leg_types
         if not t.is_closed
     ]

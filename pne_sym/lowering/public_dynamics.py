@@ -116,15 +116,15 @@ def _completed(w: Writer, a: Algorithm, A: Value) -> Value:
     if facts.is_coupled:
         system = a.apply("beside", *actuators) if w.constrained else actuators[0]
         _, idle = a.apply_all("resolve", system, system, numbers=[facts.rank])
-        effect, gap = a.apply("product", idle, columns), a.apply("times", idle, needed)
+        effect, residual = a.apply("product", idle, columns), a.apply("times", idle, needed)
     else:
-        effect, gap = own, a.apply("take", needed, numbers=facts.passive)
+        effect, residual = own, a.apply("take", needed, numbers=facts.passive)
     if unique:
-        change = a.apply("solve", effect, a.apply("negative", gap))
+        change = a.apply("solve", effect, a.apply("negative", residual))
     else:  # least change in the metric of M
         zero = a.apply("extend", a.apply("take", A, numbers=[]), numbers=[len(facts.passive)])
         system = a.apply("saddle", own, a.apply("transposed", effect))
-        both = a.apply("solve", system, a.apply("join", zero, a.apply("negative", gap)))
+        both = a.apply("solve", system, a.apply("join", zero, a.apply("negative", residual)))
         change, _ = a.apply_all("split", both, numbers=[len(facts.passive)])
     return a.apply("add_at", known, change, numbers=facts.passive)
 

@@ -105,9 +105,9 @@ def _attainable(
     facts = w.c.actuation
     actuators = a.apply("beside", H, Hk) if Hk else H
     rows, idle = a.apply_all("resolve", actuators, actuators, numbers=[facts.rank])
-    gap = a.apply("negative", a.apply("times", idle, f))
+    residual = a.apply("negative", a.apply("times", idle, f))
     effect = a.apply("take_columns", idle, numbers=facts.passive)
-    change = a.apply("least_norm", effect, gap)
+    change = a.apply("least_norm", effect, residual)
     f = a.apply("add_at", f, change, numbers=facts.passive)
     Hk = a.apply("product", rows, Hk) if Hk else None
     return a.apply("product", rows, H), Hk, a.apply("times", rows, f)

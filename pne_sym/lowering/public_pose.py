@@ -158,8 +158,8 @@ def _difference(at: _Layout, n: dict[str, int]) -> PublicFunction:
 
 def _between(a: Algorithm, at: _Layout, X0: Value, X1: Value) -> Value:
     if at.orientation != 4:
-        gap = a.apply("subtract", X1, X0)
-        return a.apply("wrap_turns", gap, numbers=[at.position]) if at.orientation else gap
+        change = a.apply("subtract", X1, X0)
+        return a.apply("wrap_turns", change, numbers=[at.position]) if at.orientation else change
     (t0, q0, y0), (t1, q1, y1) = (_parts(a, X, at.position, 4) for X in (X0, X1))
     turn = a.apply("turn_between", q0, q1)
     return _joined(a, (_together(a, "subtract", t1, t0), turn, _together(a, "subtract", y1, y0)))

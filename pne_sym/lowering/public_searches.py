@@ -9,25 +9,27 @@ from pne_sym.program.public import PublicFunction, Search, Value
 
 def searching_functions(w: Writer) -> list[PublicFunction]:
     """Poses that are searched for."""
-    found = [_mismatch(w), _slope(w), _forward_kinematics(w)]
+    found = [_pose_residual(w), _slope(w), _forward_kinematics(w)]
     return [*found, *_projection(w)] if w.constrained else found
 
 
-def _mismatch(w: Writer) -> PublicFunction:
+def _pose_residual(w: Writer) -> PublicFunction:
     """Residuals of actuated joints and of constraints."""
     a, joints = Algorithm(), [w.c.joints.index(j) for j in w.c.actuators]
     (q,) = a.run("inverse_kinematics", w.program, "q")
     own = a.apply("take", q, numbers=joints)
-    gap = a.apply("subtract", w.given("q_actuated").value, own)
+    residual = a.apply("subtract", w.given("q_actuated").value, own)
     turning = [k for k, j in enumerate(joints) if w.c.turning[j]]
     if turning:
-        gap = a.apply("wrap_turns", gap, numbers=turning)
+        residual = a.apply("wrap_turns", residual, numbers=turning)
     if w.constrained:
-        (residual,) = a.run("constraints", w.program, "constraints")
-        gap = a.apply("join", gap, a.apply("negative", residual))
-    out = w.made(gap, "gap", "of actuated joints, then of constraints", str(gap.size))
+        (unkept,) = a.run("constraints", w.program, "constraints")
+        residual = a.apply("join", residual, a.apply("negative", unkept))
+    out = w.made(
+        residual, "residual", "of actuated joints, then of constraints", str(residual.size)
+    )
     return w.function(
-        "mismatch", "Residual of the pose.", "X q_actuated", a, out, is_exported=False,
+        "pose_residual", "Residual of the pose.", "X q_actuated", a, out, is_exported=False,
         group="kinematics",
     )  # fmt: skip
 
@@ -48,7 +50,7 @@ def _slope(w: Writer) -> PublicFunction:
 
 def _forward_kinematics(w: Writer) -> PublicFunction:
     a, X = Algorithm(), Value("X_found", (w.n["NQ"],))
-    a.steps.append(Search("mismatch", "slope", w.given("X0").value, X, halving=True))
+    a.steps.append(Search("pose_residual", "slope", w.given("X0").value, X, halving=True))
     return w.function(
         "forward_kinematics",
         "X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0.",
@@ -61,18 +63,18 @@ def _forward_kinematics(w: Writer) -> PublicFunction:
 
 def _projection(w: Writer) -> list[PublicFunction]:
     residual = Algorithm()
-    (gap,) = residual.run("constraints", w.program, "constraints")
-    gap = residual.apply("negative", gap)
+    (unkept,) = residual.run("constraints", w.program, "constraints")
+    opposite = residual.apply("negative", unkept)
     slope = Algorithm()
     (Hk,) = slope.run("Hk", w.program, "Hk")
     a, X = Algorithm(), Value("X_found", (w.n["NQ"],))
     a.steps.append(
-        Search("constraint_gap", "constraint_slope", w.given("X").value, X, halving=False)
+        Search("constraint_residual", "constraint_slope", w.given("X").value, X, halving=False)
     )
     return [
         w.function(
-            "constraint_gap", "Residual of the constraints, negative.", "X", residual,
-            w.made(gap, "gap", "of the constraints", "NC"), is_exported=False,
+            "constraint_residual", "Residual of the constraints, negative.", "X", residual,
+            w.made(opposite, "residual", "of the constraints", "NC"), is_exported=False,
             group="constraints",
         ),
         w.function(

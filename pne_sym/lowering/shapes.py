@@ -16,7 +16,7 @@ def shapes(derivation: Derivation) -> dict[str, tuple[int, ...]]:
         for t in derivation.leg_types
         if not t.is_closed
         for rows in ((2 if derivation.coordinates.planar else 3) + t.transmitted,)
-        for stem in ("gap", "jacobian")
+        for stem in ("residual", "jacobian")
     }
     return {
         **closures,

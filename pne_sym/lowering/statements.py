@@ -48,7 +48,7 @@ class Statement(NamedTuple):
 class Guard:
     """A condition on values: see `derivation.Condition`."""
 
-    trouble: str
+    status: str
     value: Any
     scale: Any
     power: int
@@ -58,7 +58,7 @@ class Guard:
     def rewritten(self, changes: Mapping[Any, Any]) -> Guard:
         """With other expressions for its values; of a tested pivot the sign says nothing."""
         value, scale = (algebra.replaced(sp.sympify(e), changes) for e in (self.value, self.scale))
-        if self.trouble == "singular":
+        if self.status == "singular":
             value = algebra.signed(value)[1]
         return replace(self, value=value, scale=scale)
 
@@ -196,12 +196,12 @@ class Statements:
         self._asked.append(key)
         return value
 
-    def guard(self, trouble: str, value: Atom, scale: Atom, power: int) -> None:
+    def guard(self, status: str, value: Atom, scale: Atom, power: int) -> None:
         """Require a condition; constants and parameters need no guard at run time."""
         if value.is_Number or not self.stage_of(value).depends_on_state:
             return
         stage = Stage.join((self.stage_of(value), self.stage_of(sp.sympify(scale))))
-        guard = Guard(trouble, value, sp.sympify(scale), power, stage, self.equation)
+        guard = Guard(status, value, sp.sympify(scale), power, stage, self.equation)
         if guard not in self.guards:
             self.guards.append(guard)
 

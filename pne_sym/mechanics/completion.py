@@ -180,10 +180,10 @@ def leg_states(manipulator: Manipulator, g: LegGeometry, row: int) -> Iterator[_
         yield _state(manipulator, g, row, q, pose)
         for newton in range(_NEWTON):
             pose = pose_at(space, list(X), manipulator.fixed_centre)
-            gap, by_q, by_twist = leg_residual(leg, q, pose)
+            residual, by_q, by_twist = leg_residual(leg, q, pose)
             system = np.hstack([by_twist[:, twist], by_q])
             if newton:
-                step = -least_norm(system, gap)
+                step = -least_norm(system, residual)
             else:
                 move = rng.uniform(-_REACH, _REACH, system.shape[1])
                 step = move - least_norm(system, system @ move)

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from pne_sym.derivation import Book, Condition, Trouble
+from pne_sym.derivation import Book, Condition, FailureStatus
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.reciprocal_wrenches import (
     ConstraintWrench,
@@ -107,7 +107,7 @@ def constraint_wrenches(
     eq = Writer(book, g, _TERMS)
     direction = eq("f_c_part", vector_sum(parts), body=frame)
     squared = Dot(direction, direction)
-    regular = Condition(Trouble.SINGULAR, squared, g.size ** (2 * turning - 2), 2)
+    regular = Condition(FailureStatus.SINGULAR, squared, g.size ** (2 * turning - 2), 2)
     length = eq("f_c_size", norm(direction), conditions=(regular,))
     force = eq("n_c:force", direction / length, body=frame)
     coefficient = eq("mu_c", volume / length)
@@ -118,7 +118,8 @@ def _per_unit_moment(
     book: Book, g: LegGeometry, force: Vector, volume: Any, turning: int, frame: str, n: Vector
 ) -> ConstraintWrench:
     """The same wrench per unit moment, for legs whose wrench has no force part at home."""
-    eq, regular = Writer(book, g, _TERMS), Condition(Trouble.SINGULAR, volume, g.size**turning)
+    eq = Writer(book, g, _TERMS)
+    regular = Condition(FailureStatus.SINGULAR, volume, g.size**turning)
     scale = eq("volume_c", volume, conditions=(regular,))
     direction: Vector = eq("n_c:moment", force / scale, body=frame)
     coefficient = eq("mu_c", sp.S.One)

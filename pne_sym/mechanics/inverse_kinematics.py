@@ -15,7 +15,7 @@ from typing import Any
 
 import sympy as sp
 
-from pne_sym.derivation import Book, Condition, Law, Trouble
+from pne_sym.derivation import Book, Condition, FailureStatus, Law
 from pne_sym.mechanics.invariants import Invariants
 from pne_sym.mechanics.leg_displacements import Branch, InverseKinematics
 from pne_sym.mechanics.leg_geometry import LegGeometry
@@ -277,7 +277,7 @@ class _Solver:
         """Angle of joint j from K cos + N sin = C; returns the root, signed by the branch."""
         g = self.g
         power = {"linear": 1, "sphere": 2, "orientation": 0}[method]
-        regular = Condition(Trouble.SINGULAR, K * K + N * N, g.size ** (2 * power), 2)
+        regular = Condition(FailureStatus.SINGULAR, K * K + N * N, g.size ** (2 * power), 2)
         sigma = self.eq.note("branch_#", j)
         c, s = sp.Symbol(g.name(f"c_{j}"), real=True), sp.Symbol(g.name(f"s_{j}"), real=True)
         self.branches.append(Branch(sigma, j, K * s - N * c, power))
@@ -286,7 +286,7 @@ class _Solver:
             self._cosine_sine(j, -N / root, K / root)
             return root
         rho2 = self.eq.named("rho2_#", K * K + N * N, j, conditions=(regular,))
-        real = Condition(Trouble.UNREACHABLE, rho2 - C**2)
+        real = Condition(FailureStatus.UNREACHABLE, rho2 - C**2)
         discriminant = self.eq.named("disc_#", rho2 - C**2, j, conditions=(real,))
         root = self.eq.named("root_#", sigma * sp.sqrt(discriminant), j)
         self._cosine_sine(j, (C * K - root * N) / rho2, (C * N + root * K) / rho2)
@@ -333,7 +333,7 @@ class _Solver:
             amplitude = length2
         else:
             squared = self.eq.named("rho2_#", (A**2 + B**2) * length2, j)
-            regular = Condition(Trouble.SINGULAR, squared, g.size**4, 2)
+            regular = Condition(FailureStatus.SINGULAR, squared, g.size**4, 2)
             amplitude = self.eq.named("root_#:nearest", sp.sqrt(squared), j, conditions=(regular,))
         cosine, sine = along * A + aside * B, along * B - aside * A
         self._cosine_sine(j, cosine / amplitude, sine / amplitude)
@@ -384,7 +384,7 @@ class _Solver:
         squared = along**2 - Dot(y, y) + Dot(tip, tip)
         if self.normal is not None:  # only what lies across the constraint force can close
             squared = squared + Dot(self.normal, y) ** 2 - Dot(self.normal, tip) ** 2
-        real = Condition(Trouble.UNREACHABLE, squared)
+        real = Condition(FailureStatus.UNREACHABLE, squared)
         discriminant = self.eq.named("disc_#:slide", squared, j, conditions=(real,))
         sigma = self.eq.note("branch_#", j)
         q = sp.Symbol(g.name(f"q_{j}"), real=True)

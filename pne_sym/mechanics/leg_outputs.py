@@ -61,9 +61,9 @@ def starts(manipulator: Manipulator) -> list[int]:
 def closure_outputs(book: Book, leg: Leg, frame: str, space: TaskSpace) -> None:
     """Misfit of the loop closure and its derivative by the joint displacements."""
     g, motion, name = leg.g, leg.motion, leg.name
-    gap = book.define(
-        g.name("gap"),
-        motion.gap,
+    residual = book.define(
+        g.name("residual"),
+        motion.residual,
         r"\mathbf S_r",
         "from the connection point as the links reach it to the platform's",
         Law.LOOP_CLOSURE,
@@ -77,11 +77,11 @@ def closure_outputs(book: Book, leg: Leg, frame: str, space: TaskSpace) -> None:
     def put(array: str, value: Any, columns: tuple[tuple[int, int], ...]) -> None:
         book.outputs.append(Output(array, value, ((0, 0),), columns, name, rows, frame=frame))
 
-    put(f"gap_{name}", gap, tuple((c, c) for c in axes))
+    put(f"residual_{name}", residual, tuple((c, c) for c in axes))
     for k, j in enumerate(joints):
         put(f"jacobian_{name}", motion.v[j], tuple((c, c * width + k) for c in axes))
     for i, ((link, platform), n) in enumerate(zip(g.pairs, motion.n, strict=True), len(axes)):
-        put(f"gap_{name}", -Dot(link, platform), ((0, i),))
+        put(f"residual_{name}", -Dot(link, platform), ((0, i),))
         for k, j in enumerate(joints):
             if g.turns(j):
                 put(f"jacobian_{name}", Dot(g.spin(j), n), ((0, i * width + k),))

@@ -49,7 +49,7 @@ class LegScrews:
 
     Attributes:
         chain: where its links are.
-        gap: from the connection point as the links reach it to the platform's.
+        residual: from the connection point as the links reach it to the platform's.
         v: velocity vectors v_j of the joints at the connection point.
         w: reciprocal vectors w_j (without extra joints).
         o: moment parts of the reciprocal wrenches, where the leg transmits moments.
@@ -60,7 +60,7 @@ class LegScrews:
     """
 
     chain: LegChain
-    gap: Any
+    residual: Any
     v: dict[int, Vector]
     w: dict[int, VectorSymbol]
     o: dict[int, Vector]
@@ -101,12 +101,12 @@ class ScrewWriter:
         self.book, self.chain, self.g, self.planar = book, chain, chain.g, planar
         self.eq = Writer(book, chain.g, _TERMS)
 
-    def write(self, rods: dict[int, Vector], gap: Vector) -> LegScrews:
+    def write(self, rods: dict[int, Vector], residual: Vector) -> LegScrews:
         """Velocity vectors, reciprocal wrenches; basis completion where degrees of freedom lack.
 
         Args:
             rods: from the origins of turning joints to the connection point.
-            gap: from the connection point as the links reach it to the platform's.
+            residual: from the connection point as the links reach it to the platform's.
         """
         g = self.g
         v = {j: self._velocity_vector(j, rods) for j in self.chain.joints}
@@ -131,7 +131,7 @@ class ScrewWriter:
         self._note_basis(vectors, duals, scales, rows, coefficients)
         w, m = (dict(zip(joints, parts, strict=False)) for parts in (duals, coefficients))
         constraints = [wrench for wrench in wrenches if wrench.acts]
-        return LegScrews(self.chain, gap, v, w, o, m, directions, constraints, named)
+        return LegScrews(self.chain, residual, v, w, o, m, directions, constraints, named)
 
     def _velocity_vector(self, j: int, rods: dict[int, Vector]) -> Vector:
         g = self.g

@@ -14,7 +14,7 @@ from typing import Any
 
 import sympy as sp
 
-from pne_sym.derivation import Book, Condition, ReciprocalBasis, Trouble
+from pne_sym.derivation import Book, Condition, FailureStatus, ReciprocalBasis
 from pne_sym.mechanics.completion import Auxiliary, Kind
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.terms import Writer, glossary
@@ -186,7 +186,7 @@ class _WrenchWriter:
         else:
             size, what, slides_unit, turns_unit = _size(coefficients), "moment", 1, 0
         power_of_length = slides_unit if auxiliary.kind is Kind.SLIDE else turns_unit
-        regular = Condition(Trouble.SINGULAR, size, self.g.size**power_of_length)
+        regular = Condition(FailureStatus.SINGULAR, size, self.g.size**power_of_length)
         return self.eq("size_c#", size, number, what, conditions=(regular,))
 
 

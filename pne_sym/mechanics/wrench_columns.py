@@ -112,9 +112,9 @@ class ColumnWriter:
         # Of the position, and of the right angles of the platform joint.
         coefficients = constraint.coefficients
         angles = [a * Dot(*pair) for a, pair in zip(coefficients, leg.g.pairs, strict=True)]
-        residual = Dot(normal, motion.gap) - sp.Add(*angles)
-        gap = eq("phi_c#:m" if constraint.of_moment else "phi_c#", residual, k)
-        self.put.leg_scalar("constraints", leg, gap, places)
+        along = Dot(normal, motion.residual) - sp.Add(*angles)
+        residual = eq("phi_c#:m" if constraint.of_moment else "phi_c#", along, k)
+        self.put.leg_scalar("constraints", leg, residual, places)
         turning = sp.Add(*(a * nu for a, nu in zip(coefficients, motion.nu, strict=True)))
         rest = motion.collection.rest(motion.relative)
         bias = eq("gamma_c#", Dot(normal, rest) + turning, k)

@@ -78,15 +78,15 @@ class Loops:
             leg_residual(leg, q[s], pose)[0]
             for leg, s in zip(self.legs, self.slices(), strict=True)
         )
-        return [float(np.abs(gap).max()) for gap in residuals]
+        return [float(np.abs(residual).max()) for residual in residuals]
 
     def widest(self, X: Array, q: Array) -> LoopResidual:
         """The largest residual: a length, or an angle between axes."""
         leg = int(np.argmax(self.residuals(X, q)))
         name = self.legs[leg].name
         pose = pose_at(self.space, X.tolist(), self.centre)
-        gap = np.abs(leg_residual(self.legs[leg], q[self.slices()[leg]], pose)[0])
-        points, axes = gap[:3], gap[3:]
+        residual = np.abs(leg_residual(self.legs[leg], q[self.slices()[leg]], pose)[0])
+        points, axes = residual[:3], residual[3:]
         if not axes.max(initial=0.0) > points.max():
             return LoopResidual(leg, f"{points.max():.3g} m", name=name)
         kind = self.legs[leg].platform_joint.kind
@@ -106,8 +106,8 @@ def legs_closed(loops: Loops, X: Array, q: Array) -> Array:
             return leg_residual(leg, x, pose)[0]
 
         def step(x: Array, leg: Leg = leg, free: Flags = free) -> Array:
-            gap, by_q, _ = leg_residual(leg, x, pose)
-            return least_norm(by_q * free, -gap)
+            residual, by_q, _ = leg_residual(leg, x, pose)
+            return least_norm(by_q * free, -residual)
 
         result[s] = solve(residual, step, np.add, q[s])
     return result
@@ -123,19 +123,21 @@ def all_closed(loops: Loops, X: Array, q: Array) -> tuple[Array, Array]:
         pose = pose_at(loops.space, x[:size].tolist(), loops.centre)
         pairs = zip(loops.legs, slices, strict=True)
         found = [(leg_residual(leg, x[size:][s], pose), s) for leg, s in pairs]
-        return [(gap, by_q * free[s], by_twist[:, twist]) for (gap, by_q, by_twist), s in found]
+        return [(r, by_q * free[s], by_twist[:, twist]) for (r, by_q, by_twist), s in found]
 
     def residual(x: Array) -> Array:
-        return np.concatenate([gap for gap, _, _ in residuals(x)])
+        return np.concatenate([r for r, _, _ in residuals(x)])
 
     def step(x: Array) -> Array:
         legs = residuals(x)
         out = [unreachable(by_q) for _, by_q, _ in legs]
         platform = least_norm(
             np.vstack([n @ by_twist for n, (_, _, by_twist) in zip(out, legs, strict=True)]),
-            -np.concatenate([n @ gap for n, (gap, _, _) in zip(out, legs, strict=True)]),
+            -np.concatenate([n @ r for n, (r, _, _) in zip(out, legs, strict=True)]),
         )
-        joints = [least_norm(by_q, -gap - by_twist @ platform) for gap, by_q, by_twist in legs]
+        joints = [
+            least_norm(by_q, -residual - by_twist @ platform) for residual, by_q, by_twist in legs
+        ]
         return np.concatenate([platform, *joints])
 
     def move(x: Array, step: Array) -> Array:

@@ -33,10 +33,10 @@ def nearest(start: Array, gram: Array, least: Array, most: Array) -> Array | Non
         least: bounds (n,), infinite where there is none.
         most: likewise.
     """
-    amounts, side = np.zeros_like(start), np.zeros(len(start))
+    coefficients, side = np.zeros_like(start), np.zeros(len(start))
     new: tuple[int, float] | None = None
     for _ in range(TURNS * len(start)):
-        t = start + gram @ amounts
+        t = start + gram @ coefficients
         new = new or _violated(start, t, (least, most), side)
         if new is None:
             return _settled(start, gram, (least, most), side)
@@ -46,27 +46,27 @@ def nearest(start: Array, gram: Array, least: Array, most: Array) -> Array | Non
         without[kept] = np.linalg.solve(gram[np.ix_(kept, kept)], sign * gram[kept, p])
         free = float(gram[p, p] - sign * gram[p] @ without)
         clear = PIVOT * (1.0 + float(without @ without))  # above what rounding makes of zero
-        gap = sign * (np.array([least[p] if sign > 0.0 else most[p], 0.0]) - t[p])
+        excess = sign * (np.array([least[p] if sign > 0.0 else most[p], 0.0]) - t[p])
         blocking = [int(k) for k in kept if side[k] * without[k] > clear]
-        steps = [(*(amounts[k, ::-1] / without[k]).tolist(), k) for k in blocking]
+        steps = [(*(coefficients[k, ::-1] / without[k]).tolist(), k) for k in blocking]
         if free > clear:
-            steps.append((*(gap[::-1] / free).tolist(), -1))
+            steps.append((*(excess[::-1] / free).tolist(), -1))
         if not steps:
             return None
         second, first, leaving = min(steps)
-        amounts -= np.outer(without, (first, second))
-        amounts[p] += sign * np.array((first, second))
+        coefficients -= np.outer(without, (first, second))
+        coefficients[p] += sign * np.array((first, second))
         if leaving < 0:
             side[p], new = sign, None
         else:
-            side[leaving] = amounts[leaving] = 0.0
+            side[leaving] = coefficients[leaving] = 0.0
     return None
 
 
 def _violated(
     start: Array, t: Array, bounds: tuple[Array, Array], side: Array
 ) -> tuple[int, float] | None:
-    """The bound that is missed by most, and 1 for a lower, -1 for an upper one."""
+    """The bound that is violated by most, and 1 for a lower, -1 for an upper one."""
     size, endless = np.max(np.abs(start), axis=0)
     found = []
     for sign, bound in zip((1.0, -1.0), bounds, strict=True):

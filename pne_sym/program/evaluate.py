@@ -128,7 +128,7 @@ class _Run:
         self.failures: list[Failure] = []
 
     def evaluation(self) -> Evaluation:
-        """Values, guards, outputs; one verdict for every state."""
+        """Values, guards, outputs; one status for every state."""
         f = self.f
         with np.errstate(all="ignore"):
             for vector, entries in self.inputs.items():
@@ -168,10 +168,10 @@ class _Run:
         shape = (self.legs[leg_type], self.states) if leg_type else (self.states,)
         for check in checks:
             value = value_of(check.value, self.values)
-            if check.trouble == "singular":
+            if check.status == "singular":
                 bound = TOLERANCE**check.power * value_of(check.scale, self.values)
                 good = np.abs(value) > bound
-            elif check.trouble == "invalid":
+            elif check.status == "invalid":
                 good = (value > 0.0) & np.isfinite(value)
             else:
                 good = value >= 0.0
@@ -185,11 +185,11 @@ class _Run:
         for array in self.flat.values():
             own = tuple(range(1, array.ndim))
             status[~np.isfinite(array).all(axis=own)] = Status.INVALID
-        for trouble in (Status.SINGULAR, Status.UNREACHABLE, Status.INVALID):
+        for cause in (Status.SINGULAR, Status.UNREACHABLE, Status.INVALID):
             for failure in self.failures:
-                if failure.check.trouble == trouble.name.lower():
+                if failure.check.status == cause.name.lower():
                     failed = failure.failed.reshape(-1, self.states).any(axis=0)
-                    status[failed] = trouble
+                    status[failed] = cause
         for entries in self.inputs.values():
             status[~np.isfinite(entries).all(axis=1)] = Status.INVALID
         return status

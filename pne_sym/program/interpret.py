@@ -107,7 +107,7 @@ class Interpreter:
         values = {a.name: self._argument(a, arguments, states) for a in function.inputs}
         state = _State(self, values, states)
         for read in sorted(inputs_read(self.program, function)):
-            state.blame(~finite(values[read]), Status.INVALID)
+            state.flag(~finite(values[read]), Status.INVALID)
         for step in function.steps:
             state.do(step)
         outputs = [np.array(state.values[o.name]) for o in function.outputs]
@@ -135,7 +135,7 @@ class _State:
         self.status = np.full(states, int(Status.OK))
         self._q: Array | None = None
 
-    def blame(self, failed: Flags, status: Status) -> None:
+    def flag(self, failed: Flags, status: Status) -> None:
         """The first cause that is met stays."""
         self.status[failed & (self.status == Status.OK)] = status
 
@@ -159,7 +159,7 @@ class _State:
             self.values[target.name] = np.broadcast_to(made, (self.states, *made.shape[1:]))
         for status in Status:
             if status is not Status.OK:
-                self.blame(found.status == status, status)
+                self.flag(found.status == status, status)
 
     def _closed(self) -> Array:
         """Displacements by iteration from q0, once."""
@@ -167,7 +167,7 @@ class _State:
             q, converged = close_loops(
                 self.model.program, self.model.prepared, self.values["X"], self.values["q0"]
             )
-            self.blame(~converged, Status.NOT_CONVERGED)
+            self.flag(~converged, Status.NOT_CONVERGED)
             self._q = q
         return self._q
 
@@ -181,12 +181,12 @@ class _State:
         for target, result in zip(step.targets, results, strict=True):
             self.values[target.name] = result
             lost = ~finite(judged(result, unbounded=operation.unbounded))
-            self.blame(known & lost, operation.status)
+            self.flag(known & lost, operation.status)
 
     def finished(self, outputs: Sequence[Array]) -> NDArray[np.int_]:
         """Status of every state: what is not finite is at least INVALID."""
         for array in outputs:
-            self.blame(~finite(array), Status.INVALID)
+            self.flag(~finite(array), Status.INVALID)
         return self.status
 
     # ---- searches ----------------------------------------------------------------------------
@@ -198,7 +198,7 @@ class _State:
             row = {n: v[k : k + 1] for n, v in self.values.items() if n != step.start.name}
             found[k], status = self._search_one(step, found[k : k + 1], row)
             if status is not Status.OK:
-                self.blame(np.arange(self.states) == k, status)
+                self.flag(np.arange(self.states) == k, status)
         return found
 
     def _search_one(
@@ -209,9 +209,9 @@ class _State:
         others = {n: v for n, v in given.items() if n in names and n != "X"}
         slope_of = {n: v for n, v in others.items() if n == "q0"}
         answer = call(step.residual, X=X, **others)
-        (gap,) = answer.outputs
+        (residual,) = answer.outputs
         for _ in range(SEARCH_STEPS):
-            size = float(np.max(np.abs(gap), initial=0.0))
+            size = float(np.max(np.abs(residual), initial=0.0))
             if not np.isfinite(size):
                 return X[0] * np.nan, Status(int(answer.status[0]))
             if size < CLOSE:
@@ -219,17 +219,17 @@ class _State:
             (slope,) = call(step.slope, X=X, **slope_of).outputs
             if not np.isfinite(slope).all():
                 return X[0] * np.nan, Status.SINGULAR
-            change = np.linalg.lstsq(slope[0].T, gap[0], rcond=1e-10)[0]
+            change = np.linalg.lstsq(slope[0].T, residual[0], rcond=1e-10)[0]
             for halving in range(HALVINGS if step.halving else 1):
                 trial = layout.moved(X, change[None] * 0.5**halving)
                 answer = call(step.residual, X=trial, **others)
-                (trial_gap,) = answer.outputs
-                if not step.halving or np.max(np.abs(trial_gap), initial=0.0) < size:
+                (trial_residual,) = answer.outputs
+                if not step.halving or np.max(np.abs(trial_residual), initial=0.0) < size:
                     break
             else:
                 break
-            X, gap = trial, trial_gap
+            X, residual = trial, trial_residual
             if not step.halving and float(np.max(np.abs(change))) < 0.1 * CLOSE:
                 break
-        lost = not float(np.max(np.abs(gap), initial=0.0)) < FOUND
+        lost = not float(np.max(np.abs(residual), initial=0.0)) < FOUND
         return (X[0] * np.nan, Status.NOT_CONVERGED) if lost else (X[0], Status.OK)

@@ -128,7 +128,7 @@ class Check:
     SINGULAR: |value| > tolerance^power * scale.
     """
 
-    trouble: str
+    status: str
     value: Any
     scale: Any
     power: int
@@ -249,7 +249,7 @@ class Function:
 class Closure:
     """Legs of a type whose displacements Newton's iteration on the loop closure finds.
 
-    The function closure_TYPE gives the arrays gap_TYPE (legs, conditions) and jacobian_TYPE
+    The function closure_TYPE gives the arrays residual_TYPE (legs, conditions) and jacobian_TYPE
     (legs, conditions x unknowns).
 
     Attributes:
@@ -271,7 +271,7 @@ class Closure:
 
     @property
     def function(self) -> str:
-        """Name of the function of the program that gives gap and Jacobian."""
+        """Name of the function of the program that gives residual and Jacobian."""
         return f"closure_{self.leg_type}"
 
     @property

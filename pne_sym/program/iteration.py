@@ -48,8 +48,8 @@ def _close_legs(
     converged = np.zeros(len(X), dtype=bool)
     open_ = np.flatnonzero(np.isfinite(X).all(axis=1) & np.isfinite(q).all(axis=1))
     for _ in range(STEPS):
-        gap, jacobian = gap_and_jacobian(program, closure, prepared, X[open_], q[open_])
-        step = newton_step(jacobian, gap)
+        residual, jacobian = residual_and_jacobian(program, closure, prepared, X[open_], q[open_])
+        step = newton_step(jacobian, residual)
         largest: Array = np.max(np.abs(step), axis=(1, 2), initial=0.0)
         with np.errstate(all="ignore"):
             shortened: Array = np.minimum(1.0, LONGEST / largest)
@@ -63,14 +63,14 @@ def _close_legs(
     return converged
 
 
-def gap_and_jacobian(
+def residual_and_jacobian(
     program: Program, closure: Closure, prepared: Mapping[str, Array], X: Array, q: Array
 ) -> tuple[Array, Array]:
     """Gaps (states, legs, conditions) and Jacobians (states, legs, conditions, unknowns)."""
     name = closure.leg_type
     found = evaluate(program, closure.function, prepared, {"X": X, "q": q}).outputs
-    jacobian = found[f"jacobian_{name}"].reshape(*found[f"gap_{name}"].shape, closure.unknowns)
-    return found[f"gap_{name}"], jacobian
+    jacobian = found[f"jacobian_{name}"].reshape(*found[f"residual_{name}"].shape, closure.unknowns)
+    return found[f"residual_{name}"], jacobian
 
 
 def on_home_s_branch(closure: Closure, jacobian: Array) -> Flags:
@@ -84,11 +84,11 @@ def on_home_s_branch(closure: Closure, jacobian: Array) -> Flags:
     return np.asarray((signs * np.array(closure.signs) > 0.0).all(axis=1))
 
 
-def newton_step(jacobian: Array, gap: Array) -> Array:
-    """Solution of jacobian step = gap per leg, least squares where there are fewer unknowns."""
+def newton_step(jacobian: Array, residual: Array) -> Array:
+    """Solution of jacobian step = residual per leg, least squares if there are fewer unknowns."""
     if jacobian.shape[-1] == jacobian.shape[-2]:
-        return solve(jacobian, gap)
+        return solve(jacobian, residual)
     known: Flags = np.asarray(np.isfinite(jacobian).all(axis=(-1, -2)))
     inverse = np.linalg.pinv(np.where(known[..., None, None], jacobian, 0.0))
-    step = np.where(known[..., None, None], inverse, np.nan) @ gap[..., None]
+    step = np.where(known[..., None, None], inverse, np.nan) @ residual[..., None]
     return np.asarray(step[..., 0])

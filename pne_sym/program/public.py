@@ -104,8 +104,8 @@ class Search:
     """Gauss-Newton with step halving: the pose at which a residual vanishes.
 
     Attributes:
-        residual, slope: internal public functions of the pose: gap (n,) and its derivative by a
-            small displacement of the pose, (NV, n).
+        residual, slope: internal public functions of the pose: the residual (n,) and its
+            derivative by a small displacement of the pose, (NV, n).
         start: first guess.
         target: the pose.
         halving: steps are halved until the residual is smaller; otherwise they are taken as they

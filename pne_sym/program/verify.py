@@ -17,7 +17,7 @@ from pne_sym.program.ir import VECTORS, Block, Check, Function, Program, Store
 
 _FUNCTIONS = (sp.sin, sp.cos, sp.atan2, sp.acos, sp.Abs, sp.Min)
 _ROOTS = (sp.Rational(1, 2), sp.Rational(-1, 2))
-_TROUBLES = ("invalid", "unreachable", "singular")
+_STATUSES = ("invalid", "unreachable", "singular")
 
 
 class ProgramError(Exception):
@@ -102,7 +102,7 @@ class _Scope:
     def checks(self, checks: Iterable[Check], leg_type: str) -> None:
         for check in checks:
             what = ("check of ", check.value)
-            self.require(check.trouble in _TROUBLES, *what, ": trouble ", check.trouble)
+            self.require(check.status in _STATUSES, *what, ": status ", check.status)
             self.require(bool(check.equation), *what, ": no equation id")
             self.require(check.power in (1, 2), *what, ": power ", check.power)
             self.use([check.value, check.scale], leg_type, *what)

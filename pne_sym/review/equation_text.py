@@ -17,7 +17,7 @@ def formula(equation: Equation) -> str:
 
 def conditions(equation: Equation) -> str:
     """What must hold, as one text."""
-    return str([(str(c.trouble), c.value, c.scale, c.power) for c in equation.conditions])
+    return str([(str(c.status), c.value, c.scale, c.power) for c in equation.conditions])
 
 
 def text_of(equation: Equation) -> tuple[str, ...]:

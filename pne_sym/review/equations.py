@@ -230,9 +230,7 @@ class DerivationComparer:
         forms = "".join(f" = {plain(name(form))}" for form in after.forms)
         return (
             f"{before.name} = {plain(name(after.rhs))}{forms}",
-            str(
-                [(str(c.trouble), name(c.value), name(c.scale), c.power) for c in after.conditions]
-            ),
+            str([(str(c.status), name(c.value), name(c.scale), c.power) for c in after.conditions]),
         )
 
     def _notes(self, before: Equation, after: Equation) -> Iterator[str]:
@@ -268,7 +266,7 @@ class DerivationComparer:
         return None, []
 
     def _condition_gap(self, before: Equation, after: Equation) -> tuple[Gap | None, list[str]]:
-        kinds = [[(c.trouble, c.power) for c in e.conditions] for e in (before, after)]
+        kinds = [[(c.status, c.power) for c in e.conditions] for e in (before, after)]
         if kinds[0] != kinds[1]:
             return Gap(float("inf"), "the conditions", 0.0, 0.0), ["conditions added or removed"]
         legs = self._common_legs(before.name, after.name)

@@ -129,8 +129,8 @@ def explanation(told: Explanation) -> Iterator[str]:
     yield f"  law:   {equation.law.value}{reference}"
     yield f"  LaTeX: {told.latex}"
     for condition in equation.conditions:
-        must = ">= 0" if condition.trouble.value == "unreachable" else "not near 0"
-        yield f"  {condition.trouble.value} unless {plain(condition.value)} is {must}"
+        must = ">= 0" if condition.status.value == "unreachable" else "not near 0"
+        yield f"  {condition.status.value} unless {plain(condition.value)} is {must}"
     for step in equation.steps:
         yield from _hanging(f"  {step.rule.name}: ", f"{plain(step.before)} -> {plain(step.after)}")
     yield from _list("uses", told.uses)

@@ -60,7 +60,7 @@ def test_agreement(file: str, tmp_path: Path) -> None:
     _, shape, mixed, constraints, redundant, extras = STRUCTURES[file]
     d, types = describe(bundle), bundle.derivation.leg_types
     iterated = next(t for t in types if not t.is_closed)
-    assert (bundle.program.shapes[f"gap_{iterated.name}"][1], iterated.unknowns) == shape
+    assert (bundle.program.shapes[f"residual_{iterated.name}"][1], iterated.unknowns) == shape
     assert any(t.is_closed for t in types) == mixed
     found = (d.sizes["NC"], d.is_redundant, len(d.coordinates.extras))
     assert found == (constraints, redundant, extras)

@@ -26,7 +26,7 @@ STANDING = {
 # Letters whose dimension depends on what moves along the joint, or on the method: of these names.
 OF_JOINTS = {
     "q": r"q_\d", "y": r"y_\d", "v": r"v_", "w": r"wn?_", "o": r"o_|mu_c", "K": r"K|rho2|root",
-    "S": r"S|xi?_|p[xy]_|gap|from_centre|(d\d*_)?rel", r"\Gamma": r"(d\d*_)?Gamma",
+    "S": r"S|xi?_|p[xy]_|residual|from_centre|(d\d*_)?rel", r"\Gamma": r"(d\d*_)?Gamma",
     r"\mathcalM": "D_", r"\gamma": r"d_Gamma", r"\Delta": r"disc|volume",
     "n": r"n_c|f_c|n_m|p[xy]_", "P": r"(d\d_)?P_",
     r"\Lambda": "L_c", r"\Pi": "P_c", "H": "Hk?_", "M": "M_|d_P", "Z": "Z_", "R": "R_",

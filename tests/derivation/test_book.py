@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 import sympy as sp
 
-from pne_sym.derivation import Book, Condition, Derivation, Law, Output, Quantity, Trouble
+from pne_sym.derivation import Book, Condition, Derivation, FailureStatus, Law, Output, Quantity
 from pne_sym.vector import Cross, Dot, LinearForm, Outer, TensorSymbol, VectorSymbol, linear_form
 
 a, b, x = VectorSymbol("a"), VectorSymbol("b"), VectorSymbol("x")
@@ -76,7 +76,7 @@ def test_what_nothing_needs_is_left_out() -> None:
         "last",
         Dot(needed, x),
         forms=(Dot(through_form, x),),
-        conditions=(Condition(Trouble.SINGULAR, in_condition, in_scale),),
+        conditions=(Condition(FailureStatus.SINGULAR, in_condition, in_scale),),
     )
     found.chapter("d-", "Dynamics", "")
     define(found, "unused", b - a)

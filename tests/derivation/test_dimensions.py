@@ -9,7 +9,7 @@ import pytest
 import sympy as sp
 
 from pne_sym import manipulators
-from pne_sym.derivation import Book, Condition, Law, ParameterField, Quantity, Role, Trouble
+from pne_sym.derivation import Book, Condition, FailureStatus, Law, ParameterField, Quantity, Role
 from pne_sym.derivation.dimensions import Dimensions
 from pne_sym.vector import Cross, Dot, VectorSymbol, ZeroVector
 from pne_sym.vector.dimensions import DimensionError, dimension, dimension_of_unit
@@ -67,8 +67,8 @@ def test_unit_of_an_equation(
         (r + v, {}),
         (Cross(omega, r) + v, {"forms": (r,)}),
         (v, {"like": r}),
-        (mass, {"conditions": (Condition(Trouble.SINGULAR, mass, mass**2),)}),
-        (mass, {"conditions": (Condition(Trouble.UNREACHABLE, mass + 1),)}),
+        (mass, {"conditions": (Condition(FailureStatus.SINGULAR, mass, mass**2),)}),
+        (mass, {"conditions": (Condition(FailureStatus.UNREACHABLE, mass + 1),)}),
     ],
 )
 def test_what_contradicts_itself(book: Book, rhs: object, facts: dict[str, object]) -> None:

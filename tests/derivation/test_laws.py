@@ -40,7 +40,7 @@ GEOMETRY     |                       | reference_#
 GEOMETRY     | Eq. 35                | mu#_c# mu_c mu_c# n_c n_c#
 GEOMETRY     | Sec. 2.2, joint table | n_m#
 GEOMETRY     | Sec. 2.5, step 1.1    | S
-LOOP_CLOSURE |                       | Kc_# Kd_# Kr_# Ks_# c_# disc_# gap px_# py_# q_# rho#_#
+LOOP_CLOSURE |                       | Kc_# Kd_# Kr_# Ks_# c_# disc_# residual px_# py_# q_# rho#_#
 LOOP_CLOSURE |                       | root_# s_# xi_#
 LOOP_CLOSURE | Eq. 37                | gamma_c# phi_c#
 LUMPING      |                       | J_# J_group_# J_star Sigma_# b_c h_# h_group_# h_star

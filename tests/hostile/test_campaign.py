@@ -82,7 +82,7 @@ DELIVER = """for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
             out[size*k + e] = x[e*LANES + k];
 """
-VERDICT = "    verdict why;\n"
+FLAGS = "    status_flags why;\n"
 PLANTED = {
     "NaN is left out": ("quick", "out[e] = R(NAN);", "out[e] = 0;", "impossible, but not NaN"),
     "infinite counts as finite": ("quick", "return x - x == 0;", "return x == x;", "not finite"),
@@ -106,8 +106,8 @@ PLANTED = {
     ),
     "a state is kept": (
         "thread",
-        VERDICT,
-        VERDICT.replace("verdict", "static verdict"),
+        FLAGS,
+        FLAGS.replace("status_flags", "static status_flags"),
         "data race",
     ),
 }

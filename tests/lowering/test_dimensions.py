@@ -86,7 +86,7 @@ def _in_block(where: str, block: Block, units: Units) -> Iterator[str]:
             units[a.target.name] = None
     for check in block.checks:
         value, scale = units.of(check.value), units.of(check.scale)
-        if check.trouble == "singular" and None not in (value, scale) and value != scale:
+        if check.status == "singular" and None not in (value, scale) and value != scale:
             yield f"{where}: ({check.equation}) {check.value} [{value}] against [{scale}]"
     for target, value in block.sums:
         units[target.name] = units.of(value)

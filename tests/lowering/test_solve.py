@@ -101,7 +101,7 @@ def test_dependent_screws_are_noticed(n: int, across: bool) -> None:
         values = run(b.statements, known)
         small = [abs(value(g.value, values)) < 1e-9 * value(g.scale, values) for g in b.guards]
         assert any(small) == expected
-        assert {g.trouble for g in b.guards} == {"singular"}
+        assert {g.status for g in b.guards} == {"singular"}
 
 
 @pytest.mark.parametrize("pattern", ["dense", "single entries"])

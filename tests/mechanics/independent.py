@@ -310,8 +310,8 @@ def _r(f: Facts, j: int) -> Any:
     return f.tip - f.joint_point(j)[0]
 
 
-@value_of("gap")
-def _gap(f: Facts, j: int) -> Any:
+@value_of("residual")
+def _residual(f: Facts, j: int) -> Any:
     return f.point - f.tip
 
 

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from pne_sym.derivation import Derivation, Equation, Trouble
+from pne_sym.derivation import Derivation, Equation, FailureStatus
 from pne_sym.mechanics.derive import derive
 from pne_sym.model.errors import SpecError
 from pne_sym.model.manipulator import Manipulator
@@ -144,7 +144,7 @@ class Examination:
             )
         for condition in equation.conditions:
             amount, scale = names.value(condition.value), names.value(condition.scale)
-            if condition.trouble is Trouble.UNREACHABLE:
+            if condition.status is FailureStatus.UNREACHABLE:
                 held = amount >= 0.0
             else:
                 held = abs(amount) > 1e-4**condition.power * scale

@@ -1,4 +1,4 @@
-"""The home closes the loops to rounding, or is refused with the gap told."""
+"""The home closes the loops to rounding, or is refused with the residual told."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def form_of(name: str) -> Any:
     return to_full_form(manipulators.load(name))
 
 
-def gap(m: Manipulator) -> float:
+def closure_residual(m: Manipulator) -> float:
     loops = Loops(m.space, m.legs, m.fixed_centre)
     return max(loops.residuals(np.array(m.home.X), np.array(m.home.q)))
 
@@ -49,7 +49,7 @@ def read_rough(form: Any) -> tuple[Manipulator, str]:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_catalogue_homes_are_closed(name: str) -> None:
-    assert gap(manipulators.load(name)) < 1e-12
+    assert closure_residual(manipulators.load(name)) < 1e-12
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -59,7 +59,7 @@ def test_a_rounded_home_is_polished_silently(name: str) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         polished = from_mapping(form, "rounded.json")
-    assert gap(polished) < 1e-12
+    assert closure_residual(polished) < 1e-12
     assert from_mapping(to_full_form(polished), "again") == polished
 
 
@@ -72,7 +72,7 @@ def test_a_rough_guess_is_solved_for(name: str) -> None:
         form["home"]["q"][i] += 0.0 if fixed else rng.uniform(-0.03, 0.03)
     solved, message = read_rough(form)
     assert "rough.json: home: taken as a rough guess (loop-closure residual 0.0" in message
-    assert gap(solved) < 1e-12
+    assert closure_residual(solved) < 1e-12
     np.testing.assert_allclose(solved.home.q, manipulators.load(name).home.q, atol=1e-9)
 
 
@@ -82,7 +82,7 @@ def test_a_pose_off_the_constraints_gives_way(name: str) -> None:
     form["home"]["X"][0] += 0.01
     form["home"]["X"][-2] += 0.02
     solved, _ = read_rough(form)
-    assert gap(solved) < 1e-12
+    assert closure_residual(solved) < 1e-12
     assert np.abs(np.array(solved.home.X) - form["home"]["X"]).max() < 0.1
 
 
@@ -112,7 +112,7 @@ def read_found(form: Any) -> tuple[Manipulator, str]:
 def test_a_home_without_q_is_found(name: str) -> None:
     wanted = manipulators.load(name)
     found, message = read_found(form_of(name))
-    assert gap(found) < 1e-12
+    assert closure_residual(found) < 1e-12
     np.testing.assert_allclose(found.home.q, wanted.home.q, atol=1e-9)
     assert message.startswith("found.json: home: q found from X: q = [[")
     assert "closures the usual ones (pne-gen home lists all)" in message
@@ -169,7 +169,7 @@ def test_a_home_without_q_moves_a_constrained_platform() -> None:
     form["home"].pop("q")
     with pytest.warns() as caught:
         found = from_mapping(form, "found.json")
-    assert gap(found) < 1e-12
+    assert closure_residual(found) < 1e-12
     assert {w.category for w in caught} == {SpecWarning, SpecNote}
     assert "home.X: the legs restrict the platform; closed by a change of" in str(caught[0].message)
 
@@ -247,7 +247,7 @@ def axis_turned(axis: Any, towards: Any, angle: float) -> Any:
     [("U", "are not perpendicular"), ("R", "do not coincide"), ("rigid", "are not turned as")],
 )
 @pytest.mark.parametrize("angle", [1e-3, 0.3, 1.2])
-def test_a_gap_between_axes_is_an_angle(kind: str, failing: str, angle: float) -> None:
+def test_a_residual_of_axes_is_an_angle(kind: str, failing: str, angle: float) -> None:
     """The points coincide: the condition that fails is named, and told in its unit."""
     m = manipulators.load("hexapod_6ucu" if kind == "U" else "hexapod_6x6r")
     leg, q = m.legs[0], np.array(m.home.q[: len(m.legs[0].joints)])
@@ -323,7 +323,7 @@ def legs_to_differentiate() -> dict[str, Leg]:
 
 
 @pytest.mark.parametrize("leg", legs_to_differentiate().values(), ids=legs_to_differentiate())
-def test_jacobians_of_the_gap(leg: Leg) -> None:
+def test_jacobians_of_the_residual(leg: Leg) -> None:
     """Columns by q and by the platform's twist against central differences."""
     q, h = np.linspace(0.2, 0.9, len(leg.joints)), 1e-6
     X = np.array([0.1, -0.2, 0.6, 0.0, 0.0, 0.0, 1.0])
@@ -333,11 +333,11 @@ def test_jacobians_of_the_gap(leg: Leg) -> None:
         plus, minus = leg_residual(leg, q + step, pose)[0], leg_residual(leg, q - step, pose)[0]
         np.testing.assert_allclose((plus - minus) / (2 * h), by_q[:, j], atol=1e-8)
     for k in range(6):
-        plus, minus = (_gap_of_moved(leg, q, X, k, s * h) for s in (1, -1))
+        plus, minus = (_residual_of_moved(leg, q, X, k, s * h) for s in (1, -1))
         np.testing.assert_allclose((plus - minus) / (2 * h), by_twist[:, k], atol=1e-8)
 
 
-def _gap_of_moved(leg: Leg, q: Any, X: Any, k: int, h: float) -> Any:
+def _residual_of_moved(leg: Leg, q: Any, X: Any, k: int, h: float) -> Any:
     moved = X.copy()
     if k < 3:
         moved[k] += h

@@ -71,8 +71,8 @@ def test_right_angles_say_what_closes(kind: PlatformJointKind) -> None:
     }
     joint = PlatformJoint(kind, **{name: stated[name] for name in kind.fields})
     leg = Leg(ZERO3, IDENTITY3, (Joint(JointKind.REVOLUTE, Z),), joint, ZERO3)
-    gap, _, by_twist = leg_residual(leg, np.zeros(1), Pose(np.zeros(3), np.eye(3)))
-    assert not gap.any()
+    residual, _, by_twist = leg_residual(leg, np.zeros(1), Pose(np.zeros(3), np.eye(3)))
+    assert not residual.any()
     assert np.linalg.matrix_rank(by_twist[3:, 3:]) == kind.moments == len(joint.right_angles)
 
 
@@ -84,8 +84,8 @@ def test_the_angle_is_that_by_which_the_platform_is_turned(kind: PlatformJointKi
     joint = PlatformJoint(kind, **{name: stated[name] for name in kind.fields})
     leg = Leg(ZERO3, IDENTITY3, (Joint(JointKind.REVOLUTE, Z),), joint, ZERO3)
     pose = Pose(np.zeros(3), rotation_about(Z, 0.4))
-    gap, *_ = leg_residual(leg, np.zeros(1), pose)
-    assert kind.angle(float(np.linalg.norm(gap[3:]))) == pytest.approx(0.4, rel=1e-12)
+    residual, *_ = leg_residual(leg, np.zeros(1), pose)
+    assert kind.angle(float(np.linalg.norm(residual[3:]))) == pytest.approx(0.4, rel=1e-12)
     assert kind.open
 
 

@@ -60,13 +60,13 @@ def perpendicular_pair(axis: Array) -> tuple[Array, Array]:
 def closure_residual(space: Space, leg: Leg, last_link: Pose, platform: Pose) -> Jet:
     """Violation (..., nc) of a leg's platform joint: metres, then sines of angles."""
     joint = leg.platform_joint
-    gap = carried_point(last_link, joint.offset) - carried_point(platform, leg.platform_point)
+    residual = carried_point(last_link, joint.offset) - carried_point(platform, leg.platform_point)
     if is_planar(space):
-        rows = [gap.component(0), gap.component(1)]
+        rows = [residual.component(0), residual.component(1)]
         if joint.kind is PlatformJointKind.RIGID:
             rows.append(_misalignment(leg, last_link, platform).component(2))
         return _stack(rows)
-    rows = [gap.component(row) for row in range(3)]
+    rows = [residual.component(row) for row in range(3)]
     if joint.kind is PlatformJointKind.RIGID:
         misalignment = _misalignment(leg, last_link, platform)
         rows += [misalignment.component(row) for row in range(3)]

@@ -161,9 +161,9 @@ SPOILT: dict[str, tuple[Callable[[], Program], str]] = {
         lambda: with_leg(checks=(Check("singular", real("v"), real("k2"), 1, ""),)),
         "check of v: no equation id",
     ),
-    "an unknown trouble": (
+    "an unknown status": (
         lambda: with_leg(checks=(Check("odd", real("v"), real("k2"), 1, "L1"),)),
-        "trouble odd",
+        "status odd",
     ),
     "a check's power": (
         lambda: with_leg(checks=(Check("singular", real("v"), real("k2"), 3, "L1"),)),

@@ -1,7 +1,7 @@
 """Every guard compares quantities of one dimension: the same mechanism, larger or smaller.
 
 Lengths are multiplied, masses and times stay. The ratio of a tested value to its scale may not
-change, neither may a verdict; results are those of the original, times a power of the factor.
+change, neither may a status; results are those of the original, times a power of the factor.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ def changed_ratios(spec: Manipulator, factor: float) -> Iterator[str]:
     after = checks_at(large, lengths.scaled(made, vectors, factor))
     for one, other in zip(before, after, strict=True):
         assert one.check.value == other.check.value
-        if one.check.trouble == "singular":
+        if one.check.status == "singular":
             a, b = one.value * other.scale, other.value * one.scale
             if not np.all(np.abs(a - b) <= 1e-6 * np.abs(a)):
                 yield one.check.equation
@@ -112,7 +112,7 @@ def situations(made: Bundle, model: Any) -> tuple[Array, Array, Array, dict[str,
         [*((name, LARGE) for name in manipulators.names()), *((n, SMALL) for n in SMALL_ONES)], 12
     ),
 )
-def test_verdicts_and_results(name: str, factor: float) -> None:
+def test_statuses_and_results(name: str, factor: float) -> None:
     """The condition, its status, M, Z and H at ordinary and at nearly singular poses."""
     made, model = bundle(catalogue(name)), module(catalogue(name))
     large = module(lengths.larger(catalogue(name), factor))

@@ -33,7 +33,7 @@ OPTIONS = (*"-machdep gcc_x86_64 -eva -eva-no-results -eva-slevel 3".split(),)
 # Loops of so many rounds are followed round by round; not those of iterations: there are too many.
 UNROLL, UNROLL_ITERATED = "600", "39"
 # Iterations are not told apart by the ways through them: there are too many.
-MERGED = ("search_mismatch", "search_constraint_gap", "singular_values")
+MERGED = ("search_pose_residual", "search_constraint_residual", "singular_values")
 SAFETY = ("-warn-special-float", "none")
 NUMBERS = ("-warn-special-float", "non-finite")
 

@@ -12,7 +12,7 @@ from pne_sym.model.closure import leg_residual
 from pne_sym.model.kinematics import TASK_SPACES, base_of, chain_pose, displaced, pose_at
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.program.evaluate import prepare
-from pne_sym.program.iteration import close_loops, gap_and_jacobian, on_home_s_branch
+from pne_sym.program.iteration import close_loops, on_home_s_branch, residual_and_jacobian
 from tests import models
 from tests.backends.c_library import NOT_CONVERGED, OK, QUICK, Array, CLibrary
 from tests.oracle.coordinates import joint_slices
@@ -68,7 +68,7 @@ def determinants(name: str, X: Array, q: Array) -> float:
     values, sizes = prepare(bundle.program, bundle.derivation.parameters.values()), []
     for closure in bundle.program.closures:
         at, rows = (np.array([X, bundle.coordinates.home[0]]), [q, bundle.coordinates.home[1]])
-        _, jacobian = gap_and_jacobian(bundle.program, closure, values, at, np.array(rows))
+        _, jacobian = residual_and_jacobian(bundle.program, closure, values, at, np.array(rows))
         now, home = np.linalg.det(jacobian[:, :, list(closure.rows)])
         sizes.append(float((now / home).min()))
     return min(sizes)
@@ -86,8 +86,8 @@ def test_the_sign_of_home(name: str) -> None:
     X, q = (np.array([v]) for v in bundle.coordinates.home)
     for closure in bundle.program.closures:
         assert closure.rows == ROWS[name]
-        gap, jacobian = gap_and_jacobian(bundle.program, closure, values, X, q)
-        assert np.abs(gap).max() < 1e-11
+        residual, jacobian = residual_and_jacobian(bundle.program, closure, values, X, q)
+        assert np.abs(residual).max() < 1e-11
         assert on_home_s_branch(closure, jacobian).all()
         if closure.rows:
             found = np.linalg.det(jacobian[0][:, list(closure.rows)])
@@ -165,10 +165,10 @@ def _elbow_over(leg, q: Array, unknown: list[int]) -> Array:  # type: ignore[no-
         trial[unknown] = rng.uniform(-np.pi, np.pi, 2)
         for _ in range(30):
             now = chain_pose(leg, trial, base_of(leg))
-            gap = (chain.tip - now.tip)[:2]
-            step = np.linalg.lstsq(now.velocities[:2][:, unknown], gap, rcond=None)[0]
+            residual = (chain.tip - now.tip)[:2]
+            step = np.linalg.lstsq(now.velocities[:2][:, unknown], residual, rcond=None)[0]
             trial[unknown] += step * min(1.0, 0.5 / max(np.abs(step).max(), 1e-9))
-        if np.abs(gap).max() < 1e-12 and turns_apart(trial, q).max() > 0.1:
+        if np.abs(residual).max() < 1e-12 and turns_apart(trial, q).max() > 0.1:
             return trial
     raise AssertionError("no other closure")
 

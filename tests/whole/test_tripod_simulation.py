@@ -28,13 +28,13 @@ class Run(NamedTuple):
     """A simulated second.
 
     Attributes:
-        gap, slip: largest residual of the constraints and of their rate, step by step.
+        residual, slip: largest residual of the constraints and of their rate, step by step.
         energy: kinetic and potential, step by step.
         work: of actuators and wrench, step by step.
         speed: largest entry of V, step by step.
     """
 
-    gap: Array
+    residual: Array
     slip: Array
     energy: Array
     work: Array
@@ -83,8 +83,8 @@ class Rig:
         tau, power = self.control(X, V, time)
         A, _ = self.model.forward_dynamics(X, V, tau, wrench=self.wrench)
         if stabilised:
-            slip, gap = self.model.Hk(X).T @ V, self.model.constraints(X)
-            A = A - self.push(X, 2 * RATE * slip + RATE**2 * gap)
+            slip, residual = self.model.Hk(X).T @ V, self.model.constraints(X)
+            A = A - self.push(X, 2 * RATE * slip + RATE**2 * residual)
         return np.concatenate((self.rate(X, V), A, [power]))
 
     def projected(self, state: Array) -> Array:
@@ -99,10 +99,10 @@ class Rig:
         """What is recorded of a state."""
         nq, nv = self.model.NQ, self.model.NV
         X, V = state[:nq], state[nq : nq + nv]
-        gap, slip = self.model.constraints(X), self.model.Hk(X).T @ V
+        residual, slip = self.model.constraints(X), self.model.Hk(X).T @ V
         energy = sum(float(e) for e in self.model.energy(X, V))
         return (
-            float(np.max(np.abs(gap))),
+            float(np.max(np.abs(residual))),
             float(np.max(np.abs(slip))),
             energy,
             float(state[-1]),
@@ -143,7 +143,7 @@ def simulated(name: str, method: str, offset: float = 0.0, step: float = STEP) -
 def test_stays_on_its_constraints(name: str, method: str) -> None:
     run = simulated(name, method)
     assert run.speed.max() > 0.3  # it moves
-    assert run.gap.max() < 1e-7
+    assert run.residual.max() < 1e-7
     assert run.slip.max() < 1e-6
 
 
@@ -161,8 +161,8 @@ def test_energy_is_accounted_for(name: str, method: str) -> None:
 @pytest.mark.parametrize("name", NAMES)
 def test_projection_stops_the_drift(name: str) -> None:
     """Steps of 20 ms: without, the errors of the integrator add up."""
-    assert simulated(name, "none", step=0.02).gap[-1] > 1e-7
-    assert simulated(name, "projection", step=0.02).gap.max() < 1e-12
+    assert simulated(name, "none", step=0.02).residual[-1] > 1e-7
+    assert simulated(name, "projection", step=0.02).residual.max() < 1e-12
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -171,9 +171,9 @@ def test_baumgarte_finds_back(name: str) -> None:
     left, led = (simulated(name, method, offset=5e-3) for method in ("none", "baumgarte"))
     assert np.isfinite(np.array(left)).all()
     assert np.isfinite(np.array(led)).all()
-    assert led.gap[0] == left.gap[0] > 1e-3
-    assert left.gap[-1] > 0.1 * left.gap[0]
-    assert led.gap[-1] < 1e-7
+    assert led.residual[0] == left.residual[0] > 1e-3
+    assert left.residual[-1] > 0.1 * left.residual[0]
+    assert led.residual[-1] < 1e-7
 
 
 def off_the_manifold(name: str, seed: int) -> tuple[Any, Any, Array, Array, Array]:
@@ -253,7 +253,7 @@ def test_constraints_and_their_derivatives(name: str, seed: int) -> None:
     assert np.abs(model.Hk(state.X, p).T @ state.V).max() < 1e-12
     bias = model.constraint_bias(state.X, state.V, p)
     assert np.abs(model.Hk(state.X, p).T @ state.A + bias).max() < 1e-10
-    gap = [model.constraints(moved(t), p) for t in (-h, h)]
-    assert np.abs(gap[1] - gap[0]).max() / (2 * h) < 1e-5 * (1 + np.abs(state.V).max())
+    residual = [model.constraints(moved(t), p) for t in (-h, h)]
+    assert np.abs(residual[1] - residual[0]).max() / (2 * h) < 1e-5 * (1 + np.abs(state.V).max())
     slip = [model.Hk(moved(t), p).T @ (state.V + t * state.A) for t in (-h, h)]
     assert np.abs(slip[1] - slip[0]).max() / (2 * h) < 1e-4 * (1 + np.abs(bias).max())

@@ -28,7 +28,7 @@ class Code(StraightText):
         leg_field="reshape(given.{field}({place}, :), [{legs}, 1])",
         signs="[{values}]'",
         total="sum(({value}) + zeros({legs}, 1), 1)",
-        demand="{trouble} = {trouble} | any(~({good}), 1);",  # a state fails where a leg fails
+        demand="{status} = {status} | any(~({good}), 1);",  # a state fails where a leg fails
         good={
             "unreachable": "{value} >= 0",
             "invalid": "{value} > 0 & isfinite({value})",

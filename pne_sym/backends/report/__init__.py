@@ -57,7 +57,7 @@ class ReportBackend:
             legs=legs.leg_views(bundle, given),
             chapters=chapters,
             functions=tuple(functions.function_statements(bundle, printer)),
-            troubles=functions.troubles(bundle),
+            failures=functions.failures(bundle),
             counts=functions.counts(bundle),
             parts=functions.parts(bundle),
             index=table(

@@ -23,8 +23,8 @@ from pne_sym.derivation import (
     Condition,
     Derivation,
     Equation,
+    FailureStatus,
     ReciprocalBasis,
-    Trouble,
     names_in,
     rotations_by_place,
 )
@@ -196,7 +196,7 @@ class ChapterWriter:
     def _condition(self, equation: Equation, condition: Condition, printer: LatexPrinter) -> str:
         value = equation.lhs if condition.value == equation.rhs else condition.value
         text = printer.doprint(value)
-        if condition.trouble is Trouble.UNREACHABLE:
+        if condition.status is FailureStatus.UNREACHABLE:
             return f"**Out of reach** where {inline(text + ' < 0')}."
         return f"**Singular** where {inline(text)} vanishes."
 

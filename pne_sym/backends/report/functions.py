@@ -13,7 +13,7 @@ from pne_sym.backends.report.markdown import table
 from pne_sym.backends.report.names import leg_title
 from pne_sym.backends.report.view import Statement, Table
 from pne_sym.backends.report.words import FUNCTIONS
-from pne_sym.derivation import Coordinates, Trouble
+from pne_sym.derivation import Coordinates, FailureStatus
 from pne_sym.program.count import count_block, count_function
 from pne_sym.program.ir import Block, Counts
 
@@ -116,11 +116,11 @@ def _coupled_statements(coordinates: Coordinates) -> Iterator[Statement]:
     a, actuators = coordinates.actuation, _actuators(coordinates)
     unique = len(a.passive) == a.idle
     k = r"\mathbf H & \mathbf H_k" if coordinates.sizes["NC"] else r"\mathbf H"
-    gap = rf"{_N}^{{\mathsf T}}\,(\mathbf M\,\mathbf A + \mathbf Z - {_W})"
+    residual = rf"{_N}^{{\mathsf T}}\,(\mathbf M\,\mathbf A + \mathbf Z - {_W})"
     change = r"\delta\ddot{\mathbf y}"
     least = (
         rf"{change}^{{\mathsf T}}\,\mathbf M_{{yy}}\,{change} \rightarrow \min,",
-        rf"\qquad {_N}^{{\mathsf T}}\,\mathbf M_{{\cdot y}}\,{change} = -{gap}",
+        rf"\qquad {_N}^{{\mathsf T}}\,\mathbf M_{{\cdot y}}\,{change} = -{residual}",
     )
     yield Statement(
         f"**Passive extra coordinates**: {actuators} acts on their rows too, but has rank "
@@ -128,7 +128,7 @@ def _coupled_statements(coordinates: Coordinates) -> Iterator[Statement]:
         f"$`{_N}`$ that span what it leaves out, an acceleration has forces only where",
         (
             rf"{_N}^{{\mathsf T}}\begin{{bmatrix}}{k}\end{{bmatrix}} = \mathbf 0,",
-            rf"\qquad {gap} = \mathbf 0.",
+            rf"\qquad {residual} = \mathbf 0.",
         ),
     )
     if not a.completes:
@@ -154,21 +154,21 @@ def _actuators(coordinates: Coordinates) -> str:
     return "[H H_k]" if coordinates.sizes["NC"] else "H"
 
 
-def troubles(bundle: Bundle) -> tuple[str, ...]:
+def failures(bundle: Bundle) -> tuple[str, ...]:
     """Impossible states, with the equations where they show."""
-    found: dict[Trouble, list[str]] = {}
+    found: dict[FailureStatus, list[str]] = {}
     for equation in bundle.derivation.equations():
         for condition in equation.conditions:
-            found.setdefault(condition.trouble, []).append(equation.id)
+            found.setdefault(condition.status, []).append(equation.id)
     bases = last_duals(bundle.derivation)
     definitions = {e.name: e.id for e in bundle.derivation.equations()}
     singular = [
-        *found.get(Trouble.SINGULAR, ()),
+        *found.get(FailureStatus.SINGULAR, ()),
         *(definitions[name] for name in bases),
     ]
     lines = []
-    if Trouble.UNREACHABLE in found:
-        ids = _links(found[Trouble.UNREACHABLE])
+    if FailureStatus.UNREACHABLE in found:
+        ids = _links(found[FailureStatus.UNREACHABLE])
         lines.append(f"**Out of reach**: {ids} negative, a leg does not get to its place.")
     if singular:
         lines.append(

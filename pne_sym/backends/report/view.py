@@ -111,7 +111,7 @@ class ReportView:
         legs: leg types.
         chapters: of the derivation.
         functions: how the functions use the equations.
-        troubles: impossible states.
+        failures: impossible states.
         counts: operations per function.
         parts: operations per part of a function.
         index: all defined symbols with their equations.
@@ -136,7 +136,7 @@ class ReportView:
     legs: tuple[LegView, ...]
     chapters: tuple[ChapterView, ...]
     functions: tuple[Statement, ...]
-    troubles: tuple[str, ...]
+    failures: tuple[str, ...]
     counts: Table
     parts: Table
     index: Table
