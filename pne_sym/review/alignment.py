@@ -18,6 +18,8 @@ Pair = tuple[int | None, int | None]
 _UNNAMED = -0.75
 """Of a joint without counterpart: two joints of one kind are rather the same."""
 _LEFT_OUT = -0.5
+_KEPT = 10.0
+"""Of a leg that is the same: as many as stand in one order keep it."""
 _LEG = re.compile(r"^legs\[(\d+)\]")
 _JOINT = re.compile(r"\.joints\[(\d+)\]")
 
@@ -68,10 +70,25 @@ def joint_pairs(before: Sequence[Table], after: Sequence[Table]) -> list[Pair]:
 
 
 def leg_pairs(before: Sequence[Table], after: Sequence[Table]) -> list[Pair]:
-    """The legs of a platform."""
+    """The legs of a platform: in their order, but the same ones wherever they stand."""
     if before == after:
         return [(k, k) for k in range(len(before))]
-    return aligned(before, after, _leg_score, _LEFT_OUT)
+    kept = aligned(before, after, _leg_score, _LEFT_OUT)
+    gone = [i for i, j in kept if j is None and i is not None]
+    new = [j for i, j in kept if i is None and j is not None]
+    for i in gone:
+        if (place := next((j for j in new if _is_same_leg(before[i], after[j])), None)) is not None:
+            new.remove(place)
+            kept = [pair for pair in kept if pair not in ((i, None), (None, place))]
+            kept.append((i, place))
+    return sorted(kept, key=lambda pair: (pair[0] or 0) - 0.5 if pair[1] is None else pair[1])
+
+
+def _is_same_leg(a: Table, b: Table) -> bool:
+    """By name where both have one, else by its two points."""
+    if a.get("name") and b.get("name"):
+        return bool(a["name"] == b["name"])
+    return all(a.get(key) == b.get(key) for key in ("base_point", "platform_point"))
 
 
 def _name_score(a: Table, b: Table) -> float:
@@ -90,7 +107,7 @@ def _joint_score(a: Table, b: Table) -> float:
 
 
 def _leg_score(a: Table, b: Table) -> float:
-    found = _name_score(a, b)
+    found = _name_score(a, b) + _KEPT * _is_same_leg(a, b)
     for key in ("type", "base_point", "platform_point", "base_frame"):
         found += 1.0 if a.get(key) == b.get(key) else 0.0
     old, new = (x.get("joints") or () for x in (a, b))

@@ -127,7 +127,7 @@ class _Function:
             note = f"only one takes {', '.join(given)}; " + (
                 "without it they are the same" if alike else "without it values differ too"
             )
-            return BlockDifference(title, Verdict.DIFFERENT, worst, note=note)
+            return BlockDifference(title, Verdict.DIFFERENT, None if alike else worst, note=note)
         if worst is not None and worst.size > self.terms.tolerance:
             return BlockDifference(title, Verdict.DIFFERENT, worst)
         return BlockDifference(title, Verdict.IDENTICAL if same else Verdict.EQUAL, worst)

@@ -10,7 +10,7 @@ True
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -36,11 +36,11 @@ from pne_sym.review.files import differing, file_differences
 from pne_sym.review.interface import interface_changes, operation_changes
 from pne_sym.review.model import Model, by_path, printed_equations
 from pne_sym.review.placed import contradictions
-from pne_sym.review.programs import first_statement, same_derivation, same_program
+from pne_sym.review.programs import SameText, first_statement, same_derivation, same_program
 from pne_sym.review.reproduction import reproduced
 from pne_sym.review.samples import length_of
 from pne_sym.review.sandbox import best_isolation
-from pne_sym.review.values import Runs
+from pne_sym.review.values import Runs, takes_base
 
 TOLERANCE = 1e-9
 
@@ -241,7 +241,9 @@ def _blocks(of: _Pair, runs: Runs, tolerance: float) -> Iterator[BlockDifference
         return
     actuators = before.manifest["sizes"]["NU"]
     terms = Terms(runs.kept, tolerance, {**after.functions, **before.functions}, actuators)
-    same = _SameText(before, after)
+    same: Callable[[str], bool] = lambda _: before.python == after.python  # noqa: E731
+    if before.bundle is not None and after.bundle is not None:
+        same = SameText(before.bundle.program, after.bundle.program)
     yield from numpy_blocks(*runs.answers, terms, same)
     if of.run and before.c == after.c:
         yield BlockDifference("C: all functions", Verdict.IDENTICAL)
@@ -267,31 +269,6 @@ def _not_run(before: Model, after: Model, run: bool) -> Iterator[BlockDifference
         if before.of_target(of.name) != after.of_target(of.name):
             note = "its text differs, and --run does not run it"
             yield BlockDifference(of.name, Verdict.NOT_COMPARED, note=note)
-
-
-class _SameText:
-    """Whether the text of a function is the same in both NumPy modules.
-
-    Of whole modules, or of our own texts also of functions that are printed from equal
-    statements; nothing is looked for in the text itself.
-    """
-
-    def __init__(self, before: Model, after: Model) -> None:
-        self.before, self.after = before.bundle, after.bundle
-        ours = self.before is not None and self.after is not None
-        self.whole = not ours and before.python == after.python
-        if before.bundle is not None and after.bundle is not None:
-            self.whole = before.bundle.program == after.bundle.program
-
-    def __call__(self, name: str) -> bool:
-        if self.whole or self.before is None or self.after is None:
-            return self.whole
-        old, new = self.before.program, self.after.program
-        return (
-            name in old.functions
-            and old.functions[name] == new.functions.get(name)
-            and (old.prepare, old.shapes) == (new.prepare, new.shapes)
-        )
 
 
 def _constants(before: Model, after: Model, runs: Runs) -> Iterator[Change]:
@@ -362,6 +339,8 @@ def _notes(before: Model, after: Model, *, run: bool) -> Iterator[str]:
 
 def _notes_of_values(found: Comparison, of: _Pair, runs: Runs) -> Iterator[str]:
     """How far the comparison of values goes."""
+    if takes_base(of.before.manifest) != takes_base(of.after.manifest):
+        yield "the base of one version moves: equations and values are compared with it at rest"
     if runs.comparable and not runs.states:
         yield "no state was found that either version allows: values were not compared"
     if not runs.common:

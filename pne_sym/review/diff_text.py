@@ -249,7 +249,7 @@ def _rest(group: list[EquationDifference]) -> list[str]:
 
 
 def _place(e: EquationDifference) -> str:
-    return f"{e.id} {e.name}" if e.id in ("output", e.leg_type) else e.id
+    return f"{e.id} {e.name}" if e.id in ("given", "output", e.leg_type) else e.id
 
 
 def _equation(e: EquationDifference) -> Iterator[str]:
@@ -279,7 +279,9 @@ def _values(found: Comparison) -> Iterator[str]:
 
 
 def told(block: BlockDifference) -> str:
-    """How a function compares."""
+    """How a function compares; where no values could differ, why it does not."""
+    if block.verdict is Verdict.DIFFERENT and block.gap is None and block.note:
+        return block.note
     gap = f"; {_gap(block.gap)}" if block.gap else ""
     return f"{block.verdict}{gap}" + (f"; {block.note}" if block.note else "")
 
@@ -289,7 +291,7 @@ def _gap(gap: Gap) -> str:
         return (
             gap.where
             if gap.where.startswith(("shapes", "the conditions"))
-            else f"at {gap.where} only one has a value"
+            else f"at {gap.where} only one has a finite value"
         )
     return f"largest relative difference {gap.size:.2g} at {gap.where}"
 

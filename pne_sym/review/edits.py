@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from pne_sym.review.alignment import Pair, joint_pairs, leg_pairs
 from pne_sym.review.difference import Edit
-from pne_sym.review.edit_words import rank, words
+from pne_sym.review.edit_changes import CENTRE, is_vague, plain
+from pne_sym.review.edit_words import FOLLOWING, rank, words
 
 _LABELS = ("name", "title")
+_OVERRIDE = re.compile(r"legs\[[\d, ]+\]\.(joints(\.\d|$)|platform_joint$)")
 Key = str | int
 
 
@@ -22,14 +25,16 @@ class Raw:
         path: keys and positions (of lists: after, or before where the entry is gone).
         old, new: None where there is none.
         joint: of a table of a joint's entry, the joint after (or before).
-        more: other legs with the same edit.
+        legs: all legs with such an edit, where there are several.
+        alike: the values before and after of each of these edits.
     """
 
     path: tuple[Key, ...]
     old: Any
     new: Any
     joint: Mapping[str, Any] | None = None
-    more: tuple[int, ...] = ()
+    legs: tuple[int, ...] = ()
+    alike: tuple[tuple[Any, Any], ...] = ()
 
 
 def edits(before: Mapping[str, Any], after: Mapping[str, Any]) -> tuple[Edit, ...]:
@@ -46,7 +51,12 @@ def edits(before: Mapping[str, Any], after: Mapping[str, Any]) -> tuple[Edit, ..
     >>> [(e.words, e.path) for e in edits(one, two)]
     [('leg 1, joint 1 (H): pitch 0.1 -> 0.2 m/rad (+100 %)', 'legs[0].joints[0].pitch')]
     """
-    raw = list(_joined(_moved(list(_differences((), before, after, None)))))
+    renamed = _renamed_types(before, after)
+    if renamed:
+        before = _with_types(before, renamed)
+    raw = [Raw(("leg_types", old, "name"), old, new) for old, new in renamed.items()]
+    raw += _differences((), before, after, None)
+    raw = list(_joined(_about(_moved(_without_splits(raw)))))
     return tuple(sorted((_told(r) for r in raw), key=lambda e: rank(e.path, e.words)))
 
 
@@ -64,7 +74,51 @@ def best_edits(
     if written[0] is None or written[1] is None or not found:
         return found
     own = edits(written[0], written[1])
-    return own if own and len(own) <= len(found) else found
+    return own if own and _length(own) <= _length(found) else found
+
+
+def _length(told: Sequence[Edit]) -> int:
+    """Of two ways to tell the same: vague words, overrides as a whole count as several."""
+    return sum(
+        1 + is_vague(e.words) + 2 * (_OVERRIDE.match(e.path) is not None)
+        for e in told
+        if not e.path.startswith(FOLLOWING)
+    )
+
+
+def _renamed_types(before: Mapping[str, Any], after: Mapping[str, Any]) -> dict[str, str]:
+    """Leg types that have another name, most of their joints being the same."""
+    sides = [_joints_of_types(form) for form in (before, after)]
+    gone = {name: joints for name, joints in sides[0].items() if name not in sides[1]}
+    new = {name: joints for name, joints in sides[1].items() if name not in sides[0]}
+    found: dict[str, str] = {}
+    for name, joints in gone.items():
+        for other, own in new.items():
+            kept = [pair for pair in joint_pairs(joints, own) if None not in pair]
+            if other not in found.values() and 2 * len(kept) > max(len(joints), len(own)):
+                found[name] = other
+                break
+    return found
+
+
+def _joints_of_types(form: Mapping[str, Any]) -> dict[str, Sequence[Any]]:
+    """Joints of each leg type that legs have, of the type or of its first leg."""
+    found: dict[str, Sequence[Any]] = {}
+    for leg in form.get("legs", ()):
+        name = leg.get("type")
+        own = form.get("leg_types", {}).get(name, leg).get("joints")
+        if name and isinstance(own, list):
+            found.setdefault(name, own)
+    return found
+
+
+def _with_types(form: Mapping[str, Any], names: Mapping[str, str]) -> dict[str, Any]:
+    """A specification with other names of its leg types."""
+    legs = [
+        {**g, "type": names.get(g["type"], g["type"])} if "type" in g else g for g in form["legs"]
+    ]
+    types = {names.get(name, name): table for name, table in form.get("leg_types", {}).items()}
+    return {**form, "legs": legs} | ({"leg_types": types} if types else {})
 
 
 def _differences(
@@ -80,7 +134,15 @@ def _differences(
             if (*path, key) not in {(name,) for name in _LABELS}:
                 yield from _differences((*path, key), old.get(key), new.get(key), joint)
     elif _is_nested(old) and _is_nested(new):
-        for i, j in _pairs(path, old, new):
+        pairs = _pairs(path, old, new)
+        kept = [i for i, j in pairs if i is not None and j is not None]
+        if kept != sorted(kept):
+            now = [
+                next((i + 1 for i, of in pairs if of == j and i is not None), 0)
+                for j in range(len(new))
+            ]
+            yield Raw((*path, "order"), list(range(1, len(old) + 1)), now)
+        for i, j in pairs:
             a, b = None if i is None else old[i], None if j is None else new[j]
             inner = b if b is not None else a
             of = inner if path[-1:] == ("joints",) and isinstance(inner, Mapping) else joint
@@ -121,6 +183,40 @@ def _moved(raw: list[Raw]) -> list[Raw]:
     return found
 
 
+def _without_splits(raw: list[Raw]) -> list[Raw]:
+    """Leg types of the full form that are called after a leg follow from what the leg overrides."""
+    edited = {r.path[1] for r in raw if len(r.path) > 3 and r.path[0] == "legs"}
+    return [
+        r
+        for r in raw
+        if not (
+            len(r.path) == 3
+            and (r.path[0], r.path[2]) == ("legs", "type")
+            and r.path[1] in edited
+            and (f"{r.new}".startswith(f"{r.old}_") or f"{r.old}".startswith(f"{r.new}_"))
+        )
+    ]
+
+
+def _about(raw: list[Raw]) -> list[Raw]:
+    """An inertia about another point is one edit, whatever its entries are now."""
+    points = {r.path[:-1]: r for r in raw if r.path[-1] == "inertia_about"}
+    found = []
+    for r in raw:
+        point = points.get(r.path[:-1])
+        if r.path[-1] == "inertia" and point is not None:
+            pair = [
+                f"{plain(value)} about {at or CENTRE}"
+                for value, at in ((r.old, point.old), (r.new, point.new))
+            ]
+            found.append(Raw(point.path, pair[0], pair[1], r.joint))
+        elif r.path[-1] != "inertia_about" or not any(
+            s.path == (*r.path[:-1], "inertia") for s in raw
+        ):
+            found.append(r)
+    return found
+
+
 def _joined(raw: list[Raw]) -> Iterator[Raw]:
     """The same edit of several legs told once; alike ones of more than two legs too."""
     groups: dict[Any, list[Raw]] = {}
@@ -133,31 +229,28 @@ def _joined(raw: list[Raw]) -> Iterator[Raw]:
         whole = group[0].path[0] == "legs" and len(group[0].path) > 2
         alike.setdefault(key[0] if whole else key, []).append(group)
     for several in alike.values():
-        if len(several) > 2:
-            first = several[0][0]
-            legs = tuple(sorted({int(r.path[1]) for group in several for r in group}))
-            yield Raw(first.path, first.old, first.new, first.joint, legs)
-            continue
-        for group in several:
-            legs = tuple(int(r.path[1]) for r in group) if len(group) > 1 else ()
-            yield Raw(group[0].path, group[0].old, group[0].new, group[0].joint, legs)
+        for part in [[r for group in several for r in group]] if len(several) > 2 else several:
+            first = part[0]
+            legs = tuple(sorted({int(r.path[1]) for r in part})) if len(part) > 1 else ()
+            pairs = tuple((r.old, r.new) for r in part)
+            yield Raw(first.path, first.old, first.new, first.joint, legs, pairs)
 
 
 def _told(r: Raw) -> Edit:
     return Edit(
-        words(r.path, r.old, r.new, r.joint, r.more),
-        _text_of(r.path, r.more),
+        words(r.path, r.alike, r.joint, r.legs),
+        _text_of(r.path, r.legs),
         "" if r.old is None else _shown(r.old),
         "" if r.new is None else _shown(r.new),
     )
 
 
-def _text_of(path: tuple[Key, ...], more: tuple[int, ...]) -> str:
+def _text_of(path: tuple[Key, ...], legs: tuple[int, ...]) -> str:
     """legs[0].joints[1].axis; of several legs their positions within the brackets."""
     found = ""
     for k, key in enumerate(path):
-        if k == 1 and more:
-            found += f"[{', '.join(map(str, more))}]"
+        if k == 1 and legs:
+            found += f"[{', '.join(map(str, legs))}]"
         elif isinstance(key, int):
             found += f"[{key}]"
         else:
@@ -169,5 +262,20 @@ _LONG = 160
 
 
 def _shown(value: Any) -> str:
-    text = str(value)
-    return text if len(text) <= _LONG else f"{text[:_LONG]}..."
+    """As the specification writes it; of legs and leg types one entry or joint a line."""
+    tables = value if isinstance(value, list) else [value]
+    if tables and all(
+        isinstance(t, Mapping) and t.keys() & {"joints", "base_point"} for t in tables
+    ):
+        lines = [line for table in tables for line in _lines(table)]
+    else:
+        lines = [plain(value)]
+    return "\n".join(text if len(text) <= _LONG else f"{text[:_LONG]}..." for text in lines)
+
+
+def _lines(leg: Mapping[str, Any]) -> Iterator[str]:
+    for key, value in leg.items():
+        if key != "joints" or not isinstance(value, list):
+            yield f"{key} = {plain(value, quoted=True)}"
+        else:
+            yield from (f"joint {k + 1} = {plain(joint)}" for k, joint in enumerate(value))

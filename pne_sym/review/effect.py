@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -163,10 +164,10 @@ def _told(
     matched = [(k, place) for k, place in enumerate(places) if place is not None]
     if matched:
         rows, columns = (list(side) for side in zip(*matched, strict=True))
-        names = [_force(models[0], *actuators[0][k])[0].split(" of ", 1)[1] for k in rows]
-        yield _around("required forces", old.forces[1:, rows], new.forces[1:, columns], names)
+        names = [_force(models[0], *actuators[0][k]) for k in rows]
+        yield _forces_around(old.forces[1:, rows], new.forces[1:, columns], names)
     for what, a, b in figures:
-        yield _around(what, a[1:, None], b[1:, None], [""])
+        yield _figure_around(what, a[1:], b[1:])
 
 
 def _at_home(what: str, a: float | None, b: float | None, size: float, unit: str = "") -> Effect:
@@ -190,16 +191,38 @@ def _force(model: Model, leg: int, joint: int) -> tuple[str, str]:
     return f"required {what} of {place}", unit
 
 
-def _around(what: str, old: Array, new: Array, names: list[str]) -> Effect:
-    """The largest change over states, relative to the largest value of its column before."""
+def _forces_around(old: Array, new: Array, names: list[tuple[str, str]]) -> Effect:
+    """The largest change over states, beside the largest force of its actuator before."""
     both = np.isfinite(old) & np.isfinite(new)
-    lost = int((np.isfinite(old).all(axis=1) != np.isfinite(new).all(axis=1)).sum())
     size = np.max(np.abs(np.where(both, old, 0.0)), axis=0)
-    step = np.where(both, new - old, 0.0) / np.where(size > 0.0, size, 1.0)
-    at = np.unravel_index(int(np.argmax(np.abs(step))), step.shape)
-    change = float(step[at])
-    note = "" if abs(change) <= _SMALL else f"up to {100.0 * change:+.3g} %"
-    note += f" ({names[int(at[1])]})" if note and names[int(at[1])] else ""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        step = np.nan_to_num(np.where(both, np.abs(new - old), 0.0) / size, posinf=np.inf)
+    at = np.unravel_index(int(np.argmax(step)), step.shape)
+    what, unit = names[int(at[1])]
+    pair = f"{what.partition(' of ')[2]}: {old[at]:.4g} -> {new[at]:.4g} {unit}"
+    share = f"by {_share(float(step[at]))} the largest before, " if size[at[1]] else ""
+    note = f"{share}{pair}" if step[at] > _SMALL else ""
+    return _around("required forces", old, new, note, at)
+
+
+def _share(step: float) -> str:
+    return f"{100.0 * step:.3g} % of" if step < 10.0 else f"{step:.3g} times"
+
+
+def _figure_around(what: str, old: Array, new: Array) -> Effect:
+    """The largest change over states of a figure that is not negative, beside itself."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        step = np.nan_to_num(np.where(np.isfinite(old) & np.isfinite(new), new / old - 1.0, 0.0))
+    at = int(np.argmax(np.abs(step)))
+    percent = f"{100.0 * step[at]:+.3g} %" if step[at] < 10.0 else f"{step[at] + 1.0:.3g} times"
+    note = f"by up to {percent}, {old[at]:.4g} -> {new[at]:.4g}" if abs(step[at]) > _SMALL else ""
+    return _around(what, old, new, note, at)
+
+
+def _around(what: str, old: Array, new: Array, note: str, at: Any) -> Effect:
+    """A change around home; also where a state is possible in one version only."""
+    possible = [np.isfinite(side.reshape(len(side), -1)).all(axis=1) for side in (old, new)]
+    lost = int((possible[0] != possible[1]).sum())
     if lost:
         note += f"{'; ' if note else ''}{lost} of {len(old)} states possible in one version only"
     return Effect(what, _AROUND, float(old[at]), float(new[at]), bool(note), note=note)

@@ -57,15 +57,14 @@ def _number(value: float | None) -> str:
 
 
 def _percent(a: float, b: float) -> str:
+    """How much larger a figure is, in size; as a factor where a percentage is hard to read."""
     if not (math.isfinite(a) and math.isfinite(b)) or a == 0.0:
         return ""
     if abs(a + b) <= 1e-9 * abs(a):
         return " (opposite sign)"
-    return (
-        f" ({100.0 * (abs(b) - abs(a)) / abs(a):+.3g} % in size)"
-        if a * b < 0
-        else (f" ({100.0 * (abs(b) - abs(a)) / abs(a):+.3g} %)")
-    )
+    ratio = abs(b) / abs(a)
+    told = f"{100.0 * (ratio - 1.0):+.3g} %" if ratio < 10.0 else f"{ratio:.3g} times"
+    return f" ({told}{' in size' if a * b < 0 else ''})"
 
 
 def _several(names: list[str]) -> str:

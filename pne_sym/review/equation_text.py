@@ -11,8 +11,12 @@ from pne_sym.review.plain import plain
 
 def formula(equation: Equation) -> str:
     """name = right-hand side = other forms."""
-    forms = "".join(f" = {plain(form)}" for form in equation.forms)
-    return f"{equation.name} = {plain(equation.rhs)}{forms}"
+    return joined(equation.name, [equation.rhs, *equation.forms])
+
+
+def joined(name: str, sides: Sequence[Any]) -> str:
+    """An equation with all its sides, those of equal text once."""
+    return " = ".join((name, *dict.fromkeys(map(plain, sides))))
 
 
 def conditions(equation: Equation) -> str:

@@ -22,6 +22,7 @@ from pne_sym.review.equation_text import (
     formula,
     frame_text,
     given_text,
+    joined,
     summed_types,
     text_of,
 )
@@ -227,9 +228,8 @@ class DerivationComparer:
     def _renamed_text(self, before: Equation, after: Equation) -> tuple[str, ...]:
         """The text after, with the names before."""
         name = self.names.expression
-        forms = "".join(f" = {plain(name(form))}" for form in after.forms)
         return (
-            f"{before.name} = {plain(name(after.rhs))}{forms}",
+            joined(before.name, [name(side) for side in (after.rhs, *after.forms)]),
             str([(str(c.status), name(c.value), name(c.scale), c.power) for c in after.conditions]),
         )
 

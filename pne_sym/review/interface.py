@@ -143,7 +143,8 @@ def _leg_types(
 def _leg_type(info: dict[str, Any]) -> str:
     legs = ", ".join(str(leg + 1) for leg in info["legs"])
     branches = "; ".join(f"{n} {signs}" for n, signs in info["branches"].items())
-    return f"{info['architecture']}, legs {legs}" + (f"; {branches}" if branches else "")
+    several = "s" * (len(info["legs"]) > 1)
+    return f"{info['architecture']}, leg{several} {legs}" + (f"; {branches}" if branches else "")
 
 
 def operation_changes(before: Model, after: Model) -> Iterator[OperationChange]:

@@ -10,6 +10,10 @@ from pne_sym.review.difference import Change
 
 _SHOWN = 10
 _ORDERS = ("joints", "actuators", "extra", "constraints")
+_NAMES = "constant ACTUATOR_NAMES"
+_NAMED = ("actuators", "constant ACTUATED")
+"""What the names of the actuators tell too."""
+_ARGUMENT = re.compile(r"(\w+) \(")
 _SIZE = re.compile(r"'(\w+)': (\d+)")
 _LONG = 100
 _WIDTH = 98
@@ -25,18 +29,23 @@ def interface_lines(changes: list[Change]) -> Iterator[str]:
         yield from _cut("parameters renamed:", [f"{c.before} -> {c.after}" for c in renamed])
     if shaped:
         yield from _alike(shaped, "parameters of another shape")
-    if sized:
-        yield from _alike(sized, "functions with other numbers of entries")
-    for kind in ("added", "removed"):
-        for what in ("parameter ", "function "):
-            group = [c for c in others if c.kind == kind and c.what.startswith(what)]
-            if len(group) > 1:
-                others = [c for c in others if c not in group]
-                names = [c.what.removeprefix(what) for c in group]
-                yield from _cut(f"{what.strip()}s {kind}:", names)
+    for words in dict.fromkeys(map(_arguments, sized)):
+        yield from _alike([c for c in sized if _arguments(c) == words], f"functions {words}")
+    for kind, what in ((k, w) for k in ("added", "removed") for w in ("parameter ", "function ")):
+        group = [c for c in others if c.kind == kind and c.what.startswith(what)]
+        if len(group) > 1:
+            others = [c for c in others if c not in group]
+            yield from _cut(f"{what.strip()}s {kind}:", [c.what.removeprefix(what) for c in group])
+    yield from _others(others)
+
+
+def _others(others: list[Change]) -> Iterator[str]:
+    """What has no group of its own; of actuators their names where these are known."""
+    if any(c.what == _NAMES for c in others):
+        others = [c for c in others if c.what not in _NAMED]
     orders = [c.what for c in others if c.what in _ORDERS]
     if orders:
-        yield from listed("other orders of entries:", orders)
+        yield from listed("entries of other joints, or in another order:", orders)
     others = [c for c in others if c.what not in _ORDERS]
     for c in others[:_SHOWN]:
         yield from _single(c)
@@ -50,6 +59,18 @@ def _alike(changes: list[Change], words: str) -> Iterator[str]:
         return
     names = [c.what.partition(" ")[2] for c in changes]
     yield from _cut(f"{words}:", names)
+
+
+def _arguments(c: Change) -> str:
+    """How the signature of a function changed."""
+    old, new = (_ARGUMENT.findall(text.partition("->")[0]) for text in (c.before, c.after))
+    for words, names in (
+        ("that take", [n for n in new if n not in old]),
+        ("that no longer take", [n for n in old if n not in new]),
+    ):
+        if names:
+            return f"{words} {', '.join(names)}"
+    return "with other numbers of entries"
 
 
 def _single(c: Change) -> Iterator[str]:

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from itertools import zip_longest
 from typing import Any
 
+import sympy as sp
+
 from pne_sym.backends.bundle import Bundle
+from pne_sym.program.ir import Block, Program
+from pne_sym.program.public import Search
 from pne_sym.review.code import statements_of
 from pne_sym.review.difference import StatementDifference
 
@@ -60,3 +64,62 @@ def _differences(before: Bundle, after: Bundle) -> Iterator[tuple[tuple[str, str
                 key = row[:2]
                 yield (*key, name), known[0].get(key, ""), known[1].get(key, "")
                 break
+
+
+class SameText:
+    """Whether two programs compute a public function by the same text."""
+
+    def __init__(self, before: Program, after: Program) -> None:
+        self.programs = (before, after)
+        self.prepared = [_definitions(p.prepare) for p in self.programs]
+
+    def __call__(self, name: str) -> bool:
+        """Whether steps, statements and prepared values are the same."""
+        old, new = self.programs
+        if (old.closures, old.given) != (new.closures, new.given):
+            return False
+        public = [{f.name: f for f in p.public} for p in self.programs]
+        names, done = [name], set[str]()
+        while names:
+            if (name := names.pop()) in done:
+                continue
+            done.add(name)
+            one, other = (of.get(name) for of in public)
+            if one is None or one != other or not all(map(self._computes_alike, one.functions)):
+                return False
+            searches = (step for step in one.steps if isinstance(step, Search))
+            names += [part for s in searches for part in (s.residual, s.slope)]
+        return True
+
+    def _computes_alike(self, name: str) -> bool:
+        one, other = (p.functions.get(name) for p in self.programs)
+        if one is None or one != other:
+            return False
+        shapes = [[p.shapes[array] for array in one.arrays] for p in self.programs]
+        counts = [
+            [p.leg_counts[b.leg_type] for b in one.blocks if b.leg_type] for p in self.programs
+        ]
+        names = (*one.shared, *(n for of in one.per_leg.values() for n in of))
+        return shapes[0] == shapes[1] and counts[0] == counts[1] and self._prepared_alike(names)
+
+    def _prepared_alike(self, names: Iterable[str]) -> bool:
+        """Whether prepared values, and all that is computed on the way to them, are the same."""
+        left, done = list(names), set[str]()
+        while left:
+            if (name := left.pop()) not in done:
+                done.add(name)
+                one, other = (of.get(name, []) for of in self.prepared)
+                if one != other:
+                    return False
+                left += [str(s) for _, expr in one for s in sp.sympify(expr).free_symbols]
+        return True
+
+
+def _definitions(blocks: Iterable[Block]) -> dict[str, list[tuple[str, Any]]]:
+    """What defines each value: leg type and expression of its statements."""
+    found: dict[str, list[tuple[str, Any]]] = {}
+    for block in blocks:
+        pairs = (*((a.target, a.expr) for a in block.assignments), *block.sums)
+        for target, expr in pairs:
+            found.setdefault(str(target), []).append((block.leg_type, expr))
+    return found

@@ -222,7 +222,7 @@ class Runs:
     def samples(self) -> list[Sample]:
         """States for comparing equations: possible in both versions."""
         found = []
-        both_move = all(_takes_base(m.manifest) for m in self.models)
+        both_move = all(takes_base(m.manifest) for m in self.models)
         for k in range(PARAMETER_SETS if self.comparable else 0):
             old, new = self.sets[0][k], self.sets[1][k]
             allowed = [_allowed(answer, k) for answer in self.answers]
@@ -258,7 +258,7 @@ class Runs:
         return (None if faults else (found[0], found[1])), faults
 
 
-def _takes_base(manifest: Mapping[str, Any]) -> bool:
+def takes_base(manifest: Mapping[str, Any]) -> bool:
     """Whether the base of a version moves; if that of one alone does, it is compared at rest."""
     return any("base" in f.get("inputs", ()) for f in manifest.get("functions", {}).values())
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import math
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ import pytest
 
 from pne_sym import manipulators
 from pne_sym.model.full_form import to_full_form
+from pne_sym.model.reader import from_text
 from pne_sym.review.alignment import align, joint_pairs, leg_pairs
 from pne_sym.review.compare import compare
 from pne_sym.review.edits import best_edits, edits
@@ -74,11 +76,15 @@ def leg(*joints: dict[str, Any], **more: Any) -> dict[str, Any]:
     return {"joints": list(joints), "base_point": [0, 0, 0], **more}
 
 
+ROTATED = [
+    [[math.cos(a), -math.sin(a)], [math.sin(a), math.cos(a)]]
+    for a in map(math.radians, (0, 30, 60, 90))
+]
 R, P = {"kind": "R", "axis": "z"}, {"kind": "P", "axis": "x", "actuated": True}
 CASES: list[tuple[dict[str, Any], dict[str, Any], list[tuple[str, str]]]] = [
     ({"a": {"b": 1}}, {"a": {"b": 1}}, []),
     ({"name": "a", "title": "b"}, {"name": "c"}, []),
-    ({"a": [1, 2]}, {"a": [1, 3]}, [("a changed", "a")]),
+    ({"a": [1, 2]}, {"a": [1, 3]}, [("a [1, 2] -> [1, 3]", "a")]),
     ({"space": "planar"}, {"space": "point"}, [("space planar -> point", "space")]),
     (
         {"platform": {"centre_of_mass": [0, 0, 0.04]}},
@@ -145,7 +151,7 @@ CASES: list[tuple[dict[str, Any], dict[str, Any], list[tuple[str, str]]]] = [
         {"legs": [leg(P, platform_point=[k, 0.1]) for k in range(3)]},
         [
             (
-                "legs 1-3: platform point set to 100 mm from zero, others alike",
+                "legs 1-3: platform point set to 100 mm from zero, others otherwise",
                 "legs[0, 1, 2].platform_point",
             )
         ],
@@ -155,7 +161,89 @@ CASES: list[tuple[dict[str, Any], dict[str, Any], list[tuple[str, str]]]] = [
         {"legs": [leg({**P, "friction": {"viscous": 0.1}})], "home": {"q": [2]}},
         [
             ("leg 1, joint 1 (P): friction added", "legs[0].joints[0].friction"),
-            ("home: q changed", "home.q"),
+            ("home: q [1] -> [2]", "home.q"),
+        ],
+    ),
+    (
+        {"gravity": [0, -9.81]},
+        {"gravity": [1.62, 0]},
+        [("gravity turned by 90 degrees, 9.81 -> 1.62 m/s^2 (-83.5 %)", "gravity")],
+    ),
+    (
+        {"gravity": [0, -9.81]},
+        {"gravity": [0, 0, -9.81]},
+        [("gravity turned by 90 degrees", "gravity")],
+    ),
+    (
+        {"gravity": [0, -10]},
+        {"gravity": [0, -5]},
+        [("gravity 10 -> 5 m/s^2 (-50 %)", "gravity")],
+    ),
+    (
+        {"legs": [leg({**P, "limits": {"displacement": [0.4, 0.9]}})]},
+        {"legs": [leg({**P, "limits": {"displacement": [0.35, 0.9]}})]},
+        [
+            (
+                "leg 1, joint 1 (P), limits: displacement 0.4 to 0.9 -> 0.35 to 0.9",
+                "legs[0].joints[0].limits.displacement",
+            )
+        ],
+    ),
+    (
+        {"legs": [leg(P)]},
+        {"legs": [leg({**P, "name": "slide"}, name="front")]},
+        [
+            ("leg 1, joint 1 (P): named slide", "legs[0].joints[0].name"),
+            ("leg 1: named front", "legs[0].name"),
+        ],
+    ),
+    (
+        {"platform": {"inertia": 2.0}},
+        {"platform": {"inertia": [1, 2, 3], "inertia_about": "origin"}},
+        [("platform: inertia now about the origin", "platform.inertia_about")],
+    ),
+    (
+        {"platform": {"inertia_about": "origin"}},
+        {"platform": {}},
+        [("platform: inertia now about the centre of mass", "platform.inertia_about")],
+    ),
+    (
+        {"legs": [leg({**P, "axes": ["z", "y"]})]},
+        {"legs": [leg({**P, "axes": ["y", [0, 0, 1]]})]},
+        [("leg 1, joint 1 (P): axes z, y -> y, z", "legs[0].joints[0].axes")],
+    ),
+    (
+        {"legs": [leg(P, base_frame=ROTATED[k], platform_point=[k, 0]) for k in range(4)]},
+        {"legs": [leg(P, base_frame=ROTATED[0], platform_point=[k, 0]) for k in range(4)]},
+        [("legs 2-4: base frame turned by 30 to 90 degrees", "legs[1, 2, 3].base_frame")],
+    ),
+    (
+        {"legs": [leg(R, P, base_point=[k, 0, 0]) for k in range(3)]},
+        {"legs": [leg(R, P, base_point=[k, 0, 0]) for k in (0, 2, 1)]},
+        [("legs 2 and 3 swapped", "legs.order")],
+    ),
+    (
+        {"legs": [leg(R, P, base_point=[k, 0, 0], platform_joint="R") for k in range(3)]},
+        {
+            "legs": [
+                leg(R, P, base_point=[k, 0, 0], platform_joint="S" if k == 0 else "R")
+                for k in (1, 2, 0)
+            ]
+        },
+        [
+            ("legs in another order, now 2, 3, 1", "legs.order"),
+            ("leg 3: platform joint R -> S", "legs[2].platform_joint"),
+        ],
+    ),
+    (
+        {"leg_types": {"rp": {"joints": [R, P]}}, "legs": [{"type": "rp"}] * 3},
+        {"leg_types": {"arm": {"joints": [R, {**P, "axis": "y"}]}}, "legs": [{"type": "arm"}] * 3},
+        [
+            (
+                "leg type arm, joint 2 (P): axis turned by 90 degrees",
+                "leg_types.arm.joints[1].axis",
+            ),
+            ("leg type rp renamed arm", "leg_types.rp.name"),
         ],
     ),
     (
@@ -166,7 +254,7 @@ CASES: list[tuple[dict[str, Any], dict[str, Any], list[tuple[str, str]]]] = [
     (
         {"home": {"X": [1]}},
         {"home": {"X": [2]}, "symbols": {"e_2": "s"}},
-        [("home: X changed", "home.X"), ("symbols of e_2 added", "symbols")],
+        [("home: X [1] -> [2]", "home.X"), ("symbols of e_2 added", "symbols")],
     ),
 ]
 
@@ -189,6 +277,41 @@ def test_one_full_form_is_equal_however_it_is_written() -> None:
     assert best_edits((form, form), (tomllib.loads(FILE), form)) == ()
 
 
+@pytest.mark.parametrize(
+    ("line", "words", "path"),
+    [
+        (
+            "joints.1.link.mass = 0.8",
+            "leg 1, joint 2 (P), link: mass 1.2 -> 0.8 kg (-33.3 %)",
+            "legs[0].joints[1].link.mass",
+        ),
+        (
+            "joints.1.actuated = false",
+            "leg 1, joint 2 (P): no longer actuated",
+            "legs[0].joints[1].actuated",
+        ),
+    ],
+)
+def test_what_a_leg_overrides_is_told_with_what_it_was(line: str, words: str, path: str) -> None:
+    text = FILE.replace('type = "rpr"', f'type = "rpr"\n{line}', 1)
+    written = tomllib.loads(FILE), tomllib.loads(text)
+    full = tuple(to_full_form(from_text(t, ".toml", "robot")) for t in (FILE, text))
+    (edit,) = best_edits((full[0], full[1]), written)
+    assert (edit.words, edit.path) == (words, path)
+
+
+def test_what_is_put_in_is_shown_as_the_specification_writes_it() -> None:
+    one = {"legs": [leg(R)]}
+    two = {"legs": [leg(R), leg({**P, "link": {"mass": 1.5}}, R, type="a")]}
+    (edit,) = edits(one, two)
+    assert edit.after.split("\n") == [
+        'joint 1 = { kind = "P", axis = "x", actuated = true, link = { mass = 1.5 } }',
+        'joint 2 = { kind = "R", axis = "z" }',
+        "base_point = [0, 0, 0]",
+        'type = "a"',
+    ]
+
+
 def test_joints_and_legs_keep_who_they_are() -> None:
     form = to_full_form(catalogue("stewart"))
     legs: list[Any] = form["legs"]
@@ -203,7 +326,7 @@ def test_joints_and_legs_keep_who_they_are() -> None:
     for k, each in enumerate(named):
         each["name"] = f"leg{k}"
     turned = [{**each, "base_point": [0, 0, 0]} for each in (*named[1:], named[0])]
-    assert leg_pairs(named, turned)[0] == (0, None)
+    assert leg_pairs(named, turned) == [*((k + 1, k) for k in range(5)), (0, 5)]
 
 
 def test_paths_after_are_told_as_they_are_before() -> None:

@@ -9,6 +9,7 @@ from typing import Any
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.model.reader import checked
 from pne_sym.review.compare import compare
+from pne_sym.review.diff_text import as_text
 from pne_sym.review.difference import Comparison, Verdict
 from tests.models import bundle, catalogue
 from tests.review.versions import block, compiled, of, rewritten, version, with_rhs
@@ -36,6 +37,11 @@ def test_beside_a_fixed_base() -> None:
     assert note_of(found, "Z") == "only one takes base; without it they are the same"
     assert all(b.gap is None or b.gap.size < 1e-12 for b in found.blocks)
     assert block(found, "M") is Verdict.EQUAL
+    shown = list(as_text(found))
+    assert "  Z                 only one takes base; without it they are the same" in shown
+    assert any(line.startswith("  functions that take base: Z, dynamics") for line in shown)
+    assert any("compared with it at rest" in line for line in shown)
+    assert not any(line.count(" = -g") > 1 for line in shown)  # sides of equal text are told once
     assert not [e for e in found.equations if e.verdict is Verdict.DIFFERENT]
 
 

@@ -189,7 +189,7 @@ def test_a_leg_of_another_type() -> None:
     found = compare(version(TEXT), version(mixed))
     assert verdict(found) == "different: leg 2: type rpr -> rrr, and 7 other edits"
     shown = list(as_text(found))
-    assert any(line.startswith("  leg type rrr added") for line in shown)
+    assert any(line.startswith("  leg type rrr (RRR) added") for line in shown)
     assert found.samples[1] >= 16
     assert len(shown) <= 164  # three of symbols
     assert {e.verdict for e in found.equations if e.leg_type == "rrr"} == {Verdict.ADDED}
@@ -355,3 +355,30 @@ def test_law_and_statement_are_told_of_both_orders() -> None:
     gone = {e.name for e in back.equations if e.verdict is Verdict.REMOVED}
     assert new == gone
     assert new
+
+
+def test_what_computes_by_the_same_text_is_not_said_to_be_rewritten() -> None:
+    """Friction has parameters of its own: what does not feel it is as it was."""
+    damped = ("actuated = true\n", "actuated = true\nfriction = { viscous = 180.0 }\n")
+    found = compared(damped)
+    verdicts = {b.name: b.verdict for b in found.blocks}
+    for name in ("H", "M", "pose", "inverse_kinematics", "forward_kinematics", "condition"):
+        assert verdicts[name] is Verdict.IDENTICAL, name
+    assert verdicts["Z"] is verdicts["inverse_dynamics"] is Verdict.DIFFERENT
+    longer = compared(("0.7173779532087043", "0.7273779532087043"))  # base point and its home
+    verdicts = {b.name: b.verdict for b in longer.blocks}
+    assert verdicts["pose"] is Verdict.IDENTICAL
+    assert verdicts["M"] is Verdict.EQUAL  # it checks lengths beside the leg's size
+    assert verdicts["condition"] is Verdict.DIFFERENT
+    assert verdict(longer) == "different: leg 1: base point moved by 10 mm"
+
+
+def test_legs_in_another_order_are_the_same_legs() -> None:
+    head, *legs = TEXT.split("[[legs]]")
+    last, end, tail = legs[2].partition("[symbols]")
+    swapped = "[[legs]]".join([head, legs[1], legs[0], last]) + end + tail
+    found = compare(version(TEXT), version(swapped))
+    assert verdict(found) == "different: legs 1 and 2 swapped"
+    assert not any(e.changed for e in found.effects)
+    assert ("1, 2, 3", "2, 1, 3") in {(c.before, c.after) for c in found.interface}
+    assert not found.equal  # entries of q and tau belong to other legs
