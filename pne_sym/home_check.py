@@ -223,7 +223,7 @@ def poses_around_home(manipulator: Manipulator) -> list[Array]:
     One pair for every platform coordinate and extra joint: the motion that is nearest to moving
     it alone.
     """
-    space, joints = manipulator.space, [j for leg in manipulator.legs for j in leg.joints]
+    space, joints = manipulator.space, manipulator.joints
     twist, size = list(TASK_SPACES[space].components), _size(manipulator)
     slides = np.array([c < 3 for c in twist] + [not j.kind.is_angle for j in joints])
     units = np.where(slides, size, 1.0)

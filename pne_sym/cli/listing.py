@@ -16,8 +16,7 @@ def row(manipulator: Manipulator) -> tuple[str, ...]:
     """Name, degrees of freedom at home, actuated joints by kind, legs, title."""
     from pne_sym.mechanics.mobility import mobility
 
-    joints = [joint for leg in manipulator.legs for joint in leg.joints]
-    kinds = Counter(str(joint.kind) for joint in joints if joint.actuated)
+    kinds = Counter(str(joint.kind) for joint in manipulator.joints if joint.actuated)
     actuators = " + ".join(f"{count} {kind}" for kind, count in kinds.items())
     found = mobility(manipulator)
     dofs = f"{found.dofs}" + (f" ({found.passive} passive)" if found.passive else "")

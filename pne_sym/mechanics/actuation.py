@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pne_sym.derivation import Actuation
-from pne_sym.mechanics.mobility import DEPENDENT, Mobility, mobility, motions_at_home
+from pne_sym.mechanics.mobility import Mobility, mobility, motions_at_home, rank_of
 from pne_sym.model.closure import leg_residual, unreachable
 from pne_sym.model.errors import SpecError
 from pne_sym.model.kinematics import TASK_SPACES, Array, displaced, pose_at, rotation_about
@@ -60,10 +60,10 @@ def actuation(manipulator: Manipulator) -> Actuation:
     (6, (6, 7, 8, 9, 10, 11), False)
     """
     twist = len(TASK_SPACES[manipulator.space].components)
-    extra = [joint for leg in manipulator.legs for joint in leg.joints if joint.extra]
+    extra = [joint for joint in manipulator.joints if joint.extra]
     passive = tuple(k for k, joint in enumerate(extra, twist) if not joint.actuated)
     size, seen = twist + len(extra), list[_Ranks]()
-    actuated = sum(joint.actuated for leg in manipulator.legs for joint in leg.joints)
+    actuated = sum(joint.actuated for joint in manipulator.joints)
     for sample in _samples(manipulator):
         seen.append(_ranks(sample, size))
         if seen[-1].rank == size and seen[-1].force_rank == min(size, actuated):
@@ -79,18 +79,17 @@ def actuation(manipulator: Manipulator) -> Actuation:
 
 
 def _ranks(m: Manipulator, size: int) -> _Ranks:
-    joints = [joint for leg in m.legs for joint in leg.joints]
-    actuated = np.array([joint.actuated for joint in joints], dtype=bool)
-    passive = np.array([joint.extra and not joint.actuated for joint in joints], dtype=bool)
+    actuated = np.array([joint.actuated for joint in m.joints], dtype=bool)
+    passive = np.array([joint.extra and not joint.actuated for joint in m.joints], dtype=bool)
     motions, twist = motions_at_home(m), len(TASK_SPACES[m.space].components)
     platform, rates = motions[:twist], motions[twist:]
-    dofs, held = motions.shape[1], _rank(rates[actuated])
+    dofs, held = motions.shape[1], rank_of(rates[actuated])
     return _Ranks(
         rank=size - dofs + held,
         force_rank=held if dofs == size else _force_rank(m),
-        is_determined=_rank(rates[actuated | passive]) == dofs,
+        is_determined=rank_of(rates[actuated | passive]) == dofs,
         # They move alone, the platform and what is actuated at rest.
-        is_coupled=dofs - _rank(np.vstack([platform, rates[actuated]])) < passive.sum(),
+        is_coupled=dofs - rank_of(np.vstack([platform, rates[actuated]])) < passive.sum(),
     )
 
 
@@ -116,14 +115,7 @@ def _force_rank(m: Manipulator) -> int:
         choice = np.linalg.pinv(by_q[:, own]) + rng.uniform(-1, 1, (own.sum(), len(idle))) @ idle
         rates[own] = -choice @ demand
         columns.append(rates[[joint.actuated for joint in leg.joints]])
-    return _rank(np.vstack(columns))
-
-
-def _rank(rows: Array) -> int:
-    if not rows.size:
-        return 0
-    values = np.linalg.svd(rows, compute_uv=False)
-    return int(np.sum(values > DEPENDENT * max(1.0, float(values[0]))))
+    return rank_of(np.vstack(columns))
 
 
 # ---- samples ---------------------------------------------------------------------------------
@@ -154,7 +146,7 @@ def _is_alike(sample: Manipulator, home: Mobility) -> bool:
 def _size(m: Manipulator) -> float:
     """A length of the mechanism."""
     points = [p for leg in m.legs for p in (leg.base_point, leg.platform_point)]
-    offsets = [joint.offset for leg in m.legs for joint in leg.joints]
+    offsets = [joint.offset for joint in m.joints]
     shifts = [leg.platform_joint.offset for leg in m.legs]
     lengths = np.linalg.norm([*points, *offsets, *shifts], axis=1)
     return float(lengths.max()) or 1.0
@@ -214,8 +206,7 @@ def check_dependence(m: Manipulator) -> None:
 
 def _way(m: Manipulator, moved: Manipulator) -> float:
     """How far joints have moved, as parts of `_SHIFT` and `_TURN`."""
-    joints = [joint for leg in m.legs for joint in leg.joints]
-    sizes = np.array([_TURN if joint.kind.is_angle else _SHIFT * _size(m) for joint in joints])
+    sizes = np.array([_TURN if joint.kind.is_angle else _SHIFT * _size(m) for joint in m.joints])
     return float(np.max(np.abs(np.subtract(moved.home.q, m.home.q)) / sizes))
 
 

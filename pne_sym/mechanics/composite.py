@@ -13,21 +13,37 @@ from typing import Any
 
 import sympy as sp
 
-from pne_sym.derivation import Book, Law
+from pne_sym.derivation import Book
 from pne_sym.mechanics.leg_chain import LegChain
 from pne_sym.mechanics.links import LinkBody
+from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.vector import (
     Cross,
     Dot,
     Identity,
     Outer,
-    TensorSymbol,
-    VectorSymbol,
     ZeroTensor,
     ZeroVector,
     tensor_sum,
     vector_sum,
 )
+
+_TERMS = glossary(r"""
+D_#_%     | \mathcal M_{#%}          | FREEDOM | Sec. 2.2, joint table
+    inertia of joint % along joint #
+D_#_%:own | \mathcal M_{#%}          | FREEDOM | Sec. 2.2, joint table
+    inertia of joint #
+hc_#      | \mathbf h^c_{#}          | DEFINITION
+    first moment of the links from # outwards
+Jc_#      | \mathbf J^c_{#}          | DEFINITION symmetric
+    inertia tensor of the links from # outwards about joint #%
+P_c_#     | \boldsymbol\Pi_{#}       | NEWTON
+    force that accelerates joint #, per unit
+L_c_#     | \boldsymbol\Lambda_{#}   | EULER
+    moment about joint % that accelerates joint #, per unit
+L_c_#_%   | \boldsymbol\Lambda_{#,%} | EULER
+    moment about joint % that accelerates joint #, per unit
+""")
 
 
 @dataclass(frozen=True)
@@ -47,7 +63,7 @@ class CompositeWriter:
     """
 
     def __init__(self, book: Book, chain: LegChain, bodies: Sequence[LinkBody]) -> None:
-        self.book, self.g, self.chain = book, chain.g, chain
+        self.g, self.chain, self.eq = chain.g, chain, Writer(book, chain.g, _TERMS)
         self.bodies = {body.joint: body for body in bodies}
 
     def inertia(self) -> dict[tuple[int, int], Any]:
@@ -64,15 +80,8 @@ class CompositeWriter:
                 entry = self._along(j, force, moment)
                 if entry == 0:
                     continue
-                symbol = self.book.define(
-                    g.name(f"D_{j}_{k}"),
-                    entry,
-                    rf"\mathcal M_{{{j}{k}}}",
-                    f"inertia of joint {k} along joint {j}" if j < k else f"inertia of joint {k}",
-                    Law.FREEDOM,
-                    reference="Sec. 2.2, joint table",
-                )
-                found[j, k] = found[k, j] = symbol
+                stem = "D_#_%" if j < k else "D_#_%:own"
+                found[j, k] = found[k, j] = self.eq(stem, entry, j, k)
         return found
 
     def _composite(self, k: int, beyond: _Body) -> _Body:
@@ -91,14 +100,16 @@ class CompositeWriter:
                 else _Body(own.mass, own.first_moment, own.inertia)
             )
             parts.append(body if own.at_tip else self._moved(body, self.chain.reach(k)))
-        turns = k == group
-        return _Body(
-            sp.Add(*(p.mass for p in parts)),
-            self._moment(k, vector_sum(p.first_moment for p in parts)),
-            self._tensor(k, tensor_sum(p.inertia for p in parts))
-            if turns
-            else tensor_sum(p.inertia for p in parts),
+        mass = sp.Add(*(p.mass for p in parts))
+        moment, tensor = (
+            vector_sum(p.first_moment for p in parts),
+            tensor_sum(p.inertia for p in parts),
         )
+        moment = self.eq.named("hc_#", moment, k, body=g.frame("axes", group))
+        if k == group:
+            last = self._but_the_last()
+            tensor = self.eq.named("Jc_#", tensor, k, last, body=g.frame("axes", k))
+        return _Body(mass, moment, tensor)
 
     def _moved(self, body: _Body, arm: Any) -> _Body:
         """The same body about a point from which its own reference point is at `arm`."""
@@ -114,31 +125,6 @@ class CompositeWriter:
             - Outer(middle, arm),
         )
 
-    def _moment(self, k: int, value: Any) -> Any:
-        if value == ZeroVector or isinstance(value, VectorSymbol):
-            return value
-        return self.book.define(
-            self.g.name(f"hc_{k}"),
-            value,
-            rf"\mathbf h^c_{{{k}}}",
-            f"first moment of the links from {k} outwards",
-            Law.DEFINITION,
-            body=self.g.frame("axes", self.g.group[k]),
-        )
-
-    def _tensor(self, k: int, value: Any) -> Any:
-        if value == ZeroTensor or isinstance(value, TensorSymbol):
-            return value
-        return self.book.define(
-            self.g.name(f"Jc_{k}"),
-            value,
-            rf"\mathbf J^c_{{{k}}}",
-            f"inertia tensor of the links from {k} outwards about joint {k}{self._but_the_last()}",
-            Law.DEFINITION,
-            body=self.g.frame("axes", k),
-            symmetric=True,
-        )
-
     def _but_the_last(self) -> str:
         """The last link where its mass is counted with the platform."""
         carried = any(body.at_tip for body in self.bodies.values())
@@ -150,43 +136,17 @@ class CompositeWriter:
         force = Cross(spin, body.first_moment) + body.mass * slide
         moment = body.inertia @ spin + Cross(body.first_moment, slide)
         frame = g.frame("axes", g.group[k])
-        force = self._named(
-            f"P_c_{k}",
-            force,
-            rf"\boldsymbol\Pi_{{{k}}}",
-            f"force that accelerates joint {k}, per unit",
-            Law.NEWTON,
-            frame,
-        )
+        force = self.eq.named("P_c_#", force, k, body=frame)
         if not g.group[k]:
             return force, ZeroVector
-        return force, self._named(
-            f"L_c_{k}",
-            moment,
-            rf"\boldsymbol\Lambda_{{{k}}}",
-            f"moment about joint {g.group[k]} that accelerates joint {k}, per unit",
-            Law.EULER,
-            frame,
-        )
+        return force, self.eq.named("L_c_#", moment, k, g.group[k], body=frame)
 
     def _carried(self, k: int, group: int, force: Any, moment: Any) -> Any:
         """The same moment about the origin of a group further in."""
         if not group:
             return ZeroVector
         total = vector_sum((moment, Cross(self.chain.spans[group], force)))
-        return self._named(
-            f"L_c_{k}_{group}",
-            total,
-            rf"\boldsymbol\Lambda_{{{k},{group}}}",
-            f"moment about joint {group} that accelerates joint {k}, per unit",
-            Law.EULER,
-            self.g.frame("axes", group),
-        )
-
-    def _named(self, stem: str, value: Any, latex: str, title: str, law: Law, frame: str) -> Any:
-        if value == ZeroVector or isinstance(value, VectorSymbol):
-            return value
-        return self.book.define(self.g.name(stem), value, latex, title, law, body=frame)
+        return self.eq.named("L_c_#_%", total, k, group, body=self.g.frame("axes", group))
 
     def _along(self, j: int, force: Any, moment: Any) -> Any:
         return Dot(self.g.spin(j), moment) + Dot(self.g.slide(j), force)

@@ -7,9 +7,19 @@ from typing import Any
 
 import sympy as sp
 
-from pne_sym.derivation import Book, Law, Output
+from pne_sym.derivation import Book, Output
 from pne_sym.mechanics.leg_geometry import LegGeometry
+from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.vector import Dot, sum_over_legs, vector_sum
+
+_TERMS = glossary(r"""
+b_c       | \mathbf b_c | LUMPING constant
+    centroid of the platform points
+spread    | \ell_b      | LUMPING constant
+    rms distance of the platform points from their centroid
+legs_size | \ell_s      | LUMPING constant
+    rms size of the legs, taken where the platform points coincide
+""")
 
 
 def write_lengths(book: Book, legs: Sequence[LegGeometry]) -> None:
@@ -20,36 +30,15 @@ def write_lengths(book: Book, legs: Sequence[LegGeometry]) -> None:
     def mean(of: Callable[[LegGeometry], Any]) -> list[Any]:
         return [sum_over_legs(of(g), g.leg_type.name) / count for g in legs]
 
-    centroid = book.define(
-        "b_c",
-        vector_sum(mean(lambda g: g.platform_point)),
-        r"\mathbf b_c",
-        "centroid of the platform points",
-        Law.LUMPING,
-        body="platform",
-        parameter=True,
-    )
+    eq = Writer(book, None, _TERMS)
+    centroid = eq("b_c", vector_sum(mean(lambda g: g.platform_point)), body="platform")
 
     def squared(g: LegGeometry) -> Any:
         arm = g.platform_point - centroid
         return Dot(arm, arm)
 
-    spread = book.define(
-        "spread",
-        sp.sqrt(sp.Add(*mean(squared))),
-        r"\ell_b",
-        "rms distance of the platform points from their centroid",
-        Law.LUMPING,
-        parameter=True,
-    )
-    legs_size = book.define(
-        "legs_size",
-        sp.sqrt(sp.Add(*mean(lambda g: g.size**2))),
-        r"\ell_s",
-        "rms size of the legs, taken where the platform points coincide",
-        Law.LUMPING,
-        parameter=True,
-    )
+    spread = eq("spread", sp.sqrt(sp.Add(*mean(squared))))
+    legs_size = eq("legs_size", sp.sqrt(sp.Add(*mean(lambda g: g.size**2))))
     for row, value in enumerate((spread, legs_size)):
         book.outputs.append(Output("lengths", value, ((0, row),)))
 

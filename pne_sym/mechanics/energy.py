@@ -6,11 +6,7 @@ from typing import Any
 
 import sympy as sp
 
-from pne_sym.derivation import (
-    Book,
-    Law,
-    Output,
-)
+from pne_sym.derivation import Book, Law, Output
 from pne_sym.mechanics.leg_chain import LegChain
 from pne_sym.mechanics.legs import Leg
 from pne_sym.mechanics.lumping import PlatformInertia

@@ -126,7 +126,7 @@ class _Writer:
     ) -> None:
         self.p, self.rates, self.collection = platform, rates, collection
         self.chain, self.g = rates.chain, rates.chain.g
-        self.eq = Writer(book, self.g, _TERMS, LinearWriter(book, self.g, collection).define)
+        self.eq = LinearWriter(book, self.g, _TERMS, collection)
 
     def write(self, S_ddot: Vector) -> JointAccelerations:
         """Accelerations of the joints from that of the connection point."""

@@ -9,14 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 import sympy as sp
 
 from pne_sym.derivation import Book
-from pne_sym.mechanics.joint_parameters import END, JointParameters, Place
+from pne_sym.mechanics.joint_parameters import END, Place, joint_parameter
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.leg_motion import LegMotion
+from pne_sym.mechanics.live import value_at
 from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.model.effects import Friction
 from pne_sym.model.manipulator import Joint
@@ -165,8 +167,8 @@ def _text(joints: Sequence[Joint], end: Friction | None, *, coupled: bool) -> st
 
 class _Writer:
     def __init__(self, book: Book, g: LegGeometry, *, coupled: bool) -> None:
-        self.coupled = coupled
-        self.g, self.parameters = g, JointParameters(book, g.leg_type)
+        self.g, self.coupled = g, coupled
+        self.given = partial(joint_parameter, book, g)
         self.eq = Writer(book, g, _TERMS)
 
     def joint(self, j: int, joint: Joint, rate: Any, q: Mapping[int, Any]) -> InJoint:
@@ -185,13 +187,13 @@ class _Writer:
 
     def _law(self, at: Place, square: Any, prefix: str = "") -> Any:
         """Friction over rate, by the square of the rate."""
-        of = at.pick(self.g.leg_type.model).friction
+        of = value_at(self.g.leg_type.model, f"{at.path}.friction")
         factor: Any = sp.S.Zero
         if of.viscous is not None:
-            factor = self.parameters.add(at, "friction", "viscous")
+            factor = self.given(at, "friction", "viscous")
         if of.coulomb is not None:
-            coulomb = self.parameters.add(at, "friction", "coulomb")
-            scale = self.parameters.add(at, "friction", "velocity_scale")
+            coulomb = self.given(at, "friction", "coulomb")
+            scale = self.given(at, "friction", "velocity_scale")
             least = self.eq("vs2_%", scale**2, at.mark, f"{prefix}{at.mark}", at.word)
             factor = factor + coulomb / sp.sqrt(square + least)
         return factor
@@ -205,15 +207,15 @@ class _Writer:
 
     def _spring(self, at: Place, j: int, displacement: Any) -> tuple[Any, Any]:
         """Force of the spring against the displacement of joint j, and its energy."""
-        stiffness = self.parameters.add(at, "spring", "stiffness")
-        rest = self.parameters.add(at, "spring", "rest")
+        stiffness = self.given(at, "spring", "stiffness")
+        rest = self.given(at, "spring", "rest")
         force = self.eq("spring_#", stiffness * (displacement - rest), j)
         return force, self.eq("stored_#", force * (displacement - rest) / 2, j)
 
     def _motor(self, at: Place, j: int, rate: Any) -> Motor:
         """The motor of joint j; its rate where it turns with that joint alone."""
-        inertia = self.parameters.add(at, "actuator", "rotor_inertia")
-        ratio = self.parameters.add(at, "actuator", "gear_ratio")
+        inertia = self.given(at, "actuator", "rotor_inertia")
+        ratio = self.given(at, "actuator", "gear_ratio")
         felt = self.eq("rotor_#", ratio**2 * inertia, j)
         turning = None if self.coupled else self.eq("motor_#", ratio * rate, j)
         return Motor(felt, ratio, self.eq("per_turn_#", 1 / ratio, j), turning)

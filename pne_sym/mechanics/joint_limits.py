@@ -9,13 +9,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import numpy as np
 import sympy as sp
 
-from pne_sym.derivation import Book, Output, ParameterField, Quantity, Rule
+from pne_sym.derivation import Book, Output, Rule
 from pne_sym.mechanics.leg_geometry import LegGeometry
+from pne_sym.mechanics.live import note, of_legs
 from pne_sym.mechanics.terms import Writer, glossary
-from pne_sym.model.manipulator import Leg
 
 _TERMS = glossary(r"""
 middle_#   | q^m_{#}          | LUMPING constant
@@ -68,35 +67,11 @@ def write_margins(book: Book, g: LegGeometry, q: Mapping[int, Any], starts: Sequ
 def _limits(book: Book, g: LegGeometry, j: int) -> tuple[Any, ...]:
     """The live parameters of joint j: its least and its largest displacement."""
     meaning = f"least and largest displacement of joint {j}"
-    symbols = _parameter(book, g, j, ("displacement", "limits", g.kind(j).unit, meaning))
+    name, path = f"{g.leg_type.part('joint', j)}_limits", f"joints[{j - 1}].limits.displacement"
+    symbols = of_legs(book, g.leg_type, name, path, g.kind(j).unit, meaning)
     for symbol, mark, word in zip(symbols, "-+", ("least", "largest"), strict=True):
-        latex, meaning = f"q^{mark}_{{{j}}}", f"{word} displacement of joint {j}"
-        book.note_quantity(Quantity(str(symbol), latex, meaning, parameter=True))
+        note(book, symbol, f"q^{mark}_{{{j}}}", f"{word} displacement of joint {j}")
     return symbols
-
-
-def _parameter(
-    book: Book, g: LegGeometry, j: int, of: tuple[str, str, str, str]
-) -> tuple[Any, ...]:
-    """A limit of joint j as a live parameter; of: its field, its name's end, unit, meaning."""
-    legs, (field, end, unit, meaning) = g.leg_type, of
-
-    def pick(leg: Leg) -> Any:
-        return getattr(leg.joints[j - 1].limits, field)
-
-    default = np.asarray(legs.over_legs(pick), dtype=float)
-    return book.parameters.add(
-        ParameterField(
-            f"{legs.name}_{legs.part('joint', j)}_{end}",
-            legs.name,
-            default.shape[1:],
-            unit,
-            meaning,
-            tuple(f"legs[{i}].joints[{j - 1}].limits.{field}" for i in legs.indices),
-            default,
-            rule=Rule.FREE if default.shape[1:] else Rule.POSITIVE,
-        )
-    )
 
 
 def write_efforts(book: Book, g: LegGeometry, actuators: Sequence[tuple[int, int]]) -> None:
@@ -111,7 +86,9 @@ def write_efforts(book: Book, g: LegGeometry, actuators: Sequence[tuple[int, int
         if not joint.has_effort:
             continue
         meaning = f"largest size of the force of actuator {j}"
-        (limit,) = _parameter(book, g, j, ("effort", "effort", g.kind(j).effort_unit, meaning))
-        book.note_quantity(Quantity(str(limit), rf"\bar\tau_{{{j}}}", meaning, parameter=True))
+        name, path = f"{g.leg_type.part('joint', j)}_effort", f"joints[{j - 1}].limits.effort"
+        unit, rule = g.kind(j).effort_unit, Rule.POSITIVE
+        (limit,) = of_legs(book, g.leg_type, name, path, unit, meaning, rule=rule)
+        note(book, limit, rf"\bar\tau_{{{j}}}", meaning)
         rows = tuple(actuators.index((i, j - 1)) for i in g.leg_type.indices)
         book.outputs.append(Output("effort_limits", limit, ((0, 0),), (), g.leg_type.name, rows))

@@ -14,7 +14,7 @@ from pne_sym.mechanics.composite import CompositeWriter
 from pne_sym.mechanics.joint_forces import JointForces
 from pne_sym.mechanics.linear_writer import LinearWriter
 from pne_sym.mechanics.link_forces import LinkForces, LinkWriter
-from pne_sym.mechanics.terms import Writer, glossary
+from pne_sym.mechanics.terms import glossary
 from pne_sym.vector import Cross, Dot, VectorSymbol, ZeroVector, vector_sum
 
 _TERMS = glossary(r"""
@@ -34,8 +34,7 @@ class BalanceWriter:
         self.book, self.motion, self.chain = links.book, links.motion, links.motion.chain
         self.g = self.chain.g
         self.links, self.found, self.forces = links, found, forces
-        define = LinearWriter(self.book, self.g, self.motion.collection).define
-        self.eq = Writer(self.book, self.g, _TERMS, define)
+        self.eq = LinearWriter(self.book, self.g, _TERMS, self.motion.collection)
 
     def write(self) -> dict[int, Any]:
         """Gamma_j of every joint."""

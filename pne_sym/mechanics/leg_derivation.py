@@ -4,13 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from pne_sym.derivation import (
-    Book,
-    Law,
-    LegTypeInfo,
-    Quantity,
-    Role,
-)
+from pne_sym.derivation import Book, LegTypeInfo, Quantity
 from pne_sym.derivation.frames import BodyFrame, turned_about
 from pne_sym.mechanics.branches import branch_signs
 from pne_sym.mechanics.completion import completion_of
@@ -30,9 +24,19 @@ from pne_sym.mechanics.orientation import orientation_rows, orientation_signs
 from pne_sym.mechanics.platform_motion import PlatformMotion
 from pne_sym.mechanics.scales import home_lengths, with_size
 from pne_sym.mechanics.structure import LegType
+from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.model.kinematics import TaskSpace
 from pne_sym.model.manipulator import Manipulator
-from pne_sym.vector import Vector, VectorSymbol, vector_sum
+from pne_sym.vector import Vector, vector_sum
+
+_TERMS = glossary(r"""
+S             | \mathbf S     | GEOMETRY POINT | Sec. 2.5, step 1.1
+    from the base point to the connection point
+x_1           | \mathbf S_{1} | GEOMETRY
+    from the origin of joint 1 to the connection point
+sigma_closure | \sigma_{g}    | given constant
+    sign of the determinant of the loop closure's derivative by the iterated displacements
+""")
 
 _GEOMETRY = (
     "Constant vectors of the leg, each fixed in a link, and the first moments and inertia tensors "
@@ -130,13 +134,7 @@ def _orientation(book: Book, manipulator: Manipulator, leg: Leg, space: TaskSpac
     rows = orientation_rows(manipulator, g, planar=space.planar, completed=completed)
     if not rows:
         return
-    sign = Quantity(
-        g.name("sigma_closure"),
-        r"\sigma_{g}",
-        "sign of the determinant of the loop closure's derivative by the iterated displacements",
-        parameter=True,
-    )
-    book.note_quantity(sign)
+    sign = Writer(book, g, _TERMS).note("sigma_closure")
     book.parameters.add_branch(sign.name, leg.name, orientation_signs(manipulator, g, rows))
     book.leg_types[-1] = replace(book.leg_types[-1], orientation=rows, orientation_sign=sign.name)
 
@@ -171,27 +169,9 @@ def _inverse_kinematics(
 
 def _connection(book: Book, platform: PlatformMotion, g: LegGeometry) -> tuple[Vector, Vector]:
     """The connection point from the base point, and from the origin of joint 1."""
-    S = book.define(
-        g.name("S"),
-        vector_sum((platform.t, g.platform_point, -g.base_point)),
-        r"\mathbf S",
-        "from the base point to the connection point",
-        Law.GEOMETRY,
-        body="base",
-        reference="Sec. 2.5, step 1.1",
-        role=Role.POINT,
-    )
-    x = S - g.offset[1]
-    if not isinstance(x, VectorSymbol):
-        x = book.define(
-            g.name("x_1"),
-            x,
-            r"\mathbf S_{1}",
-            "from the origin of joint 1 to the connection point",
-            Law.GEOMETRY,
-            body=g.frame("axes", 0),
-        )
-    return S, x
+    eq = Writer(book, g, _TERMS)
+    S = eq("S", vector_sum((platform.t, g.platform_point, -g.base_point)), body="base")
+    return S, eq.named("x_1", S - g.offset[1], body=g.frame("axes", 0))
 
 
 def _info(leg_type: LegType, inverse: InverseKinematics, transmitted: int) -> LegTypeInfo:

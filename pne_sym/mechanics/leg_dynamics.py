@@ -24,7 +24,7 @@ from pne_sym.mechanics.leg_motion import LegMotion
 from pne_sym.mechanics.linear_writer import LinearWriter
 from pne_sym.mechanics.link_forces import LinkForces, LinkWriter
 from pne_sym.mechanics.links import LinkBody
-from pne_sym.mechanics.terms import Writer, glossary
+from pne_sym.mechanics.terms import glossary
 from pne_sym.vector import Dot, LinearForm, ZeroTensor, ZeroVector, vector_sum
 
 _TERMS = glossary(r"""
@@ -127,9 +127,8 @@ class DynamicsWriter:
         self.g: LegGeometry = links.g
         self.motion: LegMotion = links.motion
         self.frame = links.motion.chain.tip_frame
-        book = self.book = links.book
-        define = LinearWriter(book, self.g, self.motion.collection).define
-        self.eq = Writer(book, self.g, _TERMS, define)
+        self.book = links.book
+        self.eq = LinearWriter(self.book, self.g, _TERMS, self.motion.collection)
 
     def run(self) -> LegDynamics:
         """Write Newton-Euler from the last link to the base and solve for the leg's force."""

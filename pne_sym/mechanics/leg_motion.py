@@ -18,7 +18,7 @@ from pne_sym.mechanics.leg_rates import RateWriter
 from pne_sym.mechanics.linear_writer import LinearWriter
 from pne_sym.mechanics.moving_base import carried_leg
 from pne_sym.mechanics.platform_motion import PlatformMotion
-from pne_sym.mechanics.terms import Writer, glossary
+from pne_sym.mechanics.terms import glossary
 from pne_sym.model.kinematics import TaskSpace
 from pne_sym.vector import Cross, Skew, Vector, VectorSymbol, ZeroTensor, ZeroVector, vector_sum
 
@@ -116,7 +116,7 @@ def _other_accelerations(extras: Sequence[int], *, moments: bool) -> str:
 class _Writer:
     def __init__(self, book: Book, joints: JointAccelerations) -> None:
         self.joints, self.chain, self.g = joints, joints.chain, joints.chain.g
-        self.eq = Writer(book, self.g, _TERMS, LinearWriter(book, self.g, joints.collection).define)
+        self.eq = LinearWriter(book, self.g, _TERMS, joints.collection)
 
     def write(self, base: GroupMotion, origin: Vector) -> LegMotion:
         """Accelerations of the groups, outwards from what is fixed to the base."""

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from typing import Any
 
-from pne_sym.derivation import (
-    Book,
-    Law,
-    Output,
-)
+from pne_sym.derivation import Book, Output
 from pne_sym.mechanics.leg_displacements import InverseKinematics
 from pne_sym.mechanics.legs import Leg
+from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.model.kinematics import TaskSpace
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.vector import Dot, ZeroVector
+
+_TERMS = glossary(r"""
+residual | \mathbf S_r | LOOP_CLOSURE
+    from the connection point as the links reach it to the platform's
+""")
 
 
 def joint_outputs(
@@ -23,34 +25,16 @@ def joint_outputs(
     first, indices = starts(manipulator), leg.g.leg_type.indices
     for j in range(1, leg.g.count + 1):
         rows = tuple(first[i] + j - 1 for i in indices)
-        for array, value in (
-            ("q", inverse.q.get(j)),
-            ("qd", leg.motion.qd[j]),
-            ("qdd", leg.motion.qdd[j]),
-        ):
+        values = {"q": inverse.q.get(j), "qd": leg.motion.qd[j], "qdd": leg.motion.qdd[j]}
+        for array, value in values.items():
             if value is not None:
                 book.outputs.append(Output(array, value, ((0, 0),), (), leg.name, rows))
-    book.outputs.append(
-        Output(
-            "leg_force",
-            leg.dynamics.true_force,
-            ((0, 0),),
-            tuple((c, c) for c in range(3)),
-            leg.name,
-            tuple(indices),
-        )
-    )
-    if leg.dynamics.moment != ZeroVector:
-        book.outputs.append(
-            Output(
-                "leg_force",
-                leg.dynamics.moment,
-                ((0, 0),),
-                tuple((c, c + 3) for c in range(3)),
-                leg.name,
-                tuple(indices),
+    for first_row, vector in ((0, leg.dynamics.true_force), (3, leg.dynamics.moment)):
+        if not first_row or vector != ZeroVector:
+            columns = tuple((c, c + first_row) for c in range(3))
+            book.outputs.append(
+                Output("leg_force", vector, ((0, 0),), columns, leg.name, tuple(indices))
             )
-        )
 
 
 def starts(manipulator: Manipulator) -> list[int]:
@@ -61,14 +45,7 @@ def starts(manipulator: Manipulator) -> list[int]:
 def closure_outputs(book: Book, leg: Leg, frame: str, space: TaskSpace) -> None:
     """Misfit of the loop closure and its derivative by the joint displacements."""
     g, motion, name = leg.g, leg.motion, leg.name
-    residual = book.define(
-        g.name("residual"),
-        motion.residual,
-        r"\mathbf S_r",
-        "from the connection point as the links reach it to the platform's",
-        Law.LOOP_CLOSURE,
-        body=frame,
-    )
+    residual = Writer(book, g, _TERMS)("residual", motion.residual, body=frame)
     joints = [j for j in range(1, g.count + 1) if not g.is_extra(j)]
     axes = range(2 if space.planar else 3)
     rows = tuple(range(g.leg_type.count))

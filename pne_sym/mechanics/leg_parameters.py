@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from pne_sym.derivation import Book, Frame, ParameterField, Quantity, Rule
+from pne_sym.derivation import Book, Frame, Rule
 from pne_sym.mechanics.axis_relations import axis_relations
 from pne_sym.mechanics.directions import AXES, unit
 from pne_sym.mechanics.leg_geometry import LegGeometry
+from pne_sym.mechanics.live import Demands, note, of_legs
 from pne_sym.mechanics.structure import LegType, is_coordinate
 from pne_sym.mechanics.terms import Writer, filled, glossary
 from pne_sym.model.kinematics import rotation_about
-from pne_sym.model.manipulator import Leg, Vector3
+from pne_sym.model.manipulator import Vector3
 from pne_sym.vector import ZeroVector
 
 Array = NDArray[np.float64]
@@ -29,27 +30,25 @@ d_#           | \mathbf d_{#}   | given
     offset of &, fixed in link %
 """)
 _FIELDS = {
-    "base_point": ("base_point", (3,), "m", "base point, base frame"),
-    "base_frame": ("base_frame", (3, 3), "-", "rotation from leg axes to base axes"),
-    "platform_point": ("platform_point", (3,), "m", "platform joint, platform frame"),
-    "joint#_axis": ("joints[%].axis", (3,), "-", "axis of joint #, preceding link's frame"),
-    "joint#_pitch": ("joints[%].pitch", (), "m/rad", "pitch of joint #"),
-    "joint#_offset": ("joints[%].offset", (3,), "m", "offset of joint #, preceding link's frame"),
-    "platform_joint_#": ("platform_joint.#", (3,), "-", "# of the platform joint"),
+    "base_point": ("base_point", "m", "base point, base frame"),
+    "base_frame": ("base_frame", "-", "rotation from leg axes to base axes"),
+    "platform_point": ("platform_point", "m", "platform joint, platform frame"),
+    "joint#_axis": ("joints[%].axis", "-", "axis of joint #, preceding link's frame"),
+    "joint#_pitch": ("joints[%].pitch", "m/rad", "pitch of joint #"),
+    "joint#_offset": ("joints[%].offset", "m", "offset of joint #, preceding link's frame"),
+    "platform_joint_#": ("platform_joint.#", "-", "# of the platform joint"),
     "platform_joint_offset": (
         "platform_joint.offset",
-        (3,),
         "m",
         "offset of platform joint, preceding link's frame",
     ),
     "platform_joint_rotation": (
         "platform_joint.rotation",
-        (3, 3),
         "-",
         "platform axes in the last link's frame",
     ),
 }
-"""Live parameters of a leg: path in the leg, shape, unit, meaning."""
+"""Live parameters of a leg: path in the leg, unit, meaning."""
 
 
 class LegParameters:
@@ -68,16 +67,12 @@ class LegParameters:
         self.platform_point: Any = None
         self.eq = Writer(book, geometry, _TERMS)
 
-    def field(self, stem: str, *numbers: Any, **facts: Any) -> tuple[sp.Expr, ...]:
-        """A live parameter over the legs of the type; facts: its zeros and its rule."""
-        path, shape, unit, meaning = _FIELDS[stem]
+    def field(self, stem: str, *numbers: Any, **demands: Unpack[Demands]) -> tuple[sp.Expr, ...]:
+        """A live parameter over the legs of the type."""
+        path, unit, meaning = _FIELDS[stem]
         path, meaning = (filled(text, numbers) for text in (path, meaning))
         name = filled(self._labelled(stem, numbers), numbers)
-        own, paths = self.type.name, tuple(f"legs[{i}].{path}" for i in self.type.indices)
-        values = self.type.over_legs(lambda leg: value_at(leg, path))
-        return self.book.parameters.add(
-            ParameterField(f"{own}_{name}", own, shape, unit, meaning, paths, values, **facts)
-        )
+        return of_legs(self.book, self.type, name, path, unit, meaning, **demands)
 
     def _labelled(self, stem: str, numbers: tuple[Any, ...]) -> str:
         """A stem with the label of its joint."""
@@ -115,9 +110,7 @@ class LegParameters:
             if joint.kind.pitched:
                 (pitch,) = self.field("joint#_pitch", j, j - 1)
                 what = f"pitch of joint {j}: advance per angle"
-                latex = rf"\kappa_{{{j}}}"
-                self.book.note_quantity(Quantity(pitch.name, latex, what, "m/rad", parameter=True))
-                g.pitch[j] = pitch
+                g.pitch[j] = note(self.book, pitch, rf"\kappa_{{{j}}}", what)
             group = j if g.turns(j) else group
             g.group[j] = group
         g.axes_at.extend(self._axes_with(extra) for extra in self._extra_draws())
@@ -160,13 +153,3 @@ def offset_of(leg_type: LegType, j: int) -> Vector3:
     """Of joint j of the leg type's model; beyond the last one, of the platform joint."""
     model = leg_type.model
     return (*(joint.offset for joint in model.joints), model.platform_joint.offset)[j - 1]
-
-
-def value_at(leg: Leg, path: str) -> Any:
-    """A value of a leg by its path, such as `joints[2].axis`."""
-    value: Any = leg
-    for part in path.split("."):
-        name, _, index = part.partition("[")
-        value = getattr(value, name)
-        value = value[int(index[:-1])] if index else value
-    return value

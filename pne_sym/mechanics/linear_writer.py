@@ -8,14 +8,15 @@ coordinates) put to zero.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import sympy as sp
 
-from pne_sym.derivation import Book, Law, Role
+from pne_sym.derivation import Book, Law
 from pne_sym.mechanics.leg_geometry import LegGeometry
+from pne_sym.mechanics.terms import Term, Writer, filled
 from pne_sym.vector import (
     LinearForm,
     TensorSymbol,
@@ -46,81 +47,66 @@ class Collection:
         return self.known[symbol].remainder if symbol in self.known else symbol
 
 
-class LinearWriter:
-    """Defines quantities that depend on the acceleration, with their linear forms."""
+class LinearWriter(Writer):
+    """Writes quantities that depend on the acceleration, with their linear forms."""
 
-    def __init__(self, book: Book, g: LegGeometry, collection: Collection) -> None:
-        self.book = book
-        self.g = g
+    def __init__(
+        self, book: Book, g: LegGeometry, table: Mapping[str, Term], collection: Collection
+    ) -> None:
+        super().__init__(book, g, table)
         self.collection = collection
 
-    def define(
+    def collected(
         self,
         stem: str,
         rhs: Any,
-        latex: str,
-        title: str,
-        law: Law,
-        *,
-        coefficient_latex: str,
-        body: str | None = None,
-        forms: Sequence[Any] = (),
+        *numbers: Any,
         rest_forms: Sequence[Any] = (),
-        reference: str = "",
         collected: bool = True,
         accelerated: Any = None,
-        role: Role | None = None,
-        joint: int = 0,
+        **facts: Any,
     ) -> Any:
         """Define x = rhs, its coefficients and its remainder; returns x.
 
         The coefficients are those of `accelerated`, an expression that depends on the
         acceleration as x does (default: rhs itself).  If not `collected`, nobody needs them.
         """
-        book, g, motion = self.book, self.g, self.collection
-        name = g.name(stem)
+        motion = self.collection
         form = linear_form(rhs, motion.unknowns, motion.known)
         if not collected:
             form = LinearForm({}, form.remainder)
         elif accelerated is not None:
             other = linear_form(accelerated, motion.unknowns, motion.known)
             form = replace(other, remainder=form.remainder)
-        symbol = book.define(
-            name,
-            rhs,
-            latex,
-            title,
-            law,
-            body=body,
-            forms=forms,
-            reference=reference,
-            role=role,
-            joint=joint,
+        symbol = self(stem, rhs, *numbers, **facts)
+        stem, term, body = (
+            filled(stem, numbers),
+            self.table[stem].numbered(numbers),
+            facts.get("body"),
         )
-        words = latex, coefficient_latex, title
         coefficients = {
-            unknown: self._coefficient(unknown, form, words, rhs, stem=stem, body=body)
+            unknown: self._coefficient(unknown, form, term, rhs, stem=stem, body=body)
             for unknown in form.coefficients
         }
         remainder = form.remainder
         if not (isinstance(remainder, VectorSymbol | sp.Symbol) or remainder in (ZeroVector, 0)):
-            remainder = book.define(
-                g.name(f"{stem}_o"),
+            remainder = self.book.define(
+                self._name(f"{stem}_o"),
                 remainder,
-                f"{latex}^{{\\circ}}",
-                f"remainder of: {title}",
+                f"{term.latex}^{{\\circ}}",
+                f"remainder of: {term.meaning}",
                 Law.RULES,
                 body=body,
                 forms=rest_forms,
                 expanded=rhs,
                 reference="Sec. 2.3, Eq. 4",
-                remainder_of=name,
+                remainder_of=symbol.name,
             )
         motion.known[symbol] = LinearForm(coefficients, remainder)
         if collected:
-            book.collect(name, motion.known[symbol], form)
+            self.book.collect(symbol.name, motion.known[symbol], form)
         else:
-            book.collect_no_coefficients(name)
+            self.book.collect_no_coefficients(symbol.name)
         return symbol
 
     def _mark(self, unknown: Any) -> str:
@@ -135,29 +121,18 @@ class LinearWriter:
         return f"d{of}_{stem}"
 
     def _coefficient(
-        self,
-        unknown: Any,
-        form: LinearForm,
-        words: tuple[str, str, str],
-        rhs: Any,
-        *,
-        stem: str,
-        body: str | None,
+        self, unknown: Any, form: LinearForm, term: Term, rhs: Any, *, stem: str, body: str | None
     ) -> Any:
-        """A coefficient of a form: by its name if it has one, else defined.
-
-        The words are the quantity's LaTeX, that of its first coefficient, and its title.
-        """
+        """A coefficient of a form: by its name if it has one, else defined."""
         value = self.collection.named.get(form.coefficients[unknown], form.coefficients[unknown])
         if isinstance(value, VectorSymbol | TensorSymbol | sp.Symbol) or not value.args:
             return value
-        latex, coefficient_latex, title = words
         first = unknown == self.collection.a_p
         return self.book.define(
-            self.g.name(self._stem(unknown, stem)),
+            self._name(self._stem(unknown, stem)),
             value,
-            coefficient_latex if first else f"{latex}^{{({self._mark(unknown)})}}",
-            f"coefficient of the acceleration in: {title}",
+            term.coefficient if first else f"{term.latex}^{{({self._mark(unknown)})}}",
+            f"coefficient of the acceleration in: {term.meaning}",
             Law.RULES,
             body=body,
             linear=form if first else None,

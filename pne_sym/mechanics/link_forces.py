@@ -15,13 +15,12 @@ from pne_sym.derivation import Book
 from pne_sym.mechanics.leg_motion import LegMotion
 from pne_sym.mechanics.linear_writer import LinearWriter
 from pne_sym.mechanics.links import LinkBody
-from pne_sym.mechanics.terms import Writer, glossary
+from pne_sym.mechanics.terms import glossary
 from pne_sym.vector import (
     Axial,
     Compose,
     Cross,
     Identity,
-    TensorSymbol,
     Trace,
     Vector,
     VectorSymbol,
@@ -94,8 +93,7 @@ class LinkWriter:
     ) -> None:
         self.book, self.gravity, self.motion, self.bodies = book, gravity, motion, bodies
         self.chain, self.g = motion.chain, motion.chain.g
-        define = LinearWriter(book, self.g, motion.collection).define
-        self.eq = Writer(book, self.g, _TERMS, define)
+        self.eq = LinearWriter(book, self.g, _TERMS, motion.collection)
 
     def forces(self) -> LinkForces:
         """Inertia force of every link less its weight."""
@@ -172,9 +170,7 @@ class LinkWriter:
     def _group_inertia(self, group: int, members: Sequence[LinkBody]) -> tuple[Any, Any]:
         """Inertia tensor J of a group's links, each about its reference point; tr(J)/2 E - J."""
         frame = self.g.frame("axes", group)
-        J = tensor_sum(b.inertia for b in members)
-        if not isinstance(J, TensorSymbol):
-            J = self.eq("J_group_#", J, group, body=frame)
+        J = self.eq.named("J_group_#", tensor_sum(b.inertia for b in members), group, body=frame)
         return J, self.eq("Sigma_#", Trace(J) / 2 * Identity - J, group, body=frame)
 
     def _gathered_moments(

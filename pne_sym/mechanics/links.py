@@ -7,13 +7,13 @@ acceleration the platform gives.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Unpack
 
-import numpy as np
 import sympy as sp
 
-from pne_sym.derivation import Book, ParameterField, Quantity, Rule
+from pne_sym.derivation import Book, Rule
 from pne_sym.mechanics.leg_geometry import LegGeometry
+from pne_sym.mechanics.live import Demands, note, of_legs
 from pne_sym.mechanics.platform_motion import symmetric_entries
 from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.vector import Dot, Identity, Outer, Vector, ZeroVector
@@ -30,12 +30,12 @@ h_#       | \mathbf h_{#}        | LUMPING constant
 J_#       | \mathbf J_{#}        | LUMPING constant symmetric
     inertia tensor of link # about %
 """)
-_FIELDS: dict[str, tuple[tuple[int, ...], str, str]] = {
-    "mass": ((), "kg", "mass of link {j}"),
-    "centre_of_mass": ((3,), "m", "centre of mass of link {j}, link frame"),
-    "inertia": ((3, 3), "kg m^2", "inertia tensor of link {j} about its centre of mass, link axes"),
+_FIELDS = {
+    "mass": ("kg", "mass of link {j}"),
+    "centre_of_mass": ("m", "centre of mass of link {j}, link frame"),
+    "inertia": ("kg m^2", "inertia tensor of link {j} about its centre of mass, link axes"),
 }
-"""Field of a link -> shape, unit, meaning."""
+"""Field of a link -> unit, meaning."""
 
 
 @dataclass(frozen=True)
@@ -96,29 +96,15 @@ class _Writer:
     def _parameters(self, j: int, frame: str) -> tuple[Any, Any, Any]:
         """Mass, centre of mass and inertia tensor of link j, as its specification has them."""
         (mass,) = self._field(j, "mass", rule=Rule.MASS)
-        what = f"mass of link {j}"
-        self.book.note_quantity(Quantity(mass.name, f"m_{{{j}}}", what, parameter=True))
-        centre = self._field(j, "centre_of_mass", (2,) if self.planar else ())
+        note(self.book, mass, f"m_{{{j}}}", f"mass of link {j}")
+        centre = self._field(j, "centre_of_mass", zeros=(2,) if self.planar else ())
         rule = Rule.PLANAR_INERTIA if self.planar else Rule.INERTIA
         entries = symmetric_entries(self._field(j, "inertia", rule=rule), self.planar)
         rho = self.eq.give("rho_#", frame, centre, j)
         return mass, rho, self.eq.give_tensor("I_#", frame, entries, j)
 
-    def _field(
-        self, j: int, name: str, zeros: tuple[int, ...] = (), rule: Rule = Rule.FREE
-    ) -> tuple[sp.Expr, ...]:
+    def _field(self, j: int, name: str, **demands: Unpack[Demands]) -> tuple[sp.Expr, ...]:
         """A live parameter of link j: symbols of its entries."""
-        legs, (shape, unit, meaning) = self.g.leg_type, _FIELDS[name]
-        return self.book.parameters.add(
-            ParameterField(
-                f"{legs.name}_{legs.part('link', j)}_{name}",
-                legs.name,
-                shape,
-                unit,
-                meaning.format(j=j),
-                tuple(f"legs[{i}].joints[{j - 1}].link.{name}" for i in legs.indices),
-                np.asarray(legs.over_legs(lambda leg: getattr(leg.joints[j - 1].link, name))),
-                zeros,
-                rule,
-            )
-        )
+        legs, (unit, meaning) = self.g.leg_type, _FIELDS[name]
+        stem, path = f"{legs.part('link', j)}_{name}", f"joints[{j - 1}].link.{name}"
+        return of_legs(self.book, legs, stem, path, unit, meaning.format(j=j), **demands)

@@ -89,14 +89,14 @@ def mobility(manipulator: Manipulator) -> Mobility:
     6 degrees of freedom at home, 6 actuators, 0 constraints, 0 extra coordinates; \
 section 3 of the paper: ordinary (3.1)
     """
-    joints = [joint for leg in manipulator.legs for joint in leg.joints]
+    joints = manipulator.joints
     closure, by_leg, singular = _closure(manipulator)
     constraints = sum(by_leg)
     twist = len(TASK_SPACES[manipulator.space].components)
     rates = null_space(closure)
     dofs = rates.shape[1]
     actuated = np.array([joint.actuated for joint in joints], dtype=bool)
-    held = _rank(rates[twist:][actuated])
+    held = rank_of(rates[twist:][actuated])
     extra = sum(joint.extra for joint in joints)
     passive = sum(joint.extra and not joint.actuated for joint in joints)
     return Mobility(
@@ -173,7 +173,7 @@ def _check_extra(manipulator: Manipulator) -> None:
     """
     for index, (_, own, extra, by_twist) in enumerate(_legs(manipulator)):
         others = np.hstack([own, by_twist])
-        held = _rank(np.hstack([others, extra])) - _rank(others)
+        held = rank_of(np.hstack([others, extra])) - rank_of(others)
         if held:
             marked = [
                 f"joints[{j}]" for j, joint in enumerate(manipulator.legs[index].joints)
@@ -195,8 +195,7 @@ def actuation_quality(manipulator: Manipulator) -> float:
     """
     closure, _, _ = _closure(manipulator)
     rates = null_space(closure)
-    joints = [joint for leg in manipulator.legs for joint in leg.joints]
-    wanted = np.array([joint.actuated or joint.extra for joint in joints], dtype=bool)
+    wanted = np.array([joint.actuated or joint.extra for joint in manipulator.joints], dtype=bool)
     rows = rates[len(TASK_SPACES[manipulator.space].components) :][wanted]
     if rows.shape[0] < rows.shape[1] or not rows.size:
         return 0.0
@@ -221,11 +220,11 @@ def null_space(matrix: Array) -> Array:
 
 def _closure(manipulator: Manipulator) -> tuple[Array, tuple[int, ...], tuple[int, ...]]:
     """Closure conditions by the rates of platform and joints; constraints by leg; singular legs."""
-    joints = sum(len(leg.joints) for leg in manipulator.legs)
+    joints = len(manipulator.joints)
     rows, constraints, singular, start = [], [], [], 0
     for index, (by_q, own, _, by_twist) in enumerate(_legs(manipulator)):
-        rank = _rank(own)
-        constraints.append(_rank(np.hstack([own, by_twist])) - rank)
+        rank = rank_of(own)
+        constraints.append(rank_of(np.hstack([own, by_twist])) - rank)
         if rank < own.shape[1]:
             singular.append(index)
         twist, end = by_twist.shape[1], start + by_q.shape[1]
@@ -252,9 +251,8 @@ def _legs(manipulator: Manipulator) -> Iterator[tuple[Array, Array, Array, Array
 def _cases(
     manipulator: Manipulator, dofs: int, passive: int, constraints: tuple[int, ...]
 ) -> tuple[str, ...]:
-    joints = [joint for leg in manipulator.legs for joint in leg.joints]
     actuators = [sum(joint.actuated for joint in leg.joints) for leg in manipulator.legs]
-    kinematic = any(joint.extra and joint.actuated for joint in joints)
+    kinematic = any(joint.extra and joint.actuated for joint in manipulator.joints)
     actuated = dofs - passive  # that the actuators are to determine
     found = []
     # A leg without actuators that restricts the platform guides it: it is none too many.
@@ -275,7 +273,8 @@ def _cases(
     return tuple(found) or ("3.1",)
 
 
-def _rank(matrix: Array) -> int:
+def rank_of(matrix: Array) -> int:
+    """Rank, with what is below `DEPENDENT` for zero; 0 of an empty matrix."""
     if not matrix.size:
         return 0
     values = np.linalg.svd(matrix, compute_uv=False)

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 import sympy as sp
 
-from pne_sym.derivation import Book, Output, ParameterField, Quantity, Rule
+from pne_sym.derivation import Book, Output, Rule
 from pne_sym.mechanics.joint_forces import Motor
 from pne_sym.mechanics.legs import Leg
+from pne_sym.mechanics.live import note, of_all
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.vector import linear_form
 
@@ -29,7 +29,7 @@ def write_motors(book: Book, manipulator: Manipulator, legs: list[Leg]) -> None:
     has_motors = any(leg.dynamics.forces.motors for leg in legs)
     coupling = manipulator.coupling
     if coupling is not None:
-        _matrix(book, np.array(coupling))
+        _matrix(book, coupling)
     if not has_motors and coupling is None:
         return
     order = [
@@ -82,12 +82,8 @@ def _matrix(book: Book, coupling: Any) -> None:
     """The matrix as a live parameter."""
     count = len(coupling)
     meaning = "angle of each motor, before its gear, per displacement of every actuated joint"
-    field = ParameterField(
-        "coupling", None, coupling.shape, "-", meaning, ("coupling",), coupling,
-        rule=Rule.INVERTIBLE,
-    )  # fmt: skip
-    for k, symbol in enumerate(book.parameters.add(field)):
+    symbols = of_all(book, "coupling", "coupling", coupling, "-", meaning, rule=Rule.INVERTIBLE)
+    for k, symbol in enumerate(symbols):
         row, column = divmod(k, count)
-        latex = rf"\mathcal K_{{{row + 1},{column + 1}}}"
-        book.note_quantity(Quantity(symbol.name, latex, meaning, parameter=True))
+        note(book, symbol, rf"\mathcal K_{{{row + 1},{column + 1}}}", meaning)
         book.outputs.append(Output("coupling", symbol, ((0, row),), ((0, column),)))

@@ -11,7 +11,7 @@ from typing import Any
 
 import sympy as sp
 
-from pne_sym.derivation import Book, Law, Quantity, Role
+from pne_sym.derivation import Book
 from pne_sym.mechanics.joint_accelerations import JointAccelerations
 from pne_sym.mechanics.platform_motion import BaseMotion, PlatformMotion
 from pne_sym.mechanics.terms import Writer, glossary
@@ -19,10 +19,8 @@ from pne_sym.vector import (
     Compose,
     Cross,
     Skew,
-    TensorSymbol,
     Transpose,
     Vector,
-    VectorSymbol,
     ZeroTensor,
     ZeroVector,
     linear_form,
@@ -30,6 +28,22 @@ from pne_sym.vector import (
 )
 
 _TERMS = glossary(r"""
+omega_b    | \boldsymbol\omega_b      | given BASE_ANGULAR_VELOCITY     | rad/s
+alpha_b    | \boldsymbol\alpha_b      | given BASE_ANGULAR_ACCELERATION | rad/s^2
+a_b        | \mathbf a_b              | given BASE_ACCELERATION         | m/s^2
+R_b        | \mathbf R_b              | given BASE_ROTATION             | -
+B_b        | \mathbf B_b              | MOVING_FRAME | beyond the paper
+    acceleration tensor of the base
+g_b        | \mathbf g_b              | MOVING_FRAME | beyond the paper
+    acceleration of gravity, base axes
+g_f        | \mathbf g_f              | MOVING_FRAME | beyond the paper
+    gravity less the acceleration of the base origin
+a_m        | \mathbf a_m              | MOVING_FRAME | beyond the paper
+    acceleration of the platform origin from the turning of the base
+f_b        | \mathbf f_b              | MOVING_FRAME | beyond the paper
+    inertia force of the platform from the motion of the base
+mu_b       | \boldsymbol\mu_b         | MOVING_FRAME | beyond the paper
+    inertia moment of the platform from the motion of the base
 S_ddot_b   | \ddot{\mathbf S}_b       | MOVING_FRAME | beyond the paper
     acceleration of the connection point in space, less that of the base origin
 a_b0       | \mathbf a_{b0}           | MOVING_FRAME | beyond the paper
@@ -53,7 +67,6 @@ _OF_LEG = (
     r"the base, and those of a point or body that is carried along. That of the base origin counts "
     r"with gravity, $`\mathbf g_f`$."
 )
-_REFERENCE = "beyond the paper"
 
 
 def introduce_base(book: Book, gravity: Vector, *, planar: bool) -> BaseMotion:
@@ -64,48 +77,25 @@ def introduce_base(book: Book, gravity: Vector, *, planar: bool) -> BaseMotion:
         gravity: in world axes.
         planar: the base stays in the plane.
     """
-    rotation = _rotation(book, planar=planar)
-
-    def given(stem: str, latex: str, role: Role, unit: str, active: str) -> Vector:
-        components = [
-            sp.Symbol(f"{stem}_{axis}", real=True) if axis in active else sp.S.Zero
-            for axis in "xyz"
-        ]
-        quantity = Quantity(stem, latex, role.value, unit, "base", role=role)
-        symbol: Vector = book.give(VectorSymbol(stem), "base", components, quantity)
-        return symbol
-
+    eq = Writer(book, None, _TERMS)
+    rotation = _rotation(eq, planar=planar)
     turns, moves = ("z", "xy") if planar else ("xyz", "xyz")
-    omega = given("omega_b", r"\boldsymbol\omega_b", Role.BASE_ANGULAR_VELOCITY, "rad/s", turns)
-    alpha = given(
-        "alpha_b", r"\boldsymbol\alpha_b", Role.BASE_ANGULAR_ACCELERATION, "rad/s^2", turns
-    )
-    a = given("a_b", r"\mathbf a_b", Role.BASE_ACCELERATION, "m/s^2", moves)
+    omega, alpha = eq.given("omega_b", turns), eq.given("alpha_b", turns)
+    a = eq.given("a_b", moves)
     book.chapter("B", "Motion of the base", _TEXT)
-
-    def define(name: str, rhs: Any, latex: str, title: str) -> Any:
-        law = Law.MOVING_FRAME
-        return book.define(name, rhs, latex, title, law, body="base", reference=_REFERENCE)
-
-    spin = Compose(Skew(omega), Skew(omega))
-    tensor = define("B_b", Skew(alpha) + spin, r"\mathbf B_b", "acceleration tensor of the base")
-    turned = Transpose(rotation) @ gravity
-    weight = define("g_b", turned, r"\mathbf g_b", "acceleration of gravity, base axes")
-    title = "gravity less the acceleration of the base origin"
-    felt = define("g_f", weight - a, r"\mathbf g_f", title)
-    return BaseMotion(omega, alpha, tensor, weight, felt)
+    tensor = eq("B_b", Skew(alpha) + Compose(Skew(omega), Skew(omega)), body="base")
+    weight = eq("g_b", Transpose(rotation) @ gravity, body="base")
+    return BaseMotion(omega, alpha, tensor, weight, eq("g_f", weight - a, body="base"))
 
 
-def _rotation(book: Book, *, planar: bool) -> Any:
+def _rotation(eq: Writer, *, planar: bool) -> Any:
     names = [[sp.Symbol(f"R_b_{a}{b}", real=True) for b in "xyz"] for a in "xyz"]
     entries = [entry for row in names for entry in row]
     if planar:
         (xx, xy, _), (yx, yy, _), _ = names
         zero, one = sp.S.Zero, sp.S.One
         entries = [xx, xy, zero, yx, yy, zero, zero, zero, one]
-    role = Role.BASE_ROTATION
-    quantity = Quantity("R_b", r"\mathbf R_b", role.value, "-", "base", role=role)
-    return book.give(TensorSymbol("R_b"), "base", entries, quantity)
+    return eq.give_tensor("R_b", "base", entries, symmetric=False)
 
 
 def carried_platform(
@@ -123,38 +113,23 @@ def carried_platform(
     base = p.base
     if base is None:
         return ZeroVector, ZeroVector
-    w, alpha = base.omega, base.alpha
-
-    def define(name: str, rhs: Any, latex: str, title: str, *forms: Any) -> Any:
-        frame = "platform" if name == "mu_b" else "base"
-        return book.define(
-            name, rhs, latex, title, Law.MOVING_FRAME, body=frame, forms=forms,
-            reference=_REFERENCE,
-        )  # fmt: skip
-
-    moved = define(
+    w, alpha, eq = base.omega, base.alpha, Writer(book, None, _TERMS)
+    coriolis = Cross(w, p.t_dot) * 2
+    moved = eq(
         "a_m",
-        vector_sum((Cross(alpha, p.t), Cross(w, Cross(w, p.t)), Cross(w, p.t_dot) * 2)),
-        r"\mathbf a_m",
-        "acceleration of the platform origin from the turning of the base",
-        vector_sum((base.tensor @ p.t, Cross(w, p.t_dot) * 2)),
+        vector_sum((Cross(alpha, p.t), Cross(w, Cross(w, p.t)), coriolis)),
+        body="base",
+        forms=(vector_sum((base.tensor @ p.t, coriolis)),),
     )
     coriolis = Cross(w, Cross(p.omega, h)) * 2
-    force = define(
+    force = eq(
         "f_b",
         vector_sum((mass * moved, Cross(alpha, h), Cross(w, Cross(w, h)), coriolis)),
-        r"\mathbf f_b",
-        "inertia force of the platform from the motion of the base",
-        vector_sum((mass * moved, base.tensor @ h, coriolis)),
+        body="base",
+        forms=(vector_sum((mass * moved, base.tensor @ h, coriolis)),),
     )
     turned = J @ (alpha + Cross(w, p.omega)) + Cross(w, J @ (w + p.omega)) + Cross(p.omega, J @ w)
-    moment = define(
-        "mu_b",
-        Cross(h, moved) + turned,
-        r"\boldsymbol\mu_b",
-        "inertia moment of the platform from the motion of the base",
-    )
-    return force, moment
+    return force, eq("mu_b", Cross(h, moved) + turned, body="platform")
 
 
 def carried_leg(

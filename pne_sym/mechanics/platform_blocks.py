@@ -13,9 +13,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from pne_sym.derivation import Book, Equation, Law, names_in
+from pne_sym.derivation import Book, Equation, names_in
 from pne_sym.mechanics.legs import Leg
 from pne_sym.mechanics.platform_motion import PlatformMotion
+from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.vector import (
     LinearForm,
     RuleApplication,
@@ -37,36 +38,34 @@ class Side:
         inertia: inertia force or moment of the platform.
         required: what actuators and external wrench must give.
         row: of M.
-        own, whole: what is left of these two: name, LaTeX, title.
+        own, whole: what is left of these two.
     """
 
     inertia: str
     required: str
     row: str
-    own: tuple[str, str, str]
-    whole: tuple[str, str, str]
+    own: str
+    whole: str
 
 
-FORCES = Side(
-    "f_p",
-    "R_t",
-    "t",
-    ("Z_p", r"\mathbf Z_p", "centripetal force and weight of the platform"),
-    ("Z_t", r"\mathbf Z_t", "translational part of Z"),
-)
-MOMENTS = Side(
-    "mu_p",
-    "R_a",
-    "a",
-    ("Z_q", r"\mathbf Z_q", "gyroscopic moment and moment of the weight of the platform"),
-    ("Z_a", r"\mathbf Z_\alpha", "rotational part of Z"),
-)
-_TITLES = {
-    "tt": "translational block of M",
-    "ta": "coupling block of M",
-    "aa": "rotational block of M",
-}
-_COLUMNS = {"t": "t", "a": r"\alpha"}
+FORCES = Side("f_p", "R_t", "t", "Z_p", "Z_t")
+MOMENTS = Side("mu_p", "R_a", "a", "Z_q", "Z_a")
+_TERMS = glossary(r"""
+M_tt | \mathbf M_{tt}           | RULES symmetric | Eq. 34
+    translational block of M
+M_ta | \mathbf M_{t\alpha}      | RULES | Eq. 34
+    coupling block of M
+M_aa | \mathbf M_{\alpha\alpha} | RULES symmetric | Eq. 34
+    rotational block of M
+Z_p  | \mathbf Z_p              | RULES | Eq. 34
+    centripetal force and weight of the platform
+Z_q  | \mathbf Z_q              | RULES | Eq. 34
+    gyroscopic moment and moment of the weight of the platform
+Z_t  | \mathbf Z_t              | RULES | Eq. 34
+    translational part of Z
+Z_a  | \mathbf Z_\alpha         | RULES | Eq. 34
+    rotational part of Z
+""")
 
 
 class BlockWriter:
@@ -77,6 +76,7 @@ class BlockWriter:
     ) -> None:
         self.book, self.p, self.legs = book, platform, legs
         self.mass, self.moment = mass, moment
+        self.eq = Writer(book, None, _TERMS)
         both = {"t": platform.t_ddot, "a": platform.alpha}
         self.unknowns = {index: x for index, x in both.items() if x != ZeroVector}
         self.known: dict[Any, LinearForm] = {}
@@ -92,12 +92,12 @@ class BlockWriter:
         found: dict[str, Any] = {}
         for side in sides:
             for index in self.unknowns:
-                if side.row + index in _TITLES:  # the fourth block is the second's mirror image
+                if side.row + index != "at":  # that block is the mirror image of the one for "ta"
                     block = self._block(side, index, forms[side], plain[side])
                     found[side.row + index] = block
         for side in sides:
-            found[side.own[0]] = self._rest(side.own, side.inertia, plain[side])
-            found[side.whole[0]] = self._rest(side.whole, side.required, forms[side])
+            found[side.own] = self._rest(side.own, side.inertia, plain[side])
+            found[side.whole] = self._rest(side.whole, side.required, forms[side])
             self._collected(side, found, plain[side], forms[side])
         return found
 
@@ -115,7 +115,7 @@ class BlockWriter:
         if a_t is not None:
             self.known[a_t.lhs] = self._form(a_t.rhs)
         form = self._form(self._equation(side.inertia).rhs)
-        named = replace(form, remainder=VectorSymbol(side.own[0]))
+        named = replace(form, remainder=VectorSymbol(side.own))
         self.known[VectorSymbol(side.inertia)] = named
         return form
 
@@ -154,34 +154,19 @@ class BlockWriter:
         steps = (
             s for s in (*own.steps, *self.steps, *form.steps) if unknown.name in names_in(s.before)
         )
-        place = side.row + index
-        return self.book.define(
-            f"M_{place}",
-            form.coefficients[unknown],
-            rf"\mathbf M_{{{_COLUMNS[side.row]}{_COLUMNS[index]}}}",
-            _TITLES[place],
-            Law.RULES,
-            body="base",
-            symmetric=side.row == index,
-            linear=LinearForm({}, ZeroVector, tuple(dict.fromkeys(steps))),
-            expanded=self._equation(side.required).rhs,
-            reference="Eq. 34",
-        )
+        rules = LinearForm({}, ZeroVector, tuple(dict.fromkeys(steps)))
+        whole, value = self._equation(side.required).rhs, form.coefficients[unknown]
+        return self.eq(f"M_{side.row}{index}", value, body="base", linear=rules, expanded=whole)
 
-    def _rest(self, words: tuple[str, str, str], name: str, form: LinearForm) -> Any:
+    def _rest(self, symbol: str, name: str, form: LinearForm) -> Any:
         """What is left of a quantity at zero acceleration of the platform."""
-        symbol, latex, title = words
         equation = self._equation(name)
-        return self.book.define(
+        return self.eq(
             symbol,
             form.remainder,
-            latex,
-            title,
-            Law.RULES,
             body=self.book.notation[name].body,
-            forms=self._by_spin_tensor(equation) if symbol == FORCES.own[0] else (),
+            forms=self._by_spin_tensor(equation) if symbol == FORCES.own else (),
             expanded=equation.rhs,
-            reference="Eq. 34",
             remainder_of=name,
         )
 
@@ -200,8 +185,8 @@ class BlockWriter:
             else Transpose(found[index + side.row])
             for index, x in self.unknowns.items()
         }
-        self.book.collect(side.inertia, replace(own, remainder=found[side.own[0]]), own)
-        self.book.collect(side.required, LinearForm(named, found[side.whole[0]]), form)
+        self.book.collect(side.inertia, replace(own, remainder=found[side.own]), own)
+        self.book.collect(side.required, LinearForm(named, found[side.whole]), form)
 
 
 def _summed(step: RuleApplication, leg_type: str) -> RuleApplication:

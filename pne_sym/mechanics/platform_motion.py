@@ -3,35 +3,49 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 import sympy as sp
 
-from pne_sym.derivation import (
-    PLATFORM,
-    Book,
-    Frame,
-    Given,
-    Law,
-    ParameterField,
-    Quantity,
-    Role,
-    Rule,
-)
+from pne_sym.derivation import PLATFORM, Book, Frame, Given, Quantity, Rule
 from pne_sym.derivation.frames import BodyFrame, of_quaternion, turned_about
+from pne_sym.mechanics.live import Demands, note, of_all
+from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.model.kinematics import TaskSpace
 from pne_sym.model.manipulator import Body, Manipulator
-from pne_sym.vector import (
-    Compose,
-    Dot,
-    Skew,
-    TensorSymbol,
-    Vector,
-    VectorSymbol,
-    ZeroTensor,
-    ZeroVector,
-)
+from pne_sym.vector import Compose, Dot, Skew, Vector, VectorSymbol, ZeroTensor
+
+_TERMS = glossary(r"""
+phi       | \phi                | given | rad
+    angle of the platform
+z_plane   | \hat{\mathbf z}     | given
+    normal of the plane
+eps       | \boldsymbol\epsilon | given
+    vector part of the quaternion
+eps_w     | \epsilon_w          | given
+    scalar part of the quaternion
+t         | \mathbf t           | given POSITION             | m
+t:fixed   | \mathbf t           | given POSITION
+    fixed centre of rotation
+t_dot     | \dot{\mathbf t}     | given VELOCITY             | m/s
+t_ddot    | \ddot{\mathbf t}    | given ACCELERATION         | m/s^2
+omega     | \boldsymbol\omega   | given ANGULAR_VELOCITY     | rad/s
+alpha     | \boldsymbol\alpha   | given ANGULAR_ACCELERATION | rad/s^2
+g         | \mathbf g           | given GRAVITY
+W_p       | \mathbf C_p         | DEFINITION symmetric
+    centripetal tensor of the platform
+B_p       | \mathbf B_p         | DEFINITION
+    acceleration tensor of the platform
+R         | \boldsymbol\rho_p   | given
+    platform origin to centre of mass
+R_payload | \boldsymbol\rho_l   | given
+    platform origin to centre of mass of the payload
+I_p       | \mathbf I_p         | given
+    inertia tensor of the platform about its centre of mass
+I_payload | \mathbf I_l         | given
+    inertia tensor of the payload about its centre of mass
+""")
 
 
 @dataclass(frozen=True)
@@ -93,46 +107,27 @@ class PlatformMotion:
 def introduce_platform(book: Book, manipulator: Manipulator, space: TaskSpace) -> PlatformMotion:
     """Introduce what is given of the platform, and the tensor of its spin."""
     book.frames.append(Frame("base", None))
-    rotation = _rotation(space)
-    book.frames.append(Frame(PLATFORM, "base", rotation))
-    vectors = _motion(book, manipulator, space)
-    _tell_rotation(book, space)
+    book.frames.append(Frame(PLATFORM, "base", _rotation(space)))
+    eq = Writer(book, None, _TERMS)
+    given = _motion(eq, manipulator, space)
+    _tell_rotation(eq, space)
     spin: Any = ZeroTensor
     tensor: Any = ZeroTensor
     book.chapter("P", "Platform motion", _TEXT)
     if space.rotates:
-        spin = book.define(
-            "W_p",
-            Compose(Skew(vectors["omega"]), Skew(vectors["omega"])),
-            r"\mathbf C_p",
-            "centripetal tensor of the platform",
-            Law.DEFINITION,
-            body="base",
-            symmetric=True,
-        )
-        tensor = book.define(
-            "B_p",
-            Skew(vectors["alpha"]) + spin,
-            r"\mathbf B_p",
-            "acceleration tensor of the platform",
-            Law.DEFINITION,
-            body="base",
-        )
-    mass, centre, inertia = _inertia(book, manipulator.platform, space, _PLATFORM)
+        omega, alpha = given["omega"], given["alpha"]
+        spin = eq("W_p", Compose(Skew(omega), Skew(omega)), body="base")
+        tensor = eq("B_p", Skew(alpha) + spin, body="base")
+    mass, centre, inertia = _inertia(eq, manipulator.platform, space, _PLATFORM)
     payload = manipulator.payload
     return PlatformMotion(
-        vectors["t"],
-        vectors["t_dot"],
-        vectors["t_ddot"],
-        vectors["omega"],
-        vectors["alpha"],
-        vectors["g"],
-        spin,
-        tensor,
-        mass,
-        centre,
-        inertia,
-        _inertia(book, payload, space, _PAYLOAD) if payload else None,
+        **given,
+        spin=spin,
+        tensor=tensor,
+        mass=mass,
+        centre=centre,
+        inertia=inertia,
+        payload=_inertia(eq, payload, space, _PAYLOAD) if payload else None,
     )
 
 
@@ -154,238 +149,82 @@ def _rotation(space: TaskSpace) -> tuple[Any, ...]:
     return tuple(entry for row in names for entry in row)
 
 
-def _tell_rotation(book: Book, space: TaskSpace) -> None:
+def _tell_rotation(eq: Writer, space: TaskSpace) -> None:
     """For readers: how the axes of the platform are turned by its pose."""
+    book = eq.book
     book.fix_axes(BodyFrame("base", "base"))
     platform = BodyFrame(PLATFORM, "platform")
     if not space.rotates:
         book.fix_axes(platform)
         return
     if space.planar:
-        phi = _of_pose(book, "phi", r"\phi", "angle of the platform", "rad", 1)
-        z = _of_pose(book, "z_plane", r"\hat{\mathbf z}", "normal of the plane", "-", 0)
+        phi = _of_pose(eq, "phi", sp.Symbol("phi", real=True))
+        z = _of_pose(eq, "z_plane", sp.S.Zero, sp.S.Zero, sp.S.One)
         rotation = turned_about(z, phi)
     else:
-        vector = _of_pose(
-            book, "eps", r"\boldsymbol\epsilon", "vector part of the quaternion", "-", 3
+        parts = (sp.Symbol(f"eps_{a}", real=True) for a in "xyz")
+        vector, scalar = (
+            _of_pose(eq, "eps", *parts),
+            _of_pose(eq, "eps_w", sp.Symbol("eps_w", real=True)),
         )
-        scalar = _of_pose(book, "eps_w", r"\epsilon_w", "scalar part of the quaternion", "-", 1)
         rotation = of_quaternion(vector, scalar, scalar**2 + Dot(vector, vector))
     what = "rotation of the platform: turns components in its axes into base axes"
     quantity = Quantity("T_p", r"\mathbf T_p", what, body="base")
     book.fix_axes(platform, quantity, rotation)
 
 
-def _of_pose(book: Book, name: str, latex: str, meaning: str, unit: str, size: int) -> Any:
-    """A scalar or a vector of the pose; of size 0 the normal of the plane."""
-    book.note_quantity(Quantity(name, latex, meaning, unit))
-    if size == 1:
-        symbol: Any = sp.Symbol(name, real=True)
-        components: tuple[Any, ...] = (symbol,)
-    else:
-        symbol = VectorSymbol(name)
-        along_z = (sp.S.Zero, sp.S.Zero, sp.S.One)
-        components = tuple(sp.Symbol(f"{name}_{a}", real=True) for a in "xyz") if size else along_z
-    book.pose.append(Given(symbol, "base", components))
+def _of_pose(eq: Writer, name: str, *components: Any) -> Any:
+    """A scalar or a vector of the pose."""
+    scalar = eq.note(name)
+    symbol = scalar if len(components) == 1 else VectorSymbol(name)
+    eq.book.pose.append(Given(symbol, "base", components))
     return symbol
 
 
-def _motion(book: Book, manipulator: Manipulator, space: TaskSpace) -> dict[str, Vector]:
-    axes = "xyz"
-    given: dict[str, Vector] = {}
-
-    def give(stem: str, latex: str, role: Role, unit: str, active: bool, first: int) -> None:
-        if not active:
-            given[stem] = ZeroVector
-            return
-        components = [
-            sp.Symbol(f"{stem}_{axes[i]}", real=True)
-            if first + i in space.components
-            else sp.S.Zero
-            for i in range(3)
-        ]
-        symbol = VectorSymbol(stem)
-        given[stem] = book.give(
-            symbol, "base", components, Quantity(stem, latex, role.value, unit, "base", role=role)
-        )
-
-    linear, angular = space.translates, space.rotates
-    if linear:
-        give("t", r"\mathbf t", Role.POSITION, "m", True, 0)
+def _motion(eq: Writer, manipulator: Manipulator, space: TaskSpace) -> dict[str, Vector]:
+    """Vectors of the motion and of gravity, by fields of `PlatformMotion`."""
+    moves = "".join("xyz"[i] for i in range(3) if i in space.components)
+    turns = "".join("xyz"[i] for i in range(3) if i + 3 in space.components)
+    if moves:
+        t = eq.given("t", moves)
     else:
-        centre = book.parameters.add(
-            ParameterField(
-                "fixed_centre",
-                None,
-                (3,),
-                "m",
-                "fixed centre of rotation, base frame",
-                ("fixed_centre",),
-                np.array(manipulator.fixed_centre, dtype=float),
-            )
-        )
-        given["t"] = book.give(
-            VectorSymbol("t"),
-            "base",
-            centre,
-            Quantity(
-                "t",
-                r"\mathbf t",
-                "fixed centre of rotation",
-                body="base",
-                parameter=True,
-                role=Role.POSITION,
-            ),
-        )
-    give("t_dot", r"\dot{\mathbf t}", Role.VELOCITY, "m/s", linear, 0)
-    give("t_ddot", r"\ddot{\mathbf t}", Role.ACCELERATION, "m/s^2", linear, 0)
-    give("omega", r"\boldsymbol\omega", Role.ANGULAR_VELOCITY, "rad/s", angular, 3)
-    give("alpha", r"\boldsymbol\alpha", Role.ANGULAR_ACCELERATION, "rad/s^2", angular, 3)
-    gravity = book.parameters.add(
-        ParameterField(
-            "gravity",
-            None,
-            (3,),
-            "m/s^2",
-            "acceleration of gravity, base frame",
-            ("gravity",),
-            np.array(manipulator.gravity, dtype=float),
-            (2,) if space.planar else (),
-        )
-    )
-    given["g"] = book.give(
-        VectorSymbol("g"),
-        "base",
-        gravity,
-        Quantity(
-            "g",
-            r"\mathbf g",
-            Role.GRAVITY.value,
-            body="base",
-            parameter=True,
-            role=Role.GRAVITY,
-        ),
-    )
-    return given
+        what, values = "fixed centre of rotation, base frame", manipulator.fixed_centre
+        centre = of_all(eq.book, "fixed_centre", "fixed_centre", values, "m", what)
+        t = eq.give("t:fixed", "base", centre)
+    t_dot, t_ddot = eq.given("t_dot", moves), eq.given("t_ddot", moves)
+    omega, alpha = eq.given("omega", turns), eq.given("alpha", turns)
+    what, flat = "acceleration of gravity, base frame", (2,) if space.planar else ()
+    gravity = of_all(eq.book, "gravity", "gravity", manipulator.gravity, "m/s^2", what, zeros=flat)
+    g = eq.give("g", "base", gravity)
+    return {"t": t, "t_dot": t_dot, "t_ddot": t_ddot, "omega": omega, "alpha": alpha, "gravity": g}
 
 
-@dataclass(frozen=True)
-class _Carried:
-    """How a body fixed in the platform is called.
-
-    Attributes:
-        prefix: of its parameters; before "." in the full form.
-        path: of its table in the full form.
-        word: in sentences.
-        point, tensor: names of its centre of mass and its inertia.
-        mark: index in formulas.
-        centre, inertia: meanings of these parameters.
-        latex: of the centre of mass.
-    """
-
-    prefix: str
-    path: str
-    word: str
-    point: str
-    tensor: str
-    mark: str
-    centre: str
-    inertia: str
-    latex: str
+_PLATFORM = "platform", "platform", "", "p", "R", "I_p"
+_PAYLOAD = "payload", "platform.payload", " of the payload", "l", "R_payload", "I_payload"
+"""A body fixed in the platform: prefix of its parameters, path of its table in the full form, whose
+they are, index in formulas, names of its centre of mass and of its inertia."""
 
 
-_PLATFORM = _Carried(
-    "platform",
-    "platform",
-    "the platform",
-    "R",
-    "I_p",
-    "p",
-    "centre of mass, platform frame",
-    "inertia tensor about the centre of mass, platform axes",
-    r"\boldsymbol\rho_p",
-)
-_PAYLOAD = _Carried(
-    "payload",
-    "platform.payload",
-    "the payload",
-    "R_payload",
-    "I_payload",
-    "l",
-    "centre of mass of the payload, platform frame",
-    "inertia tensor of the payload about its centre of mass, platform axes",
-    r"\boldsymbol\rho_l",
-)
-
-
-def _inertia(book: Book, body: Body, space: TaskSpace, names: _Carried) -> tuple[Any, Vector, Any]:
+def _inertia(
+    eq: Writer, body: Body, space: TaskSpace, names: tuple[str, ...]
+) -> tuple[Any, Vector, Any]:
     """Mass, centre of mass and inertia of a body fixed in the platform."""
-    table, prefix, path = book.parameters, names.prefix, names.path
-    (mass,) = table.add(
-        ParameterField(
-            f"{prefix}_mass",
-            None,
-            (),
-            "kg",
-            f"mass of {names.word}",
-            (f"{path}.mass",),
-            np.array(body.mass),
-            rule=Rule.MASS,
-        )
-    )
-    centre = table.add(
-        ParameterField(
-            f"{prefix}_centre_of_mass",
-            None,
-            (3,),
-            "m",
-            names.centre,
-            (f"{path}.centre_of_mass",),
-            np.array(body.centre_of_mass, dtype=float),
-            (2,) if space.planar else (),
-        )
-    )
-    book.note_quantity(
-        Quantity(f"{prefix}_mass", f"m_{names.mark}", f"mass of {names.word}", parameter=True)
-    )
-    whose = "" if names is _PLATFORM else f" of {names.word}"
-    R = book.give(
-        VectorSymbol(names.point),
-        "platform",
-        centre,
-        Quantity(
-            names.point,
-            names.latex,
-            f"platform origin to centre of mass{whose}",
-            body="platform",
-            parameter=True,
-        ),
-    )
-    entries = table.add(
-        ParameterField(
-            f"{prefix}_inertia",
-            None,
-            (3, 3),
-            "kg m^2",
-            names.inertia,
-            (f"{path}.inertia",),
-            np.array(body.inertia, dtype=float),
-            rule=Rule.PLANAR_INERTIA if space.planar else Rule.INERTIA,
-        )
-    )
-    inertia = book.give(
-        TensorSymbol(names.tensor, True),
-        "platform",
-        symmetric_entries(entries, space.planar),
-        Quantity(
-            names.tensor,
-            rf"\mathbf I_{names.mark}",
-            f"inertia tensor of {names.word} about its centre of mass",
-            body="platform",
-            parameter=True,
-        ),
-    )
-    return mass, R, inertia
+    prefix, path, of, mark, point, tensor = names
+
+    def given(name: str, unit: str, meaning: str, **demands: Unpack[Demands]) -> tuple[Any, ...]:
+        values = getattr(body, name)
+        place = f"{path}.{name}"
+        return of_all(eq.book, f"{prefix}_{name}", place, values, unit, meaning, **demands)
+
+    what, flat = f"mass of the {prefix}", (2,) if space.planar else ()
+    (mass,) = given("mass", "kg", what, rule=Rule.MASS)
+    centre = given("centre_of_mass", "m", f"centre of mass{of}, platform frame", zeros=flat)
+    note(eq.book, mass, f"m_{mark}", what)
+    R = eq.give(point, "platform", centre)
+    its, rule = "its" if of else "the", Rule.PLANAR_INERTIA if space.planar else Rule.INERTIA
+    what = f"inertia tensor{of} about {its} centre of mass, platform axes"
+    entries = given("inertia", "kg m^2", what, rule=rule)
+    return mass, R, eq.give_tensor(tensor, "platform", symmetric_entries(entries, space.planar))
 
 
 def symmetric_entries(entries: tuple[Any, ...], planar: bool) -> tuple[Any, ...]:

@@ -2,14 +2,15 @@
 
 A row has name | symbol | law, role, marks | reference; below it stands the meaning.  The
 marks # % & stand for numbers, of joints mostly: `v_#` is `v_2` for joint 2.  What has no law
-is given; where a reference would stand is the unit of a coordinate.  After a
+is given; where a reference would stand is the unit of what is no parameter.  After a
 colon a name may say which of several rows it is.  After a semicolon stands
 the symbol of the first coefficient of what depends on the acceleration.
+Without a meaning of its own it is what its role says.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
@@ -17,11 +18,9 @@ import sympy as sp
 
 from pne_sym.derivation import Book, Law, Quantity, Role
 from pne_sym.model.joint_kinds import JointKind
-from pne_sym.vector import TensorSymbol, VectorSymbol, ZeroVector
+from pne_sym.vector import TensorSymbol, Vector, VectorSymbol, ZeroTensor, ZeroVector
 
 _MARKS = "#%&"
-Collect = Callable[..., Any]
-"""Defines what depends on the acceleration: see `LinearWriter.define`."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +29,7 @@ class Term:
 
     Attributes:
         latex, law, role, reference, meaning: of the quantity.
-        unit: of a coordinate; U is that of its joint's displacement.
+        unit: of an input; U is that of its joint's displacement.
         coefficient: LaTeX of its first coefficient.
         parameter: it is constant: made of parameters alone.
         symmetric: it is a symmetric tensor.
@@ -81,12 +80,13 @@ def _term(cells: list[str], meaning: str) -> Term:
     first, *words = facts.split()
     law = None if first == "given" else Law[first]
     roles = [Role[word] for word in words if word in Role.__members__]
+    role = roles[0] if roles else None
     return Term(
         latex,
         law,
-        roles[0] if roles else None,
+        role,
         reference if law else "",
-        meaning,
+        meaning or (role.value if role else ""),
         coefficient,
         "constant" in words,
         "symmetric" in words,
@@ -107,10 +107,8 @@ class Named(Protocol):
 class Writer:
     """Writes equations of a leg, or of the platform: names, symbols, meanings stand in a table."""
 
-    def __init__(
-        self, book: Book, g: Named | None, table: Mapping[str, Term], collect: Collect | None = None
-    ) -> None:
-        self.book, self.g, self.table, self.collect = book, g, table, collect
+    def __init__(self, book: Book, g: Named | None, table: Mapping[str, Term]) -> None:
+        self.book, self.g, self.table = book, g, table
 
     def __call__(self, stem: str, rhs: Any, *numbers: Any, **facts: Any) -> Any:
         """Define a quantity; returns its symbol.
@@ -121,34 +119,6 @@ class Writer:
             numbers: for the marks of its row.
             facts: what `Book.define` takes besides, instead of the table's too.
         """
-        name = self._name(stem, numbers)
-        latex, title, law, told = self._told(stem, numbers, facts)
-        return self.book.define(name, rhs, latex, title, law, **told)
-
-    def named(self, stem: str, rhs: Any, *numbers: Any, **facts: Any) -> Any:
-        """The same, unless it is zero or has a name already."""
-        if rhs in (0, ZeroVector) or isinstance(rhs, sp.Symbol | VectorSymbol):
-            return rhs
-        return self(stem, rhs, *numbers, **facts)
-
-    def collected(self, stem: str, rhs: Any, *numbers: Any, **facts: Any) -> Any:
-        """The same for what depends on the acceleration, with coefficients and remainder."""
-        assert self.collect is not None
-        term = self.table[stem].numbered(numbers)
-        latex, title, law, told = self._told(stem, numbers, facts)
-        del told["parameter"], told["symmetric"]
-        told["coefficient_latex"] = term.coefficient
-        return self.collect(filled(stem, numbers), rhs, latex, title, law, **told)
-
-    def _name(self, stem: str, numbers: Sequence[Any]) -> str:
-        """The name, in this leg type."""
-        name = filled(stem, numbers).partition(":")[0]
-        return self.g.name(name) if self.g else name
-
-    def _told(
-        self, stem: str, numbers: Sequence[Any], facts: dict[str, Any]
-    ) -> tuple[str, str, Law, dict[str, Any]]:
-        """LaTeX, title, law and what else is told of a quantity."""
         term = self.table[stem].numbered(numbers)
         told = {
             "reference": term.reference,
@@ -158,9 +128,22 @@ class Writer:
             "symmetric": term.symmetric,
             **facts,
         }
-        law = told.pop("law", term.law)
+        title, law = told.pop("title", term.meaning), told.pop("law", term.law)
         assert law is not None, stem
-        return told.pop("latex", term.latex), told.pop("title", term.meaning), law, told
+        name = self._name(stem, numbers)
+        return self.book.define(name, rhs, term.latex, title, law, **told)
+
+    def named(self, stem: str, rhs: Any, *numbers: Any, **facts: Any) -> Any:
+        """The same, unless it is zero or has a name already."""
+        named = isinstance(rhs, sp.Symbol | VectorSymbol | TensorSymbol)
+        if named or rhs in (0, ZeroVector, ZeroTensor):
+            return rhs
+        return self(stem, rhs, *numbers, **facts)
+
+    def _name(self, stem: str, numbers: Sequence[Any] = ()) -> str:
+        """The name, in this leg type."""
+        name = filled(stem, numbers).partition(":")[0]
+        return self.g.name(name) if self.g else name
 
     def _unit(self, term: Term, numbers: Sequence[Any]) -> str:
         """Unit of what is given, where it has no components that tell."""
@@ -173,11 +156,23 @@ class Writer:
         self.book.give(symbol, frame, tuple(components), self._quantity(stem, frame, numbers))
         return symbol
 
+    def given(self, stem: str, active: str) -> Vector:
+        """Introduce a vector that is an input, by its components along the active base axes."""
+        if not active:
+            return ZeroVector
+        parts = (sp.Symbol(f"{stem}_{a}", real=True) if a in active else sp.S.Zero for a in "xyz")
+        return self.give(stem, "base", parts)
+
     def give_tensor(
-        self, stem: str, frame: str, components: Iterable[Any], *numbers: Any
+        self,
+        stem: str,
+        frame: str,
+        components: Iterable[Any],
+        *numbers: Any,
+        symmetric: bool = True,
     ) -> TensorSymbol:
-        """The same of a symmetric tensor."""
-        symbol = TensorSymbol(self._name(stem, numbers), symmetric=True)
+        """The same of a tensor."""
+        symbol = TensorSymbol(self._name(stem, numbers), symmetric)
         self.book.give(symbol, frame, tuple(components), self._quantity(stem, frame, numbers))
         return symbol
 
@@ -195,7 +190,7 @@ class Writer:
             term.meaning,
             self._unit(term, numbers),
             body,
-            term.parameter or body is not None,
+            term.parameter or (body is not None and not term.unit),
             role=term.role,
             joint=numbers[0] if term.role and numbers else 0,
         )

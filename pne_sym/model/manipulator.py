@@ -236,3 +236,8 @@ class Manipulator:
     payload: Body | None = None
     moving_base: bool = False
     coupling: tuple[tuple[float, ...], ...] | None = None
+
+    @property
+    def joints(self) -> list[Joint]:
+        """The joints of all legs, in the order of q."""
+        return [joint for leg in self.legs for joint in leg.joints]
