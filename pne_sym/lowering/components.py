@@ -14,7 +14,7 @@ from typing import Any
 
 import sympy as sp
 
-from pne_sym.derivation import Derivation, Equation, leg_sums, names_in
+from pne_sym.derivation import Derivation, Equation, Output, leg_sums, names_in
 from pne_sym.lowering import scalars, tensors, vectors
 from pne_sym.lowering.bases import Bases
 from pne_sym.lowering.builder import Builder
@@ -23,6 +23,7 @@ from pne_sym.lowering.interface import Components
 from pne_sym.lowering.rotation import Rotation, Tensor9, symmetrised
 from pne_sym.lowering.statements import Atom
 from pne_sym.lowering.trials import NotYetError, Trials, atoms
+from pne_sym.lowering.uses import uses
 from pne_sym.program.ir import Component
 from pne_sym.vector import nodes as n
 
@@ -33,12 +34,20 @@ class Lowering(Components):
     Vectors pass from frame to frame joint by joint, or, after `form_tip_axes`, through
     the axes of each leg's last link in base axes.  Which is cheaper depends on how many
     vectors pass, so callers try both.
+
+    Args:
+        derivation: whose quantities they are.
+        builder: makes the statements.
+        outputs: those that are to be cheap.
     """
 
-    def __init__(self, derivation: Derivation, builder: Builder) -> None:
+    def __init__(
+        self, derivation: Derivation, builder: Builder, outputs: Sequence[Output] = ()
+    ) -> None:
         self.d = derivation
         self.b = builder
         self.definition: dict[str, Equation] = {e.name: e for e in derivation.equations()}
+        self._uses = uses(self.definition, outputs)
         self._place = {name: k for k, name in enumerate(self.definition)}
         self.given = {g.symbol: g for g in derivation.givens}
         self.trials = Trials(builder)
@@ -131,7 +140,9 @@ class Lowering(Components):
         for other in needed + optional:
             self.ensure(other)
         for other in needed:
-            self._keep(other)
+            # What nothing else uses costs nothing where this equation can do without it.
+            if self._uses[other] != 1:
+                self._keep(other)
         self.b.equation = equation.id
         self._lower(equation)
         for condition in equation.conditions:

@@ -68,7 +68,7 @@ def lower(derivation: Derivation) -> Program:
     groups = with_coupling(GROUPS, {output.array for output in derivation.outputs})
     for group in (*groups, *_closure_groups(derivation)):
         together = {a for _, arrays in group for a in arrays}
-        stored, lowering = _cheapest_stores(derivation, builder, together)
+        stored, lowering = _cheapest_stores(derivation, builder, together, group[0][1])
         lowerings.append(lowering)
         for name, arrays in group:
             chosen = [
@@ -118,16 +118,23 @@ _Stored = dict[Output, list[tuple[Stage, Store]]]
 
 
 def _cheapest_stores(
-    derivation: Derivation, builder: Builder, arrays: set[str]
+    derivation: Derivation, builder: Builder, arrays: set[str], first: tuple[str, ...]
 ) -> tuple[_Stored, Lowering]:
-    """Lower the outputs of a group with each choice of rotations; keep the cheaper."""
+    """Lower the outputs of a group with each choice of rotations; keep the cheaper.
+
+    Args:
+        derivation: whose outputs they are.
+        builder: makes the statements.
+        arrays: of all functions of the group.
+        first: of its first function, which is to be cheap.
+    """
     outputs = [o for o in derivation.outputs if o.array in arrays]
     if not outputs:
         return {}, Lowering(derivation, builder)
 
     def run(*, columns: bool) -> tuple[int, tuple[_Stored, Lowering]]:
         builder.keep_nothing()
-        lowering = Lowering(derivation, builder)
+        lowering = Lowering(derivation, builder, [o for o in outputs if o.array in first])
         if columns:
             lowering.form_tip_axes()
         made = {output: stores(lowering, output) for output in outputs}

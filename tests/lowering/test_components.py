@@ -70,3 +70,23 @@ def test_other_powers_are_refused() -> None:
 def test_axial_vectors_are_of_products_with_symmetric_tensors(tensor: Any) -> None:
     with pytest.raises(TypeError, match="axial vector"):
         Lowering(derivation(), Builder()).vector(Axial(tensor), "base")
+
+
+@pytest.mark.parametrize(("also_stored", "operations"), [(False, 2), (True, 4)])
+def test_what_nothing_else_uses_is_left_out(also_stored: bool, operations: int) -> None:
+    """A form that does without it then costs less; what is there anyway costs nothing."""
+    book = Book()
+    book.chapter("T", "Test", "")
+    for name in VALUES:
+        book.parameters.add_branch(name, "", ())
+    inner = book.define("inner", X * Y + X + Y, "i", "inner", Law.DEFINITION)
+    outer = book.define("outer", X * inner, "o", "outer", Law.DEFINITION, forms=(X * Y + 3,))
+    book.outputs.append(Output("potential", outer, ((0, 0),)))
+    if also_stored:
+        book.outputs.append(Output("potential", inner, ((1, 0),)))
+    builder = Builder()
+    inputs(builder, VALUES)
+    of = Lowering(book.close(), builder, book.outputs)
+    stored = [of.scalar(output.value) for output in book.outputs]
+    builder.keep_nothing()
+    assert builder.cost(stored) == operations
