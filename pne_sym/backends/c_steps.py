@@ -47,6 +47,8 @@ from pne_sym.program.public import (
     Value,
 )
 
+_CHECKS = {1: "check_one", 2: "check_two", 3: "check_three"}
+
 
 class Steps:
     """Prints what a public function does.
@@ -142,6 +144,12 @@ class Steps:
                 for value in (*(o.value for o in apart), *unused)
             ]
             return [*sums, "suspect(&why, code);", *moves]
+        only = (
+            outputs[0] if len(outputs) == 1 and apart == moved == outputs and not unused else None
+        )
+        if only:
+            ends = f"{self._size(only.value)}, {self.at[only.name]}, {wanted[only.name]}"
+            return statement(f"return finished({ends}, &why)")
         checks = {
             o.name: f"check({self._size(o.value)}, 1, {self.at[o.name]}, why.overflow);"
             for o in judged
@@ -200,7 +208,7 @@ class Steps:
 
     def _inputs(self) -> list[str]:
         """Inputs that are read, their states side by side; q0 is taken where loops are closed."""
-        lines, checks = [], {}
+        lines, checks = [], list[str]()
         for a in self.f.inputs:
             if a.name not in self.read or a.default is Default.HOME_Q or not a.value.size:
                 continue
@@ -221,12 +229,13 @@ class Steps:
             elif self.lanes:
                 lines.append(f"{a.name} = side_by_side({given}, {ends});")
             else:
-                checks[f"total({a.name}, {size})"] = f"check({size}, 1, {a.name}, why.invalid);"
-        if len(checks) > 1:
-            head = statement(f"const real total_in = {' + '.join(checks)}")
-            body = indented(checks.values())
-            return [*head, "if (!is_finite(total_in)) {", *body, "}", *lines]
-        return [*checks.values(), *lines]
+                checks.append(given)
+        calls = []
+        for k in range(0, len(checks), 3):
+            few = checks[k : k + 3]
+            call = f"{_CHECKS[len(few)]}({', '.join(few)}, why.invalid);"
+            calls += wrap(call, WIDTH - 4, "    ")
+        return [*calls, *lines]
 
     def _filled(self, a: Argument, size: str) -> str:
         """A table of what stands for an input that is left out."""
@@ -276,7 +285,7 @@ class Steps:
         for target, place in zip(step.targets, places, strict=True):
             if target.name not in self.used:
                 continue
-            if step.operation == "extend" and target.name not in self.given:  # by nothing
+            if not place and target.name not in self.given:
                 self.at[target.name] = self.at[value.name]
                 continue
             self.at[target.name] = target.name
