@@ -21,6 +21,7 @@ from pne_sym.backends.c_operations import (
     c_order,
     results_of,
 )
+from pne_sym.backends.c_repeated import repeated
 from pne_sym.backends.c_sizes import Sizes, times
 from pne_sym.backends.c_solve import Eliminations
 from pne_sym.backends.c_text import (
@@ -88,11 +89,12 @@ class Steps:
         self.summed = set[str]()
         self.work = (0, "")
         self.before: list[str] = []
+        self.steps = function.steps
 
     def routine(self) -> Routine:
         """Outputs, state by state, and codes of w states from inputs, state by state."""
-        lines = [f"start({self.w}, &why);", *self._inputs()]
-        for step in self.f.steps:
+        lines = [f"start({self.w}, &why);", *self._inputs(), *self._begun()]
+        for step in self.steps:
             lines += self._step(step)
         lines += self._outputs()
         if self.work[0]:
@@ -106,6 +108,17 @@ class Steps:
             return self._called_by_users(body)
         one = Routine.of(f"{self.f.name}_one", self._parameters(self.f.inputs), body, "static")
         return replace(one, result="int")
+
+    def _begun(self) -> list[str]:
+        """A call of another function, with whose steps this one begins."""
+        for other in self.bundle.program.public if not self.lanes else ():
+            values = repeated(self.bundle.program, self.f, other)
+            if values and other.name in self.parts:
+                self.steps = self.steps[len(other.steps) :]
+                results = {f"{label}_out": self._made(value) for label, value in values}
+                call = self.parts[other.name].call_with(results).rstrip(";")
+                return wrap(f"blame({call}, &why);", WIDTH - 4, "    ")
+        return []
 
     def _parameters(self, inputs: Iterable[Argument]) -> list[str]:
         return [
@@ -165,7 +178,7 @@ class Steps:
 
     def _unused(self) -> list[Value]:
         """Arrays that runs give and nothing uses: where they overflow the state is none either."""
-        runs = (step for step in self.f.steps if isinstance(step, Run))
+        runs = (step for step in self.steps if isinstance(step, Run))
         return [t for run in runs for t in run.targets if t.size and t.name not in self.used]
 
     # ---- arrays ------------------------------------------------------------------------------
